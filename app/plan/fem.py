@@ -15,16 +15,16 @@ from galinx.solvers.contact.fem_plan import (
     DOLFINX,
     FITTED,
     FREE_ON_LAYERS,
+    NEAR_FREE_END,
     OWN_MESHES,
     PRESCRIBED_ON_LAYERS,
     FemPlan,
     kind_of,
     largest_level,
+    no_nearer,
     pressure_moments,
     required_of_free_ends,
-    required_of_free_ends_on_layers,
     required_of_pieces,
-    required_of_prescribed_pressure,
     required_over_layers,
     requirements,
     size_of,
@@ -36,6 +36,7 @@ from galinx.solvers.contact.solution import Places
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent, smooth
+from galinx.solvers.rays import NEAR
 from galinx.solvers.solids.solid import Response
 
 from .. import ranks
@@ -103,9 +104,9 @@ def _by_contact(scene: Scene, mode: str, required: Requirements) -> Requirements
     solve = scene.solve
     if scene.layers:
         if scene.body.free:
-            return required_of_free_ends_on_layers(required)
+            return no_nearer(required, NEAR_FREE_END)
         if solve.own_pressure:
-            return required_of_prescribed_pressure(required)
+            return no_nearer(required, NEAR)  # next to knots stresses are continued
         return required_over_layers(required, scene.solid)
     if scene.body.free:
         required = required_of_free_ends(required)

@@ -89,11 +89,6 @@ class LoadScaled:
         return self._once.K_I[self._of]
 
     @property
-    def exponents(self) -> NDArray[np.float64]:
-        """Exponents fitted from the raw pressure at X = a and X = -a, (states, 2)."""
-        return self._once.exponents[self._of]
-
-    @property
     def half_width(self) -> NDArray[np.float64]:
         """Half-width of the contact [m], (states,)."""
         return self._once.half_width[self._of] * self._growth
@@ -110,16 +105,6 @@ class LoadScaled:
         return value[self._of], place[self._of]
 
     @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force over N/2, (states,)."""
-        return self._once.normal_force[self._of]
-
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Tangential force over N/2, (states,)."""
-        return self._once.tangential_force[self._of]
-
-    @property
     def residual(self) -> NDArray[np.float64]:
         """Residual of the integral equation under the pressure, relative, (states,)."""
         return self._once.residual[self._of]
@@ -129,30 +114,10 @@ class LoadScaled:
         """Residual of stresses inside against line loads and equilibrium, relative, (states,)."""
         return self._once.residual_inside[self._of]
 
-    @property
-    def v0(self) -> NDArray[np.float64]:
-        """Indentation over N/(2μ), (states,)."""
-        return self._once.v0[self._of]
-
-    @property
-    def fitted(self) -> NDArray[np.float64]:
-        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
-        return self._once.fitted[self._of]
-
-    @property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors, (states,), by word of output.quantities."""
-        return {word: values[self._of] for word, values in self._once.estimates.items()}
-
     @cached_property
     def surface(self) -> Surface:
         """Stresses on the surface."""
-        found = self._once.surface
-        raw, v_X = (
-            None if values is None else values[self._of] for values in (found.raw, found.v_X)
-        )  # fmt: skip
-        turns = found.turns and found.turns.of(self._of)
-        return Surface(found.places, found.σ_YY[self._of], found.σ_XX[self._of], raw, v_X, turns)
+        return self._once.surface.of(self._of)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
@@ -319,7 +284,10 @@ class Work:
     ) -> dict[str, NDArray]:
         """Quantities of states by one method, by path; if no solver is given, each load has its own."""
         if solver is not None:
-            solution = under_loads(solver.states, task.body, g, load)
+            if METHODS[name].scales:
+                solution = solver.states(g, load)  # type: ignore[call-arg]
+            else:
+                solution = under_loads(solver.states, task.body, g, load)
             return self._of(name, solution, task.body.loaded(load))
         assert load is not None
         data = self._unknown(name, len(g))

@@ -36,7 +36,7 @@ _APART = 0.8
 #: enough.
 _LEAST_LEFT = 1e-6
 #: Distance over a from a free end within which stresses are continued from farther away.
-_NEAR_FREE_END = 1e-2
+NEAR_FREE_END = 1e-2
 #: Additional moments over solids that are graded from the surface on: few polynomials do not make up for
 #: what functions of the ends add away from these.
 _MORE_GRADED = 6
@@ -72,14 +72,11 @@ def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> Pr
     return PressureMoments(stretch, kind.moments(required) + _MORE_GRADED * graded)
 
 
-def required_of_free_ends_on_layers(required: Requirements) -> Requirements:
-    """Requirements on a mesh for free ends over layers, where stresses at the ends are finite.
-
-    The solutions whose sum has no intensity at the ends have an intensity each.
-    """
+def no_nearer(required: Requirements, distance: float) -> Requirements:
+    """Requirements on a mesh for stresses no nearer to an end than a distance over a."""
     if required.nearest is None:
         return required
-    return replace(required, nearest=max(required.nearest, _NEAR_FREE_END))
+    return replace(required, nearest=max(required.nearest, distance))
 
 
 def graded_from_the_surface(solid: Solid) -> bool:
@@ -92,16 +89,6 @@ def required_over_layers(required: Requirements, solid: Solid) -> Requirements:
     if not graded_from_the_surface(solid):
         return required
     return replace(required, tolerance=min(required.tolerance, _LOOSEST_GRADED))
-
-
-def required_of_prescribed_pressure(required: Requirements) -> Requirements:
-    """Requirements on a mesh for a prescribed pressure over layers.
-
-    Stresses next to the pressure's knots are continued from farther away.
-    """
-    if required.nearest is None:
-        return required
-    return replace(required, nearest=max(required.nearest, NEAR))
 
 
 def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)) -> OnLayers:
@@ -227,7 +214,7 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: True where the scene fixes the degree.
         wanted: requirements on the mesh.
-        mode: ``"contact"``, ``"traction"``, ``"own pressure"``, ``FOUND``, ``OWN_MESHES``,
+        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``FREE_ENDS``, ``OWN_MESHES``,
             ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
         shared_speeds: True where speeds are shared out over the ranks, each rank with a mesh of its own;
             False where all ranks share one mesh.
@@ -306,7 +293,7 @@ def required_of_free_ends(required: Requirements) -> Requirements:
     """Requirements for free ends, where stresses are finite: larger cells do, with less rounding."""
     if required.nearest is None:
         return required
-    return replace(required, nearest=max(required.nearest, _NEAR_FREE_END), exponent=0.5)
+    return replace(no_nearer(required, NEAR_FREE_END), exponent=0.5)
 
 
 def required_of_pieces(required: Requirements, knots: NDArray) -> Requirements:

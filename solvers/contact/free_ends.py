@@ -35,8 +35,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..errors import SolveError
 from ..profiles import check_reach, jumps, kinks
+from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
 from .prescribed_pressure import LinearPressure
@@ -58,12 +58,8 @@ SHAPES = 3
 #: kink and towards an end.
 _POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
 
-#: First half-width tried [m]; most doublings of the half-width, and of the middle over it; halvings of
-#: the middle's interval.
-_FIRST, _DOUBLINGS, _FARTHER, _HALVINGS = 1e-3, 100, 12, 12
-#: Steps of Newton's method, largest step of m/h and of log h, difference for derivatives; residual at
-#: which it stops, and largest residual that rounding leaves.
-_STEPS, _LARGEST, _ε, _MET, _ROUNDING = 60, 0.4, 1e-5, 1e-14, 1e-11
+#: First half-width tried [m].
+_FIRST = 1e-3
 
 
 def heights_of_shapes(s: NDArray, count: int = SHAPES) -> NDArray[np.float64]:
@@ -88,7 +84,7 @@ def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int)
     return coefficients
 
 
-def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[FreeEnds]":
+def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[EndConditions]":
     """Conditions on both free ends of a contact, for each state's friction.
 
     Args:
@@ -100,12 +96,13 @@ def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "li
     share = K[..., :1] / N[:, None, :1]
     moments, constants = (K - share * N[:, None])[..., 1:], 2.0 * share[..., 0]
     return [
-        FreeEnds(*condition) for condition in zip(local.α.tolist(), local.β.tolist(), moments, constants)
+        EndConditions(*condition)
+        for condition in zip(local.α.tolist(), local.β.tolist(), moments, constants)
     ]
 
 
 @dataclass(frozen=True)
-class FreeEnds:
+class EndConditions:
     """Conditions on both free ends of a contact at one friction and one speed.
 
     Attributes:
@@ -139,7 +136,7 @@ class FreeEnds:
         """Relative size of the coefficients beyond the first two, which are 0 for a half-plane."""
         return float((np.abs(self.factors[:, 2:]).sum(axis=1) / np.abs(self.factors).max(axis=1)).max())
 
-    def found(
+    def solve(
         self, profile: Any, unit: float, start: tuple[float, float] | None = None
     ) -> tuple[float, float]:
         """Middle and half-width of the contact [m], at which both conditions are satisfied.
@@ -152,92 +149,16 @@ class FreeEnds:
         Raises:
             SolveError: no contact satisfies the conditions, or it reaches beyond the given profile.
         """
-        point = self._first(profile, unit) if start is None else np.array(start) / [start[1], 1.0]
-        point[1] = np.log(point[1])
-        value = self._residual(profile, unit, point)
-        for _ in range(_STEPS):
-            size = np.abs(value).max()
-            if size <= _MET:
-                break
-            step = self._newton(profile, unit, point, value)
-            moved = point + step
-            after = self._residual(profile, unit, moved)
-            while not np.abs(after).max() < size and np.abs(step).max() > _MET:
-                step /= 2.0
-                moved = point + step
-                after = self._residual(profile, unit, moved)
-            if not np.abs(after).max() < size:
-                break
-            point, value = moved, after
-        if not np.abs(value).max() <= _ROUNDING:
-            if start is not None:
-                return self.found(profile, unit)
-            raise SolveError(
-                f"finite elements did not find the ends of the contact of a {profile.words()}: its "
-                f"conditions are off by {np.abs(value).max():.3g}, expected at most {_ROUNDING:g}"
-            )
-        h = float(np.exp(point[1]))
-        X_left, X_right = (float(point[0]) - 1.0) * h, (float(point[0]) + 1.0) * h
-        check_reach(profile, X_left, X_right, "finite elements found a contact")
-        return float(point[0]) * h, h
+        m, h = start or (None, _FIRST)
+        m, h = ends.free_ends(ends.Punch(profile, 1.0, 2.0 * unit), lambda _: self._rule, h, m)
+        check_reach(profile, m - h, m + h, "finite elements found a contact")
+        return m, h
 
-    def _newton(self, profile: Any, unit: float, point: NDArray, value: NDArray) -> NDArray[np.float64]:
-        """Newton's step of m/h and log h from a point, (2,); wider by a tenth where it is not defined."""
-        J = np.empty((2, 2))
-        for i, d in enumerate(np.eye(2) * _ε):
-            after, before = (self._residual(profile, unit, point + sign * d) for sign in (1.0, -1.0))
-            J[:, i] = (after - before) / (2.0 * _ε)
-        if not np.all(np.isfinite(J)) or abs(np.linalg.det(J)) < 1e-12:
-            return np.array([0.0, 0.1])
-        step = np.linalg.solve(J, -value)
-        return step / max(1.0, np.abs(step).max() / _LARGEST)
-
-    def _residual(self, profile: Any, unit: float, point: NDArray) -> NDArray[np.float64]:
-        """Residuals of both conditions at m/h and log h, (2,); infinite where no load is carried."""
-        lifted, carried = self._conditions(profile, unit, float(point[0]), float(np.exp(point[1])))
-        return np.array([lifted, np.log(carried) if carried > 0.0 else np.inf])
-
-    def _conditions(self, profile: Any, unit: float, lean: float, h: float) -> tuple[float, float]:
-        """Imbalance of the ends over its largest value, and the carried load over the prescribed load."""
-        at = np.array(kinks(profile), dtype=float) / h - lean
-        s, weights = _rule(at[np.abs(at) < 1.0], self.α, self.β)
-        slope = np.asarray(profile.slope(h * (lean + s)), dtype=float)
-        factors = np.polynomial.chebyshev.chebval(s, self.factors.T)
-        lifted, carried = (factors * weights) @ slope
-        whole = (factors[0] * weights) @ np.abs(slope)
-        return float(lifted / whole) if whole > 0.0 else 0.0, float(h * carried / unit)
-
-    def _first(self, profile: Any, unit: float) -> NDArray[np.float64]:
-        """Middle over half-width, and half-width [m] of a contact that carries about the load, (2,)."""
-        h, narrow, wide = _FIRST, 0.0, np.inf
-        for _ in range(_DOUBLINGS):
-            lean = self._lean(profile, unit, h)
-            carried = self._conditions(profile, unit, lean, h)[1]
-            if 0.2 < carried < 5.0:
-                return np.array([lean, h])
-            narrow, wide = (h, wide) if carried < 1.0 else (narrow, h)
-            h = 2.0 * narrow if np.isinf(wide) else wide / 2.0 if not narrow else np.sqrt(narrow * wide)
-        raise SolveError(
-            f"no contact of a {profile.words()} carries the load: half-widths up to {h:.3g} m were "
-            "tried; the profile has to be convex"
-        )
-
-    def _lean(self, profile: Any, unit: float, h: float) -> float:
-        """Rough m/h at which the ends are in balance; the centre of these where they are an interval."""
-        far = 1.0
-        while far < 2.0**_FARTHER and not (
-            self._conditions(profile, unit, -far, h)[0] < 0.0 < self._conditions(profile, unit, far, h)[0]
-        ):
-            far *= 2.0
-        edges = []
-        for below in (np.less, np.less_equal):
-            low, high = -far, far
-            for _ in range(_HALVINGS):
-                middle = (low + high) / 2.0
-                below_it = below(self._conditions(profile, unit, middle, h)[0], 0.0)
-                low, high = (middle, high) if below_it else (low, middle)
-            edges.append((low + high) / 2.0)
-        return float(np.mean(edges))
+    def _rule(self, kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        """Quadrature of both conditions, see :data:`.ends.Rule`."""
+        s, weights = _rule(kinks, self.α, self.β)
+        lifting, carrying = np.polynomial.chebyshev.chebval(s, self.factors.T) * weights
+        return s, lifting, 2.0 * carrying
 
 
 @lru_cache(maxsize=64)
@@ -254,7 +175,8 @@ def _towards(exponent: float, panels: int) -> tuple[NDArray[np.float64], NDArray
     return t, np.append(weights.ravel(), of_inner * (size / 2.0) ** (exponent + 1.0))
 
 
-def _rule(at: NDArray, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+@lru_cache(maxsize=8)
+def _rule(at: tuple[float, ...], α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points and weights, (n,) each, of ∫ (1 - s)^β (1 + s)^α F(s) ds, F smooth between places ``at``."""
     places = np.concatenate([[-1.0], np.unique(at), [1.0]])
     last, s, weights = len(places) - 2, [], []
@@ -688,19 +610,18 @@ class KinkedPressure:
         exponent: power of the distance d with which the pressure departs from its value at a kink; 1 for
             d log d; 0 where the pressure is smooth enough for the cells, or infinite.
         tolerance: relative error allowed for the limit at a kink.
+        infinite: the pressure is infinite at its kinks.
     """
 
+    #: Both ends are free.
+    K_I = np.zeros((1, 2))
+
     def __init__(
-        self,
-        s: NDArray,
-        degree: int,
-        chart: Any,
-        forces: NDArray,
-        kinks: NDArray,
-        exponents: tuple[float, float],
-        exponent: float = 0.0,
-        tolerance: float = 1e-6,
-    ) -> None:
+        self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
+        exponents: tuple[float, float], exponent: float = 0.0, tolerance: float = 1e-6,
+        infinite: bool = False,
+    ) -> None:  # fmt: skip
+        self._infinite = infinite
         facets = facets_of(s, degree)
         self._chart, self.kinks, self._exponents, self._exponent = chart, kinks, exponents, exponent
         self._farthest = farthest_at_kink(tolerance)
@@ -730,7 +651,7 @@ class KinkedPressure:
         return lengths[[i, i + 1]]
 
     def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at positions over a, (n,); NaN beside the contact."""
+        """Contact stress over N/(2a) at positions over a, (1, n); NaN beside the contact."""
         σ, inside = np.full(len(r), np.nan), under_punch(r)
         σ[inside] = self._piecewise(r[inside])
         ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, self._exponents)
@@ -743,20 +664,27 @@ class KinkedPressure:
                 near = (d >= 0.0) & (d < series.samples.min())
                 if near.any():
                     σ[near] = series.through(self._piecewise(at + side * series.samples))(d[near])
-        return σ
+        return σ[None]
 
-    def largest(self) -> tuple[float, float]:
-        """Largest pressure over N/(2a), and its place X over a, by refinement around the best nodes."""
+    @property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each.
+
+        It is refined around the best nodes.
+        """
+        if self._infinite:
+            return np.full(1, np.nan), np.full(1, np.nan)
         nodes = self._start[:, None] + self._length[:, None] * self._nodes
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         r = r[under_punch(r)]
-        p = -self.σ_YY(r)
+        p = -self.σ_YY(r)[0]
         tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
         tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
         peaks = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
         if self._exponent:
             peaks += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
-        return max(peaks)
+        value, place = np.array(max(peaks))[:, None]
+        return value, place
 
     def _nearer(self, low: float, high: float) -> tuple[float, float]:
         """Largest pressure over N/(2a) between two positions over a, and its place over a."""
@@ -765,7 +693,7 @@ class KinkedPressure:
             # At a kink the pressure may have a cusp, which no grid meets.
             r = np.linspace(low, high, _PLACES_AT_A_TIME)
             r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
-            p = -self.σ_YY(r)
+            p = -self.σ_YY(r)[0]
             i, step = int(p.argmax()), (high - low) / (_PLACES_AT_A_TIME - 1)
             low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
         return float(p[i]), float(r[i])

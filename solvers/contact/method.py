@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
@@ -46,20 +46,3 @@ class Method(Protocol):
         Raises:
             SolveError: the equations could not be solved there.
         """
-
-
-class Mode(NamedTuple):
-    """Functions and classes with which finite elements solve one kind of contact at a speed.
-
-    Attributes:
-        solver: context manager of a :class:`Solver`, by discretisation, task and frictions.
-        one_state: context manager of the fields of a single state, by discretisation, task, friction and
-            degree; None where there is none.
-        level: solution at one degree, which a fit through speeds puts together; None where none does.
-        at_speed: punches at a speed, by their ladder and error, that such a fit answers with.
-    """
-
-    solver: Callable[..., Any]
-    one_state: Any = None
-    level: Any = None
-    at_speed: Any = None

@@ -24,7 +24,7 @@ of functions, and the last functions measure their effect on the intensities.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,21 +40,57 @@ MOMENTS = 9
 
 
 @dataclass(frozen=True)
-class JacobiPressure:
-    """Contact stress of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k T_k(r), r = X/a.
+class Polynomials:
+    """Chebyshev polynomials of r, which follow a pressure without its weight on a uniform solid."""
+
+    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Values of ``count`` functions at r in [-1, 1], (len(r), count)."""
+        return chebyshev(r, count)
+
+    def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+        """Coefficients of the smooth factor of pressures with given moments, (states, functions).
+
+        Args:
+            moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, functions).
+            α, β: exponents of the weight at X = a and X = -a, (states,); α + β = -1.
+        """
+        maps = _to_factors(np.asarray(α).tobytes(), np.asarray(β).tobytes())
+        return np.asarray(np.einsum("skm,sm->sk", maps, moments))
+
+    def unresolved(self, c: NDArray) -> NDArray[np.float64]:
+        """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
+        return np.zeros(len(c))
+
+    def moved_edges(self, pressure: "RecoveredPressure", r: NDArray, _: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges are misplaced, 0: no edge of the mesh is."""
+        return np.zeros((len(pressure.c), len(r)))
+
+
+@dataclass(frozen=True)
+class RecoveredPressure:
+    """Contact stress of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k f_k(r), r = X/a.
 
     Attributes:
         α, β: exponents at X = a and X = -a, (states,).
-        c: Chebyshev coefficients of the smooth factor, dimensionless, (states, ``MOMENTS``).
+        c: coefficients of the smooth factor, dimensionless, (states, functions).
+        functions: functions f_k.
+        free: True where the left and the right end are free, with an exponent larger by 1, (states, 2);
+            None for sharp edges.
     """
 
     α: NDArray[np.float64]
     β: NDArray[np.float64]
     c: NDArray[np.float64]
+    functions: "Polynomials | Stretch" = Polynomials()
+    free: NDArray[np.bool_] | None = None
+
+    #: Places in the contact at which the pressure is not smooth, and between which it is polynomial.
+    kinks: ClassVar[tuple[float, ...]] = ()
+    breaks: ClassVar[tuple[float, ...]] = ()
 
     def factor(self, r: NDArray) -> NDArray[np.float64]:
-        """Smooth factor Σ c_k T_k(r) at r in [-1, 1], (states, points)."""
-        return np.asarray(self.c @ chebyshev(r).T)
+        """Smooth factor Σ c_k f_k(r) at r in [-1, 1], (states, points)."""
+        return np.asarray(self.c @ self.functions.values(r, self.c.shape[1]).T)
 
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
@@ -67,14 +103,35 @@ class JacobiPressure:
         return result
 
     @property
-    def unresolved(self) -> Any:
-        """Relative error measured on the last of the functions; 0 for enough functions."""
-        return 0.0
+    def K_I(self) -> NDArray[np.float64]:
+        """Stress intensity factors at X = -a and X = a, dimensionless as in Eqs 56-57, (states, 2).
+
+        They are 0 at free ends. Beside a free end the other end has twice the smooth factor, as the
+        weight there is that of a flat punch times the distance from the free end, 2.
+        """
+        K = -0.5 * self.factor(np.array([-1.0, 1.0]))
+        return K if self.free is None else np.where(self.free, 0.0, K * 2.0 ** self.free[:, ::-1])
 
     @property
-    def K_I(self) -> NDArray[np.float64]:
-        """Stress intensity factors at X = -a and X = a, dimensionless as in Eqs 56-57, (states, 2)."""
-        return -0.5 * self.factor(np.array([-1.0, 1.0]))
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a) and its place over a, NaN where it is infinite, (states,) each."""
+        value, top = largest(lambda r: -self.σ_YY(r), lambda i, r: -self.σ_YY(r)[i])
+        infinite = np.minimum(self.α, self.β) < 0.0
+        return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
+
+    @property
+    def unresolved(self) -> NDArray[np.float64]:
+        """Relative error measured on the last of the functions, (states,)."""
+        return self.functions.unresolved(self.c)
+
+    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
+
+        Args:
+            r: positions over a in [-1, 1], (points,).
+            length: misplacement of each edge over a.
+        """
+        return self.functions.moved_edges(self, r, length)
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
@@ -102,15 +159,18 @@ def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
     return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
 
 
-def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> JacobiPressure:
+def from_moments(
+    moments: NDArray, α: NDArray, β: NDArray, functions: "Polynomials | Stretch" = Polynomials()
+) -> RecoveredPressure:
     """Pressure with given moments.
 
     Args:
-        moments: ∫ σ_YY T_k dr of each state over N/(2a), (states, ``MOMENTS``).
-        α, β: exponents at X = a and X = -a, from the local analysis, α + β = -1, (states,).
+        moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, functions).
+        α, β: exponents at X = a and X = -a, (states,); of polynomials those of the local analysis of
+            sharp edges, α + β = -1.
+        functions: functions f_k, which represent the smooth factor.
     """
-    maps = _to_factors(np.asarray(α).tobytes(), np.asarray(β).tobytes())
-    return JacobiPressure(α, β, np.einsum("skm,sm->sk", maps, moments))
+    return RecoveredPressure(α, β, functions.coefficients(moments, α, β), functions)
 
 
 @lru_cache(maxsize=4)
@@ -384,6 +444,43 @@ class Stretch:
         """Number of polynomials among a number of functions."""
         return functions - _OF_ENDS * self.graded
 
+    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Values of ``count`` functions at r, those of the ends among them, (len(r), count)."""
+        return self.functions(r, self.polynomials(count))
+
+    def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+        """Coefficients of the smooth factor, (states, functions); see :class:`Polynomials`."""
+        c, f = np.empty_like(moments), _at_points(self, moments.shape[1])
+        for i, row in enumerate(moments):
+            weights = _rule(float(α[i]), float(β[i]), self).weights
+            c[i] = np.linalg.solve((f * weights[:, None]).T @ f, row)
+        return c
+
+    def unresolved(self, c: NDArray) -> NDArray[np.float64]:
+        """Share of the last functions in the larger smooth factor at both ends, (states,)."""
+        last, f = _LAST_GRADED if self.graded else _LAST, self.values(np.array([-1.0, 1.0]), c.shape[1])
+        added = np.abs(c[:, None, -last:] * f[:, -last:]).sum(axis=2)
+        share = added.max(axis=1) / np.abs(c @ f.T).max(axis=1)
+        tail = _TAIL_STIFFENING if self.stiffens else _TAIL
+        return np.asarray((tail if self.graded else 1.0) * share)
+
+    def moved_edges(self, pressure: RecoveredPressure, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges are misplaced by a length, (states, points).
+
+        The pressure is stretched from the opposite edge. Its moments change like the functions over the
+        length of the misplacement; the more functions there are, the more of this change appears as
+        pressure at the ends.
+        """
+        count = pressure.c.shape[1]
+        f, at_r = _at_points(self, count), self.values(r, count)
+        change = np.empty((len(pressure.c), len(r)))
+        for i, c in enumerate(pressure.c):
+            weights = _rule(float(pressure.α[i]), float(pressure.β[i]), self).weights
+            moments = _moved(self, count, length) @ (weights * (f @ c))
+            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
+            change[i] = np.abs(at_r @ to_factor).sum(axis=1)
+        return change
+
 
 @cache
 def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
@@ -403,66 +500,6 @@ def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
     return np.asarray(f)
 
 
-@dataclass(frozen=True)
-class StretchedPressure(JacobiPressure):
-    """Contact stress of several states, (1 - r)^α (1 + r)^β Σ c_k f_k(r), f of :class:`Stretch`."""
-
-    stretch: Stretch = Stretch(1.0)
-
-    def factor(self, r: NDArray) -> NDArray[np.float64]:
-        count = self.stretch.polynomials(self.c.shape[1])
-        return np.asarray(self.c @ self.stretch.functions(r, count).T)
-
-    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
-
-        The pressure is stretched from the opposite edge. Its moments change like the functions over the
-        length of the misplacement; the more functions there are, the more of this change appears as
-        pressure at the ends.
-
-        Args:
-            r: positions over a in [-1, 1], (points,).
-            length: misplacement of each edge over a.
-        """
-        count = self.c.shape[1]
-        f, functions = _at_points(self.stretch, count), self.stretch.polynomials(count)
-        at_r = self.stretch.functions(r, functions)
-        change = np.empty((len(self.c), len(r)))
-        for i, c in enumerate(self.c):
-            weights = _rule(float(self.α[i]), float(self.β[i]), self.stretch).weights
-            moments = _moved(self.stretch, count, length) @ (weights * (f @ c))
-            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
-            change[i] = np.abs(at_r @ to_factor).sum(axis=1)
-        return change
-
-    @property
-    def unresolved(self) -> NDArray[np.float64]:
-        """Share of the last functions in the larger smooth factor at both ends, (states,)."""
-        ends, last = np.array([-1.0, 1.0]), _LAST_GRADED if self.stretch.graded else _LAST
-        f = self.stretch.functions(ends, self.stretch.polynomials(self.c.shape[1]))
-        added = np.abs(self.c[:, None, -last:] * f[:, -last:]).sum(axis=2)
-        share = added.max(axis=1) / np.abs(self.factor(ends)).max(axis=1)
-        tail = _TAIL_STIFFENING if self.stretch.stiffens else _TAIL
-        return np.asarray((tail if self.stretch.graded else 1.0) * share)
-
-
-def stretched_from_moments(
-    moments: NDArray, α: NDArray, β: NDArray, stretch: Stretch
-) -> StretchedPressure:
-    """Pressure with given moments.
-
-    Args:
-        moments: ∫ σ_YY f_k dr of each state over N/(2a), f of the stretch, (states, moments).
-        α, β: exponents at X = a and X = -a, (states,).
-        stretch: functions that represent the smooth factor.
-    """
-    c, f = np.empty_like(moments), _at_points(stretch, moments.shape[1])
-    for i, row in enumerate(moments):
-        weights = _rule(float(α[i]), float(β[i]), stretch).weights
-        c[i] = np.linalg.solve((f * weights[:, None]).T @ f, row)
-    return StretchedPressure(α, β, c, stretch)
-
-
 def _rule(α: float, β: float, stretch: Stretch) -> Panels:
     """Quadrature of products of functions under a weight; its points do not depend on the exponents."""
     return Panels(α, β, _FINE * min(1.0, stretch.h))
@@ -471,7 +508,7 @@ def _rule(α: float, β: float, stretch: Stretch) -> Panels:
 @lru_cache(maxsize=8)
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """Functions at the points of the quadrature, (points, count)."""
-    return stretch.functions(_rule(-0.5, -0.5, stretch).t, stretch.polynomials(count))
+    return stretch.values(_rule(-0.5, -0.5, stretch).t, count)
 
 
 @lru_cache(maxsize=8)
@@ -488,5 +525,5 @@ def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
     """
     t = _rule(-0.5, -0.5, stretch).t
     inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
-    moved = [stretch.functions(at, stretch.polynomials(count)) for at in inwards]
+    moved = [stretch.values(at, count) for at in inwards]
     return np.array([(functions - _at_points(stretch, count)).T for functions in moved])

@@ -325,6 +325,14 @@ class Surface:
     v_X: NDArray[np.float64] | None = None
     turns: Turns | None = None
 
+    def of(self, rows: NDArray) -> "Surface":
+        """Stresses of the states with these numbers, which may repeat."""
+        σ_YY, σ_XX, raw, v_X = (
+            None if values is None else values[rows]
+            for values in (self.σ_YY, self.σ_XX, self.raw, self.v_X)
+        )  # fmt: skip
+        return Surface(self.places, σ_YY, σ_XX, raw, v_X, self.turns and self.turns.of(rows))  # type: ignore[arg-type]
+
 
 class Solution(Protocol):
     """Friction states at one speed, from any method; an attribute is computed when it is first used.

@@ -1,7 +1,9 @@
-"""Rigid punches by finite elements at one speed, mode ``contact``, to the measured error.
+"""Rigid punches by finite elements at one speed, their pressure unknown, to the measured error.
 
-The pressure is unknown. Punches have two sharp edges (:class:`PunchLevel`) or free ends
-(:class:`FreeLevel`).
+A contact is made of three things: its ends (:class:`Ends`), a mesh, which contacts share or which is
+drawn for each (:mod:`galinx.solvers.fem.own_meshes`), and the recovery of the pressure from nodal forces.
+A :class:`PunchLevel` solves contacts at one degree; a :class:`galinx.solvers.fem.solution.Solution` has
+their states.
 
 With free ends: the half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its
 width is, and the displacement prescribed under the punch is a combination of few shapes: 1 and s for a
@@ -12,7 +14,7 @@ and middle follow; of a parabola directly, of other profiles by the conditions o
 speed.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,31 +25,28 @@ from numpy.typing import NDArray
 
 from galinx.meshes.layered import OnLayers
 
-from ..contact.edges import EdgeExponents, Exponents
+from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import FemPlan
-from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes, turns_at_ends
-from ..contact.method import Pressure
+from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
 from ..contact.recovery import (
     ContactRecovery,
-    JacobiPressure,
+    Polynomials,
+    RecoveredPressure,
     chebyshev,
     contact_recovery,
     from_moments,
-    largest,
     without_zeros,
 )
-from ..contact.recovery import stretched_from_moments as from_stretched
-from ..contact.residual import of_contact
-from ..contact.solution import Body, Places, Surface, Task
-from ..contact.yielding import Strength
+from ..contact.solution import Body, Surface, Task, Turns
 from ..errors import SolveError
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
-from . import ladder as error
+from . import ladder
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .ladder import Gauge, StressGauges, solved_to_tolerance
 from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
+from .solution import Solution, SolvedStates, solution_of
 from .space import Space
 
 #: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
@@ -57,6 +56,12 @@ _NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
 #: Share of that where stresses are requested: next to an edge a force counts by the little load there.
 _BESIDE_EDGES = 0.1
 
+#: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
+_NEAREST = 1e-6
+
+#: Weights of a single field.
+_SINGLE = np.ones((1, 1))
+
 
 def negligible(work: Any) -> float:
     """Relative change of the contact forces that affects no result."""
@@ -64,416 +69,127 @@ def negligible(work: Any) -> float:
     return _BESIDE_EDGES * least if work.stresses else least
 
 
-@contextmanager
-def solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["PunchesAtSpeed"]:
-    """Raise the degree until the measured error of sample states is within tolerance."""
-    with solved_to_tolerance(work, task, g, lambda space, g: PunchLevel(work, task, space, g)) as (
-        ladder,
-        error,
-    ):
-        yield PunchesAtSpeed(ladder, error)
-
-
-@contextmanager
-def one_state(
-    work: Discretisation, task: Task, g: float, degree: int
-) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
-    """Space, fields, weights and pressure of one state."""
-    space = work.space(degree, work.plan.cuts)
-    punch = SlidingPunch(space, task.response, work.plan.solver, heights=profile_on(space, task.body))
-    try:
-        states = punch.states(g)  # the fields are complete after this
-        recovery = contact_recovery(space.contact.s, space.degree, space.chart, np.empty(0))
-        local = EdgeExponents(task.response, states.g)
-        pressure = from_moments(states.tested(recovery.moments), local.α, local.β)
-        yield space, punch.fields, states.weights[0], lambda X: pressure.σ_YY(X)[0]
-    finally:
-        punch.destroy()
-
-
-class PunchLevel:
-    """Punch at one degree, and the maps from its contact forces to its pressure.
-
-    Args:
-        work: has the plan and the words of the requested stresses.
-        task: the speed.
-        space: space of the degree.
-        g: all values of σ_XY/σ_YY that will be solved.
-        fitted: punch fitted through other speeds; it is solved if None.
-        recovery: maps from contact forces to pressure on this space; computed if None.
-    """
-
-    def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray,
-        fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
-    ) -> None:  # fmt: skip
-        plan, self.task, self.space, self._work = work.plan, task, space, work
-        self._tests, self._fitted = plan.tests, fitted
-        if fitted is not None and recovery is not None:
-            self.punch: Punch = fitted
-            self.recovery = recovery
-            return
-        least = negligible(work)
-        # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
-        friction_rest = 0.0 if work.stresses else least
-        solved = SlidingPunch(space, task.response, plan.solver, least, self.heights(), friction_rest)
-        self.punch, self.factor = solved, solved.factor
-        more = space.degree - plan.degrees[task.number]
-        self.recovery = contact_recovery(
-            space.contact.s, space.degree, space.chart, task.places.X, tests=tests_of(plan, more)
-        )
-        # The basis is complete before traces are taken, and the same whatever states are still to do.
-        solved.prepare(g)
-        self._gauges  # noqa: B018 - cached
-
-    @cached_property
-    def _gauges(self) -> StressGauges:
-        return StressGauges(self._work, self.task, self.displacement)
-
-    @property
-    def slopes(self) -> Any:
-        """Slopes of the fields on the surface, None where no stress is requested."""
-        return self._gauges.slopes
-
-    def displacement(self, at: Task | None = None) -> Displacement:
-        """Displacement, for stresses at the places of the task or of another."""
-        slopes = self._fitted.slopes if self._fitted else None
-        return Displacement(at or self.task, self.space, self.punch.fields, slopes)
-
-    def heights(self) -> NDArray[np.float64] | None:
-        """Heights of the punch, or of shapes, over N/(2μ) at the contact nodes; None for a flat punch."""
-        return profile_on(self.space, self.task.body)
-
-    @property
-    def mirrored(self) -> bool:
-        return self.task.response.mirrored
-
-    def pressure(self, states: ContactStates) -> JacobiPressure:
-        """Pressure from its Jacobi moments, whose weight has the exponents of the local analysis."""
-        local = EdgeExponents(self.task.response, states.g)
-        moments, tests = states.tested(self.recovery.moments), self._tests
-        if tests:
-            return from_stretched(moments, local.α, local.β, tests.stretch)
-        return from_moments(moments, local.α, local.β)
-
-    def contact(self, g: NDArray, load: Any = None) -> ContactStates:
-        """States with these values of σ_XY/σ_YY, under the task's load or others [N/m]."""
-        return self.punch.states(g, share=1.0 if load is None else self.task.body.load / load)
-
-    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        states = self.contact(g, load)
-        return self.gauges(states, self.pressure(states))
-
-    def gauges(self, states: ContactStates, pressure: JacobiPressure) -> list[Gauge]:
-        """Gauges of states and their pressure."""
-        moments = states.tested(self.recovery.moments)
-        gauges = [error.of_pressure(pressure, moments, self._moved_edges)]
-        if self._gauges.any_stress:
-            gauges += self._gauges.of(states.g, states.weights, pressure.σ_YY(self.task.places.X))
-        return gauges
-
-    @property
-    def _moved_edges(self) -> float:
-        """Distance over a by which the edges seem off on straight cells along layers; 0 on others."""
-        plan = self._work.plan
-        if not isinstance(plan.kind, OnLayers):
-            return 0.0
-        return plan.kind.moved_edges(plan.wanted, self.space.degree, self.task.response.margin)
-
-    def rounding(self, g: NDArray) -> list[float]:
-        """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
-
-        In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
-        under a flat punch all the same. Stresses are relative to those of the states themselves: beside
-        a flat punch's sharp edges they are large, beside free ends they are not, and their rounding is
-        as large.
-        """
-        if not self.task.response.mirrored:
-            states = self.punch.states(g, flat=True)
-            pressure = self.pressure(states)
-            K_left, K_right = pressure.K_I.T
-            # Over layers they differ, and what a solve leaves of its forces stands for rounding.
-            layered = self.task.body.layered
-            of_edges = self.factor.largest_residual if layered else np.abs(K_left / K_right - 1.0).max()
-            stresses = self._gauges.rounding(g, *self._on_surface(g))
-            return [float(of_edges), *stresses]
-        both, size = [], self._gauges.size(g, *self._on_surface(g))
-        for sign in (1.0, -1.0):
-            states = self.punch.states(sign * g, flat=True)
-            pressure = self.pressure(states)
-            σ_YY = pressure.σ_YY(self.task.places.X)
-            gauges = self._gauges.mirrored(sign, sign * g, states.weights, σ_YY, size)
-            both.append([error.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
-        return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
-
-    def _on_surface(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Weights (states, fields) of states, and their σ_YY on the surface, (states, n)."""
-        states = self.contact(g)
-        return states.weights, self.pressure(states).σ_YY(self.task.places.X)
-
-    def release(self) -> None:
-        self.punch.release()
-
-    def destroy(self) -> None:
-        self.punch.destroy()
-
-
-def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
-    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's."""
-    tests = plan.tests
-    if tests is None:
-        return chebyshev
-    return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
-
-
-def profile_on(space: Space, body: Body) -> NDArray[np.float64] | None:
-    """Height of the punch over N/(2μ) at the contact nodes; None for a flat punch, which needs none."""
-    return None if body.flat else body.height(space.chart.surface_position(space.contact.s))
-
-
-class PunchesAtSpeed:
-    """Rigid punches at one speed, their pressure solved to the tolerance.
-
-    Args:
-        ladder: ladder at its last level.
-        error: error of that level.
-        fitted: True where the speed was fitted through others.
-    """
-
-    def __init__(self, ladder: Any, error: Any, fitted: bool = False) -> None:
-        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
-        self.displacement, self.fitted = self.level.displacement(), fitted
-        self._ladder = ladder
-
-    def states(self, g: NDArray, load: Any = None) -> "Punches":
-        body = self.task.body.loaded(load)
-        return Punches(self, g, self.level.contact(g, load), body)
-
-    def record(self) -> dict[str, Any]:
-        return self._ladder.record() | self.error.record()
-
-
 @dataclass(frozen=True)
-class Punches:
-    """Rigid punches with several frictions.
-
-    Attributes:
-        at: their speed.
-        g: σ_XY/σ_YY, (states,).
-        contact: nodal forces and weights.
-        body: the sliding contact, under the load of each state.
-    """
-
-    at: PunchesAtSpeed
-    g: NDArray[np.float64]
-    contact: ContactStates
-    body: Body
-
-    @cached_property
-    def local(self) -> EdgeExponents:
-        return EdgeExponents(self.at.task.response, self.g)
-
-    @cached_property
-    def _pressure(self) -> JacobiPressure:
-        return self.at.level.pressure(self.contact)
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at X = -a and X = a, (states, 2)."""
-        return self._pressure.K_I
-
-    @cached_property
-    def exponents(self) -> NDArray[np.float64]:
-        """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
-        return self.at.level.recovery.exponents(self.contact.normal)
-
-    @property
-    def residual(self) -> NDArray[np.float64]:
-        """Residual of the integral equation under the pressure, relative, (states,)."""
-        return of_contact(self.at.task.response, self.g, self.local, self.body, self._pressure.σ_YY)
-
-    @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force over N/2, (states,)."""
-        return self.contact.load
-
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Tangential force over N/2, (states,)."""
-        return self.contact.tangential.sum(axis=1)
-
-    @property
-    def v0(self) -> NDArray[np.float64]:
-        """Indentation over N/(2μ), (states,)."""
-        return self.contact.v0
-
-    @property
-    def fitted(self) -> NDArray[np.float64]:
-        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
-        return np.full(len(self.g), float(self.at.fitted))
-
-    @cached_property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors, (states,), by word of output.quantities."""
-        level = self.at.level
-        return self.at.error.of(
-            self.g, self.body.load, lambda: level.gauges(self.contact, self._pressure)
-        )
-
-    @cached_property
-    def surface(self) -> Surface:
-        σ_YY = self._pressure.σ_YY(self.at.task.places.X)
-        raw = self.contact.tested(self.at.level.recovery.raw)
-        return self.at.displacement.surface(self.g, self.contact.weights, σ_YY, raw)
-
-    @cached_property
-    def inside(self) -> NDArray[np.float64]:
-        return self.at.displacement.inside(self.contact.weights)
-
-    @property
-    def places(self) -> Places:
-        """Places at which stresses are evaluated."""
-        return self.at.task.places
-
-    @cached_property
-    def interfaces(self) -> NDArray[np.float64]:
-        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
-        return self.at.displacement.interfaces(self.contact.weights)
-
-    @property
-    def σ_ZZ(self) -> NDArray[np.float64]:
-        """Normal stress out of the plane at points inside, (states, m)."""
-        return self.body.σ_ZZ(self.inside, self.at.task.places.points[:, 1])
-
-    @cached_property
-    def strength(self) -> Strength:
-        """Yield of the states."""
-        at, weights = self.at, self.contact.weights
-        field = at.displacement.at
-        return Strength(
-            lambda points: field(points, weights), self.body, at.task.response, self.g, self.local
-        )
-
-
-#: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
-_NEAREST = 1e-6
-
-
-@contextmanager
-def free_solver(work: Discretisation, task: Task, g: NDArray) -> Iterator["FreeAtSpeed"]:
-    """Raise the degree until the measured error of sample states is within tolerance."""
-    with solved_to_tolerance(work, task, g, lambda space, g: FreeLevel(work, task, space, g)) as (
-        ladder,
-        error,
-    ):
-        yield FreeAtSpeed(ladder, error)
-
-
-@contextmanager
-def free_state(
-    work: Discretisation, task: Task, g: float, degree: int
-) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
-    """Space, fields, weights and pressure of one state, lengths over its half-width from its middle."""
-    level = FreeLevel(work, task, work.space(degree, work.plan.cuts), np.array([g]))
-    try:
-        states = level.states(np.array([g]))
-        yield (
-            level.space,
-            level.punch.fields,
-            states.contact.weights[0],
-            lambda X: states.pressure.σ_YY(X)[0],
-        )
-    finally:
-        level.destroy()
-
-
-@dataclass(frozen=True)
-class FreeStates:
-    """States of contacts with free ends.
+class SolvedEnds:
+    """Contacts with their ends, as sums of a punch's parts.
 
     Attributes:
         contact: nodal forces and weights; v₀ of the punch's lowest point.
-        half_width, centre: half-width and middle of the contact [m], (states,).
+        half_width, centre: half-width and middle of each contact [m], (states,).
         free: True where the left and the right end are free, (states, 2).
-        factor: Chebyshev coefficients of the pressure over a flat punch's weight, (states, moments).
-        local: exponents of a flat punch.
-        unresolved: part of the profile's slope beyond the shapes, relative, (states,).
+        unresolved: part of the profile's slope that its shapes leave out, relative, (states,) or 0.
     """
 
     contact: ContactStates
     half_width: NDArray[np.float64]
     centre: NDArray[np.float64]
     free: NDArray[np.bool_]
-    factor: NDArray[np.float64]
-    local: EdgeExponents
-    unresolved: NDArray[np.float64]
-
-    @property
-    def exponents(self) -> Exponents:
-        """Exponents of the pressure at the right and the left end."""
-        return Exponents(self.local.α + self.free[:, 1], self.local.β + self.free[:, 0])
-
-    @cached_property
-    def pressure(self) -> JacobiPressure:
-        ends = self.exponents
-        return JacobiPressure(ends.α, ends.β, without_zeros(self.factor, self.free))
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        intensities = -0.5 * self.factor @ chebyshev(np.array([-1.0, 1.0])).T
-        return np.where(self.free, 0.0, intensities)
+    unresolved: Any = 0.0
 
 
-class FreeLevel(PunchLevel):
-    """Punches with free ends at one degree; see :class:`PunchLevel`."""
+class Ends:
+    """Ends of contacts: displacements that are prescribed under a punch, and their sums that are states.
 
-    def heights(self) -> NDArray[np.float64]:
-        s = self.space.chart.surface_position(self.space.contact.s)
-        return heights_of_shapes(s, self._work.plan.shapes)
+    Attributes:
+        single: True where a level has a single state, on a mesh of its own.
+    """
 
-    def states(self, g: NDArray, load: Any = None) -> FreeStates:
-        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m].
+    single = False
+
+    def heights(self, level: "PunchLevel") -> NDArray[np.float64] | None:
+        """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
+        raise NotImplementedError
+
+    def solved(self, level: "PunchLevel", g: NDArray, body: Body) -> SolvedEnds:
+        """Contacts with frictions g = σ_XY/σ_YY, (states,), under the load of the body for each.
 
         Raises:
             SolveError: no contact carries the load.
         """
-        parts, local = self.punch.parts(g), EdgeExponents(self.task.response, g)
-        K = np.stack([self._over_flat(part, local).K_I for part in parts], axis=2)
+        raise NotImplementedError
+
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Any:
+        """Pressure of contacts from their nodal forces."""
+        raise NotImplementedError
+
+    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
+        """Gauge of pressure and ends."""
+        raise NotImplementedError
+
+    def task(self, task: Task) -> Task:
+        """Task with the places at which stresses are measured."""
+        return task
+
+    def continuation(self, level: "PunchLevel") -> Callable[[NDArray], Any] | None:
+        """Continuation of slopes to free ends, see :class:`Displacement`; None where there is none."""
+        return None
+
+    def nearest(self, pressure: Any) -> float:
+        """Least distance over a from free ends and kinks at which stresses are evaluated."""
+        return _NEAREST
+
+    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns] | None:
+        """Function for limits of stresses on a surface; None for limits at free ends alone."""
+        return None
+
+
+class SharpEnds(Ends):
+    """Sharp edges at both ends of the base of a punch that touches all along it."""
+
+    def heights(self, level: "PunchLevel") -> NDArray[np.float64] | None:
+        body = level.task.body
+        return None if body.flat else body.height(level.r)
+
+    def solved(self, level: "PunchLevel", g: NDArray, body: Body) -> SolvedEnds:
+        contact = level.punch.states(g, share=level.task.body.load / body.load)
+        half_width = np.full(len(g), float(body.half_width))
+        return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
+
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> RecoveredPressure:
+        return level.over_flat(ends.contact, ends.contact.g)
+
+    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
+        moments = states.contact.tested(level.moments)
+        return ladder.of_pressure(states.pressure, moments, level.moved_edges)
+
+
+class FreeEnds(Ends):
+    """Free ends of smooth punches and of lifted bases, on the mesh of all contacts.
+
+    Args:
+        shapes: number of polynomials whose sum is the punch under every contact.
+    """
+
+    def __init__(self, shapes: int) -> None:
+        self._shapes = shapes
+
+    def heights(self, level: "PunchLevel") -> NDArray[np.float64]:
+        return heights_of_shapes(level.r, self._shapes)
+
+    def solved(self, level: "PunchLevel", g: NDArray, body: Body) -> SolvedEnds:
+        parts, local = level.punch.parts(g), EdgeExponents(level.task.response, g)
         loads = np.stack([part.load for part in parts], axis=1)
-        body = self.task.body.loaded(load)
         solve = _SOLVES.get(type(body.profile), _smooth)
-        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
+        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, level.K_I(parts, g), local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = combined(g, parts, amplitudes)
-        factor = self._over_flat(contact, local).c
-        deeper = replace(contact, v0=contact.v0 + lowest)
-        return FreeStates(deeper, h, m, free, factor, local, unresolved)
+        return SolvedEnds(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
 
-    def _over_flat(self, part: Part, local: EdgeExponents) -> JacobiPressure:
-        """Pressure of a part over a flat punch's weight."""
-        return from_moments(part.tested(self.recovery.moments), local.α, local.β)
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> RecoveredPressure:
+        whole, free = level.over_flat(ends.contact, ends.contact.g), ends.free
+        smooth = without_zeros(whole.c, free)
+        return RecoveredPressure(whole.α + free[:, 1], whole.β + free[:, 0], smooth, free=free)
 
-    def _on_surface(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        states = self.states(g)
-        return states.contact.weights, states.pressure.σ_YY(self.task.places.X)
-
-    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        states = self.states(g, load)
-        moments = states.contact.tested(self.recovery.moments)
-        whole = JacobiPressure(states.local.α, states.local.β, states.factor)
-        of_pressure = error.of_pressure(whole, moments)
+    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
+        moments = states.contact.tested(level.moments)
+        gauge = ladder.of_pressure(level.over_flat(states.contact, states.contact.g), moments)
         lengths = np.column_stack([states.half_width, states.centre])
-        size = np.tile(states.half_width[:, None], 2)
-        return [
-            Gauge(
-                of_pressure.word,
-                np.concatenate([of_pressure.values, lengths], axis=1),
-                np.concatenate([of_pressure.scale, size], axis=1),
-            ),
-            *self._gauges.of(g, states.contact.weights, states.pressure.σ_YY(self.task.places.X)),
-        ]
+        return replace(
+            gauge,
+            values=np.concatenate([gauge.values, lengths], axis=1),
+            scale=np.concatenate([gauge.scale, np.tile(states.half_width[:, None], 2)], axis=1),
+        )
 
 
 #: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
@@ -509,7 +225,7 @@ def _smooth(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _So
     conditions, near = free_ends(local, K[..., few], loads[:, few]), None
     ends, slopes = [], []
     for condition, unit in zip(conditions, units):
-        near = condition.found(punch, unit, near)
+        near = condition.solve(punch, unit, near)
         ends.append(near)
         slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
     (m, h), size, count = np.transpose(ends), np.abs(slopes), loads.shape[1] - 1
@@ -544,109 +260,252 @@ def _tilted(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _So
 _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 
-class FreeAtSpeed(PunchesAtSpeed):
-    """Punches with free ends at one speed, solved to the tolerance."""
-
-    def states(self, g: NDArray, load: Any = None) -> Any:
-        body = self.task.body.loaded(load)
-        return FreePunches(self, g, self.level.states(g, load), body)
+def ends_of(body: Body, plan: FemPlan) -> Ends:
+    """Ends of contacts on the mesh of all of them."""
+    return FreeEnds(plan.shapes) if body.found else SharpEnds()
 
 
-@dataclass(frozen=True)
-class FreePunches:
-    """Contacts with free ends, with several frictions, each with its own half-width and middle.
+class PunchLevel:
+    """Punch at one degree, and the maps from its contact forces to its pressure.
+
+    Args:
+        work: has the plan and the words of the requested stresses.
+        task: the speed.
+        space: space of the degree.
+        g: all values of σ_XY/σ_YY that will be solved.
+        fitted: punch fitted through other speeds; it is solved if None.
+        recovery: maps from contact forces to pressure on this space; computed if None.
+        ends: ends of the contacts; by the plan if None.
 
     Attributes:
-        at: their speed.
-        g: σ_XY/σ_YY, (states,).
-        solved: ends, nodal forces and weights.
-        body: the sliding contact, under the load of each state.
+        plan: plan of the finite elements.
+        stresses: words of output.quantities that request stresses.
+        ends: ends of the contacts.
+        only: the single state on a mesh of its own; None on a mesh of all contacts.
+        g: values of σ_XY/σ_YY, as given.
+        factor: of the linear system, with numbers of its work.
     """
 
-    at: FreeAtSpeed
-    g: NDArray[np.float64]
-    solved: FreeStates
-    body: Body
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray,
+        fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
+        ends: Ends | None = None,
+    ) -> None:  # fmt: skip
+        self.task, self.space, self.plan, self.stresses = task, space, work.plan, work.stresses
+        self.ends = ends or ends_of(task.body, work.plan)
+        self._fitted = fitted
+        self.only: SolvedEnds | None = None
+        self._field: Any = None
+        self.g, self._tests = g, tests_of(self.plan, space.degree - self.plan.degrees[task.number])
+        if fitted is not None and recovery is not None:
+            self.punch: Punch = fitted
+            self.recovery, self.moments = recovery, recovery.moments
+            return
+        least, single = negligible(work), self.ends.single
+        # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
+        friction_rest = 0.0 if work.stresses or single else least
+        solved = SlidingPunch(
+            space, task.response, self.plan.solver, least, self.ends.heights(self), friction_rest
+        )
+        self.punch, self.factor = solved, solved.factor
+        try:
+            # The basis is complete before traces are taken, and the same whatever states are still to do.
+            solved.prepare(g)
+            if single:
+                self.only = self._summed(self.ends.solved(self, g, task.body))
+        finally:
+            if single:
+                solved.destroy()
+        self._gauges  # noqa: B018 - cached
+
+    def _summed(self, ends: SolvedEnds) -> SolvedEnds:
+        """The only state, by its own displacement and nodal forces."""
+        field = self.punch.fields[0].duplicate()
+        field.zeroEntries()
+        field.maxpy(ends.contact.weights[0].tolist(), self.punch.fields)
+        self._field, contact = field, ends.contact
+        forces = np.tensordot(contact.weights, contact.forces, 1)
+        return replace(ends, contact=replace(contact, weights=_SINGLE, forces=forces))
 
     @property
-    def local(self) -> Exponents:
-        return self.solved.exponents
-
-    @property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-width of the contact [m], (states,)."""
-        return self.solved.half_width
-
-    @property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.solved.centre
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        return self.solved.K_I
+    def fields(self) -> Sequence[Any]:
+        """Displacements over N/(2μ), whose combinations are the states."""
+        return [self._field] if self.only else self.punch.fields
 
     @cached_property
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        σ_YY = self.solved.pressure.σ_YY
-        value, top = largest(lambda x: -σ_YY(x), lambda i, x: -σ_YY(x)[i])
-        infinite = ~self.solved.free.all(axis=1)
-        return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
+    def r(self) -> NDArray[np.float64]:
+        """Positions over a of the contact nodes, (nodes,)."""
+        return self.space.chart.surface_position(self.space.contact.s)
+
+    @cached_property
+    def moments(self) -> NDArray[np.float64]:
+        """Map from nodal forces to moments of the pressure, (nodes, moments)."""
+        return self._tests(self.r)
+
+    @cached_property
+    def recovery(self) -> ContactRecovery:
+        """Maps from nodal forces to moments, raw pressure and exponents."""
+        space, X = self.space, self.task.places.X
+        return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
+
+    @cached_property
+    def _gauges(self) -> StressGauges:
+        return StressGauges(self, self.ends.task(self.task), self.displacement_at)
 
     @property
-    def residual(self) -> NDArray[np.float64]:
-        """Residual of the integral equation under the pressure, relative, (states,)."""
-        solved = self.solved
-        return of_contact(
-            self.at.task.response, self.g, self.local, self.body, solved.pressure.σ_YY,
-            (solved.centre, solved.half_width),
+    def slopes(self) -> Any:
+        """Slopes of the fields on the surface, None where no stress is requested."""
+        return self._gauges.slopes
+
+    def displacement_at(self, task: Task) -> Displacement:
+        """Displacement, for stresses at the places of a task."""
+        slopes = self._fitted.slopes if self._fitted else None
+        return Displacement(task, self.space, self.fields, slopes, self.ends.continuation(self))
+
+    @cached_property
+    def displacement(self) -> Displacement:
+        """Displacement, for stresses at all places."""
+        return self.displacement_at(self.task)
+
+    @property
+    def mirrored(self) -> bool:
+        """True where there is a mirror image on the same mesh."""
+        return self.task.response.mirrored and not self.ends.single
+
+    def over_flat(self, part: Part, g: NDArray, more: float = 0.0) -> RecoveredPressure:
+        """Pressure from moments, with exponents of sharp edges at frictions g, or larger ones."""
+        local = EdgeExponents(self.task.response, g)
+        functions = self.plan.tests.stretch if self.plan.tests else Polynomials()
+        moments = part.tested(self.moments)
+        return from_moments(moments, local.α + more, local.β + more, functions)
+
+    def K_I(self, parts: Sequence[Part], g: NDArray) -> NDArray[np.float64]:
+        """Intensities of parts at both ends, (states, 2, parts)."""
+        return np.stack([self.over_flat(part, g).K_I for part in parts], axis=2)
+
+    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
+        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m].
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        body = self.task.body.loaded(load)
+        ends = self.only or self.ends.solved(self, g, body)
+        states = SolvedStates(
+            self.task, body, ends.contact, self.ends.pressure(self, ends), self.displacement,
+            ends.half_width, ends.centre, ends.free, ends.unresolved,
+            None if self.ends.single else lambda: self.recovery,
         )  # fmt: skip
+        nearest = self.ends.nearest(states.pressure)
+        return replace(states, turns=self.ends.turns(states), nearest=nearest)
+
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        return self.gauges(self.states(g, load))
+
+    def gauges(self, states: SolvedStates) -> list[Gauge]:
+        """Gauges of states: of pressure and ends, and of requested stresses."""
+        gauges, contact = [self.ends.gauge(self, states)], states.contact
+        if self.stresses:
+            gauges += self._gauges.of(contact.g, contact.weights, self._on_surface(states.pressure))
+        return gauges
+
+    def _on_surface(self, pressure: Any) -> NDArray[np.float64]:
+        """σ_YY over N/(2a) at the places where stresses are measured, (states, n)."""
+        return pressure.σ_YY(self.ends.task(self.task).places.X)
 
     @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force over N/2, (states,)."""
-        return self.solved.contact.load
+    def moved_edges(self) -> float:
+        """Distance over a by which the edges seem off on straight cells along layers; 0 on others."""
+        if not isinstance(self.plan.kind, OnLayers):
+            return 0.0
+        margin = self.task.response.margin
+        return self.plan.kind.moved_edges(self.plan.wanted, self.space.degree, margin)
 
-    @property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Tangential force over N/2, (states,)."""
-        return self.solved.contact.tangential.sum(axis=1)
+    def rounding(self, g: NDArray) -> list[float]:
+        """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
 
-    @property
-    def v0(self) -> NDArray[np.float64]:
-        """Indentation of the punch's lowest point over N/(2μ), (states,)."""
-        return self.solved.contact.v0
+        In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
+        under a flat punch all the same. Over layers they differ, and a single state has no flat punch
+        beside it: what the solve leaves of its forces stands for rounding there. Stresses are relative to
+        those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
+        they are not, and their rounding is as large.
+        """
+        states = self.states(g)
+        own = states.contact.g, states.contact.weights, self._on_surface(states.pressure)
+        if not self.mirrored:
+            of_edges = self.factor.largest_residual
+            if not (self.ends.single or self.task.body.layered):
+                K_left, K_right = self.over_flat(self.punch.states(g, flat=True), g).K_I.T
+                of_edges = float(np.abs(K_left / K_right - 1.0).max())
+            return [of_edges, *self._gauges.rounding(*own)]
+        both, size = [], self._gauges.size(*own)
+        for sign in (1.0, -1.0):
+            flat = self.punch.states(sign * g, flat=True)
+            pressure = self.over_flat(flat, sign * g)
+            σ_YY = self._on_surface(pressure)
+            gauges = self._gauges.mirrored(sign, sign * g, flat.weights, σ_YY, size)
+            both.append([ladder.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
+        return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
 
-    @property
-    def fitted(self) -> NDArray[np.float64]:
-        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
-        return np.full(len(self.g), float(self.at.fitted))
+    def release(self) -> None:
+        """Free factor and fields; a single state keeps its field."""
+        if not self.only:
+            self.punch.release()
 
-    @cached_property
-    def estimates(self) -> dict[str, NDArray[np.float64]]:
-        """Estimated relative errors, (states,), by word of output.quantities."""
-        errors = self.at.error.of(self.g, self.body.load)
-        return {word: values + self.solved.unresolved for word, values in errors.items()}
+    def destroy(self) -> None:
+        """Free everything."""
+        if self.only:
+            self._field.destroy()
+        else:
+            self.punch.destroy()
 
-    @cached_property
-    def surface(self) -> Surface:
-        contact, places = self.solved.contact, self.at.task.places
-        raw = contact.tested(self.at.level.recovery.raw)
-        σ_YY = self.solved.pressure.σ_YY(places.X)
-        return self.at.displacement.surface(self.g, contact.weights, σ_YY, raw)
 
-    @cached_property
-    def inside(self) -> NDArray[np.float64]:
-        return self.at.displacement.inside(self.solved.contact.weights)
+def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
+    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's."""
+    tests = plan.tests
+    if tests is None:
+        return chebyshev
+    return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
 
-    @cached_property
-    def strength(self) -> Strength:
-        """Yield of the states."""
-        at, weights = self.at, self.solved.contact.weights
-        field = at.displacement.at
-        return Strength(
-            lambda points: field(points, weights), self.body, at.task.response, self.g, self.local,
-            self.half_width, turns_at_ends(self.surface, self.local), _NEAREST,
-        )  # fmt: skip
+
+class AtSpeed:
+    """States at one speed on a mesh that they share, solved to the tolerance.
+
+    Args:
+        ladder: ladder at its last level.
+        error: error of that level.
+        fitted: True where the speed was fitted through others.
+    """
+
+    def __init__(self, ladder: Any, error: Any, fitted: bool = False) -> None:
+        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
+        self._ladder, self._fitted = ladder, fitted
+
+    def states(self, g: NDArray, load: Any = None) -> Solution:
+        return solution_of(self.task, self._solved, g, load)
+
+    def _solved(self, g: NDArray, load: Any) -> list[SolvedStates]:
+        states = self.level.states(g, load)
+
+        def errors() -> dict[str, NDArray[np.float64]]:
+            of = self.error.of(g, states.body.load, lambda: self.level.gauges(states))
+            return {word: values + states.unresolved for word, values in of.items()}
+
+        return [replace(states, errors=errors, fitted=self._fitted)]
+
+    def record(self) -> dict[str, Any]:
+        return self._ladder.record() | self.error.record()
+
+
+@contextmanager
+def shared_mesh(work: Discretisation, task: Task, g: NDArray, level: Any) -> Iterator[AtSpeed]:
+    """Raise the degree until the measured error of sample states is within tolerance.
+
+    Args:
+        work: gives spaces.
+        task: the speed.
+        g: all values of σ_XY/σ_YY that will be solved, sorted.
+        level: class of levels, made of ``work``, ``task``, a space and g.
+    """
+    with solved_to_tolerance(work, task, g, lambda space, g: level(work, task, space, g)) as solved:
+        yield AtSpeed(*solved)

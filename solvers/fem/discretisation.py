@@ -1,7 +1,7 @@
 """Meshes and spaces that all speeds of a plan share."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -12,7 +12,7 @@ from mpi4py import MPI
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
 from galinx.meshes.layered import OnLayers
-from galinx.meshes.rings import TAGS, QuadMesh
+from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
 from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, YIELD
@@ -41,7 +41,6 @@ class Discretisation:
 
     Attributes:
         plan: the finite elements' part of the plan.
-        chunk: states of a batch.
         stresses: words of output.quantities that request stresses of finite elements.
         comm: the ranks that share a mesh.
     """
@@ -50,13 +49,30 @@ class Discretisation:
         assert plan.fem
         self._whole: Any = plan
         self.plan = plan.fem
-        self.chunk, self.clock = plan.chunk, clock
+        self.clock = clock
         words = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
         self.stresses = frozenset(word for word in words if plan.asks(word, FEM))
         self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
         self._progress = progress
+        self._refine: Callable[[FemPlan], FemPlan] = on_finer_cells
         self._meshes: dict[int, tuple[Any, Any]] = {}
         self._spaces: dict[tuple[int, int], Space] = {}
+
+    def on(
+        self, plan: FemPlan, stresses: frozenset[str] | None = None,
+        refine: Callable[[FemPlan], FemPlan] | None = None,
+    ) -> "Discretisation":  # fmt: skip
+        """Discretisation for another plan of the mesh.
+
+        Args:
+            plan: the plan.
+            stresses: words of output.quantities that request stresses, these if None.
+            refine: gives the plan with finer cells; :func:`on_finer_cells` if None.
+        """
+        other = Discretisation(replace(self._whole, fem=plan), self._progress, self.clock)
+        other.stresses = self.stresses if stresses is None else stresses
+        other._refine = refine or on_finer_cells
+        return other
 
     @cached_property
     def for_ends(self) -> "Discretisation":
@@ -68,18 +84,13 @@ class Discretisation:
             exponent=plan.sharp,
         )  # fmt: skip
         degrees = tuple(plan.kind.degree(target, task.response.margin) for task in self._whole.tasks)
-        fem = replace(plan, wanted=target, refinement=plan.kind.refinement(target), degrees=degrees)
-        other = Discretisation(replace(self._whole, fem=fem), self._progress, self.clock)
-        other.stresses = frozenset()
-        return other
+        refinement = plan.kind.refinement(target)
+        return self.on(replace(plan, wanted=target, refinement=refinement, degrees=degrees), frozenset())
 
     @cached_property
     def finer(self) -> "Discretisation":
         """Discretisation of the plan on cells for a tighter tolerance."""
-        whole = replace(self._whole, fem=on_finer_cells(self.plan))
-        other = Discretisation(whole, self._progress, self.clock)
-        other.stresses = self.stresses
-        return other
+        return self.on(self._refine(self.plan), refine=self._refine)
 
     def warn(self, text: str) -> None:
         """Warn the user."""
@@ -90,16 +101,6 @@ class Discretisation:
         if (degree, cuts) not in self._spaces:
             self._spaces[degree, cuts] = self.space_of(self.mesh(cuts), degree)
         return self._spaces[degree, cuts]
-
-    def space_on(self, pattern: QuadMesh, degree: int) -> Space:
-        """The space of a degree on a mesh of its own, which no other state has."""
-        return self.space_of(self.own_mesh(pattern), degree)
-
-    def own_mesh(self, pattern: QuadMesh) -> tuple[Any, Any]:
-        """A mesh that no other state has, shared out over ranks, and its facet tags."""
-        with self.clock("mesh"):
-            check_cells(pattern)
-            return distribute(pattern if self.comm.rank == 0 else None, self.comm)
 
     def space_of(self, mesh: tuple[Any, Any], degree: int) -> Space:
         """The space of a degree on a mesh with its facet tags, shared out over ranks."""
@@ -112,7 +113,6 @@ class Discretisation:
     def mesh(self, cuts: int) -> tuple[Any, Any]:
         """The mesh with every cell cut, shared out over ranks, and its facet tags."""
         if cuts not in self._meshes:
-            self._progress.say(f"mesh: {self.plan.mesh}")
             with self.clock("mesh"):
                 self._meshes[cuts] = self._made(cuts)
         return self._meshes[cuts]

@@ -1,10 +1,11 @@
 """Stresses from the displacement fields of a speed, on the surface, inside and at interfaces.
 
-For a contact with free ends, slopes next to the ends are continued from a little farther away
-(:class:`KinkedDisplacement`).
+Next to free ends of a contact, or to knots of a prescribed pressure, slopes may be continued from a
+little farther away, where finite elements have more digits.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -12,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import AT_INTERFACES, BELOW, YIELD
-from ..contact.free_ends import slopes_towards_ends
 from ..contact.solution import Surface, Task
 from .fields import InteriorGradients, KeptValues, SurfaceSlopes
 from .punch import FittedSlopes
@@ -27,13 +27,16 @@ class Displacement:
         space: the finite element space.
         fields: displacements over N/(2μ).
         slopes: slopes of the fields along X on the surface, from a fit; computed if None.
+        continuation: gives, for places X over a on the surface, the samples of slopes that are needed,
+            and the map from slopes there to slopes at the places; None for slopes at the places.
     """
 
     def __init__(
-        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None
-    ) -> None:
+        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None,
+        continuation: Callable[[NDArray], tuple[NDArray, NDArray]] | None = None,
+    ) -> None:  # fmt: skip
         self._task, self._space, self._fields = task, space, fields
-        self._fitted_slopes = slopes
+        self._fitted_slopes, self._continuation = slopes, continuation
 
     def prepare(self, words: Collection[str]) -> None:
         """Take the derivatives that words of output.quantities request, before the fields are freed."""
@@ -47,15 +50,23 @@ class Displacement:
             self._interfaces  # noqa: B018
 
     @property
-    def slopes(self) -> SurfaceSlopes | FittedSlopes:
-        """Slopes of the fields along X at the places on the surface."""
+    def slopes(self) -> Any:
+        """Slopes of the fields along X at the places on the surface, as of :class:`SurfaceSlopes`."""
         return self._slopes
 
     @cached_property
-    def _slopes(self) -> SurfaceSlopes | FittedSlopes:
+    def _slopes(self) -> Any:
         if self._fitted_slopes is not None:
             return self._fitted_slopes
-        return SurfaceSlopes(self._space, self._fields, self._task.places.X)
+        X = self._task.places.X
+        if self._continuation is None:
+            return SurfaceSlopes(self._space, self._fields, X)
+        samples, of_samples = self._continuation(X)
+        return ContinuedSlopes(SurfaceSlopes(self._space, self._fields, samples), of_samples)
+
+    def strain(self, X: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X of the first field over N/(2a) at positions on the surface, (n,)."""
+        return SurfaceSlopes(self._space, self._fields[:1], X).of(np.ones((1, 1)))[0][0]
 
     @cached_property
     def _gradients(self) -> InteriorGradients:
@@ -137,56 +148,21 @@ class Displacement:
         return σ
 
 
-class KinkedDisplacement(Displacement):
-    """Displacement of a contact with free ends; see :class:`Displacement`.
+@dataclass(frozen=True)
+class ContinuedSlopes:
+    """Slopes continued from samples a little farther away; see :class:`SurfaceSlopes`.
 
-    Args:
-        task: the speed, and the places.
-        space: the finite element space.
-        field: displacement over N/(2μ).
-        gaps: distances of the left and the right end from the nearest kink, over a.
-        exponents: of the pressure at the left and at the right end.
+    Attributes:
+        slopes: slopes of the fields at the samples.
+        of_samples: matrix from slopes there to slopes at the requested places, (requested, samples).
     """
 
-    def __init__(
-        self,
-        task: Task,
-        space: Space,
-        field: Any,
-        gaps: tuple[float, float],
-        exponents: tuple[float, float],
-    ) -> None:
-        super().__init__(task, space, [field])
-        self._gaps, self._exponents = gaps, exponents
-
-    def at_places_of(self, task: Task) -> "KinkedDisplacement":
-        """Displacement at the places of another task."""
-        return KinkedDisplacement(task, self._space, self._fields[0], self._gaps, self._exponents)
-
-    def strain(self, X: NDArray) -> NDArray[np.float64]:
-        """Strain μ u,X over N/(2a) at positions on the surface, (n,), by the polynomials of the cells."""
-        return SurfaceSlopes(self._space, self._fields, X).of(np.ones((1, 1)))[0][0]
-
-    @cached_property
-    def _slopes(self) -> Any:
-        places, of_places = slopes_towards_ends(self._task.places.X, self._gaps, self._exponents)
-        return _Slopes(SurfaceSlopes(self._space, self._fields, places), of_places)
-
-
-class _Slopes:
-    """Slopes continued from sampled places; see :class:`SurfaceSlopes`.
-
-    Args:
-        slopes: slopes of the fields at sampled places.
-        of_places: matrix from slopes there to slopes at the requested places, (requested, places).
-    """
-
-    def __init__(self, slopes: SurfaceSlopes, of_places: NDArray) -> None:
-        self._slopes, self._of_places = slopes, of_places
+    slopes: SurfaceSlopes
+    of_samples: NDArray[np.float64]
 
     def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        u_X, v_X = self._slopes.of(weights)
-        return u_X @ self._of_places.T, v_X @ self._of_places.T
+        u_X, v_X = self.slopes.of(weights)
+        return u_X @ self.of_samples.T, v_X @ self.of_samples.T
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
-        return self._slopes.rounding(weights) @ np.abs(self._of_places).T
+        return self.slopes.rounding(weights) @ np.abs(self.of_samples).T

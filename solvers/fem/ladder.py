@@ -20,7 +20,7 @@ from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD, stre
 from ..contact.edges import from_edge
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import FemPlan, levels
-from ..contact.recovery import JacobiPressure, StretchedPressure
+from ..contact.recovery import RecoveredPressure
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
@@ -59,7 +59,7 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
-def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
+def of_pressure(pressure: RecoveredPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:
@@ -69,9 +69,7 @@ def of_pressure(pressure: JacobiPressure, moments: NDArray, moved: float = 0.0) 
     """
     factor = pressure.factor(_ACROSS)
     values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
-    unresolved = pressure.unresolved
-    if isinstance(pressure, StretchedPressure):
-        unresolved = unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
+    unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
     return Gauge(
         INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), unresolved
     )
@@ -108,23 +106,20 @@ class StressGauges:
     """Gauges of the requested stresses, by combinations of fields; derivatives are taken on making.
 
     Args:
-        work: has the words of the requested stresses.
+        work: has the words of the requested stresses, as ``stresses``.
         task: the speed, and the places.
         displaced: makes the displacement at a task's places.
     """
 
-    def __init__(
-        self, work: Discretisation, task: Task, displaced: Callable[[Task], Displacement]
-    ) -> None:
+    def __init__(self, work: Any, task: Task, displaced: Callable[[Task], Displacement]) -> None:
         self._words = [word for word in _STRESSES if word in work.stresses]
         self._task = gauged(task)
         self._displacement = displaced(self._task)
         self._displacement.prepare(self._words)
 
-    @property
-    def any_stress(self) -> bool:
-        """True where stresses are requested."""
-        return bool(self._words)
+    def displacement(self, task: Task) -> Displacement | None:
+        """Displacement at all places of the task; None where errors are measured at fewer places."""
+        return self._displacement if self._task is task else None
 
     @property
     def slopes(self) -> Any:

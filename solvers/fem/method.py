@@ -1,34 +1,36 @@
-"""Finite elements as a method: the solvers of both modes."""
+"""Finite elements as a method: solvers by the mode of their plan."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from galinx.clock import Clock
 
 from ..contact import FREE_ENDS, OWN_PRESSURE
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
-from ..contact.method import Mode, Pressure, Solver
+from ..contact.method import Pressure, Solver
 from ..contact.solution import Task
-from . import contact as punch
-from . import followed, kinked, prescribed_pressure
+from .contact import PunchLevel, shared_mesh
 from .discretisation import Discretisation, quiet_compiler
+from .own_meshes import between_kinks, over_layers
+from .prescribed_pressure import FormulaLevel, PiecesLevel, WholeLevel
 from .space import Space
 from .sweep import Trained, train
 
-#: By the plan's mode.
-MODES = {
-    "contact": Mode(punch.solver, punch.one_state, punch.PunchLevel, punch.PunchesAtSpeed),
-    "traction": Mode(prescribed_pressure.formula_solver, prescribed_pressure.formula_state),
-    OWN_PRESSURE: Mode(prescribed_pressure.solver, prescribed_pressure.one_state),
-    FREE_ENDS: Mode(punch.free_solver, punch.free_state, punch.FreeLevel, punch.FreeAtSpeed),
-    OWN_MESHES: Mode(kinked.solver),
-    FREE_ON_LAYERS: Mode(followed.solver),
-    PRESCRIBED_ON_LAYERS: Mode(prescribed_pressure.layered_solver),
+#: Levels of states that share a mesh, by the plan's mode.
+LEVELS: dict[str, Any] = {
+    "contact": PunchLevel,
+    FREE_ENDS: PunchLevel,
+    "traction": FormulaLevel,
+    OWN_PRESSURE: PiecesLevel,
+    PRESCRIBED_ON_LAYERS: WholeLevel,
 }
+#: Solvers of states each of which has its own mesh, by the plan's mode.
+OWN: dict[str, Any] = {OWN_MESHES: between_kinks, FREE_ON_LAYERS: over_layers}
 
 
 class FiniteElements:
@@ -45,7 +47,6 @@ class FiniteElements:
 
     def __init__(self, plan: Planned, progress: Messages, clock: Clock) -> None:
         self.work = Discretisation(plan, progress, clock)
-        self._mode = MODES[self.work.plan.mode]
         self._progress, self._tasks = progress, plan.tasks
 
     @cached_property
@@ -53,10 +54,11 @@ class FiniteElements:
         """Fit through solved speeds for all others, made when first needed; None without one."""
         if self.work.plan.sweep is None:
             return None
-        return train(self.work, list(self._tasks), self._mode, self._progress.say)
+        return train(self.work, list(self._tasks), self._progress.say)
 
     def begin(self) -> None:
         """Make the mesh and the fit of all speeds; collective, before speeds are shared out."""
+        self._progress.say(f"mesh: {self.work.plan.mesh}")
         self.work.mesh(self.work.plan.cuts)
         with quiet_compiler():
             self._trained  # noqa: B018 - cached
@@ -69,12 +71,31 @@ class FiniteElements:
             self._progress.say(
                 f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
             )
-            yield solver or stack.enter_context(self._mode.solver(self.work, task, g))
+            mode = self.work.plan.mode
+            if not solver:
+                own = OWN.get(mode)
+                solving = (
+                    own(self.work, task, g) if own else shared_mesh(self.work, task, g, LEVELS[mode])
+                )
+                solver = stack.enter_context(solving)
+            yield solver
 
     @contextmanager
     def one_state(
         self, task: Task, g: float, degree: int
     ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
-        """Space, displacement fields, their weights and the pressure of one state, without estimates."""
-        with quiet_compiler(), self._mode.one_state(self.work, task, g, degree) as state:
-            yield state
+        """Space, displacement fields, their weights and the pressure of one state, without estimates.
+
+        A prescribed pressure acts as a whole, not piece by piece.
+        """
+        mode, cuts, of_one = self.work.plan.mode, self.work.plan.cuts, np.array([g])
+        # A kink inside a cell spoils that and its neighbours: halved, they reach less far.
+        whole = mode == OWN_PRESSURE
+        with quiet_compiler():
+            space = self.work.space(degree, 2 if whole else cuts)
+            level = (WholeLevel if whole else LEVELS[mode])(self.work, task, space, of_one)
+            try:
+                states = level.states(of_one)
+                yield space, level.fields, states.contact.weights[0], lambda X: states.pressure.σ_YY(X)[0]
+            finally:
+                level.destroy()

@@ -21,9 +21,9 @@ from ..approximation import Rational, chebyshev_nodes, fit_rational, leja, polyn
 from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import LADDERS, MOST, Sweep, levels
-from ..contact.method import Mode
 from ..contact.solution import Task
 from ..errors import SolveError
+from .contact import AtSpeed, PunchLevel
 from .discretisation import Discretisation
 from .ladder import PROBES, Gauge, WorkDone, climbed
 from .punch import EdgeFactors, FittedPunch, Frictions, Sampled, sampled, together
@@ -42,7 +42,6 @@ class Fit:
 
     Attributes:
         work: gives spaces.
-        mode: kind of contact.
         tasks: all speeds, in the order of the plan.
         sweep: the plan's sweep.
         space: space of the last degree.
@@ -55,7 +54,6 @@ class Fit:
     """
 
     work: Discretisation
-    mode: Mode
     tasks: list[Task]
     sweep: Sweep
     space: Space
@@ -129,7 +127,7 @@ class Fit:
         combined = together(self.samples, shares).singular(self.singular(task))
         punch = FittedPunch(self.space, task.response, self.at, combined)
         try:
-            yield self.mode.level(self.work, task, self.space, self.at.g, punch, self.recovery)
+            yield PunchLevel(self.work, task, self.space, self.at.g, punch, self.recovery)
         finally:
             punch.destroy()
 
@@ -273,7 +271,7 @@ class Trained:
 
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Any]:
-        """Punches at a speed, of the fit's mode; None where they have to be solved.
+        """Punches at a speed; None where they have to be solved.
 
         They have to be where the estimated error exceeds the tolerance: solved alone it may be smaller.
         """
@@ -288,7 +286,7 @@ class Trained:
             yield None
             return
         with fit.level(task) as level:
-            yield fit.mode.at_speed(_FittedLadder(task, [level], fit.record(number)), error, fitted)
+            yield AtSpeed(_FittedLadder(task, [level], fit.record(number)), error, fitted)
 
 
 @dataclass(frozen=True)
@@ -303,9 +301,7 @@ class _FittedLadder:
         return self.numbers
 
 
-def train(
-    work: Discretisation, tasks: list[Task], mode: Mode, say: Callable[[str], None]
-) -> Trained | None:
+def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -> Trained | None:
     """Solve speeds until a fit through them gives the others to the tolerance.
 
     Where that may cost too much in vain, the fit serves the solved speeds alone; None for no fit.
@@ -313,14 +309,13 @@ def train(
     Args:
         work: gives spaces.
         tasks: all speeds.
-        mode: kind of contact, with a level and its punches at a speed.
         say: shows the work under way.
     """
     assert work.plan.sweep
     degree: int | None = None
     lost = 0.0
     while True:
-        training = _Training(work, tasks, mode, work.plan.sweep, say, degree, lost)
+        training = _Training(work, tasks, work.plan.sweep, say, degree, lost)
         try:
             return training.done()
         except HigherDegree as higher:
@@ -368,7 +363,7 @@ class _Training:
     Costs are counted in factorisations, which go with the fourth power of the degree or so.
 
     Args:
-        work, tasks, mode, say: as of :func:`train`.
+        work, tasks, say: as of :func:`train`.
         sweep: the plan's sweep.
         degree: degree to begin with; the plan's if None.
         lost: cost of the speeds that were solved before, in vain.
@@ -379,13 +374,13 @@ class _Training:
     """
 
     def __init__(
-        self, work: Discretisation, tasks: list[Task], mode: Mode, sweep: Sweep,
+        self, work: Discretisation, tasks: list[Task], sweep: Sweep,
         say: Callable[[str], None], degree: int | None, lost: float = 0.0,
     ) -> None:  # fmt: skip
         self.spent = lost
         self._alone = [_cost_of_ladder(degree) for degree in work.plan.degrees]
         self._lost, self.allowed = lost, _REGRET * sum(self._alone)
-        self._work, self._tasks, self._mode, self._sweep = work, tasks, mode, sweep
+        self._work, self._tasks, self._sweep = work, tasks, sweep
         self._say, self._degree = say, degree
         body = tasks[0].body
         ends = {min(tasks[0].loads), max(tasks[0].loads)}
@@ -523,12 +518,12 @@ class _Training:
 
     def _measured(self, number: int) -> "_Solved":
         """Solve a speed and measure its error."""
-        work, mode, task = self._work, self._mode, self._tasks[number]
+        work, task = self._work, self._tasks[number]
         self._tell(task)
         expected = self._expected(task)
 
         def solved(space: Space, g: NDArray) -> Any:
-            return mode.level(work, task, space, g)
+            return PunchLevel(work, task, space, g)
 
         with climbed(work, task, self._all, solved, self._degree, DISCRETISATION) as (ladder, error):
             level = ladder.levels[-1]
@@ -569,7 +564,7 @@ class _Training:
                 off = max(np.abs(a - b).max() / np.abs(b).max() for a, b in zip(interpolated, true))
                 if off <= _BETWEEN:
                     break
-        return Fit(self._work, self._mode, self._tasks, self._sweep, level.space, at, level.recovery)
+        return Fit(self._work, self._tasks, self._sweep, level.space, at, level.recovery)
 
     def _checked(self, number: int) -> "_Solved":
         """Solve a speed without measuring its error."""
@@ -577,7 +572,7 @@ class _Training:
         assert fit
         self._tell(task)
         expected = self._expected(task)
-        level = self._mode.level(work, task, fit.space, self._all)
+        level = PunchLevel(work, task, fit.space, self._all)
         try:
             off = self._off(level, expected)
             done = WorkDone()

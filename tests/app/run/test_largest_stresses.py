@@ -11,7 +11,7 @@ from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.kinked import Ends, places_of_kinks
+from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from galinx.solvers.profiles import cusp
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure.
@@ -74,7 +74,7 @@ def refused(scene, share, mu):
     solved = contacts(response, np.append(mu, -mu), scene.body.profile, scene.body.compression)
     try:
         for centre, half_width in zip(solved.of("centre"), solved.of("half_width")):
-            places_of_kinks(scene.body, Ends(centre, half_width, 0.0))
+            EndsBetweenKinks(scene.body, (centre, half_width), scene.solve.tolerance)
     except SolveError:
         return True
     return False

@@ -137,7 +137,7 @@ def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypa
     def leaning(response, g, local, body, pressure, *more):
         return of_contact(response, g, local, body, lambda r: pressure(r) * (1.0 + wrong * r), *more)
 
-    monkeypatch.setattr("galinx.solvers.fem.contact.of_contact", leaning)
+    monkeypatch.setattr("galinx.solvers.fem.solution.of_contact", leaning)
     result = galinx.compute(scene(tolerance=1e-3, methods=("fem",), quantities=("sif",)))
     assert result.verdict == verdict, result.data["states/fem/residual"]
 

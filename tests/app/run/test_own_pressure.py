@@ -135,9 +135,9 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
 def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):
     solved, true = [], prescribed_pressure.PiecesLevel.__init__
 
-    def counted(self, work, task, space):
+    def counted(self, work, task, space, g):
         solved.append(space.degree)
-        true(self, work, task, space)
+        true(self, work, task, space, g)
 
     monkeypatch.setattr(prescribed_pressure.PiecesLevel, "__init__", counted)
     result = put_in(HUMP, {"solve.tolerance": 1e-4, "motion.c": 0.91})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from galinx.solvers.contact.free_ends import SHAPES, FreeEnds
+from galinx.solvers.contact.free_ends import SHAPES, EndConditions
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles.power import Parabolic, Power, Wedge
 from galinx.solvers.profiles.rounded_flat import RoundedFlat
@@ -35,7 +35,7 @@ def conditions(mixed=((1.0, 0.4), (-0.7, 0.9))):
     T = [np.polynomial.chebyshev.Chebyshev.basis(k) for k in range(SHAPES)]
     moments = np.array([[integral(t), integral(lambda s, t=t: s * t(s))] for t in T]).T
     mixed = np.array(mixed)
-    return FreeEnds(A - 1.0, -A, mixed @ moments, mixed @ [0.0, SIZE])
+    return EndConditions(A - 1.0, -A, mixed @ moments, mixed @ [0.0, SIZE])
 
 
 def test_factors_are_those_of_a_half_plane():
@@ -55,7 +55,7 @@ def test_factors_are_those_of_a_half_plane():
     ],
 )  # fmt: skip
 def test_ends_meet_both_conditions(profile):
-    m, h = conditions().found(profile, UNIT)
+    m, h = conditions().solve(profile, UNIT)
     kinks = [(x - m) / h for x in getattr(profile, "kinks", ()) if abs(x - m) < h]
 
     def slope(s):
@@ -79,11 +79,11 @@ def test_ends_meet_both_conditions(profile):
 
     assert abs(whole(slope)) < 2e-8 * whole(lambda s: abs(slope(s)))
     assert whole(lambda s: s * slope(s)) == pytest.approx(SIZE, rel=2e-8)
-    again = conditions(((0.2, 1.0), (0.9, -0.1))).found(profile, UNIT, (1.3 * m, 0.8 * h))
+    again = conditions(((0.2, 1.0), (0.9, -0.1))).solve(profile, UNIT, (1.3 * m, 0.8 * h))
     np.testing.assert_allclose(again, (m, h), rtol=1e-9)
 
 
 def test_a_table_that_is_too_narrow_says_so():
     profile = Table(((-2e-4, 1e-6), (0.0, 0.0), (2e-4, 1e-6)))
     with pytest.raises(SolveError, match=r"but the punch is known from -0\.0002 m to 0\.0002 m only"):
-        conditions().found(profile, UNIT)
+        conditions().solve(profile, UNIT)

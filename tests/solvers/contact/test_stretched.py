@@ -5,7 +5,7 @@ import pytest
 
 from galinx.solvers.contact.equation import Equation, converged_pressure
 from galinx.solvers.contact.panelled import Panels
-from galinx.solvers.contact.recovery import Stretch, stretched_from_moments
+from galinx.solvers.contact.recovery import Stretch, from_moments
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
@@ -28,7 +28,7 @@ def read(pressure, stretch, count):
     panels = Panels(pressure.α, pressure.β, 0.03)
     forces = panels.weights * pressure.series(panels.t)
     moments = stretch.functions(panels.t, count).T @ forces
-    return stretched_from_moments(moments[None], np.array([pressure.α]), np.array([pressure.β]), stretch)
+    return from_moments(moments[None], np.array([pressure.α]), np.array([pressure.β]), stretch)
 
 
 @pytest.mark.parametrize(("count", "error"), [(20, 4e-5), (24, 2e-6), (28, 1e-6)])
@@ -83,7 +83,7 @@ def of_flat_punch(stretch, polynomials, middle=0.0, half_width=1.0):
     """The pressure that has a flat punch's moments, by Gauss and Chebyshev's rule in its own contact."""
     nodes = np.cos(np.pi * (np.arange(16000) + 0.5) / 16000)
     f = stretch.functions(middle + half_width * nodes, polynomials)
-    return stretched_from_moments(f.mean(axis=0)[None], HALF, HALF, stretch)
+    return from_moments(f.mean(axis=0)[None], HALF, HALF, stretch)
 
 
 @pytest.mark.parametrize(("graded", "polynomials"), [(False, 12), (False, 20), (True, 10)])

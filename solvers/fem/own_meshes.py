@@ -1,0 +1,670 @@
+"""Contacts with free ends by finite elements, each on a mesh drawn for it.
+
+**Kinks.** The slope of a convex punch, or its derivative, may jump at places that depend on the state. So
+the ends are solved for first, on the mesh of all speeds, where a few polynomial shapes give the ends of
+every friction and every load, and cells need not resolve a kink (:class:`EndsLevel`). Then every state
+has a mesh with cells graded towards its kinks (:class:`EndsBetweenKinks`).
+
+**Layers** have a length, so each contact has a mesh drawn for its half-width, which is searched for on a
+few meshes, at a lower degree at first, until the load that makes a contact of that size is the load of
+the task (:class:`_Search`). Three displacements are prescribed under the punch: its height around a
+nearby middle, the change of that height where the middle moves, and a constant. Their loads and the
+intensities at both ends are linear in their amplitudes. So the half-width of a mesh has a load of its
+own, at which both intensities vanish, and a middle: of a parabola at once, of other profiles once the
+middle hardly moves (:class:`BalancedEnds`).
+
+On the mesh of a contact the degree rises until the measured error is within tolerance. Where contacts of
+all loads differ in size alone, a single state of a friction stands for all of them.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil, log
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.meshes.kind import DEGREES, with_kinks
+from galinx.meshes.rings import Refinement
+
+from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
+from ..contact.edges import EdgeExponents
+from ..contact.fem_plan import (
+    NEAR_FREE_END,
+    OWN_MESHES_KEPT,
+    FemPlan,
+    kind_of,
+    no_nearer,
+    pressure_moments,
+    requirements,
+)
+from ..contact.free_ends import (
+    SHAPES,
+    EndConditions,
+    KinkedPressure,
+    free_ends,
+    gaps_of,
+    slopes_towards_ends,
+    turns_at_ends,
+)
+from ..contact.recovery import RecoveredPressure
+from ..contact.solution import Body, Places, Surface, Task, Turns
+from ..contact.stresses import NEAR_TIP, off_tips
+from ..errors import SolveError
+from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
+from ..profiles.flat import Flat
+from .contact import Ends, FreeEnds, PunchLevel, SolvedEnds
+from .discretisation import Discretisation, on_finer_cells
+from .ladder import Gauge, Ladder, MeasuredError, WorkDone, climbed, solved_to_tolerance
+from .punch import combined
+from .solution import Solution, SolvedStates, solution_of
+from .space import Space
+
+#: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
+State: TypeAlias = tuple[float, float]
+Lengths: TypeAlias = tuple[float, float]
+
+#: Both ends free, of a single state.
+_FREE = np.ones((1, 2), dtype=bool)
+
+#: Places under the punch at which the pressure is measured.
+_ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
+
+
+class EndsLevel(PunchLevel):
+    """Ends of contacts under any convex punch at one degree; see :class:`PunchLevel`.
+
+    Args:
+        work, task, space, g: as of :class:`PunchLevel`.
+        near: middles and half-widths [m] of states by σ_XY/σ_YY and load, from previous levels.
+    """
+
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, near: dict[State, Lengths]
+    ) -> None:
+        super().__init__(work, task, space, g, ends=FreeEnds(SHAPES))
+        self._near = near
+        self._conditions: dict[float, EndConditions] = {}
+        self._lengths: dict[State, Lengths] = {}
+
+    def conditions(self, g: NDArray) -> list[EndConditions]:
+        """Conditions at free ends of every friction."""
+        missing = np.array([value for value in np.unique(g).tolist() if value not in self._conditions])
+        if len(missing):
+            parts, local = self.punch.parts(missing), EdgeExponents(self.task.response, missing)
+            loads = np.stack([part.load for part in parts], axis=-1)
+            solved = free_ends(local, self.K_I(parts, missing), loads)
+            self._conditions |= zip(missing.tolist(), solved)
+        return [self._conditions[value] for value in g.tolist()]
+
+    def lengths(self, g: NDArray, load: Any = None) -> list[Lengths]:
+        """Middle and half-width [m] of every state.
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        body, last = self.task.body, None
+        loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
+        states = list(zip(g.tolist(), loads))
+        for state, condition in zip(states, self.conditions(g)):
+            if state not in self._lengths:
+                unit = body.loaded(state[1]).displacement
+                start = self._near.get(state, last)
+                self._lengths[state] = self._near[state] = condition.solve(body.profile, unit, start)
+            last = self._lengths[state]
+        return [self._lengths[state] for state in states]
+
+    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        ends = np.array(self.lengths(g, load))
+        h = ends[:, 1:]
+        unseen = np.array([[condition.unseen] for condition in self.conditions(g)])
+        # Differences of the half-widths' logarithms are relative changes.
+        values = np.concatenate([np.log(h), ends[:, :1] / h, unseen], axis=1)
+        return [Gauge(INTENSITIES, values, np.ones_like(values))]
+
+
+#: Most kinks in a contact, and their largest distance from its middle over the half-width.
+_MOST, _NEXT_TO_END = 12, 0.98
+
+#: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
+#: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
+_CELLS, _DIGITS = 3.0, 1e-5
+
+#: Rings more around a cusp of the pressure; size of the innermost cells at a kink, over the tolerance.
+_AROUND_CUSP, _INNERMOST = 4, 30.0
+
+#: Size of the innermost cells at a tip, over the least distance from it at which stresses are evaluated.
+_OF_TIP = 0.25
+
+
+class EndsBetweenKinks(Ends):
+    """Ends of one contact, solved for before, and kinks of the punch between them.
+
+    Args:
+        body: the sliding contact, under its load.
+        lengths: middle and half-width [m].
+        tolerance: of the scene.
+
+    Raises:
+        SolveError: cells cannot be graded towards the kinks.
+    """
+
+    single = True
+
+    def __init__(self, body: Body, lengths: Lengths, tolerance: float) -> None:
+        self._body, self._tolerance = body, tolerance
+        self._centre, self._half_width = lengths
+        at = (np.array(kinks(body.profile), dtype=float) - self._centre) / self._half_width
+        #: Positions of the kinks over the half-width; of those at which stresses are infinite; of others.
+        self._places = at[np.abs(at) < 1.0]
+        if len(self._places) > _MOST or np.abs(self._places).max(initial=0.0) > _NEXT_TO_END:
+            raise SolveError(
+                f"the punch has {len(self._places)} kinks under the contact, at "
+                f"{self._places.round(4).tolist()} (over the half-width); finite elements want at most "
+                f'{_MOST}, none within {1.0 - _NEXT_TO_END:.2g} of an end; take methods = ["closed_form"]'
+            )
+        tip = bool(jumps(body.profile))
+        self._tips: NDArray[np.float64] = self._places if tip else np.empty(0)
+        self._kinks: NDArray[np.float64] = np.empty(0) if tip else self._places
+
+    def drawn(self, plan: FemPlan) -> FemPlan:
+        """Plan with a mesh whose cells are graded towards the kinks."""
+        rings = _gentle(plan)
+        return replace(plan, drawn=with_kinks(rings, self._places, self._more_rings(rings, plan)))
+
+    def _more_rings(self, rings: Refinement, plan: FemPlan) -> int:
+        """Number of rings around kinks beyond those around the ends.
+
+        Next to a kink of the slope's derivative the pressure is d log d, and its error in the innermost
+        cells is of their size at any degree. At a tip the pressure is infinite, and stresses are
+        evaluated farther away: if an innermost cell reached that far, no degree would resolve them at
+        any tolerance.
+        """
+        if cusp(self._body.profile):
+            return _AROUND_CUSP
+        if len(self._tips):
+            size = _OF_TIP * NEAR_TIP
+        else:
+            order = max((exponent(self._body.profile) or 2.0) - 1.0, 1.0)
+            size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
+        return max(0, ceil(log(size) / log(rings.ratio)) - rings.levels)
+
+    def heights(self, level: PunchLevel) -> NDArray[np.float64]:
+        X = self._centre + self._half_width * level.r
+        return np.asarray(self._body.profile.height(X) / self._body.displacement)
+
+    def solved(self, level: PunchLevel, g: NDArray, body: Body) -> SolvedEnds:
+        half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
+        return SolvedEnds(level.punch.states(g), half_width, centre, _FREE)
+
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> KinkedPressure:
+        space, contact, profile = level.space, ends.contact, self._body.profile
+        return KinkedPressure(
+            space.contact.s, space.degree, space.chart, contact.normal[0], self._places,
+            _exponents(level.task, contact.g), leaving(profile), self._tolerance, bool(jumps(profile)),
+        )  # fmt: skip
+
+    def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
+        exponents, gaps = _exponents(level.task, level.g), gaps_of(self._places)
+        return lambda X: slopes_towards_ends(X, gaps, exponents)
+
+    def nearest(self, pressure: KinkedPressure) -> float:
+        at = np.concatenate([[-1.0], self._kinks, [1.0]])
+        return max(_CELLS * float(pressure.cells_beside(at).max()), _DIGITS)
+
+    def task(self, task: Task) -> Task:
+        """Task without places next to tips, where stresses are infinite."""
+        places, tips = task.places, self._tips
+        X, points, around = places.X, places.points, places.around
+        return replace(
+            task,
+            places=replace(
+                places,
+                X=X[off_tips(X, tips)],
+                points=points[off_tips(points[:, 0], tips, points[:, 1])],
+                around=around[off_tips(around[:, 0], tips, around[:, 1])],
+            ),
+        )
+
+    def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
+        """Gauge of the pressure's moments over the load, and of the pressure over its largest.
+
+        Kinks are among the places: there it is a limit, which has less digits than what it is taken from.
+        """
+        pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
+        at_kinks = [pressure.at_kink(i) for i in range(len(self._kinks))]
+        σ = np.append(pressure.σ_YY(_ACROSS[off_tips(_ACROSS, self._tips)]), at_kinks)[None]
+        size = float(np.abs(σ).max())
+        scale = np.concatenate([2.0 + 0.0 * moments, size + 0.0 * σ], axis=1)
+        unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
+        return Gauge(INTENSITIES, np.concatenate([moments, σ], axis=1), scale, unresolved)
+
+    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns]:
+        def at(surface: Surface) -> Turns:
+            """Stresses at both ends, and under kinks where they are finite."""
+            X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
+            σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+            u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
+            σ_XY = float(states.contact.g[0]) * σ_YY
+            under = np.array([states.task.response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
+            return turns_at_ends(surface, states.local).joined(Turns(X[None], under[:, None]))
+
+        return at
+
+
+def _gentle(plan: FemPlan) -> Refinement:
+    """Plan's refinement with rings no steeper than the usual ones of its mesh.
+
+    They are steeper where cells are finer in angle, which does at ends that are free: the pressure at a
+    kink is no power of the distance, and a ring that spans a fifth of it is slow to follow that.
+    """
+    rings, ratio = plan.refinement, plan.kind.ratio
+    if rings.ratio >= ratio:
+        return rings
+    return replace(rings, levels=ceil(rings.levels * log(rings.ratio) / log(ratio)), ratio=ratio)
+
+
+def _exponents(task: Task, g: NDArray) -> tuple[float, float]:
+    """Exponents of a single state's pressure at its left and its right free end."""
+    local = EdgeExponents(task.response, g)
+    return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
+
+
+#: Growth of the load's logarithm with that of the half-width, as on a half-plane under a parabola.
+GROWTH = 2.0
+
+
+@dataclass(frozen=True)
+class BalancedContact(SolvedEnds):
+    """Contact without intensities on a mesh drawn for its half-width; see :class:`SolvedEnds`.
+
+    Attributes:
+        off: logarithm of the load that makes a contact of the mesh's half-width, over the task's load.
+        lean: middle of the contact over the mesh's half-width.
+    """
+
+    off: float = 0.0
+    lean: float = 0.0
+
+
+class BalancedEnds(Ends):
+    """Ends of one contact over layers, without intensities, on a mesh drawn for its half-width.
+
+    The contact has that half-width under a load of its own. Its half-width under the task's load is
+    estimated by the growth of loads on a half-plane.
+
+    Args:
+        profile: profile of the punch.
+        half_width: half-width of the mesh [m].
+        near: middle of a contact near by [m].
+    """
+
+    single = True
+
+    def __init__(self, profile: Any, half_width: float, near: float) -> None:
+        self._profile, self._half_width, self._near = profile, half_width, near
+
+    def heights(self, level: PunchLevel) -> NDArray[np.float64]:
+        h, unit = self._half_width, level.task.body.displacement
+        X = self._near + h * level.r
+        return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
+
+    def solved(self, level: PunchLevel, g: NDArray, body: Body) -> BalancedContact:
+        """Contact without intensities.
+
+        Raises:
+            SolveError: no load makes such a contact.
+        """
+        parts, h = level.punch.parts(g), self._half_width
+        loads = np.array([part.load[0] for part in parts])
+        amplitudes = np.linalg.solve(
+            np.vstack([loads, level.K_I(parts, g)[0]]), np.array([-2.0, 0.0, 0.0])
+        )
+        # Over its own load the punch's height is that over the task's load times their quotient.
+        _, share, slope = amplitudes.tolist()
+        if not share > 0.0:
+            raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
+        off, lean = float(-np.log(share)), self._near / h + slope / share
+        contact = combined(g, parts, amplitudes[None])
+        lengths = np.full(1, h * np.exp(-off / GROWTH)), np.full(1, h * lean)
+        return BalancedContact(contact, *lengths, _FREE, off=off, lean=lean)
+
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> RecoveredPressure:
+        return replace(level.over_flat(ends.contact, ends.contact.g, 1.0), free=_FREE)
+
+    def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
+        assert level.plan.tests
+        gap, exponents = min(1.0, level.plan.tests.stretch.h), _exponents(level.task, level.g)
+        return lambda X: slopes_towards_ends(X, (gap, gap), exponents)
+
+    def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
+        """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
+        pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
+        balanced: Any = level.only
+        σ, lengths = pressure.σ_YY(_ACROSS), np.array([[balanced.off / GROWTH, balanced.lean]])
+        of_others = [2.0 + 0.0 * moments, np.ones_like(lengths)]
+        # What the last functions add is largest where they are multiplied by most.
+        factor = np.abs(pressure.factor(_ACROSS)).max(axis=1)
+        ends = np.abs(pressure.factor(np.array([-1.0, 1.0]))).max(axis=1)
+        values = np.concatenate([σ, moments, lengths], axis=1)
+        scale = np.concatenate([stresses.of_factor(σ), *of_others], axis=1)
+        return Gauge(INTENSITIES, values, scale, pressure.unresolved * ends / factor)
+
+
+@dataclass(frozen=True)
+class Sized:
+    """Task scaled to a contact: its lengths are over the contact's half-width.
+
+    Attributes:
+        task: the task, under one load.
+        half_width: half-width of the contact [m].
+    """
+
+    task: Task
+    half_width: float
+
+    @cached_property
+    def scaled(self) -> Task:
+        """The task with lengths over the half-width."""
+        task, h = self.task, self.half_width
+        places, depths = task.places, task.body.solid.depths / h  # type: ignore[attr-defined]
+        return replace(
+            task,
+            body=replace(task.body, profile=Flat(h)),
+            response=replace(task.response, a=h),  # type: ignore[type-var]
+            places=replace(places, interfaces=depths),
+        )
+
+    def plan(self, plan: FemPlan, words: frozenset[str]) -> FemPlan:
+        """Plan of a mesh drawn for the contact.
+
+        Args:
+            plan: plan of all contacts.
+            words: words of output.quantities that request stresses.
+        """
+        scaled = self.scaled
+        places, interfaces = scaled.places, scaled.places.interfaces
+        kind = kind_of(interfaces, [scaled.response])
+        below = places.points if BELOW in words else np.empty((0, 2))
+        if AT_INTERFACES in words:
+            X, depth = np.meshgrid(places.along, interfaces)
+            below = np.concatenate([below, np.column_stack([X.ravel(), -depth.ravel()])])
+        X = places.X if ON_SURFACE in words else np.empty(0)
+        requested = Places(X, below, places.around)
+        target = requirements(plan.tolerance, requested, plan.sharp, scaled.response.spread)
+        # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
+        target = no_nearer(target, NEAR_FREE_END)
+        degree = kind.degree(target, scaled.response.margin)
+        return replace(
+            plan, kind=kind, wanted=target, drawn=kind.drawn(target),
+            degrees=(degree,) * len(plan.degrees),
+            tests=pressure_moments(scaled.body.solid, kind, target),
+        )  # fmt: skip
+
+
+#: Meshes at most, the largest step of the half-width's logarithm, and the least and the most by which the
+#: load's may grow with it.
+_MESHES, _LARGEST, _SLOPES = 40, 1.2, (0.5, 15.0)
+#: Step of the half-width's logarithm below which the degree is raised, by how much it is lower until
+#: then, and step over the tolerance below which the half-width is accepted.
+_ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.1
+#: Least difference of the half-width's logarithm from which the growth of the load is computed.
+_APART = 1e-5
+#: Largest error of the half-width over the tolerance once all is solved; else another mesh is drawn.
+_ERROR = 0.3
+
+
+class _Search:
+    """Search for the half-width and the middle of a contact over layers.
+
+    Args:
+        work: gives meshes.
+        task: the speed, and the load.
+        g: σ_XY/σ_YY.
+        done: takes the numbers of the work.
+    """
+
+    def __init__(self, work: Discretisation, task: Task, g: float, done: WorkDone) -> None:
+        self._work, self._task, self._g, self._done = work, task, np.array([g]), done
+        self._growth, self._centre = GROWTH, 0.0
+        self._before: tuple[float, float] | None = None
+
+    def half_width(self, h: float) -> float:
+        """Half-width [m] of the contact that carries the load, from a half-width near by.
+
+        Raises:
+            SolveError: no half-width was found.
+        """
+        x, tolerance, rough = float(np.log(h)), self._work.plan.tolerance, True
+        for _ in range(_MESHES):
+            off, lean = self._off(float(np.exp(x)), rough)
+            self._learn(x, off)
+            x_next = self._moved(x, off)
+            # The shift of the middle is accurate to its square.
+            step = max(abs(x_next - x), lean**2)
+            if not rough and step <= _SETTLED * tolerance:
+                return float(np.exp(x_next))
+            if rough and step <= max(_ROUGH, _SETTLED * tolerance):
+                # Loads of a low degree do not compare with those of a high one.
+                rough, self._before = False, None
+            x = x_next
+        raise SolveError(
+            f"finite elements did not find the half-width of the contact: after {_MESHES} meshes it is "
+            f"near {np.exp(x):.6g} m and still moves; take a speed farther from the limit"
+        )
+
+    def _moved(self, x: float, off: float) -> float:
+        """Next logarithm of the half-width, by the growth of the load with it."""
+        return x - float(np.clip(off / self._growth, -_LARGEST, _LARGEST))
+
+    def _learn(self, x: float, off: float) -> None:
+        """Update the growth of the load with the half-width, by two half-widths of equal degree."""
+        if self._before is not None and abs(x - self._before[0]) > _APART:
+            low, high = _SLOPES
+            self._growth = float(np.clip((off - self._before[1]) / (x - self._before[0]), low, high))
+        self._before = x, off
+
+    def _off(self, h: float, rough: bool) -> tuple[float, float]:
+        """Logarithm of the load that makes a contact of half-width h [m], over the task's; and shift of
+        the middle over h."""
+        sized, none = Sized(self._task, h), frozenset[str]()
+        mesh, ends = self._work.on(sized.plan(self._work.plan, none), none), self._ends(h)
+        degree = mesh.plan.degrees[self._task.number]
+        space = mesh.space(max(degree - _LOWER, DEGREES[0]) if rough else degree)
+        level = PunchLevel(mesh, sized.scaled, space, self._g, ends=ends)
+        self._done.count(level)
+        level.destroy()
+        balanced: Any = level.only
+        before, self._centre = self._centre, h * balanced.lean
+        return balanced.off, (self._centre - before) / h
+
+    def _ends(self, h: float) -> BalancedEnds:
+        return BalancedEnds(self._task.body.profile, h, self._centre)
+
+    def solved(self, h: float) -> tuple["OwnState", float]:
+        """Contact on a mesh drawn for a half-width [m], solved to the tolerance; its half-width [m]."""
+        sized, words, ends = Sized(self._task, h), self._work.stresses, self._ends(h)
+        mesh = self._work.on(sized.plan(self._work.plan, words))
+        state = own_state(mesh, sized.scaled, self._g, ends, self._done)
+        return state, float(np.exp(self._moved(float(np.log(h)), state.level.only.off)))  # type: ignore[union-attr]
+
+
+def solved_over_layers(
+    work: Discretisation, task: Task, g: float, near: float, done: WorkDone
+) -> "OwnState":
+    """Solve a contact over layers.
+
+    Args:
+        work: gives meshes.
+        task: the speed, and the load.
+        g: σ_XY/σ_YY.
+        near: half-width of a contact near by [m].
+        done: takes the numbers of the work.
+
+    Raises:
+        SolveError: no contact was found, or the equations could not be solved.
+    """
+    search = _Search(work, task, g, done)
+    drawn = search.half_width(near)
+    state, h = search.solved(drawn)
+    if abs(h / drawn - 1.0) > _ERROR * work.plan.tolerance:
+        state.level.destroy()
+        drawn = h
+        state, h = search.solved(drawn)
+    balanced: Any = state.level.only
+    lean, off = balanced.lean, abs(h / drawn - 1.0)
+    check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
+    errors = {word: value + off for word, value in state.states.errors().items()}
+    states = replace(
+        state.states,
+        body=task.body,
+        half_width=np.array([h]),
+        centre=np.array([h * lean]),
+        errors=lambda: errors,
+    )
+    return replace(state, states=states)
+
+
+@dataclass(frozen=True)
+class OwnState:
+    """State solved on a mesh of its own.
+
+    Attributes:
+        states: the state.
+        level: the last level.
+        record: numbers of the work, as they are archived.
+    """
+
+    states: SolvedStates
+    level: PunchLevel
+    record: dict[str, Any]
+
+
+def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: WorkDone) -> OwnState:
+    """Solve a contact on its mesh, the degree raised to the tolerance.
+
+    Args:
+        mesh: mesh of the contact.
+        task: the speed, and the load.
+        g: σ_XY/σ_YY, (1,).
+        ends: ends of the contact.
+        done: takes the numbers of the work.
+    """
+
+    def level(space: Space, g: NDArray) -> PunchLevel:
+        contact = PunchLevel(mesh, task, space, g, ends=ends)
+        done.count(contact)
+        return contact
+
+    with solved_to_tolerance(mesh, task, g, level) as (ladder, error):
+        errors, last = error.of(g), ladder.levels.pop()
+    size = {"cells": last.space.cells, "unknowns": last.space.size, "degree": last.space.degree}
+    return OwnState(replace(last.states(g), errors=lambda: errors), last, size | error.record())
+
+
+class OwnMeshesAtSpeed:
+    """Contacts at one speed, each solved on its mesh when first needed; the last few are kept.
+
+    Args:
+        task: the speed.
+        solve: solves a contact of σ_XY/σ_YY for the task under one load, given the kept states by both.
+        done: has the numbers of the work.
+    """
+
+    def __init__(
+        self, task: Task, solve: Callable[[float, Task, dict[State, OwnState]], OwnState], done: WorkDone
+    ) -> None:
+        self._task, self._solve, self._done = task, solve, done
+        self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
+        #: States by σ_XY/σ_YY and load, in the order of their last use.
+        self._kept: dict[State, OwnState] = {}
+
+    def states(self, g: NDArray, load: Any = None) -> Solution:
+        return solution_of(self._task, self._solved, g, load)
+
+    def _solved(self, g: NDArray, load: Any) -> list[SolvedStates]:
+        loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
+        return [self._state(*state).states for state in zip(g.tolist(), loads)]
+
+    def _state(self, g: float, load: float) -> OwnState:
+        state = self._kept.pop((g, load), None)
+        if state is None:
+            task = replace(self._task, body=self._task.body.loaded(load), loads=(load,))
+            state = self._solve(g, task, self._kept)
+            for name, value in state.record.items():
+                self._record[name] = max(self._record.get(name, value), value)
+        self._kept[g, load] = state
+        while len(self._kept) > OWN_MESHES_KEPT:
+            self._kept.pop(next(iter(self._kept))).level.destroy()
+        return state
+
+    def record(self) -> dict[str, Any]:
+        return self._record | vars(self._done)
+
+    def destroy(self) -> None:
+        """Free the kept states."""
+        for state in self._kept.values():
+            state.level.destroy()
+
+
+@contextmanager
+def over_layers(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnMeshesAtSpeed]:
+    """Contacts over layers, whose ends are searched for on meshes that follow them."""
+    done = WorkDone()
+
+    def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
+        load = alone.body.load
+        # Half-widths of solved states under the load by the difference of their frictions.
+        near = [
+            (abs(other - g), float(state.states.half_width[0]))
+            for (other, N), state in kept.items()
+            if load == N
+        ]
+        first = min(near)[1] if near else float(alone.body.half_width)
+        return solved_over_layers(work, alone, g, first, done)
+
+    at = OwnMeshesAtSpeed(task, solve, done)
+    try:
+        yield at
+    finally:
+        at.destroy()
+
+
+@contextmanager
+def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnMeshesAtSpeed]:
+    """Contacts with kinks, whose ends are solved for first: to the tolerance, for sample states."""
+    near: dict[State, Lengths] = {}
+
+    def level(space: Space, g: NDArray) -> EndsLevel:
+        return EndsLevel(work.for_ends, task, space, g, near)
+
+    with climbed(work.for_ends, task, g, level) as (ladder, error):
+        done = WorkDone()
+
+        def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
+            lengths, off = _ends_of(ladder, error, g, alone.body.load)
+            ends = EndsBetweenKinks(alone.body, lengths, work.plan.tolerance)
+            mesh = work.on(ends.drawn(work.plan), refine=lambda plan: ends.drawn(on_finer_cells(plan)))
+            state = own_state(mesh, alone, np.array([g]), ends, done)
+            errors = state.states.errors()
+            errors[INTENSITIES] = errors[INTENSITIES] + off
+            return state
+
+        at = OwnMeshesAtSpeed(task, solve, done)
+        done.add(ladder.done)
+        try:
+            yield at
+        finally:
+            at.destroy()
+
+
+def _ends_of(ladder: Ladder, error: MeasuredError, g: float, load: float) -> tuple[Lengths, float]:
+    """Middle and half-width of a contact [m], and the estimated error of both over the half-width."""
+    state, level = (np.array([g]), np.array([load])), ladder.levels[-1]
+    (condition,) = level.conditions(state[0])
+    (off,) = error.of(*state)[INTENSITIES]
+    (lengths,) = level.lengths(*state)
+    return lengths, float(off) + condition.unseen

@@ -1,0 +1,253 @@
+"""Solution by finite elements: states of contacts and of prescribed pressures, on one mesh or many.
+
+States that were solved on one mesh are sums of its displacement fields (:class:`SolvedStates`). A
+:class:`Solution` joins those of one mesh for all, or of a mesh for each contact. Where contacts under all
+loads are similar, a friction is solved once, and its states differ in their lengths alone.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact.edges import EdgeExponents, Exponents
+from ..contact.free_ends import turns_at_ends
+from ..contact.recovery import ContactRecovery
+from ..contact.residual import of_contact
+from ..contact.solution import Body, Places, Surface, Task, Turns, together
+from ..contact.yielding import Strength
+from .displacement import Displacement
+from .punch import ContactStates
+
+
+@dataclass(frozen=True)
+class SolvedStates:
+    """States solved on one mesh; lengths over each contact's half-width, from its middle.
+
+    Attributes:
+        task: the speed, and places of stresses; with lengths over the half-width of a mesh drawn for it.
+        body: the sliding contact, under the load of each state.
+        contact: nodal forces, and weights of the displacement fields.
+        pressure: contact pressure, a :class:`galinx.solvers.contact.recovery.RecoveredPressure`
+            or similar.
+        displacement: stresses by the fields.
+        half_width, centre: half-width and middle of each contact [m], (states,).
+        free: True where the left and the right end are free, (states, 2).
+        unresolved: relative error of the punch's slope by its shapes, (states,) or 0.
+        recovery: gives the maps from nodal forces to raw pressure and exponents, if there are any.
+        turns: limits of stresses on a surface, by that surface; None for limits at free ends alone.
+        nearest: least distance over a from free ends and kinks at which stresses are evaluated.
+        errors: gives estimated relative errors, (states,), by word of output.quantities.
+        fitted: True where the speed was fitted through others.
+    """
+
+    task: Task
+    body: Body
+    contact: ContactStates
+    pressure: Any
+    displacement: Displacement
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    free: NDArray[np.bool_]
+    unresolved: Any = 0.0
+    recovery: Callable[[], ContactRecovery] | None = None
+    turns: Callable[[Surface], Turns] | None = None
+    nearest: float = 1.0
+    errors: Callable[[], dict[str, NDArray[np.float64]]] = dict
+    fitted: bool = False
+
+    @property
+    def local(self) -> Exponents:
+        """Exponents of the pressure at the right and the left end."""
+        flat = EdgeExponents(self.task.response, self.contact.g)
+        return Exponents(flat.α + self.free[:, 1], flat.β + self.free[:, 0])
+
+    @cached_property
+    def on_surface(self) -> Surface:
+        """Stresses on the surface, with limits at ends and kinks."""
+        contact, X = self.contact, self.task.places.X
+        raw = contact.tested(self.recovery().raw) if self.recovery else None
+        surface = self.displacement.surface(contact.g, contact.weights, self.pressure.σ_YY(X), raw)
+        if self.turns:
+            return replace(surface, turns=self.turns(surface))
+        return replace(surface, turns=turns_at_ends(surface, self.local)) if self.free.any() else surface
+
+    @cached_property
+    def below(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self.displacement.inside(self.contact.weights)
+
+    @property
+    def off_equation(self) -> NDArray[np.float64]:
+        """Residual of the integral equation under the pressure, relative, (states,)."""
+        return of_contact(
+            self.task.response, self.contact.g, self.local, self.body, self.pressure.σ_YY,
+            (self.centre, self.half_width), self.pressure.kinks, self.pressure.breaks,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Contacts with several frictions and loads, or a prescribed pressure.
+
+    Attributes:
+        task: their speed.
+        solved: solved states, mesh by mesh.
+        rows: number of each state among all solved states, (states,).
+        body: the sliding contact, under the load of each state.
+        growth: half-width of each state over that of its solved state, (states,).
+    """
+
+    task: Task
+    solved: Sequence[SolvedStates]
+    rows: NDArray[np.int64]
+    body: Body
+    growth: NDArray[np.float64]
+
+    def _joined(self, of: Callable[[SolvedStates], NDArray], axis: int = 0) -> NDArray[Any]:
+        """Values of all states by those of the solved states on each mesh, along an axis of states."""
+        return np.concatenate([of(states) for states in self.solved], axis=axis).take(self.rows, axis)
+
+    @cached_property
+    def g(self) -> NDArray[np.float64]:
+        """σ_XY/σ_YY, (states,)."""
+        return self._joined(lambda states: states.contact.g)
+
+    @cached_property
+    def local(self) -> Exponents:
+        """Exponents of the pressure at the right and the left end."""
+        α, β = self._joined(lambda states: np.array([states.local.α, states.local.β]), 1)
+        return Exponents(α, β)
+
+    @cached_property
+    def K_I(self) -> NDArray[np.float64]:
+        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
+        return self._joined(lambda states: states.pressure.K_I)
+
+    @cached_property
+    def exponents(self) -> NDArray[np.float64]:
+        """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
+        return self._joined(lambda states: states.recovery().exponents(states.contact.normal))  # type: ignore[misc]
+
+    @cached_property
+    def half_width(self) -> NDArray[np.float64]:
+        """Half-width of the contact [m], (states,)."""
+        return self.growth * self._joined(lambda states: states.half_width)
+
+    @cached_property
+    def centre(self) -> NDArray[np.float64]:
+        """Middle of the contact from the punch's axis [m], (states,)."""
+        return self.growth * self._joined(lambda states: states.centre)
+
+    @cached_property
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
+        value, place = self._joined(lambda states: np.array(states.pressure.largest), 1)
+        return value, place
+
+    @cached_property
+    def residual(self) -> NDArray[np.float64]:
+        """Residual of the integral equation under the pressure, relative, (states,)."""
+        return self._joined(lambda states: states.off_equation)
+
+    @cached_property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Normal force over N/2, (states,)."""
+        return self._joined(lambda states: states.contact.load)
+
+    @cached_property
+    def tangential_force(self) -> NDArray[np.float64]:
+        """Tangential force over N/2, (states,)."""
+        return self._joined(lambda states: states.contact.tangential.sum(axis=1))
+
+    @cached_property
+    def v0(self) -> NDArray[np.float64]:
+        """Indentation of the punch's lowest point over N/(2μ), (states,)."""
+        return self._joined(lambda states: states.contact.v0)
+
+    @property
+    def fitted(self) -> NDArray[np.float64]:
+        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
+        return self._joined(lambda states: np.full(len(states.contact.g), float(states.fitted)))
+
+    @cached_property
+    def estimates(self) -> dict[str, NDArray[np.float64]]:
+        """Estimated relative errors, (states,), by word of output.quantities."""
+        each = [states.errors() for states in self.solved]
+        return {word: np.concatenate([errors[word] for errors in each])[self.rows] for word in each[0]}
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Stresses on the surface, and their limits at free ends, kinks and knots."""
+        each = [states.on_surface for states in self.solved]
+        if len(each) == 1:
+            return each[0].of(self.rows)
+        σ_YY, σ_XX, v_X = (
+            np.concatenate([getattr(surface, name) for surface in each])
+            for name in ("σ_YY", "σ_XX", "v_X")
+        )
+        turns = together([surface.turns for surface in each if surface.turns])
+        return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
+
+    @cached_property
+    def inside(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self._joined(lambda states: states.below, 1)
+
+    @property
+    def places(self) -> Places:
+        """Places at which stresses are evaluated."""
+        return self.task.places
+
+    @cached_property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return self._joined(lambda states: states.displacement.interfaces(states.contact.weights), 1)
+
+    @cached_property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, (states, m)."""
+        Y = self.places.points[:, 1]
+        return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield of the states."""
+        turns = self.surface.turns if any(states.free.any() for states in self.solved) else None
+        return Strength(
+            self._stresses, self.body, self.task.response, self.g, self.local, self.half_width, turns,
+            max(states.nearest for states in self.solved),
+        )  # fmt: skip
+
+    def _stresses(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
+        if len(self.solved) == 1:
+            states = self.solved[0]
+            return states.displacement.at(points, states.contact.weights[self.rows])
+        each = np.broadcast_to(points, (len(self.rows), *points.shape[1:]))
+        stresses = [
+            states.displacement.at(own[None], states.contact.weights)
+            for states, own in zip([self.solved[row] for row in self.rows], each)
+        ]
+        return np.concatenate(stresses, axis=1)
+
+
+def solution_of(
+    task: Task, solve: Callable[[NDArray, Any], Sequence[SolvedStates]], g: NDArray, load: Any = None
+) -> Solution:
+    """Solution for states of a speed; where contacts are similar under all loads, once for a friction.
+
+    Args:
+        task: the speed.
+        solve: solves for values of σ_XY/σ_YY, (n,), under the task's load, None, or others [N/m], (n,).
+        g: σ_XY/σ_YY, (states,).
+        load: load of each state [N/m], (states,); the task's if None.
+    """
+    body, rows, growth = task.body.loaded(load), np.arange(len(g)), np.ones(len(g))
+    if load is not None and body.alike:
+        g, rows = np.unique(g, return_inverse=True)
+        load, growth = None, task.body.growth(load)
+    return Solution(task, solve(g, load), rows, body, growth)

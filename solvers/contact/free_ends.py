@@ -427,7 +427,7 @@ def at_and_between(
 
 
 def _between(places: NDArray, x: NDArray) -> NDArray[np.float64]:
-    """Positions over a between neighbouring places from x = log(d/d'), see ``_COARSE``, (intervals, n)."""
+    """Positions over a between neighbouring places from x = log(d/d'), (intervals, n)."""
     X_left, width = places[:-1, None], np.diff(places)[:, None]
     return np.asarray(X_left + width / (1.0 + np.exp(-x)))
 

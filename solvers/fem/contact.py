@@ -421,7 +421,7 @@ class PunchLevel:
         margin = self.task.response.margin
         return self.plan.kind.moved_edges(self.plan.wanted, self.space.degree, margin)
 
-    def rounding(self, g: NDArray) -> list[float]:
+    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
 
         In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
@@ -430,7 +430,7 @@ class PunchLevel:
         those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
         they are not, and their rounding is as large.
         """
-        states = self.states(g)
+        states = self.states(g, load)
         own = states.contact.g, states.contact.weights, self._on_surface(states.pressure)
         if not self.mirrored:
             of_edges = self.factor.largest_residual

@@ -245,8 +245,8 @@ class Level(Protocol):
             load: load of each state [N/m], (states,); the task's if None.
         """
 
-    def rounding(self, g: NDArray) -> list[float]:
-        """Effect of rounding alone on each gauge, relative."""
+    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
+        """Effect of rounding alone on each gauge, relative; arguments as of :meth:`measured`."""
 
     def release(self) -> None:
         """Free factor and fields."""
@@ -459,7 +459,7 @@ class MeasuredError:
         self._ladder = ladder
         gauges = [level.measured(probes, loads) for level in ladder.levels]
         self._sample = _changes(gauges)
-        self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes)))
+        self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes, loads)))
         self._bounds = dict(self._rounding)
         if not ladder.levels[-1].mirrored:
             # Only what rounding might do is known there; what it does is in the last change, once.

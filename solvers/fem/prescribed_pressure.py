@@ -138,7 +138,7 @@ class LoadsLevel:
     def mirrored(self) -> bool:
         return True
 
-    def rounding(self, g: NDArray) -> list[float]:
+    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Zeros: the mirror image of a load is no load, so rounding is not measured."""
         return [0.0] * len(self.measured(g[:1]))
 
@@ -220,7 +220,7 @@ class WholeLevel(FieldsLevel):
         """False: the mirror image of the knots has another mesh."""
         return False
 
-    def rounding(self, g: NDArray) -> list[float]:
+    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding of the fields on each gauge of stresses, relative."""
         return self._gauges.rounding(g, self.weights(g), self.pressure(g).σ_YY(self.task.places.X))
 

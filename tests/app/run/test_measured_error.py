@@ -24,7 +24,7 @@ def level(value, left=0.0, rounding=0.0, mirrored=True):
         measured=lambda g, load=None: [
             Gauge("sif", np.full((len(g), 1), value), np.ones((len(g), 1)), left)
         ],
-        rounding=lambda g: [rounding],
+        rounding=lambda g, load: [rounding],
         release=lambda: None,
         destroy=lambda: None,
     )

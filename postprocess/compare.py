@@ -396,8 +396,10 @@ def _depth(data: dict[str, Any], load: Any) -> float | None:
     """Largest relative error of the stresses that depths d of yield stand for.
 
     At sharp edges they are a power of d. Elsewhere, with the load N₁ of first yield, the logarithm of the
-    stress over the strength falls from ln(N/N₁) at the place of the largest to 0 at d. Where N₁ is not
-    known, the square of the difference of d stands for it, as next to that place.
+    stress over the strength falls from ln(N/N₁) at the place of the largest to 0 at d. Where N₁ is 0, the
+    stress is a logarithm of the distance from a jump of the pressure, which any load makes yield: zones
+    there may be minute, and d itself over a counts. Where N₁ is not known, the square of the difference
+    of d stands for it, as next to the place of the largest.
     """
     exact, fem = (data[to.DEPTH[method].path] for method in (CLOSED_FORM, FEM))
     deep = np.maximum(np.maximum(fem, exact), _NO_REACH)
@@ -410,7 +412,9 @@ def _depth(data: dict[str, Any], load: Any) -> float | None:
         below = np.maximum(deep + top, _NO_REACH)  # the place of the largest stress, Y < 0
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.minimum(np.abs(fem - exact) / below, 1.0)
-            off = np.where(first > 0.0, np.maximum(np.log(load / first), 0.0) * share, off)
+            off = np.where(
+                first > 0.0, np.maximum(np.log(load / first), 0.0) * share, np.abs(fem - exact)
+            )
     else:
         off = off**2
     return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: no solid carries that

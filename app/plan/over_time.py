@@ -325,7 +325,7 @@ def _of_layers(scene: Scene) -> list[str]:
 
 
 #: Names of all rules of motions in time.
-IN_TIME = frozenset({BOTH, OF_FEM, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
+IN_TIME = frozenset({BOTH, OF_FEM, OF_SIE, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
 
 
 def rules(both: bool, steady: bool, surface: bool, sharp: bool) -> frozenset[str]:

@@ -177,7 +177,7 @@ def known(asked: Scene) -> Truth:
         exact: Any = formula.states(g)
         local, places = FlatPunch(task.response, g), task.places
         K_I = float(np.abs(found.K_I / exact.K_I - 1.0).max())
-        σ_YY = found.at.level.pressure(found.contact).σ_YY(_ACROSS) / local.σ_YY(_ACROSS)
+        σ_YY = found.solved[0].pressure.σ_YY(_ACROSS) / local.σ_YY(_ACROSS)
         stresses = []
         if plan.asks(ON_SURFACE):
             σ_XX = exact.surface.σ_XX

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from ..solids.solid import Response
 from .march import Radau
@@ -43,7 +42,9 @@ class Residual:
             a: coefficients of their σ_YY, less those before t = 0, (times, bases·terms).
             v0: indentation since t = 0, (times,).
         """
-        tests = Basis(self._response, bases[0].g, self._terms + _MORE).tests
+        # The mean of their frictions changes sign in the mirror image, as they do.
+        g = float(np.mean([basis.g for basis in bases]))
+        tests = Basis(self._response, g, self._terms + _MORE).tests
         rows = np.concatenate([self._transformed.sinking(basis, tests) for basis in bases], axis=2)
         v = self._scheme.answered(rows, self._interpolated(a, self._scheme.times))
         v[:, 0] += tests.integral * self._interpolated(v0, self._scheme.times[:, -1])
@@ -52,4 +53,6 @@ class Residual:
 
     def _interpolated(self, values: NDArray, t: NDArray) -> NDArray[np.float64]:
         """Values (times, ...), 0 at t = 0, at other times."""
+        from scipy.interpolate import CubicSpline  # a slow import
+
         return np.asarray(CubicSpline(self._t, np.concatenate([0.0 * values[:1], values]))(t))

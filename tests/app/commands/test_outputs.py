@@ -110,8 +110,10 @@ def limited():
 def ended(arguments, cwd, full=False):
     """A finished command, which was told once what is wrong if anything was; on a full disk a process."""
     if full:
+        # Python would keep compiled modules cut off at the limit, and read them the next time.
+        environment = clean_environment() | {"PYTHONDONTWRITEBYTECODE": "1"}
         done = subprocess.run(
-            [HOME / "run.sh", *arguments], cwd=cwd, env=clean_environment(), capture_output=True,
+            [HOME / "run.sh", *arguments], cwd=cwd, env=environment, capture_output=True,
             text=True, timeout=300, stdin=subprocess.DEVNULL, preexec_fn=limited,
         )  # fmt: skip
     else:

@@ -146,5 +146,8 @@ def test_a_depth_of_yield_is_judged_as_a_stress():
     # By one method it just does not yield: what is off is the stress above the strength, not the depth.
     below["closed_form/first_yield_load"] = 10.0 / 1.0001
     assert depths(0.5, 0.0, **below) == pytest.approx(1e-4, rel=1e-3)
+    # Beside a jump of the pressure any load makes yield, and zones are minute.
+    below["closed_form/first_yield_load"] = 0.0
+    assert depths(0.0, 2e-6, **below) == pytest.approx(2e-6) and depths(0.5, 0.4, **below) > 0.05
     assert depths(np.nan, np.nan) is None
     assert depths(1.0, 1.02) == pytest.approx((0.02 / 1.02) ** 2)

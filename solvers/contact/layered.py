@@ -25,7 +25,7 @@ from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .edges import Exponents, under_punch, weights_hilbert
 from .equation import COARSE, FINE, Contact, Contacts, ContactsAtSpeed, PrescribedPressure
-from .free_ends import turns_at_ends, turns_at_knots
+from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
 from .pressure import ENDS, SolvedPressure, in_plane
@@ -351,9 +351,19 @@ class LayeredSolution:
         """
         node, g, X = int(self._by_nodes[i].argmax()), float(self.g[i]), self._kinks(i)
         pressure, h = self.at.nodes.each[node].pressure, float(self.at.nodes.half_width[node])
-        σ_YY, H = pressure.σ_YY(X), pressure.hilbert(X)
-        σ_XX = in_plane(self.at.task.response, g, σ_YY, H, self.at.strain(pressure, g, h, X))
-        return Turns(X[None], np.array([σ_XX, σ_YY, g * σ_YY])[:, None])
+
+        def σ_XX(r: NDArray) -> NDArray[np.float64]:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                σ_YY, H = pressure.σ_YY(r), pressure.hilbert(r)
+                return in_plane(self.at.task.response, g, σ_YY, H, self.at.strain(pressure, g, h, r))[
+                    None
+                ]
+
+        σ_YY = pressure.σ_YY(X)
+        between = None
+        if len(X):
+            _, between = at_and_between(np.array([-1.0, *np.sort(X), 1.0]), 1, σ_XX)
+        return Turns(X[None], np.array([σ_XX(X)[0], σ_YY, g * σ_YY])[:, None], between)
 
     def _kinks(self, i: int) -> NDArray[np.float64]:
         """Positions of the punch's kinks over a in the contact of one state."""

@@ -462,6 +462,10 @@ class MeasuredError:
         self._rounding = dict(zip(self._sample, ladder.levels[-1].rounding(probes, loads)))
         self._bounds = dict(self._rounding)
         if not ladder.levels[-1].mirrored:
+            # Intensities at both ends differ by what the degree leaves, too; residuals of a solve do not.
+            of_solve = ladder.levels[-1].factor.largest_residual
+            if INTENSITIES in self._bounds:
+                self._bounds[INTENSITIES] = min(self._bounds[INTENSITIES], of_solve)
             # Only what rounding might do is known there; what it does is in the last change, once.
             for word, changes in self._sample.items():
                 shown = float(changes[-1].max()) / ROUNDING
@@ -548,7 +552,8 @@ class MeasuredError:
         """
         lasting, own = {}, self._own(gauges)
         for word in errors:
-            lasting[word] = ROUNDING * self._rounding[word] + unseen[word] + own[word]
+            rounding = min(self._rounding[word], self._bounds[word])
+            lasting[word] = ROUNDING * rounding + unseen[word] + own[word]
             # At a fixed degree there is a single change, and nothing to be mended.
             *earlier, change = (float(changes.max()) for changes in self._sample[word])
             if earlier and _LASTS * earlier[-1] <= change <= ROUNDING * self._bounds[word]:

@@ -45,6 +45,7 @@ from ..contact.free_ends import (
     SHAPES,
     EndConditions,
     KinkedPressure,
+    at_and_between,
     free_ends,
     gaps_of,
     slopes_towards_ends,
@@ -248,9 +249,22 @@ class EndsBetweenKinks(Ends):
             X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
             σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
             u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
-            σ_XY = float(states.contact.g[0]) * σ_YY
-            under = np.array([states.task.response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
-            return turns_at_ends(surface, states.local).joined(Turns(X[None], under[:, None]))
+            g, response = float(states.contact.g[0]), states.task.response
+            under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+
+            def in_plane(r: NDArray) -> NDArray[np.float64]:
+                σ = pressure.σ_YY(r)
+                return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
+
+            between = None
+            if len(X):
+                places = np.array([-1.0, *X, 1.0])
+                _, between = at_and_between(places, 1, in_plane)
+                # Nearer to ends and kinks the limits there stand for the stress.
+                away = np.abs(between.X[..., None] - places).min(axis=-1) >= self.nearest(pressure)
+                between = replace(between, σ_XX=np.where(away, between.σ_XX, np.nan))
+            ends = turns_at_ends(surface, states.local)
+            return ends.joined(Turns(X[None], under[:, None], between))
 
         return at
 

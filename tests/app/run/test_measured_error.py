@@ -19,7 +19,7 @@ def level(value, left=0.0, rounding=0.0, mirrored=True):
     """One number that is relative to 1, and what a level knows of itself."""
     return SimpleNamespace(
         space=SimpleNamespace(cells=1, size=1, degree=FIRST),
-        factor=SimpleNamespace(solves=1, iterations=0, largest_residual=0.0, condition=0.0),
+        factor=SimpleNamespace(solves=1, iterations=0, largest_residual=rounding, condition=0.0),
         mirrored=mirrored,
         measured=lambda g, load=None: [
             Gauge("sif", np.full((len(g), 1), value), np.ones((len(g), 1)), left)
@@ -146,6 +146,20 @@ def test_a_ladder_ends_where_only_what_every_level_shows_is_left():
         assert error.excessive and ladder.work is work and not finer.solved
         assert 1e-5 <= error.worst <= 3e-5
     assert max(work.solved) <= FIRST + 1 and work.said
+
+
+def test_what_falls_with_the_degree_in_a_solid_without_mirror_is_no_rounding():
+    """Intensities at both ends differ there by what the degree leaves, as much as by rounding."""
+
+    def solved(space, g):
+        value = 10.0 ** (2.0 - 0.5 * space[1])
+        made = level(value, rounding=value, mirrored=False)
+        made.factor.largest_residual = 1e-14
+        return made
+
+    ladder = Ladder(Work(1e-3, None), TASK, solved)
+    error = climb(ladder, G)
+    assert ladder.degree > FIRST + 2 and (not error.excessive or error.of_cells)
 
 
 @pytest.mark.parametrize("mirrored", [True, False])

@@ -163,7 +163,7 @@ for _ in range(int(sys.argv[1])):
 """
 
 
-def test_a_flipped_bit_changes_no_number(cache):
+def test_a_flipped_bit_changes_no_number(cache, compiles):
     done = subprocess.run(
         [sys.executable, "-c", FLIPPER, str(COMPILED)],
         capture_output=True, text=True, timeout=60 + 30 * COMPILED,
@@ -199,7 +199,7 @@ def test_no_compiler(cache, compiles):
 
 
 @pytest.mark.parametrize("ranks", [[], ["-n", "2"]])
-def test_a_cache_that_cannot_be_written(cache, ranks):
+def test_a_cache_that_cannot_be_written(cache, compiles, ranks):
     (cache / "galinx").write_text("a file where the folder should be", encoding="utf-8")
     done = command(*ranks, "run", SCENE, "-o", cache / "out.h5")
     assert done.returncode == 3 and "cannot be written" in done.stderr and "XDG_CACHE_HOME" in done.stderr

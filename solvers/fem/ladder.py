@@ -554,9 +554,10 @@ class MeasuredError:
         for word in errors:
             rounding = min(self._rounding[word], self._bounds[word])
             lasting[word] = ROUNDING * rounding + unseen[word] + own[word]
-            # At a fixed degree there is a single change, and nothing to be mended.
+            # One change as large as the last may be luck: that of two degrees before counts, too.
             *earlier, change = (float(changes.max()) for changes in self._sample[word])
-            if earlier and _LASTS * earlier[-1] <= change <= ROUNDING * self._bounds[word]:
+            earlier.append(self._ladder.changes.get(self._ladder.degree - _DECAY, {}).get(word, np.inf))
+            if _LASTS * max(earlier) <= change <= ROUNDING * self._bounds[word]:
                 lasting[word] = np.maximum(lasting[word], errors[word])
         return lasting
 

@@ -253,6 +253,7 @@ class EndsBetweenKinks(Ends):
             under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
 
             def in_plane(r: NDArray) -> NDArray[np.float64]:
+                r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
                 σ = pressure.σ_YY(r)
                 return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
 

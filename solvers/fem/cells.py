@@ -149,7 +149,8 @@ class Contracted:
 
     def axes(self, x: NDArray) -> NDArray[np.float64]:
         """Matrices Rᵀ·M from the chart's axes to X and Y, but for the stretch, at x (n, 2): (n, 2, 2)."""
-        cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T))
+        with np.errstate(invalid="ignore"):  # at an end itself there is none
+            cos, sin = (value * np.ones(len(x)) for value in self.chart.rotation(x.T))
         M = np.array([[1.0, self.p.real], [0.0, self.p.imag]])
         return np.array([[cos, sin], [-sin, cos]]).transpose(2, 0, 1) @ M
 

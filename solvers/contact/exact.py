@@ -17,7 +17,7 @@ from .edges import Exponents
 from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
 from .residual import of_contact, of_field
-from .solution import Between, Surface, Task, Turns
+from .solution import Between, Surface, Task, Turns, all_between
 from .uniform import Contacts, Group, contacts, prescribed, sharp
 from .yielding import Strength
 
@@ -170,7 +170,7 @@ class ExactSolution:
 
     def _between_kinks(self) -> Between | None:
         """Stresses between ends and kinks of contacts that have kinks; None where none has."""
-        each: list[tuple[NDArray[np.int64], Between]] = []
+        each: list[Between | None] = [None] * len(self.g)
         for group in self.contacts.groups:
             kinks = () if group.pressure.tips else group.pressure.kinks
             if len(kinks):
@@ -178,15 +178,9 @@ class ExactSolution:
                     np.array([-1.0, *sorted(kinks), 1.0]), len(group.rows),
                     lambda r: self.contacts.surface_of(group, r)[0],  # noqa: B023
                 )  # fmt: skip
-                each.append((group.rows, between))
-        if not each:
-            return None
-        most, x = max(between.X.shape[1] for _, between in each), each[0][1].x
-        X, σ_XX = np.full((2, len(self.g), most, len(x)), np.nan)
-        for rows, between in each:
-            intervals = slice(between.X.shape[1])
-            X[rows, intervals], σ_XX[rows, intervals] = between.X, between.σ_XX
-        return Between(X, x, σ_XX)
+                for row, X, σ_XX in zip(group.rows.tolist(), between.X, between.σ_XX):
+                    each[row] = Between(X[None], between.x, σ_XX[None])
+        return all_between(each)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:

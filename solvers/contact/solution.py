@@ -279,26 +279,31 @@ def together(each: list[Turns]) -> Turns | None:
     """
     if not each:
         return None
-    given = [turns.between for turns in each if turns.between]
-    between = None
-    if given:
-        empty = np.empty((1, 0, len(given[0].x)))
-        none = Between(empty, given[0].x, empty)
-        betweens = [turns.between or none for turns in each]
-        X, σ_XX = (
-            _padded([getattr(of_state, name) for of_state in betweens], 1) for name in ("X", "σ_XX")
-        )
-        between = Between(X, none.x, σ_XX)
-    σ = np.array([_padded([turns.σ[i] for turns in each], 1) for i in range(3)])
-    return Turns(_padded([turns.X for turns in each], 1), σ, between)
+    σ = np.array([_padded([turns.σ[i] for turns in each]) for i in range(3)])
+    return Turns(_padded([turns.X for turns in each]), σ, all_between([turns.between for turns in each]))
 
 
-def _padded(each: list[NDArray], axis: int) -> NDArray[np.float64]:
-    """Arrays one after the other, padded with NaN along an axis of which their sizes differ."""
-    most = max(values.shape[axis] for values in each)
+def all_between(each: list[Between | None]) -> Between | None:
+    """Stresses between kinks of all states from those of each, padded with NaN; None where none has any.
+
+    Args:
+        each: stresses of a single state, None where it has none.
+    """
+    x = next((between.x for between in each if between), None)
+    if x is None:
+        return None
+    none = Between(np.empty((1, 0, len(x))), x, np.empty((1, 0, len(x))))
+    betweens = [between or none for between in each]
+    X, σ_XX = (_padded([getattr(between, name) for between in betweens]) for name in ("X", "σ_XX"))
+    return Between(X, x, σ_XX)
+
+
+def _padded(each: list[NDArray]) -> NDArray[np.float64]:
+    """Arrays (1, k, ...) of states one after the other, padded with NaN to the largest k."""
+    most = max(values.shape[1] for values in each)
 
     def whole(values: NDArray) -> NDArray[np.float64]:
-        widths = [(0, (most - values.shape[axis]) * (i == axis)) for i in range(values.ndim)]
+        widths = [(0, (most - values.shape[1]) * (axis == 1)) for axis in range(values.ndim)]
         return np.pad(np.asarray(values, dtype=float), widths, constant_values=np.nan)
 
     return np.concatenate([whole(values) for values in each])

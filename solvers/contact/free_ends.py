@@ -306,12 +306,12 @@ def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 
 
     Args:
         gap: distance of the next kink or end, over a.
-        exponent: power of the distance d from the kink, in (0, 1) at a cusp; 1 for d log d.
+        exponent: power of the distance d from the kink, below 1 at a cusp; a whole number n for dⁿ log d.
         farthest: usual distance of the farthest sample over the gap, from :func:`farthest_at_kink`.
         farther: distance of the farthest sample over the usual distance.
     """
     span = _NEAREST_AT_KINK * farthest, farther * farthest
-    return Series(*_two_series(gap, span, exponent, logs=exponent == 1.0))
+    return Series(*_two_series(gap, span, exponent, logs=exponent % 1.0 == 0.0))
 
 
 def farthest_at_kink(tolerance: float) -> float:
@@ -607,8 +607,8 @@ class KinkedPressure:
         forces: consistent nodal forces over N/2, (F p + 1,).
         kinks: rising positions of the kinks over a, (k,).
         exponents: exponents of the pressure at the left and the right end, positive.
-        exponent: power of the distance d with which the pressure departs from its value at a kink; 1 for
-            d log d; 0 where the pressure is smooth enough for the cells, or infinite.
+        exponent: power of the distance d with which the pressure departs from its value at a kink, see
+            :func:`towards_kink`; 0 where it is infinite there.
         tolerance: relative error allowed for the limit at a kink.
         infinite: the pressure is infinite at its kinks.
     """

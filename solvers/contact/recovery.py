@@ -426,6 +426,7 @@ class Stretch:
         """Functions of the ends, then ``count`` polynomials of ζ, at r, (len(r), functions)."""
         if not self.graded:
             return chebyshev(self(r), count)
+        r = np.clip(r, -1.0, 1.0)  # a contact node at an edge may be a rounding beyond it
         with np.errstate(divide="ignore"):
             x = np.log1p(r) - np.log1p(-r)
         return _rule(-0.5, -0.5, self).values(_orthonormal(self, count), x)

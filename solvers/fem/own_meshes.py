@@ -127,8 +127,9 @@ class EndsLevel(PunchLevel):
         return [Gauge(INTENSITIES, values, np.ones_like(values))]
 
 
-#: Most kinks in a contact, and their largest distance from its middle over the half-width.
-_MOST, _NEXT_TO_END = 12, 0.98
+#: Most kinks in a contact; over its half-width, their largest distance from its middle, and their least
+#: distance from each other: cells between kinks that are nearer have no shape.
+_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.98, 3e-3
 
 #: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
 #: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
@@ -161,11 +162,13 @@ class EndsBetweenKinks(Ends):
         at = (np.array(kinks(body.profile), dtype=float) - self._centre) / self._half_width
         #: Positions of the kinks over the half-width; of those at which stresses are infinite; of others.
         self._places = at[np.abs(at) < 1.0]
-        if len(self._places) > _MOST or np.abs(self._places).max(initial=0.0) > _NEXT_TO_END:
+        apart, farthest = np.diff(self._places), np.abs(self._places).max(initial=0.0)
+        if len(self._places) > _MOST or farthest > _NEXT_TO_END or apart.min(initial=1.0) < _NEXT_TO_KINK:
             raise SolveError(
                 f"the punch has {len(self._places)} kinks under the contact, at "
                 f"{self._places.round(4).tolist()} (over the half-width); finite elements want at most "
-                f'{_MOST}, none within {1.0 - _NEXT_TO_END:.2g} of an end; take methods = ["closed_form"]'
+                f"{_MOST}, none within {1.0 - _NEXT_TO_END:.2g} of an end or {_NEXT_TO_KINK:g} of "
+                'another; take methods = ["closed_form"]'
             )
         tip = bool(jumps(body.profile))
         self._tips: NDArray[np.float64] = self._places if tip else np.empty(0)

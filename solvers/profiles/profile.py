@@ -83,11 +83,12 @@ def cusp(profile: Any) -> float:
 def leaving(profile: Any) -> float:
     """Exponent of the distance d from a kink with which the pressure leaves its value there.
 
-    1 stands for d log d, where the slope's derivative jumps; 0 is for kinks at which the pressure is
-    infinite, and for powers |X|^k, k > 2, which leave a smooth one.
+    It is k - 1 for a height |X|^k. A whole number n stands for dⁿ log d: 1 where the slope's derivative
+    jumps. 0 is for no kink, and for kinks at which the pressure is infinite.
     """
-    logarithm = len(kinks(profile)) and exponent(profile) is None and not jumps(profile)
-    return 1.0 if logarithm else cusp(profile)
+    if smooth(profile) or jumps(profile):
+        return 0.0
+    return (exponent(profile) or 2.0) - 1.0
 
 
 def check_reach(profile: Any, left: float, right: float, found: str = "the contact would reach") -> None:

@@ -1,5 +1,6 @@
 """Contacts whose ends are found, end to end: finite elements against the integral equation, archives."""
 
+import itertools
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -14,7 +15,9 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
+from galinx.meshes.kind import Refinement, check_cells, with_kinks
 from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 
 PARABOLA = {"punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm"}
 WEDGE = {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005}
@@ -214,6 +217,23 @@ def test_kinks_in_any_solid_have_honest_estimates(seed, tolerance):
     # What the estimate does not promise the verdict does not either.
     assert in_plane <= 10.0 * tolerance or result.verdict == "FAIL"
     assert figure(result, "σ_YY of contacts") <= 10.0 * tolerance or result.verdict == "FAIL"
+
+
+def test_kinks_with_no_room_for_cells_between_them_are_refused():
+    """Least distance between kinks: just above it cells have a shape, below it no mesh is drawn."""
+    for sectors, rings, more in itertools.product((1, 2, 4, 8), (3, 8, 12), (0, 4)):
+        for at in (-0.97, 0.0, 0.5):
+            places = np.array([at, at + 3e-3])
+            check_cells(with_kinks(Refinement(rings, 0.35, sectors, (1.0,)), places, more))
+    flat = 1e-6
+    body = parse(
+        "[solid]\nE = 2e11\nnu = 0.3\nrho = 7800\n[punch]\nload = 1e5\nprofile = 'rounded_flat'\n"
+        f"flat_half_width = {flat}\nradius = 0.02\n[friction]\nmodel = 'coulomb'\nmu_c = 0.1\n"
+        "[motion]\nc = 0\nstrokes = ['forward']\nX_over_L = [0.5]\n"
+    ).body
+    EndsBetweenKinks(body, (0.0, flat * 2.0 / 3.1e-3), 1e-6)
+    with pytest.raises(SolveError, match=r"or 0\.003 of another"):
+        EndsBetweenKinks(body, (0.0, flat * 2.0 / 2.9e-3), 1e-6)
 
 
 @dataclass(frozen=True)

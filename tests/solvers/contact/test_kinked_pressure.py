@@ -57,3 +57,23 @@ def test_the_error_of_innermost_cells_is_in_that_of_limits_at_kinks(kink, rings,
     cell = pressure.cells_beside(pressure.kinks)[0]
     # Not more than a tenth of what the pressure changes by over such a cell.
     assert 1e-8 < error <= pressure.left_at_kinks <= 0.1 * cell * np.abs(np.log(cell))
+
+
+@pytest.mark.parametrize("power", [2.0, 2.05, 2.5])
+@pytest.mark.parametrize("rings", [9, 12])
+def test_at_the_kink_of_a_smoother_punch_rounding_of_small_cells_does_not_show(power, rings):
+    """|X|^k, k > 2: the pressure leaves its value there with d^(k - 1), with d² log d for k = 3."""
+    rng, kink, degree = np.random.default_rng(1), 0.1, 9
+
+    def σ_YY(r):
+        d = np.maximum(np.abs(r - kink), 1e-300)
+        return -np.sqrt(1.0 - r**2) * (1.0 + d**power * (np.log(d) if power == 2.0 else 1.0))
+
+    s, forces = nodes_and_forces(facets(kink, rings), degree, σ_YY)
+    forces = forces + 1e-14 * rng.uniform(-1.0, 1.0, len(forces))
+    pressure = KinkedPressure(s, degree, AS_DRAWN, forces, np.array([kink]), (0.5, 0.5), power, 1e-9)
+    exact = -np.sqrt(1.0 - kink**2)
+    cells = KinkedPressure(s, degree, AS_DRAWN, forces, np.array([kink]), (0.5, 0.5), 0.0, 1e-9)
+    errors = [abs(each.at_kink(0) - exact) for each in (cells, pressure)]
+    assert errors[1] <= min(1e-9, 0.2 * errors[0]) and pressure.left_at_kinks <= 1e-8
+    np.testing.assert_allclose(pressure.σ_YY(np.array([kink])), exact, rtol=1e-9)

@@ -97,3 +97,12 @@ def test_moved_edges_are_those_of_a_contact_that_ends_elsewhere(graded, polynomi
     moved = whole.moved_edges(r, length)[0]
     assert moved == pytest.approx(right + right[::-1], rel=1e-2, abs=1e-3 * moved.max())
     assert moved[0] > 0.3 * polynomials**2 * length / np.pi
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_a_node_that_rounding_moves_beyond_an_edge_counts_as_at_the_edge(graded):
+    """Logarithms of the distance from the edge were no numbers there, nor was any intensity."""
+    functions = Stretch(4.0, graded).functions
+    beyond = np.nextafter(ENDS, 2.0 * ENDS)
+    np.testing.assert_array_equal(functions(beyond, 20), functions(ENDS, 20))
+    assert np.isfinite(functions(ENDS, 20)).all()

@@ -588,8 +588,8 @@ def _vertex(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArray
 
 
 #: Most tops of a pressure that are refined; places evaluated at a time; distance between them over a at
-#: which refinement ends.
-_KINKED_TOPS, _PLACES_AT_A_TIME, _STEP = 4, 41, 2e-5
+#: which refinement ends; and distance within which two places are one.
+_KINKED_TOPS, _PLACES_AT_A_TIME, _STEP, _SAME = 4, 41, 2e-5, 1e-14
 
 
 def gaps_of(kinks: NDArray) -> tuple[float, float]:
@@ -676,7 +676,8 @@ class KinkedPressure:
             return np.full(1, np.nan), np.full(1, np.nan)
         nodes = self._start[:, None] + self._length[:, None] * self._nodes
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
-        r = r[under_punch(r)]
+        # Facets have their common node a rounding apart: with both places no top would reach past it.
+        r = r[under_punch(r) & (np.diff(r, prepend=-2.0) > _SAME)]
         p = -self.σ_YY(r)[0]
         tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
         tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]

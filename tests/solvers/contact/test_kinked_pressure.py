@@ -77,3 +77,22 @@ def test_at_the_kink_of_a_smoother_punch_rounding_of_small_cells_does_not_show(p
     errors = [abs(each.at_kink(0) - exact) for each in (cells, pressure)]
     assert errors[1] <= min(1e-9, 0.2 * errors[0]) and pressure.left_at_kinks <= 1e-8
     np.testing.assert_allclose(pressure.σ_YY(np.array([kink])), exact, rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_largest_pressure_may_be_on_either_side_of_a_node_of_two_facets(seed):
+    """Both facets have their own place of the node, a rounding apart, and their own value there."""
+    rng = np.random.default_rng(seed)
+    top = 0.25 + rng.uniform(-5e-3, 5e-3)
+    lean = 2.0 * top / (1.0 - 3.0 * top**2)
+
+    def position(s):
+        ends = np.reshape(s, (-1, 9)) if np.size(s) % 9 == 0 else np.reshape(s, (-1, 1))
+        return (ends - 1e-15 * (np.arange(ends.shape[1]) == 8)).reshape(np.shape(s))
+
+    chart = SimpleNamespace(**vars(AS_DRAWN) | {"surface_position": position})
+    s, forces = nodes_and_forces(np.linspace(-1.0, 1.0, 9), 8, lambda r: (r**2 - 1.0) * (1.0 + lean * r))
+    forces *= 1.0 + 1e-6 * rng.uniform(-1.0, 1.0, len(forces))
+    pressure = KinkedPressure(s, 8, chart, forces, np.empty(0), (1.0, 1.0))
+    p = -pressure.σ_YY(np.linspace(-0.99, 0.99, 200001))
+    assert pressure.largest[0] >= p.max() - 1e-8

@@ -44,7 +44,8 @@ class SurfaceTrace:
         Between two facets they jump; there the right facet's values are taken.
         """
         by_node, u, length = self._around(s)
-        return np.einsum("ni,ni...->n...", by_node, u) / length[:, None, None]
+        # The motion of a facet has no derivative, but its rounding over a small length would be one.
+        return np.einsum("ni,ni...->n...", by_node, u - u[:, :1]) / length[:, None, None]
 
     def rounding(self, s: ArrayLike) -> NDArray[np.float64]:
         """Error by rounding of du/ds and dv/ds of every field at ``s``: (n, 2, fields)."""

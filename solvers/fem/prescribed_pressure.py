@@ -193,7 +193,10 @@ class FormulaLevel(FieldsLevel):
 
 
 class WholeLevel(FieldsLevel):
-    """Pressure of the user's own as a whole, on cells that end at its knots or are cut there."""
+    """Pressure of the user's own as a whole, on cells that end at its knots or are cut there.
+
+    The corrections of the two fields are two fields more, a load without a resultant.
+    """
 
     def _load(self) -> None:
         pressure = self.prescribed
@@ -201,6 +204,10 @@ class WholeLevel(FieldsLevel):
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
             pressure.knots[1:-1],
         )
+        self.loaded.correct()
+
+    def weights(self, g: NDArray) -> NDArray[np.float64]:
+        return np.tile(np.column_stack([np.ones_like(g), g]), 2)
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, continuation=self._continued)

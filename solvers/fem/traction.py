@@ -80,6 +80,11 @@ class LoadedHalfPlane:
         residuals[self.space.far_dofs - self._first] = 0.0
         return [vector(self.factor.A, column) for column in self.factor.solve(residuals).T]
 
+    def correct(self) -> None:
+        """Add the corrections of all fields as fields of loads without a resultant. Collective."""
+        self.fields += self.corrections()
+        self.resultants += [0.0] * len(self.resultants)
+
     def _forces_of_deformation(self) -> NDArray[np.float64]:
         """Nodal forces of the condensed fields, (rows, fields).
 

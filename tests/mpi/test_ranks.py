@@ -56,6 +56,20 @@ def test_shared_tractions_give_what_one_rank_gives():
     np.testing.assert_allclose(slopes[1], slopes[0], rtol=1e-8, atol=1e-10)
 
 
+def test_next_to_an_edge_corrected_loads_have_the_digits_that_the_motion_of_all_takes():
+    """At 1e-6 a from the end of a load the last digit of a displacement is 1e-9 of the stress."""
+    refinement, slopes = MESHES["graded"].refinement(Requirements(1e-3, 1e-7, 1e5)), []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        solver = LoadedHalfPlane(space_on("graded", refinement, 5, comm), MovingFrame(2.0, 0.6))
+        solver.load(lambda left, right: -1.0 + 0.0 * left)
+        solver.correct()
+        assert solver.resultants == pytest.approx([-2.0, 0.0], rel=1e-12)
+        at = fields.SurfaceSlopes(solver.space, solver.fields, np.array([-1.0 - 1e-6, 1.0 - 1e-6]))
+        slopes.append(np.stack(at.of(np.tile([1.0, -0.5], (1, 2)))))
+        solver.destroy()
+    np.testing.assert_allclose(slopes[1], slopes[0], rtol=2.5e-10)
+
+
 @pytest.mark.parametrize("form", ["isotropic", "nearly incompressible"])
 def test_shared_pieces_give_what_one_rank_gives(form):
     pieces = Pieces(np.array([-1.0, 0.2, 0.201, 1.0]), np.array([-1.0, -2.0, -7.0, 0.0]))

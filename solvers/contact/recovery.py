@@ -396,6 +396,8 @@ _POWERS = 3
 #: Distance over h beyond which functions of an end are nearly constant; for a larger one functions become
 #: nearly dependent.
 _SHARE = 0.25
+#: Fewest polynomials beside functions of the ends.
+_FEWEST = 6
 #: Number of functions of both ends.
 _OF_ENDS = _POWERS * (_POWERS + 1)
 #: Times that functions are made orthonormal: rounding spoils the first result.
@@ -450,20 +452,39 @@ class Stretch:
         return self.functions(r, self.polynomials(count))
 
     def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-        """Coefficients of the smooth factor, (states, functions); see :class:`Polynomials`."""
-        c, f = np.empty_like(moments), _at_points(self, moments.shape[1])
+        """Coefficients of the smooth factor, (states, functions); see :class:`Polynomials`.
+
+        On graded solids further functions are nearly dependent on those before them, and what moments
+        leave grows. So many of the first functions are taken that the last of these add least; the
+        coefficients of the others are 0.
+        """
+        c, f = np.zeros_like(moments), _at_points(self, moments.shape[1])
         for i, row in enumerate(moments):
             weights = _rule(float(α[i]), float(β[i]), self).weights
-            c[i] = np.linalg.solve((f * weights[:, None]).T @ f, row)
+            products, least = (f * weights[:, None]).T @ f, np.inf
+            for count in self._counts(len(row)):
+                first = np.linalg.solve(products[:count, :count], row[:count])
+                unresolved = self._unresolved(first)
+                if unresolved < least:
+                    c[i], least = np.pad(first, (0, len(row) - count)), unresolved
         return c
+
+    def _counts(self, functions: int) -> list[int]:
+        """Numbers of the first functions of which one is taken."""
+        if not self.graded:
+            return [functions]
+        return list(range(min(_OF_ENDS + _FEWEST, functions), functions + 1))
 
     def unresolved(self, c: NDArray) -> NDArray[np.float64]:
         """Share of the last functions in the larger smooth factor at both ends, (states,)."""
-        last, f = _LAST_GRADED if self.graded else _LAST, self.values(np.array([-1.0, 1.0]), c.shape[1])
-        added = np.abs(c[:, None, -last:] * f[:, -last:]).sum(axis=2)
-        share = added.max(axis=1) / np.abs(c @ f.T).max(axis=1)
+        return np.array([self._unresolved(np.trim_zeros(row, "b")) for row in c])
+
+    def _unresolved(self, c: NDArray) -> float:
+        """Share of the last functions of a state's; see :meth:`unresolved`."""
+        last, f = _LAST_GRADED if self.graded else _LAST, self.values(np.array([-1.0, 1.0]), len(c))
+        share = np.abs(c[-last:] * f[:, -last:]).sum(axis=1).max() / np.abs(f @ c).max()
         tail = _TAIL_STIFFENING if self.stiffens else _TAIL
-        return np.asarray((tail if self.graded else 1.0) * share)
+        return float((tail if self.graded else 1.0) * share)
 
     def moved_edges(self, pressure: RecoveredPressure, r: NDArray, length: float) -> NDArray[np.float64]:
         """Change of the smooth factor where both edges are misplaced by a length, (states, points).
@@ -472,10 +493,11 @@ class Stretch:
         length of the misplacement; the more functions there are, the more of this change appears as
         pressure at the ends.
         """
-        count = pressure.c.shape[1]
-        f, at_r = _at_points(self, count), self.values(r, count)
         change = np.empty((len(pressure.c), len(r)))
         for i, c in enumerate(pressure.c):
+            c = np.trim_zeros(c, "b")
+            count = len(c)
+            f, at_r = _at_points(self, count), self.values(r, count)
             weights = _rule(float(pressure.α[i]), float(pressure.β[i]), self).weights
             moments = _moved(self, count, length) @ (weights * (f @ c))
             to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)

@@ -197,9 +197,9 @@ def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
     known = ExactSolution
     asked = []
 
-    def given(task, g):
+    def given(task, g, load):
         asked.append(task.body.load)
-        return known(task, g)
+        return known(task, g, load)
 
     monkeypatch.setitem(PROFILES, "crowned", _Crowned)
     changes = ALL | CLOSED | {"output.quantities": ["sif", "surface"], "output.points": None}

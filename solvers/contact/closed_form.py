@@ -207,10 +207,3 @@ class Weighted(Pressure):
         for coefficient in reversed(self._powers):
             value, divided = (value + coefficient) * y, (value + coefficient) + divided * other
         return -step * y * other * divided
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """Intensity at the left and the right end as in Eqs 56-57, 0 at one that is free: (..., 2)."""
-        K_left = np.where(self.β < 0.0, 0.5 * (self.B - self.A) * 2.0 ** (self.α + self.β + 1.0), 0.0)
-        K_right = np.where(self.α < 0.0, -0.5 * (self.A + self.B) * 2.0 ** (self.α + self.β + 1.0), 0.0)
-        return np.stack(np.broadcast_arrays(K_left, K_right), axis=-1)

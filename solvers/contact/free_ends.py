@@ -40,6 +40,7 @@ from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
 from .prescribed_pressure import LinearPressure
+from .pressure import Pressure
 from .recovery import (
     density_of_forces,
     facets_of,
@@ -597,7 +598,7 @@ def gaps_of(kinks: NDArray) -> tuple[float, float]:
     return 1.0 + float(kinks.min(initial=1.0)), 1.0 - float(kinks.max(initial=-1.0))
 
 
-class KinkedPressure:
+class KinkedPressure(Pressure):
     """Pressure σ_YY over N/(2a) of one state, with free ends and kinks.
 
     Args:
@@ -613,8 +614,10 @@ class KinkedPressure:
         infinite: the pressure is infinite at its kinks.
     """
 
+    kinks: NDArray[np.float64]
+
     #: Both ends are free.
-    K_I = np.zeros((1, 2))
+    K_I = np.zeros((1, 2))  # type: ignore[assignment]
 
     def __init__(
         self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
@@ -623,7 +626,8 @@ class KinkedPressure:
     ) -> None:  # fmt: skip
         self._infinite = infinite
         facets = facets_of(s, degree)
-        self._chart, self.kinks, self._exponents, self._exponent = chart, kinks, exponents, exponent
+        self._chart, self.kinks, self._exponent = chart, kinks, exponent
+        self.β, self.α = exponents
         self._farthest = farthest_at_kink(tolerance)
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
@@ -635,7 +639,7 @@ class KinkedPressure:
         ]
 
     @property
-    def breaks(self) -> NDArray[np.float64]:
+    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
         """Positions over a between which pressure times the chart's stretch is a polynomial, (n,)."""
         return np.asarray(self._chart.surface_position(self._start[1:]))
 
@@ -650,11 +654,10 @@ class KinkedPressure:
         i = np.abs(edges[:, None] - places).argmin(axis=0)
         return lengths[[i, i + 1]]
 
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at positions over a, (1, n); NaN beside the contact."""
+    def series(self, r: NDArray) -> NDArray[np.float64]:
         σ, inside = np.full(len(r), np.nan), under_punch(r)
         σ[inside] = self._piecewise(r[inside])
-        ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, self._exponents)
+        ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, (self.β, self.α))
         for d, samples, values, exponent in ends:
             near = (d > 0.0) & (d < samples[0])
             σ[near] = towards_end(d[near], samples, values, exponent)
@@ -664,9 +667,8 @@ class KinkedPressure:
                 near = (d >= 0.0) & (d < series.samples.min())
                 if near.any():
                     σ[near] = series.through(self._piecewise(at + side * series.samples))(d[near])
-        return σ[None]
+        return (σ / ((1.0 - r) ** self.α * (1.0 + r) ** self.β))[None]
 
-    @property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each.
 

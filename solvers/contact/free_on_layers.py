@@ -51,9 +51,9 @@ from .equation import (
     not_converged,
     resolutions,
 )
-from .panelled import PanelledPressure, Panels
+from .panelled import Panels
 from .panels import FreeEnds
-from .pressure import SolvedPressure
+from .pressure import Expansion, Pressure
 from .uniform import contacts, off_tips, panels_of
 from .uniform import local_exponents as of_the_surface
 
@@ -108,8 +108,8 @@ def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
 
 def vanishing(
     equation: Equation, resolution: Resolution, resultant: float = -2.0
-) -> tuple[SolvedPressure, float]:
-    """SolvedPressure of a contact between two free ends, at which it vanishes.
+) -> tuple[Pressure, float]:
+    """Pressure of a contact between two free ends, at which it vanishes.
 
     An intensity left by the resolution is removed by a little of a flat punch and of the slope 1.
 
@@ -140,8 +140,8 @@ _TOGETHER = 200
 
 
 @dataclass(frozen=True)
-class Kinked(SolvedPressure):
-    """SolvedPressure between free ends under a slope with kinks.
+class Kinked(Pressure):
+    """Pressure between free ends under a slope with kinks.
 
     Attributes:
         alone: σ₀, the pressure on the surface's solid alone.
@@ -153,7 +153,7 @@ class Kinked(SolvedPressure):
     """
 
     alone: FreeEnds
-    more: SolvedPressure
+    more: Pressure
     places: tuple[float, ...]
     finest: float
     rough: bool
@@ -175,7 +175,7 @@ class Kinked(SolvedPressure):
         return float(self.more.β)
 
     @cached_property
-    def _alone(self) -> PanelledPressure:
+    def _alone(self) -> Expansion:
         return on_panels(self.alone, self.finest, self.places)
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
@@ -193,8 +193,11 @@ class Kinked(SolvedPressure):
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         fine = on_panels(self.alone, min(finest, self.finest), self.places)
-        t, σ = self.more.points(finest)
-        return np.append(t, fine.panels.t), np.append(σ, fine.panels.weights * fine.p)
+        (t, σ), (t_alone, σ_alone) = self.more.points(finest), fine.points(np.inf)
+        return np.append(t, t_alone), np.append(σ, σ_alone)
+
+    def continued(self, free: tuple[bool, bool]) -> "Kinked":
+        return replace(self, more=self.more.continued(free))
 
 
 def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
@@ -202,19 +205,19 @@ def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
     return (1.0 - r) * (1.0 + r) * alone.series(r)
 
 
-def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> PanelledPressure:
+def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> Expansion:
     """σ₀ by its values on panels that get shorter towards its kinks."""
     panels = Panels(alone.α - 1.0, alone.β - 1.0, finest, places)
-    return PanelledPressure(panels, without_weight(alone, panels.t))
+    return panels.pressure(without_weight(alone, panels.t))
 
 
 def integral(
-    pressure: PanelledPressure, kernel: Callable[[NDArray], NDArray], r: NDArray, rough: bool
+    pressure: Expansion, kernel: Callable[[NDArray], NDArray], r: NDArray, rough: bool
 ) -> NDArray[np.float64]:
     """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
     if rough:
         return pressure.integral(kernel, r)
-    t, σ = pressure.panels.t, pressure.panels.weights * pressure.p
+    t, σ = pressure.points(np.inf)
     batches = [r[first : first + _TOGETHER] for first in range(0, len(r), _TOGETHER)]
     return np.concatenate([np.einsum("rtf,t->rf", kernel(part[:, None] - t), σ) for part in batches])
 
@@ -222,7 +225,7 @@ def integral(
 def kinked(
     equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
 ) -> tuple[Kinked, float]:
-    """SolvedPressure of a contact with kinks, and its correction as of :func:`vanishing`.
+    """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
 
     Args:
         equation: of the contact, with its slope.
@@ -274,7 +277,7 @@ class ContactAtResolution:
 
     h: float
     m: float
-    pressure: SolvedPressure
+    pressure: Pressure
     correction: float = 0.0
     free: tuple[bool, bool] = (True, True)
 
@@ -293,12 +296,9 @@ class ContactAtResolution:
         return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
 
     @cached_property
-    def settled(self) -> SolvedPressure:
+    def settled(self) -> Pressure:
         """The pressure, continued to zero at free ends where panels resolve it less well."""
-        pressure, free = self.pressure, self.free
-        if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
-            return replace(pressure, more=pressure.more.vanishing(free))
-        return pressure.vanishing(free) if isinstance(pressure, PanelledPressure) else pressure
+        return self.pressure.continued(self.free)
 
 
 #: Accuracy of a half-width at rest, over which others are given.

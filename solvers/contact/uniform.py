@@ -113,10 +113,6 @@ class Contacts:
             of_states[group.rows] = of_group
         return of_states
 
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
-        return self.joined(lambda group: group.contact_stress(group.off_tips(r)))
-
     def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
         """In-plane stress on the whole surface, off the ends, (states, points)."""
         return self.on_surface(r)[0]
@@ -304,7 +300,7 @@ def _tilted(
         if len(rows):
             column = np.s_[rows, None]
             pressure = Weighted(α[column], β[column], A[column], B[column], kind)
-            groups.append(Group(rows, pressure, h[rows], centre[rows], pressure.K_I[:, 0]))
+            groups.append(Group(rows, pressure, h[rows], centre[rows], pressure.K_I))
     return tuple(groups)
 
 

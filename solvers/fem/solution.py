@@ -31,8 +31,7 @@ class SolvedStates:
         task: the speed, and places of stresses; with lengths over the half-width of a mesh drawn for it.
         body: the sliding contact, under the load of each state.
         contact: nodal forces, and weights of the displacement fields.
-        pressure: contact pressure, a :class:`galinx.solvers.contact.recovery.RecoveredPressure`
-            or similar.
+        pressure: contact pressure, a :class:`galinx.solvers.contact.pressure.Pressure`.
         displacement: stresses by the fields.
         half_width, centre: half-width and middle of each contact [m], (states,).
         free: True where the left and the right end are free, (states, 2).
@@ -145,7 +144,7 @@ class Solution:
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        value, place = self._joined(lambda states: np.array(states.pressure.largest), 1)
+        value, place = self._joined(lambda states: np.array(states.pressure.largest()), 1)
         return value, place
 
     @cached_property

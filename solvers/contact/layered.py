@@ -22,14 +22,14 @@ from ..layers.layered import LayersAtSpeed
 from ..layers.stiffness import Medium
 from ..profiles import cusp, jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
-from .closed_form import FlatPunch
+from .closed_form import FlatPunch, in_plane
 from .edges import Exponents, under_punch, weights_hilbert
 from .equation import Contact, Contacts, ContactsAtSpeed
 from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
 from .prescribed_pressure import COARSE, FINE
-from .pressure import ENDS, Pressure, in_plane, largest, largest_smooth
+from .pressure import ENDS, Pressure, largest, largest_smooth
 from .solution import Places, Surface, Task, Turns, together
 
 #: The two frictions solved for a prescribed pressure.

@@ -25,12 +25,12 @@ from ..profiles import check_reach, cusp, jumps
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
 from ..solids.solid import Response
-from .closed_form import FlatPunch, Weighted
+from .closed_form import FlatPunch, Weighted, in_plane
 from .edges import Exponents
 from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
 from .prescribed_pressure import LinearPressure
-from .pressure import Pressure, in_plane
+from .pressure import Pressure
 
 #: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
 NEXT_TO_TIP = 1e-6

@@ -16,7 +16,7 @@ a few frictions the equation is solved at Chebyshev's points in g, and interpola
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -111,6 +111,10 @@ _STRONGEST = 1e-4
 Slope: TypeAlias = Callable[[NDArray], NDArray]
 #: Number of polynomials, or the longest panel where the kernel is rough.
 Resolution: TypeAlias = int | float
+
+#: Distances from a free end at which pressures are compared too, places between the ends, and the factor
+#: by which they have to agree better next to ends.
+_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
 
 #: A change that rounding alone may make.
 _ROUNDING = 2e-12
@@ -221,7 +225,7 @@ class Contact:
 
     Attributes:
         pressure: the pressure.
-        before: the pressure with fewer unknowns.
+        before: the pressure with fewer unknowns; None at a single resolution.
         change: relative change of the pressure and its intensities with the number of unknowns.
         half_width: of the contact.
         centre: its middle, from the punch's axis.
@@ -229,30 +233,58 @@ class Contact:
     """
 
     pressure: Pressure
-    before: Pressure
-    change: float
+    before: Any = None
+    change: float = 0.0
     half_width: float = 1.0
     centre: float = 0.0
     free: tuple[bool, bool] = (False, False)
 
+    def moved(self, before: "Contact") -> float:
+        """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
 
-def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> Contact:
-    """Pressure of an equation to a relative tolerance, with ``first`` polynomials at first.
+        In-plane stresses follow the pressure with such a factor there.
+        """
+        lengths = max(abs(self.half_width - before.half_width), abs(self.centre - before.centre))
+        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
+        at = np.concatenate([*ends, _ACROSS])
+        earlier, later = (
+            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.pressure, self.pressure)
+        )
+        near = np.abs(earlier - later)[: -len(_ACROSS)].max(initial=0.0) / np.abs(later).max()
+        of_pressure = change(before.pressure, self.pressure)
+        return max(of_pressure, lengths / self.half_width, _MORE_AT_ENDS * float(near))
+
+
+def converged(at_resolution: Callable[[Resolution], Contact], tolerance: float, rough: bool) -> Contact:
+    """Contact to a relative tolerance, by finer and finer resolutions.
+
+    Args:
+        at_resolution: gives the contact at a resolution; its ``change`` is that by a correction.
+        tolerance: the tolerance.
+        rough: True where the kernel is rough.
+
+    Raises:
+        SolveError: the tolerance was not reached; the message says by how much.
+    """
+    before, error = None, np.inf
+    for resolution in resolutions(rough):
+        now = at_resolution(resolution)
+        if before is not None:
+            error = max(now.moved(before), now.change)
+            if is_converged(error, tolerance):
+                return replace(now, before=before.pressure, change=error)
+        before = now
+    raise not_converged(error, tolerance)
+
+
+def converged_pressure(equation: Equation, tolerance: float) -> Contact:
+    """Contact with the pressure of an equation, to a relative tolerance.
 
     Raises:
         SolveError: the tolerance was not reached; the message says by how much.
     """
     check_exponents(equation)
-    before: Pressure | None = None
-    moved = np.inf
-    for resolution in resolutions(equation.kernel.rough, first):
-        now = equation.pressure(resolution)
-        if before is not None:
-            moved = change(before, now)
-            if is_converged(moved, tolerance):
-                return Contact(now, before, moved)
-        before = now
-    raise not_converged(moved, tolerance)
+    return converged(lambda at: Contact(equation.pressure(at)), tolerance, equation.kernel.rough)
 
 
 def check_exponents(equation: Equation) -> None:
@@ -282,13 +314,13 @@ def not_converged(moved: float, tolerance: float) -> SolveError:
     )
 
 
-def resolutions(rough: bool, first: int) -> Iterator[Resolution]:
+def resolutions(rough: bool) -> Iterator[Resolution]:
     """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
     if rough:
         for time in range(_TIMES):
             yield _COARSE * _SHORTER**time
         return
-    terms = max(int(first / _MORE), 8)
+    terms = int(FIRST / _MORE)
     while terms < MOST:
         yield terms
         terms = int(_MORE * terms)
@@ -347,12 +379,8 @@ class ContactsAtSpeed:
             count = 2 * count - 1
 
     def _each(self, g: NDArray) -> list[Contact]:
-        answers: list[Contact] = []
-        first = FIRST
-        for value in g.tolist():
-            equation = Equation(self.response, self.kernel, value, self.slope)
-            answers.append(converged_pressure(equation, self.tolerance, first))
-        return answers
+        equations = (Equation(self.response, self.kernel, value, self.slope) for value in g.tolist())
+        return [converged_pressure(equation, self.tolerance) for equation in equations]
 
     def scaled(self, h: float) -> Scaled:
         """The kernel of a contact of the half-width h."""

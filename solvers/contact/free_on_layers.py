@@ -38,15 +38,14 @@ from .closed_form import FlatPunch
 from .edges import Exponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
-    FIRST,
     Contact,
     Contacts,
     ContactsAtSpeed,
     Equation,
     Parts,
     Resolution,
-    change,
     check_exponents,
+    converged,
     is_converged,
     not_converged,
     resolutions,
@@ -224,7 +223,7 @@ def integral(
 
 def kinked(
     equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
-) -> tuple[Kinked, float]:
+) -> tuple[Pressure, float]:
     """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
 
     Args:
@@ -259,46 +258,11 @@ def kinked(
     return Kinked(alone, added, places, longest, rough, tips), taken
 
 
-#: Distances from a free end at which pressures are compared too, places between the ends, and the factor
-#: by which they have to agree better next to ends.
-_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
-
-
-@dataclass(frozen=True)
-class ContactAtResolution:
-    """A contact at one resolution.
-
-    Attributes:
-        h, m: half-width and middle.
-        pressure: the contact's.
-        correction: of the pressure, relative, by which no intensity remains at free ends.
-        free: True where the left and the right end are free.
-    """
-
-    h: float
-    m: float
-    pressure: Pressure
-    correction: float = 0.0
-    free: tuple[bool, bool] = (True, True)
-
-    def moved(self, before: "ContactAtResolution") -> float:
-        """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
-
-        In-plane stresses follow the pressure with such a factor there.
-        """
-        lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
-        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
-        at = np.concatenate([*ends, _ACROSS])
-        earlier, later = (
-            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.settled, self.settled)
-        )
-        near = np.abs(earlier - later)[: -len(_ACROSS)].max(initial=0.0) / np.abs(later).max()
-        return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
-
-    @cached_property
-    def settled(self) -> Pressure:
-        """The pressure, continued to zero at free ends where panels resolve it less well."""
-        return self.pressure.continued(self.free)
+def _contact(
+    pressure: Pressure, h: float, m: float, free: tuple[bool, bool], correction: float = 0.0
+) -> Contact:
+    """Contact at a resolution, with the relative correction that takes intensities from free ends."""
+    return Contact(pressure.continued(free), None, correction, h, m, free)
 
 
 #: Accuracy of a half-width at rest, over which others are given.
@@ -362,23 +326,22 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             SolveError: no contact carries the load, or it is not resolved.
         """
         check_exponents(self._equation(g, 1.0))
-        before, error = None, np.inf
-        for resolution in resolutions(self.kernel.rough, FIRST):
-            now = self._at_resolution(g, h, resolution)
-            h = now.h
-            if before is not None:
-                error = max(now.moved(before), now.correction)
-                if is_converged(error, self.tolerance):
-                    unit = self.punch.unit
-                    check_reach(self.punch.profile, unit * (now.m - h), unit * (now.m + h))
-                    return Contact(now.settled, before.settled, error, h, now.m, now.free)
-            before = now
-        raise not_converged(error, self.tolerance)
+
+        def at_resolution(resolution: Resolution) -> Contact:
+            nonlocal h
+            contact = self._at_resolution(g, h, resolution)
+            h = contact.half_width
+            return contact
+
+        contact = converged(at_resolution, self.tolerance, self.kernel.rough)
+        low, high = (self.punch.unit * (contact.centre + side * h) for side in (-1.0, 1.0))
+        check_reach(self.punch.profile, low, high)
+        return contact
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
 
-    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
+    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> Contact:
         """Contact at a resolution, from the half-width h on."""
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
@@ -386,8 +349,10 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         m, h = self._lengths(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
-            return ContactAtResolution(h, m, *kinked(equation, resolution, self.punch, m, h))
-        return ContactAtResolution(h, m, *vanishing(equation, resolution))
+            pressure, taken = kinked(equation, resolution, self.punch, m, h)
+        else:
+            pressure, taken = vanishing(equation, resolution)
+        return _contact(pressure, h, m, (True, True), taken)
 
     def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
         """Middle and half-width of a contact with two free ends, from a half-width on."""
@@ -400,10 +365,10 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             SolveError: no contact carries the load, or it is not resolved.
         """
         h, error = 1.0, np.inf
-        for resolution in resolutions(self.kernel.rough, FIRST):
+        for resolution in resolutions(self.kernel.rough):
             before = h
             if isinstance(self.punch.profile, Flat):
-                h = self._tilted(0.0, h, resolution).h
+                h = self._tilted(0.0, h, resolution).half_width
             else:
                 _, h = self._lengths(0.0, h, resolution)
             error = abs(h / before - 1.0)
@@ -411,7 +376,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
                 return h
         raise not_converged(error, self.tolerance)
 
-    def _tilted(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> Contact:
         """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
@@ -431,12 +396,12 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         if load(whole) <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
             pressure = each[whole][0].pressure(np.array([1.0, slope]))
-            return ContactAtResolution(whole, 0.0, pressure, free=(False, False))
+            return _contact(pressure, whole, 0.0, (False, False))
         h = half_width_of_load(load, min(h, whole), punch)
         parts, slope = each[h]
         m = float(np.sign(rise)) * (h - whole)
         pressure = parts.pressure(np.array([1.0, slope]))
-        return ContactAtResolution(h, m, pressure, free=(side == 0, side == 1))
+        return _contact(pressure, h, m, (side == 0, side == 1))
 
 
 def local_exponents(

@@ -98,10 +98,6 @@ class FlatPunch(EdgeExponents, Pressure, Loaded):
         """
         return 2.0 * self._sin / np.pi
 
-    def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
-        return self.traction(np.asarray(left, dtype=float), np.asarray(right, dtype=float))
-
     @property
     def traction(self) -> EdgeTraction:
         """The contact stress over N/(2a) by distances over a from the two edges."""

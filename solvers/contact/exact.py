@@ -18,7 +18,7 @@ from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
 from .residual import of_contact, of_field
 from .solution import Between, Surface, Task, Turns, all_between, solved_once
-from .uniform import Contacts, Group, contacts, prescribed, sharp
+from .uniform import Contacts, Group, contacts_of
 from .yielding import Strength
 
 #: Most points inside whose potentials are held in memory at a time.
@@ -54,16 +54,6 @@ class _AtSpeed:
         return {}
 
 
-def contacts_of(task: Task, g: NDArray) -> Contacts:
-    """Contacts of a task, prescribed, with free ends or sharp, for values of σ_XY/σ_YY, (states,)."""
-    body, response = task.body, task.response
-    if body.pressure:
-        return prescribed(response, g, body.pressure, body.half_width)
-    if body.found:
-        return contacts(response, g, body.profile, body.compression)
-    return sharp(response, g, body)
-
-
 class ExactSolution:
     """States of contacts on a uniform half-plane; similar ones are solved once.
 
@@ -81,7 +71,7 @@ class ExactSolution:
     @cached_property
     def contacts(self) -> Contacts:
         """Pressures, half-widths and middles of all solved states."""
-        return contacts_of(replace(self.task, body=self._body), self._g)
+        return contacts_of(self._body, self.task.response, self._g)
 
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]

@@ -243,42 +243,6 @@ _LOGS = (1.0, 2.0)
 _CLEARED = 0.1
 
 
-def _two_series(
-    gap: float, span: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
-) -> tuple[NDArray[np.float64], Callable[[NDArray], NDArray], NDArray[np.float64]]:
-    """Distances at which A(d) + d^a B(d) is sampled, its terms, and the map from samples to amplitudes.
-
-    Args:
-        gap: unit of the distances over a.
-        span: distances of the nearest and the farthest sample, over the gap.
-        exponent: a.
-        at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
-            and that of a remaining intensity, d^(a - 1), the last of the terms.
-        logs: multiply the terms of the second series by log d.
-
-    Returns:
-        Distances of the samples over a, (m,); a function that gives the terms at any distances, (n,) to
-        (n, terms); and the map from values at the samples to amplitudes of the terms, (terms, m).
-    """
-    low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
-    t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
-    samples = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
-    powers = np.arange(_TERMS_OF_EACH)
-
-    def terms(d: NDArray) -> NDArray[np.float64]:
-        x = d / high**2
-        powers_of_d = np.power.outer(x, np.concatenate([powers, exponent + powers]))
-        if logs:
-            powers_of_d[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
-        if not at_end:
-            return powers_of_d
-        more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
-        more[:, :-1] *= np.log(x)[:, None]
-        return np.concatenate([powers_of_d, more], axis=1)
-
-    return samples, terms, np.asarray(np.linalg.pinv(terms(samples)), dtype=np.float64)
-
-
 @dataclass(frozen=True)
 class Series:
     """Continuation of A(d) + d^a B(d), A and B smooth, from samples to other distances d.
@@ -302,6 +266,38 @@ class Series:
         return lambda d: self.by_samples(d) @ values
 
 
+def _two_series(
+    gap: float, span: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
+) -> Series:
+    """Continuation of A(d) + d^a B(d) from samples.
+
+    Args:
+        gap: unit of the distances over a.
+        span: distances of the nearest and the farthest sample, over the gap.
+        exponent: a.
+        at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
+            and that of a remaining intensity, d^(a - 1), the last of the terms.
+        logs: multiply the terms of the second series by log d.
+    """
+    low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
+    t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
+    samples = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
+    powers = np.arange(_TERMS_OF_EACH)
+
+    def terms(d: NDArray) -> NDArray[np.float64]:
+        x = d / high**2
+        powers_of_d = np.power.outer(x, np.concatenate([powers, exponent + powers]))
+        if logs:
+            powers_of_d[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
+        if not at_end:
+            return powers_of_d
+        more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
+        more[:, :-1] *= np.log(x)[:, None]
+        return np.concatenate([powers_of_d, more], axis=1)
+
+    return Series(samples, terms, np.asarray(np.linalg.pinv(terms(samples)), dtype=np.float64))
+
+
 def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 1.0) -> Series:
     """Continuation of pressure or slopes to a kink where they are finite.
 
@@ -312,7 +308,7 @@ def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 
         farther: distance of the farthest sample over the usual distance.
     """
     span = _NEAREST_AT_KINK * farthest, farther * farthest
-    return Series(*_two_series(gap, span, exponent, logs=exponent == 1.0))
+    return _two_series(gap, span, exponent, logs=exponent == 1.0)
 
 
 def farthest_at_kink(tolerance: float) -> float:
@@ -465,12 +461,12 @@ def slopes_towards_ends(
             length = min(gap, 1.0)
             near, cleared = ((d > 0.0) & (d < share * length) for share in (_RANGE_AT_END[0], _CLEARED))
             if cleared.any():
-                samples, terms, amplitudes = _two_series(gap, _RANGE_AT_END, a, at_end=True)
+                series = _two_series(gap, _RANGE_AT_END, a, at_end=True)
                 rows[0][near] = 0.0
-                more = np.zeros((len(X), len(samples)))
-                more[cleared] = -terms(d[cleared])[:, -1:] * amplitudes[-1]
-                more[near] = terms(d[near])[:, :-1] @ amplitudes[:-1]
-                places.append(end + side * samples)
+                more = np.zeros((len(X), len(series.samples)))
+                more[cleared] = -series.terms(d[cleared])[:, -1:] * series.amplitudes[-1]
+                more[near] = series.terms(d[near])[:, :-1] @ series.amplitudes[:-1]
+                places.append(end + side * series.samples)
                 rows.append(more)
     return np.concatenate(places), np.concatenate(rows, axis=1)
 

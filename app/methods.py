@@ -26,7 +26,6 @@ class MethodKind:
         refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
             quantity None the reason why it gives no quantity at all.
         loads: True where its solvers take states under several loads; else each load has its own solver.
-        scales: True where these solvers, besides, solve contacts that differ in size alone only once.
         of_layers: True for a method of layered solids alone, which plans of uniform solids omit.
     """
 
@@ -34,7 +33,6 @@ class MethodKind:
     made: Callable[[Any, Any, Any], Any] | None = None
     refusal: Callable[[Any, Body, Quantity | None], str] = lambda scene, body, quantity: ""
     loads: bool = False
-    scales: bool = False
     of_layers: bool = False
 
 
@@ -142,9 +140,7 @@ METHODS: Registry[MethodKind] = Registry(
     {
         CLOSED_FORM: MethodKind("closed form", refusal=_closed_form_refusal, loads=True),
         SIE: MethodKind("singular integral equation of layers", refusal=_layers_refusal, of_layers=True),
-        FEM: MethodKind(
-            "mesh and finite elements", refusal=_finite_elements_refusal, loads=True, scales=True
-        ),
+        FEM: MethodKind("mesh and finite elements", refusal=_finite_elements_refusal, loads=True),
     },
     MethodKind,
 )

@@ -51,10 +51,12 @@ PURE = {
 #: pressure has that.
 TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
 SOLUTIONS = (
-    FORMULA, "solvers.contact.exact", "solvers.contact.layered", "solvers.contact.pressure",
+    FORMULA, "solvers.contact.exact", "solvers.contact.layered",
     "solvers.contact.equation", "solvers.contact.uniform", "solvers.contact.free_on_layers",
     "solvers.contact.panels", "solvers.friction",
 )  # fmt: skip
+#: What both share, and so has no solution either.
+SHARED = "solvers/contact/pressure.py"
 #: What a room may import of others; app of all. Of the mechanics postprocessing knows the physics, and
 #: finite elements and their plan know meshes.
 OTHERS = {"postprocess": {"solvers"}, "solvers/fem": {"meshes"}, "solvers/contact/fem_plan": {"meshes"}}
@@ -72,10 +74,10 @@ def faults_of_imports(name, found):
     for library, places in ONE_PLACE.items():
         if library in roots and not name.startswith(tuple(places)):
             yield f"{name} imports {library}, which is met in {', '.join(sorted(places))} only"
-    if name.startswith("solvers/fem/"):
+    if name.startswith(("solvers/fem/", SHARED)):
         apart = [module for module in SOLUTIONS if name != TRACTION or module != FORMULA]
         yield from (f"{name} imports {module}" for module in found if module.startswith(tuple(apart)))
-    elif room == "solvers":
+    if room == "solvers" and not name.startswith("solvers/fem/"):
         yield from (f"{name} imports {root}, and is no finite element" for root in roots - PURE - allowed)
 
 

@@ -20,10 +20,9 @@ from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
-from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch, Loaded, LoadedHalfPlane
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.fem_plan import FemPlan
-from galinx.solvers.contact.pressure import Loaded, LoadedHalfPlane
 from galinx.solvers.contact.solution import Task
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 

@@ -19,7 +19,7 @@ from galinx.postprocess.quantities.over_time import APPROACH
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.equation import ContactsAtSpeed
-from galinx.solvers.contact.pressure import SolvedPressure
+from galinx.solvers.contact.pressure import Pressure
 from galinx.solvers.solids.solid import Response, Solid
 from galinx.solvers.transient.late_time import approach
 from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
@@ -65,7 +65,7 @@ class QuasiSteady:
         return np.nan if len(response.depths) else FlatPunch(response, ratio).K_I
 
 
-def _centre(pressure: SolvedPressure) -> NDArray[np.float64]:
+def _centre(pressure: Pressure) -> NDArray[np.float64]:
     t, forces = pressure.points(_FINEST)
     return np.array(forces @ t / forces.sum())
 

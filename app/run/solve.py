@@ -1,14 +1,8 @@
-"""Solution of a plan's tasks: every method solves them, quantities are evaluated and compared.
+"""Solution of a plan's tasks: every method solves them, quantities are evaluated and compared."""
 
-States that differ in their load alone are solved once. A half-plane has no length, so stresses over
-N/(2a) do not depend on the load under a flat punch, nor under a punch whose height is a power of |X|,
-where the half-width alone follows the load (:class:`LoadScaled`).
-"""
-
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,109 +14,13 @@ from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.solvers.contact.edges import Exponents
 from galinx.solvers.contact.method import Method, Solver
-from galinx.solvers.contact.solution import Body, Surface, Task
+from galinx.solvers.contact.solution import Body, Task
 from galinx.solvers.contact.uniform import local_exponents
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
 from ..plan.task import Plan
-
-
-def under_loads(states: Callable[..., Any], body: Body, g: NDArray, load: NDArray | None) -> Any:
-    """Solution of states under several loads, by one solver.
-
-    Args:
-        states: the solver's method that solves for values of σ_XY/σ_YY and, if given, loads.
-        body: the task's body, whose load is the first.
-        g: σ_XY/σ_YY, (states,).
-        load: load of each state [N/m], (states,); None where all have the body's.
-    """
-    if load is None:
-        return states(g)
-    if not body.alike:
-        return states(g, load)
-    different, of = np.unique(g, return_inverse=True)
-    return LoadScaled(states(different), of, body.growth(load), lambda: states(g, load))
-
-
-class LoadScaled:
-    """Solution of states under many loads, scaled from states under a single load.
-
-    Quantities that do not scale are taken from a solution of every state by itself, when first needed.
-
-    Args:
-        once: solution of states of different frictions under a single load.
-        of: index of the state in ``once`` for each state, (states,).
-        growth: half-width of each state over that of its state in ``once``, (states,).
-        each: solves every state by itself, for quantities that follow the load otherwise.
-    """
-
-    def __init__(
-        self, once: Any, of: NDArray, growth: NDArray[np.float64], each: Callable[[], Any]
-    ) -> None:
-        self._once, self._of, self._growth, self._solved = once, of, growth, each
-
-    @cached_property
-    def _each(self) -> Any:
-        return self._solved()
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):  # copies look for attributes before they are set
-            raise AttributeError(name)
-        return getattr(self._each, name)
-
-    @property
-    def g(self) -> NDArray[np.float64]:
-        """σ_XY/σ_YY, (states,)."""
-        return self._once.g[self._of]
-
-    @property
-    def local(self) -> Exponents:
-        """Exponents at the ends."""
-        return Exponents(self._once.local.α[self._of], self._once.local.β[self._of])
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, (states, 2)."""
-        return self._once.K_I[self._of]
-
-    @property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-width of the contact [m], (states,)."""
-        return self._once.half_width[self._of] * self._growth
-
-    @property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of the contact from the punch's axis [m], (states,)."""
-        return self._once.centre[self._of] * self._growth
-
-    @property
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, (states,)."""
-        value, place = self._once.largest
-        return value[self._of], place[self._of]
-
-    @property
-    def residual(self) -> NDArray[np.float64]:
-        """Residual of the integral equation under the pressure, relative, (states,)."""
-        return self._once.residual[self._of]
-
-    @property
-    def residual_inside(self) -> NDArray[np.float64]:
-        """Residual of stresses inside against line loads and equilibrium, relative, (states,)."""
-        return self._once.residual_inside[self._of]
-
-    @cached_property
-    def surface(self) -> Surface:
-        """Stresses on the surface."""
-        return self._once.surface.of(self._of)
-
-    @cached_property
-    def inside(self) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
-        return self._once.inside[:, self._of]
 
 
 @dataclass(frozen=True)
@@ -284,11 +182,8 @@ class Work:
     ) -> dict[str, NDArray]:
         """Quantities of states by one method, by path; if no solver is given, each load has its own."""
         if solver is not None:
-            if METHODS[name].scales:
-                solution = solver.states(g, load)  # type: ignore[call-arg]
-            else:
-                solution = under_loads(solver.states, task.body, g, load)
-            return self._of(name, solution, task.body.loaded(load))
+            loads = (load,) if METHODS[name].loads else ()
+            return self._of(name, solver.states(g, *loads), task.body.loaded(load))
         assert load is not None
         data = self._unknown(name, len(g))
         for N in np.unique(load).tolist():

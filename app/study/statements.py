@@ -100,18 +100,15 @@ class Results:
         """In-plane stress of a state over N/(2a), at one of the positions."""
         return float(self._in_plane[self.state(**state), at])
 
-    def σ_YY(self, **state: Any) -> NDArray[np.float64]:
-        """Contact stress of a state over N/(2a), at all positions."""
-        return self._pressure[self.state(**state)]
-
-    def along(self, **state: Any) -> NDArray[np.float64]:
-        """In-plane stress of a state over N/(2a), at all positions."""
-        return self._in_plane[self.state(**state)]
+    def stresses(self, **state: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """In-plane stress and contact stress of a state over N/(2a), at all positions, (n,) each."""
+        row = self.state(**state)
+        return self._in_plane[row], self._pressure[row]
 
     def apart(self, first: dict[str, Any], second: dict[str, Any]) -> float:
         """Largest difference of the contact stress of two states over N/(2a), where pressures are
         compared."""
-        return float(np.abs(self.σ_YY(**first) - self.σ_YY(**second))[self.under].max())
+        return float(np.abs(self.stresses(**first)[1] - self.stresses(**second)[1])[self.under].max())
 
     def loop(self, **law: float) -> NDArray[np.float64]:
         """f along FM1, BM1 and FM2 of a law, each in the order of travel, (3, steps)."""
@@ -256,7 +253,7 @@ def _backwards(r: Results) -> _Decided:
     travelled = []
     for X, of_turn in zip(places, f.tolist()):
         σ_YY = FlatPunch(r.solid.response(SLOW), sign * of_turn).σ_YY(r.X)
-        travelled.append(float(np.abs(r.σ_YY(X=X) - σ_YY)[r.under].max()))
+        travelled.append(float(np.abs(r.stresses(X=X)[1] - σ_YY)[r.under].max()))
     for differences, note in (
         (on_axis, "; X/L = 1 is the turn, f is FM1's"),
         (travelled, f"; FM2 by {_to(nearly)} at 0.5, 1.0"),
@@ -319,7 +316,7 @@ def _fast(r: Results) -> _Decided:
     by_level = [more(r.behind, X=0.8, **law) for law in r.values("mu_c", REFERENCE)]
     under = under_punch(r.X)
     compressive = max(
-        float((r.along(c=FAST, X=X, **law) - r.along(X=X, **law))[under].max())
+        float((r.stresses(c=FAST, X=X, **law)[0] - r.stresses(X=X, **law)[0])[under].max())
         for law in r.values("mu_c", REFERENCE)
         for X in (0.2, 0.5, 0.8, 1.0)
     )
@@ -335,7 +332,7 @@ def _level(r: Results) -> _Decided:
     spread = []
     for X in (0.2, 0.8):
         laws = r.values("mu_c", REFERENCE)
-        σ_YY = [r.σ_YY(X=X, **law)[r.under] for law in laws]
+        σ_YY = [r.stresses(X=X, **law)[1][r.under] for law in laws]
         σ_XX = [r.σ_XX(r.behind, X=X, **law) for law in laws]
         spread.append((float(np.ptp(σ_YY, axis=0).max()), float(np.ptp(σ_XX))))
     (σ_YY_early, σ_XX_early), (σ_YY_late, σ_XX_late) = spread
@@ -349,7 +346,7 @@ def _level(r: Results) -> _Decided:
 def _lean(r: Results, name: str, X: float) -> tuple[list[float], list[float], list[float], list[float]]:
     """|σ_YY| at -0.9 a and 0.9 a, tension behind and compression ahead, with a parameter, at SS."""
     laws = r.values(name, MILDER)
-    pressures = [[abs(float(r.σ_YY(X=X, **law)[at])) for law in laws] for at in (r.left, r.right)]
+    pressures = [[abs(float(r.stresses(X=X, **law)[1][at])) for law in laws] for at in (r.left, r.right)]
     tension = [r.σ_XX(r.behind, X=X, **law) for law in laws]
     return *pressures, tension, [-r.σ_XX(r.ahead, X=X, **law) for law in laws]  # type: ignore[return-value]
 
@@ -392,7 +389,7 @@ def _turned(r: Results) -> _Decided:
 def _second_fast(r: Results) -> _Decided:
     off = []
     for law in r.values("sigma0_over_load", MILDER):
-        fast, slow = (r.along(c=c, motion="FM2", **law) for c in (FAST, SLOW))
+        fast, slow = (r.stresses(c=c, motion="FM2", **law)[0] for c in (FAST, SLOW))
         off.append(float(np.abs(fast - slow)[[r.behind, r.ahead]].max()))
     yield _grows(off), f"σ_XX at ±{r.beside} by {_to(off)}"
 

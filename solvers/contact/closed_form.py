@@ -20,11 +20,67 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p
 
+from ..solids.solid import Response
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
-from .pressure import Loaded, Pressure
+from .pressure import Pressure
 
 #: Newton's steps for the logarithm of a distance; at a double root they halve the error.
 _STEPS = 80
+
+
+class Loaded:
+    """Uniform half-plane under a contact pressure with friction, at one speed; all stresses are exact.
+
+    Attributes:
+        response: of the half-plane at that speed.
+        g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
+        pressure: the pressure, with Cauchy's integral.
+    """
+
+    response: Response
+    g: Any
+    pressure: Any
+
+    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
+        """In-plane stress over N/(2a) on the whole surface Y = 0; NaN where it is infinite (Eq 32)."""
+        σ_YY = self.pressure.σ_YY(r)
+        return in_plane(self.response, self.g, σ_YY, self.pressure.hilbert(r))
+
+    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
+        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.pressure.σ_YY(X)
+        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
+        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))
+
+
+@dataclass(frozen=True)
+class LoadedHalfPlane(Loaded):
+    """Uniform half-plane under a pressure, see :class:`Loaded`."""
+
+    response: Response
+    g: Any
+    pressure: Any
+
+
+def in_plane(
+    response: Response, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
+) -> NDArray[np.float64]:
+    """In-plane stress over N/(2a) on the surface.
+
+    Args:
+        response: of the surface's solid.
+        g: σ_XY/σ_YY under the punch.
+        σ_YY: contact stress over N/(2a).
+        H: its Hilbert transform.
+        strain: strain μ u,X over N/(2a) that layers add.
+    """
+    u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + strain
+    return response.σ_XX(u_X, σ_YY, g * σ_YY)
 
 
 @dataclass(frozen=True)
@@ -41,10 +97,6 @@ class FlatPunch(EdgeExponents, Pressure, Loaded):
         The study's Eq 55 has lost the sign of its Eq 37; the stress is compressive.
         """
         return 2.0 * self._sin / np.pi
-
-    def σ_YY_by_distance(self, left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at the distances 1 + X/a and 1 - X/a from the two edges."""
-        return self.traction(np.asarray(left, dtype=float), np.asarray(right, dtype=float))
 
     @property
     def traction(self) -> EdgeTraction:
@@ -207,10 +259,3 @@ class Weighted(Pressure):
         for coefficient in reversed(self._powers):
             value, divided = (value + coefficient) * y, (value + coefficient) + divided * other
         return -step * y * other * divided
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """Intensity at the left and the right end as in Eqs 56-57, 0 at one that is free: (..., 2)."""
-        K_left = np.where(self.β < 0.0, 0.5 * (self.B - self.A) * 2.0 ** (self.α + self.β + 1.0), 0.0)
-        K_right = np.where(self.α < 0.0, -0.5 * (self.A + self.B) * 2.0 ** (self.α + self.β + 1.0), 0.0)
-        return np.stack(np.broadcast_arrays(K_left, K_right), axis=-1)

@@ -6,7 +6,7 @@
 part is that of a half-plane, and so are the exponents. The pressure is a sum of Jacobi polynomials under
 their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels replace them.
 
-A prescribed pressure is linear between knots (:class:`PrescribedPressure`). It is integrated by Gauss's
+A prescribed pressure is linear between knots (:mod:`.prescribed_pressure`). It is integrated by Gauss's
 rule on pieces between knots, as short as the kernel requires; where the kernel has a logarithm, graded
 towards it. The part of the half-plane of the surface's solid is known exactly.
 
@@ -16,7 +16,7 @@ a few frictions the equation is solved at Chebyshev's points in g, and interpola
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -27,10 +27,9 @@ from scipy.special import roots_jacobi
 from ..errors import SolveError
 from ..layers.kernel import Kernel, Scaled
 from ..layers.layered import LayersAtSpeed
-from .panelled import PanelledPressure, Panels
+from .panelled import Panels
 from .panelled import parts as panelled
-from .prescribed_pressure import LinearPressure
-from .pressure import ENDS, SolvedPressure
+from .pressure import ENDS, Expansion, Functions, Pressure
 
 #: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
 _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
@@ -59,128 +58,44 @@ def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArr
 
 
 @dataclass(frozen=True)
-class Polynomial(SolvedPressure):
-    """SolvedPressure as a sum of Jacobi polynomials under their weight.
-
-    Attributes:
-        α, β: exponents at the right and the left end.
-        c: coefficients Σ c_j P_j^(α,β)(r), dimensionless, (terms,).
-    """
+class Jacobi(Functions):
+    """Jacobi polynomials P_k^(α,β) of a pressure with the same exponents."""
 
     α: float
     β: float
-    c: NDArray[np.float64]
 
-    @property
-    def near(self) -> float:  # type: ignore[override]
+    def near(self, count: int) -> float:
         """|r| up to which polynomials, so many, have not grown."""
-        return min(_NEAR, float(np.cosh(np.log(_GROWN) / len(self.c))))
+        return min(_NEAR, float(np.cosh(np.log(_GROWN) / count)))
 
-    @cached_property
-    def _rule(self) -> tuple[NDArray, NDArray, NDArray]:
-        t, w = gauss(max(_FINE, 2 * len(self.c)), self.α, self.β)
-        return t, w, self.series(t)
+    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        return jacobi(count, self.α, self.β, r)
 
-    def series(self, r: NDArray) -> NDArray[np.float64]:
-        return np.asarray(jacobi(len(self.c), self.α, self.β, r) @ self.c)
+    def _rule(self, c: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        t, w = gauss(max(_FINE, 2 * len(c)), self.α, self.β)
+        return t, w, self.sum(c, t)
 
-    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        t, w, p = self._rule
+    def rest(self, c: NDArray, r: NDArray, near: float) -> NDArray[np.float64]:
+        """Hilbert transform without that of the weight, see :meth:`.pressure.Pressure.rest`."""
+        t, w, p = self._rule(c)
         close = np.abs(r) <= near
         taken = np.zeros_like(r)
-        taken[close] = self.series(r[close])
+        taken[close] = self.sum(c, r[close])
         difference = t - r[:, None]
         on = np.abs(difference) < 1e-13
         return np.asarray(((p - taken[:, None]) / np.where(on, np.inf, difference)) @ w / np.pi)
 
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        t, w, p = self._rule
+    def integral(
+        self, c: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray
+    ) -> NDArray[np.float64]:
+        """Integrals with a kernel, see :meth:`.pressure.Pressure.integral`."""
+        t, w, p = self._rule(c)
         return np.asarray(np.einsum("rtf,t->rf", kernel(r[:, None] - t), w * p))
 
-    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def points(self, c: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Rule for other integrals, see :meth:`.pressure.Pressure.points`."""
         fine = Panels(self.α, self.β, min(finest, 0.7))
-        return fine.t, fine.weights * self.series(fine.t)
-
-
-#: Points of a panel, and of the coarser rule that measures the error of the finer one.
-FINE, COARSE = 20, 14
-#: Longest panel over the length of a kernel's variation; factor and number of steps by which panels
-#: shorten towards a logarithm.
-_SHARE, _GRADING, _STEPS = 1.2, 0.2, 20
-#: Panels at most.
-_MOST = 200_000
-
-
-@dataclass(frozen=True)
-class PrescribedPressure(SolvedPressure):
-    """Prescribed pressure with its integrals.
-
-    Attributes:
-        prescribed: σ_YY over N/(2a).
-        nodes: number of points of a panel.
-        length: length over a over which the kernel on the surface varies.
-        rough: True where the kernel has a logarithm at 0.
-    """
-
-    α, β, near = 0.0, 0.0, -1.0  # its Hilbert transform is exact everywhere
-
-    prescribed: LinearPressure
-    nodes: int
-    length: float
-    rough: bool
-
-    def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self.prescribed.series(r)
-
-    @property
-    def resultant(self) -> float:  # type: ignore[override]
-        """∫ σ_YY d(X/a) over N/(2a)."""
-        return self.prescribed.resultant
-
-    @property
-    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
-        """Knots of the pressure, both ends among them."""
-        return self.prescribed.knots
-
-    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return np.zeros_like(edges.α), np.zeros_like(edges.β)
-
-    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        return self.prescribed.hilbert(r)
-
-    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return self._weighted(self._cut(self.prescribed.knots, finest))
-
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        whole = self.points(self.length)
-        integrals = []
-        for place in r.tolist():
-            t, σ = self._weighted(self._towards(place)) if self.rough else whole
-            integrals.append(σ @ kernel(place - t))
-        return np.array(integrals)
-
-    def _cut(self, ends: NDArray, finest: float) -> NDArray[np.float64]:
-        """Ends of panels between ``ends``, none too long for functions that vary over ``finest``."""
-        longest = max(_SHARE * finest, 2.0 / _MOST)
-        panels = [ends[:1]]
-        for low, high in zip(ends[:-1].tolist(), ends[1:].tolist()):
-            count = max(int(np.ceil((high - low) / longest)), 1)
-            panels.append(low + (high - low) * np.arange(1, count + 1) / count)
-        return np.concatenate(panels)
-
-    def _towards(self, place: float) -> NDArray[np.float64]:
-        """Ends of panels that get shorter towards a place."""
-        near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
-        knots = self.prescribed.knots
-        more = np.concatenate([place - near, place + near])
-        inside = more[(more > knots[0]) & (more < knots[-1])]
-        return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
-
-    def _weighted(self, ends: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        x, w = np.polynomial.legendre.leggauss(self.nodes)
-        half = np.diff(ends) / 2.0
-        t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
-        return t, (half[:, None] * w).ravel() * self.prescribed(t)
+        return fine.t, fine.weights * self.sum(c, fine.t)
 
 
 #: Number of polynomials at first, its growth from step to step, and its maximum.
@@ -196,6 +111,10 @@ _STRONGEST = 1e-4
 Slope: TypeAlias = Callable[[NDArray], NDArray]
 #: Number of polynomials, or the longest panel where the kernel is rough.
 Resolution: TypeAlias = int | float
+
+#: Distances from a free end at which pressures are compared too, places between the ends, and the factor
+#: by which they have to agree better next to ends.
+_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
 
 #: A change that rounding alone may make.
 _ROUNDING = 2e-12
@@ -214,9 +133,9 @@ class Parts:
     """
 
     coefficients: NDArray[np.float64]
-    made: Callable[[NDArray], SolvedPressure]
+    made: Callable[[NDArray], Pressure]
 
-    def pressure(self, amplitudes: NDArray) -> SolvedPressure:
+    def pressure(self, amplitudes: NDArray) -> Pressure:
         """Sum of the parts with amplitudes, (parts,)."""
         return self.made(self.coefficients @ amplitudes)
 
@@ -272,17 +191,17 @@ class Equation:
         """Exponent at X = -a, dimensionless."""
         return -1.0 - self.α
 
-    def pressure(self, resolution: Resolution) -> SolvedPressure:
-        """SolvedPressure with resultant -2 at a resolution."""
+    def pressure(self, resolution: Resolution) -> Pressure:
+        """Pressure with resultant -2 at a resolution."""
         return self.parts(resolution, [self.slope], [-2.0]).pressure(np.ones(1))
 
     def parts(self, resolution: Resolution, slopes: Sequence[Slope], loads: Sequence[float]) -> Parts:
         """Pressures under several slopes with resultants ``loads``, whose sums are other pressures."""
         if isinstance(resolution, float):
             panels, values = panelled(self, resolution, slopes, loads)
-            return Parts(values, lambda p: PanelledPressure(panels, p))
+            return Parts(values, panels.pressure)
         c = self._coefficients(resolution, slopes, loads)
-        return Parts(c, lambda c: Polynomial(self.α, self.β, c))
+        return Parts(c, lambda c: Expansion(self.α, self.β, c, Jacobi(self.α, self.β)))
 
     def _coefficients(
         self, terms: int, slopes: Sequence[Slope], loads: Sequence[float]
@@ -306,38 +225,66 @@ class Contact:
 
     Attributes:
         pressure: the pressure.
-        before: the pressure with fewer unknowns.
+        before: the pressure with fewer unknowns; None at a single resolution.
         change: relative change of the pressure and its intensities with the number of unknowns.
         half_width: of the contact.
         centre: its middle, from the punch's axis.
         free: True where the left and the right end are free, and were solved for.
     """
 
-    pressure: SolvedPressure
-    before: SolvedPressure
-    change: float
+    pressure: Pressure
+    before: Any = None
+    change: float = 0.0
     half_width: float = 1.0
     centre: float = 0.0
     free: tuple[bool, bool] = (False, False)
 
+    def moved(self, before: "Contact") -> float:
+        """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
 
-def converged_pressure(equation: Equation, tolerance: float, first: int = FIRST) -> Contact:
-    """SolvedPressure of an equation to a relative tolerance, with ``first`` polynomials at first.
+        In-plane stresses follow the pressure with such a factor there.
+        """
+        lengths = max(abs(self.half_width - before.half_width), abs(self.centre - before.centre))
+        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
+        at = np.concatenate([*ends, _ACROSS])
+        earlier, later = (
+            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.pressure, self.pressure)
+        )
+        near = np.abs(earlier - later)[: -len(_ACROSS)].max(initial=0.0) / np.abs(later).max()
+        of_pressure = change(before.pressure, self.pressure)
+        return max(of_pressure, lengths / self.half_width, _MORE_AT_ENDS * float(near))
+
+
+def converged(at_resolution: Callable[[Resolution], Contact], tolerance: float, rough: bool) -> Contact:
+    """Contact to a relative tolerance, by finer and finer resolutions.
+
+    Args:
+        at_resolution: gives the contact at a resolution; its ``change`` is that by a correction.
+        tolerance: the tolerance.
+        rough: True where the kernel is rough.
+
+    Raises:
+        SolveError: the tolerance was not reached; the message says by how much.
+    """
+    before, error = None, np.inf
+    for resolution in resolutions(rough):
+        now = at_resolution(resolution)
+        if before is not None:
+            error = max(now.moved(before), now.change)
+            if is_converged(error, tolerance):
+                return replace(now, before=before.pressure, change=error)
+        before = now
+    raise not_converged(error, tolerance)
+
+
+def converged_pressure(equation: Equation, tolerance: float) -> Contact:
+    """Contact with the pressure of an equation, to a relative tolerance.
 
     Raises:
         SolveError: the tolerance was not reached; the message says by how much.
     """
     check_exponents(equation)
-    before: SolvedPressure | None = None
-    moved = np.inf
-    for resolution in resolutions(equation.kernel.rough, first):
-        now = equation.pressure(resolution)
-        if before is not None:
-            moved = change(before, now)
-            if is_converged(moved, tolerance):
-                return Contact(now, before, moved)
-        before = now
-    raise not_converged(moved, tolerance)
+    return converged(lambda at: Contact(equation.pressure(at)), tolerance, equation.kernel.rough)
 
 
 def check_exponents(equation: Equation) -> None:
@@ -367,20 +314,20 @@ def not_converged(moved: float, tolerance: float) -> SolveError:
     )
 
 
-def resolutions(rough: bool, first: int) -> Iterator[Resolution]:
+def resolutions(rough: bool) -> Iterator[Resolution]:
     """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
     if rough:
         for time in range(_TIMES):
             yield _COARSE * _SHORTER**time
         return
-    terms = max(int(first / _MORE), 8)
+    terms = int(FIRST / _MORE)
     while terms < MOST:
         yield terms
         terms = int(_MORE * terms)
     yield MOST
 
 
-def change(before: SolvedPressure, now: SolvedPressure) -> float:
+def change(before: Pressure, now: Pressure) -> float:
     """Largest change of intensities and p, relative to the largest |p|; not next to tips."""
     at = np.concatenate([ENDS, _LOOKED_AT])
     for tip in now.tips:
@@ -432,12 +379,8 @@ class ContactsAtSpeed:
             count = 2 * count - 1
 
     def _each(self, g: NDArray) -> list[Contact]:
-        answers: list[Contact] = []
-        first = FIRST
-        for value in g.tolist():
-            equation = Equation(self.response, self.kernel, value, self.slope)
-            answers.append(converged_pressure(equation, self.tolerance, first))
-        return answers
+        equations = (Equation(self.response, self.kernel, value, self.slope) for value in g.tolist())
+        return [converged_pressure(equation, self.tolerance) for equation in equations]
 
     def scaled(self, h: float) -> Scaled:
         """The kernel of a contact of the half-width h."""

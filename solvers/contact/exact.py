@@ -17,8 +17,8 @@ from .edges import Exponents
 from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
 from .residual import of_contact, of_field
-from .solution import Between, Surface, Task, Turns, all_between
-from .uniform import Contacts, Group, contacts, prescribed, sharp
+from .solution import Between, Surface, Task, Turns, all_between, solved_once
+from .uniform import Contacts, Group, contacts_of
 from .yielding import Strength
 
 #: Most points inside whose potentials are held in memory at a time.
@@ -32,10 +32,10 @@ class ClosedForm:
     """Method that answers every task directly, without a mesh.
 
     Attributes:
-        solution: makes the solution of a task and values of σ_XY/σ_YY, (states,).
+        solution: makes the solution of a task, of values of σ_XY/σ_YY and, or None, of loads, (states,).
     """
 
-    solution: Callable[[Task, NDArray], Any]
+    solution: Callable[[Task, NDArray, NDArray | None], Any]
 
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
@@ -45,62 +45,58 @@ class ClosedForm:
 @dataclass(frozen=True)
 class _AtSpeed:
     task: Task
-    solution: Callable[[Task, NDArray], Any]
+    solution: Callable[[Task, NDArray, NDArray | None], Any]
 
     def states(self, g: NDArray, load: NDArray | None = None) -> Any:
-        return self.solution(replace(self.task, body=self.task.body.loaded(load)), g)
+        return self.solution(self.task, g, load)
 
     def record(self) -> dict[str, Any]:
         return {}
 
 
-def contacts_of(task: Task, g: NDArray) -> Contacts:
-    """Contacts of a task, prescribed, with free ends or sharp, for values of σ_XY/σ_YY, (states,)."""
-    body, response = task.body, task.response
-    if body.pressure:
-        return prescribed(response, g, body.pressure, body.half_width)
-    if body.found:
-        return contacts(response, g, body.profile, body.compression)
-    return sharp(response, g, body)
-
-
 class ExactSolution:
-    """States of contacts on a uniform half-plane.
+    """States of contacts on a uniform half-plane; similar ones are solved once.
 
     Args:
         task: their speed.
         g: σ_XY/σ_YY, (states,).
+        load: load of each state [N/m], (states,); the task's if None.
     """
 
-    def __init__(self, task: Task, g: NDArray) -> None:
-        self.task, self.g = task, g
+    def __init__(self, task: Task, g: NDArray, load: NDArray | None = None) -> None:
+        self.task, self.g = replace(task, body=task.body.loaded(load)), g
+        self._g, of_solved, self._rows, self._growth = solved_once(task, g, load)
+        self._body = task.body.loaded(of_solved)
 
     @cached_property
     def contacts(self) -> Contacts:
-        """Pressures, half-widths and middles of all states."""
-        return contacts_of(self.task, self.g)
+        """Pressures, half-widths and middles of all solved states."""
+        return contacts_of(self._body, self.task.response, self._g)
+
+    def _of(self, name: str) -> NDArray[np.float64]:
+        return self.contacts.of(name)[self._rows]
 
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
         flat = FlatPunch(self.task.response, self.g)
-        α, β = (self.contacts.of(name) for name in "αβ")
+        α, β = map(self._of, "αβ")
         return Exponents(flat.α + (α > 0.0), flat.β + (β > 0.0))
 
     @property
     def half_width(self) -> NDArray[np.float64]:
         """Half-width of the contact [m], (states,)."""
-        return self.contacts.of("half_width")
+        return self._of("half_width") * self._growth
 
     @property
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.contacts.of("centre")
+        return self._of("centre") * self._growth
 
     @property
     def K_I(self) -> NDArray[np.float64]:
         """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        return self.contacts.of("K_I")
+        return self._of("K_I")
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
@@ -118,21 +114,22 @@ class ExactSolution:
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        return self.contacts.largest()
+        value, place = self.contacts.largest()
+        return value[self._rows], place[self._rows]
 
     @cached_property
     def residual(self) -> NDArray[np.float64]:
         """Residual of the integral equation under the pressure, relative, (states,)."""
-        body, load = self.task.body, self.task.body.load
+        body, load = self._body, self._body.load
 
         def of_group(group: Group) -> NDArray[np.float64]:
             loaded = body.loaded(load[group.rows] if np.ndim(load) else load)
             return of_contact(
-                self.task.response, self.g[group.rows], group, loaded, group.contact_stress,
+                self.task.response, self._g[group.rows], group, loaded, group.contact_stress,
                 (group.centre, group.half_width), group.pressure.kinks,
             )  # fmt: skip
 
-        return self.contacts.joined(of_group)
+        return self.contacts.joined(of_group)[self._rows]
 
     @cached_property
     def residual_inside(self) -> NDArray[np.float64]:
@@ -141,12 +138,12 @@ class ExactSolution:
         def of_group(group: Group) -> NDArray[np.float64]:
             kinks = np.append(group.pressure.kinks, group.pressure.breaks)
             return of_field(
-                self.task.response, self.g[group.rows], (group.α, group.β), group.contact_stress,
+                self.task.response, self._g[group.rows], (group.α, group.β), group.contact_stress,
                 lambda X, Y: self.contacts.inside_group(group, X[None], Y[None]),
                 self.task.places.points, kinks,
             )  # fmt: skip
 
-        return self.contacts.joined(of_group)
+        return self.contacts.joined(of_group)[self._rows]
 
     @cached_property
     def surface(self) -> Surface:
@@ -156,8 +153,8 @@ class ExactSolution:
         turns = self._turns
         for group in self.contacts.groups:
             if len(group.pressure.breaks):  # a prescribed pressure is that of all states
-                turns = turns_at_knots(group.pressure, self.g, self.contacts.σ_XX)
-        return Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX, turns=turns)
+                turns = turns_at_knots(group.pressure, self._g, self.contacts.σ_XX)
+        return Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX, turns=turns).of(self._rows)
 
     @cached_property
     def _turns(self) -> Turns | None:
@@ -170,7 +167,7 @@ class ExactSolution:
 
     def _between_kinks(self) -> Between | None:
         """Stresses between ends and kinks of contacts that have kinks; None where none has."""
-        each: list[Between | None] = [None] * len(self.g)
+        each: list[Between | None] = [None] * len(self._g)
         for group in self.contacts.groups:
             kinks = () if group.pressure.tips else group.pressure.kinks
             if len(kinks):
@@ -186,20 +183,21 @@ class ExactSolution:
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
         points = self.task.places.points
-        σ = np.empty((3, len(self.g), len(points)))
+        σ = np.empty((3, len(self._g), len(points)))
         for first in range(0, len(points), _TOGETHER):
             batch = slice(first, first + _TOGETHER)
             σ[:, :, batch] = self.contacts.inside(*points[batch].T)
-        return σ
+        return σ[:, self._rows]
 
     @cached_property
     def strength(self) -> Strength:
-        """Yield of the states."""
-        task = self.task
+        """Yield of the states, which is searched for at places of each."""
+        task, solved_each = self.task, isinstance(self._rows, slice)
+        each = self if solved_each else ExactSolution(task, self.g)
 
         def field(points: NDArray) -> NDArray[np.float64]:
-            return self.contacts.stresses(points[..., 0], points[..., 1])
+            return each.contacts.stresses(points[..., 0], points[..., 1])
 
         return Strength(
-            field, task.body, task.response, self.g, self.local, self.half_width, self._turns, _NEAREST
+            field, task.body, task.response, self.g, self.local, self.half_width, each._turns, _NEAREST
         )

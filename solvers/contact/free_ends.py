@@ -40,6 +40,7 @@ from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
 from .prescribed_pressure import LinearPressure
+from .pressure import Pressure
 from .recovery import (
     density_of_forces,
     facets_of,
@@ -242,42 +243,6 @@ _LOGS = (1.0, 2.0)
 _CLEARED = 0.1
 
 
-def _two_series(
-    gap: float, span: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
-) -> tuple[NDArray[np.float64], Callable[[NDArray], NDArray], NDArray[np.float64]]:
-    """Distances at which A(d) + d^a B(d) is sampled, its terms, and the map from samples to amplitudes.
-
-    Args:
-        gap: unit of the distances over a.
-        span: distances of the nearest and the farthest sample, over the gap.
-        exponent: a.
-        at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
-            and that of a remaining intensity, d^(a - 1), the last of the terms.
-        logs: multiply the terms of the second series by log d.
-
-    Returns:
-        Distances of the samples over a, (m,); a function that gives the terms at any distances, (n,) to
-        (n, terms); and the map from values at the samples to amplitudes of the terms, (terms, m).
-    """
-    low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
-    t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
-    samples = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
-    powers = np.arange(_TERMS_OF_EACH)
-
-    def terms(d: NDArray) -> NDArray[np.float64]:
-        x = d / high**2
-        powers_of_d = np.power.outer(x, np.concatenate([powers, exponent + powers]))
-        if logs:
-            powers_of_d[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
-        if not at_end:
-            return powers_of_d
-        more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
-        more[:, :-1] *= np.log(x)[:, None]
-        return np.concatenate([powers_of_d, more], axis=1)
-
-    return samples, terms, np.asarray(np.linalg.pinv(terms(samples)), dtype=np.float64)
-
-
 @dataclass(frozen=True)
 class Series:
     """Continuation of A(d) + d^a B(d), A and B smooth, from samples to other distances d.
@@ -301,6 +266,38 @@ class Series:
         return lambda d: self.by_samples(d) @ values
 
 
+def _two_series(
+    gap: float, span: tuple[float, float], exponent: float, at_end: bool = False, logs: bool = False
+) -> Series:
+    """Continuation of A(d) + d^a B(d) from samples.
+
+    Args:
+        gap: unit of the distances over a.
+        span: distances of the nearest and the farthest sample, over the gap.
+        exponent: a.
+        at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
+            and that of a remaining intensity, d^(a - 1), the last of the terms.
+        logs: multiply the terms of the second series by log d.
+    """
+    low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
+    t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
+    samples = np.asarray(((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2)
+    powers = np.arange(_TERMS_OF_EACH)
+
+    def terms(d: NDArray) -> NDArray[np.float64]:
+        x = d / high**2
+        powers_of_d = np.power.outer(x, np.concatenate([powers, exponent + powers]))
+        if logs:
+            powers_of_d[:, _TERMS_OF_EACH:] *= np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
+        if not at_end:
+            return powers_of_d
+        more = np.power.outer(x, exponent + np.append(_LOGS, -1.0))
+        more[:, :-1] *= np.log(x)[:, None]
+        return np.concatenate([powers_of_d, more], axis=1)
+
+    return Series(samples, terms, np.asarray(np.linalg.pinv(terms(samples)), dtype=np.float64))
+
+
 def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 1.0) -> Series:
     """Continuation of pressure or slopes to a kink where they are finite.
 
@@ -311,7 +308,7 @@ def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 
         farther: distance of the farthest sample over the usual distance.
     """
     span = _NEAREST_AT_KINK * farthest, farther * farthest
-    return Series(*_two_series(gap, span, exponent, logs=exponent % 1.0 == 0.0))
+    return _two_series(gap, span, exponent, logs=exponent % 1.0 == 0.0)
 
 
 def farthest_at_kink(tolerance: float) -> float:
@@ -464,12 +461,12 @@ def slopes_towards_ends(
             length = min(gap, 1.0)
             near, cleared = ((d > 0.0) & (d < share * length) for share in (_RANGE_AT_END[0], _CLEARED))
             if cleared.any():
-                samples, terms, amplitudes = _two_series(gap, _RANGE_AT_END, a, at_end=True)
+                series = _two_series(gap, _RANGE_AT_END, a, at_end=True)
                 rows[0][near] = 0.0
-                more = np.zeros((len(X), len(samples)))
-                more[cleared] = -terms(d[cleared])[:, -1:] * amplitudes[-1]
-                more[near] = terms(d[near])[:, :-1] @ amplitudes[:-1]
-                places.append(end + side * samples)
+                more = np.zeros((len(X), len(series.samples)))
+                more[cleared] = -series.terms(d[cleared])[:, -1:] * series.amplitudes[-1]
+                more[near] = series.terms(d[near])[:, :-1] @ series.amplitudes[:-1]
+                places.append(end + side * series.samples)
                 rows.append(more)
     return np.concatenate(places), np.concatenate(rows, axis=1)
 
@@ -597,7 +594,7 @@ def gaps_of(kinks: NDArray) -> tuple[float, float]:
     return 1.0 + float(kinks.min(initial=1.0)), 1.0 - float(kinks.max(initial=-1.0))
 
 
-class KinkedPressure:
+class KinkedPressure(Pressure):
     """Pressure σ_YY over N/(2a) of one state, with free ends and kinks.
 
     Args:
@@ -613,8 +610,10 @@ class KinkedPressure:
         infinite: the pressure is infinite at its kinks.
     """
 
+    kinks: NDArray[np.float64]
+
     #: Both ends are free.
-    K_I = np.zeros((1, 2))
+    K_I = np.zeros((1, 2))  # type: ignore[assignment]
 
     def __init__(
         self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
@@ -623,7 +622,8 @@ class KinkedPressure:
     ) -> None:  # fmt: skip
         self._infinite = infinite
         facets = facets_of(s, degree)
-        self._chart, self.kinks, self._exponents, self._exponent = chart, kinks, exponents, exponent
+        self._chart, self.kinks, self._exponent = chart, kinks, exponent
+        self.β, self.α = exponents
         self._farthest = farthest_at_kink(tolerance)
         self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
         self._nodes = reference_nodes(s, facets)
@@ -635,7 +635,7 @@ class KinkedPressure:
         ]
 
     @property
-    def breaks(self) -> NDArray[np.float64]:
+    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
         """Positions over a between which pressure times the chart's stretch is a polynomial, (n,)."""
         return np.asarray(self._chart.surface_position(self._start[1:]))
 
@@ -650,11 +650,10 @@ class KinkedPressure:
         i = np.abs(edges[:, None] - places).argmin(axis=0)
         return lengths[[i, i + 1]]
 
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at positions over a, (1, n); NaN beside the contact."""
+    def series(self, r: NDArray) -> NDArray[np.float64]:
         σ, inside = np.full(len(r), np.nan), under_punch(r)
         σ[inside] = self._piecewise(r[inside])
-        ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, self._exponents)
+        ends = zip((1.0 + r, 1.0 - r), self._samples, self._at_samples, (self.β, self.α))
         for d, samples, values, exponent in ends:
             near = (d > 0.0) & (d < samples[0])
             σ[near] = towards_end(d[near], samples, values, exponent)
@@ -664,9 +663,8 @@ class KinkedPressure:
                 near = (d >= 0.0) & (d < series.samples.min())
                 if near.any():
                     σ[near] = series.through(self._piecewise(at + side * series.samples))(d[near])
-        return σ[None]
+        return (σ / ((1.0 - r) ** self.α * (1.0 + r) ** self.β))[None]
 
-    @property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each.
 

@@ -38,22 +38,21 @@ from .closed_form import FlatPunch
 from .edges import Exponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
-    FIRST,
     Contact,
     Contacts,
     ContactsAtSpeed,
     Equation,
     Parts,
     Resolution,
-    change,
     check_exponents,
+    converged,
     is_converged,
     not_converged,
     resolutions,
 )
-from .panelled import PanelledPressure, Panels
+from .panelled import Panels
 from .panels import FreeEnds
-from .pressure import SolvedPressure
+from .pressure import Expansion, Pressure
 from .uniform import contacts, off_tips, panels_of
 from .uniform import local_exponents as of_the_surface
 
@@ -108,8 +107,8 @@ def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
 
 def vanishing(
     equation: Equation, resolution: Resolution, resultant: float = -2.0
-) -> tuple[SolvedPressure, float]:
-    """SolvedPressure of a contact between two free ends, at which it vanishes.
+) -> tuple[Pressure, float]:
+    """Pressure of a contact between two free ends, at which it vanishes.
 
     An intensity left by the resolution is removed by a little of a flat punch and of the slope 1.
 
@@ -140,8 +139,8 @@ _TOGETHER = 200
 
 
 @dataclass(frozen=True)
-class Kinked(SolvedPressure):
-    """SolvedPressure between free ends under a slope with kinks.
+class Kinked(Pressure):
+    """Pressure between free ends under a slope with kinks.
 
     Attributes:
         alone: σ₀, the pressure on the surface's solid alone.
@@ -153,7 +152,7 @@ class Kinked(SolvedPressure):
     """
 
     alone: FreeEnds
-    more: SolvedPressure
+    more: Pressure
     places: tuple[float, ...]
     finest: float
     rough: bool
@@ -175,7 +174,7 @@ class Kinked(SolvedPressure):
         return float(self.more.β)
 
     @cached_property
-    def _alone(self) -> PanelledPressure:
+    def _alone(self) -> Expansion:
         return on_panels(self.alone, self.finest, self.places)
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
@@ -193,8 +192,11 @@ class Kinked(SolvedPressure):
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         fine = on_panels(self.alone, min(finest, self.finest), self.places)
-        t, σ = self.more.points(finest)
-        return np.append(t, fine.panels.t), np.append(σ, fine.panels.weights * fine.p)
+        (t, σ), (t_alone, σ_alone) = self.more.points(finest), fine.points(np.inf)
+        return np.append(t, t_alone), np.append(σ, σ_alone)
+
+    def continued(self, free: tuple[bool, bool]) -> "Kinked":
+        return replace(self, more=self.more.continued(free))
 
 
 def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
@@ -202,27 +204,27 @@ def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
     return (1.0 - r) * (1.0 + r) * alone.series(r)
 
 
-def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> PanelledPressure:
+def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> Expansion:
     """σ₀ by its values on panels that get shorter towards its kinks."""
     panels = Panels(alone.α - 1.0, alone.β - 1.0, finest, places)
-    return PanelledPressure(panels, without_weight(alone, panels.t))
+    return panels.pressure(without_weight(alone, panels.t))
 
 
 def integral(
-    pressure: PanelledPressure, kernel: Callable[[NDArray], NDArray], r: NDArray, rough: bool
+    pressure: Expansion, kernel: Callable[[NDArray], NDArray], r: NDArray, rough: bool
 ) -> NDArray[np.float64]:
     """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
     if rough:
         return pressure.integral(kernel, r)
-    t, σ = pressure.panels.t, pressure.panels.weights * pressure.p
+    t, σ = pressure.points(np.inf)
     batches = [r[first : first + _TOGETHER] for first in range(0, len(r), _TOGETHER)]
     return np.concatenate([np.einsum("rtf,t->rf", kernel(part[:, None] - t), σ) for part in batches])
 
 
 def kinked(
     equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
-) -> tuple[Kinked, float]:
-    """SolvedPressure of a contact with kinks, and its correction as of :func:`vanishing`.
+) -> tuple[Pressure, float]:
+    """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
 
     Args:
         equation: of the contact, with its slope.
@@ -256,49 +258,11 @@ def kinked(
     return Kinked(alone, added, places, longest, rough, tips), taken
 
 
-#: Distances from a free end at which pressures are compared too, places between the ends, and the factor
-#: by which they have to agree better next to ends.
-_NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(-0.9, 0.9, 20), 10.0
-
-
-@dataclass(frozen=True)
-class ContactAtResolution:
-    """A contact at one resolution.
-
-    Attributes:
-        h, m: half-width and middle.
-        pressure: the contact's.
-        correction: of the pressure, relative, by which no intensity remains at free ends.
-        free: True where the left and the right end are free.
-    """
-
-    h: float
-    m: float
-    pressure: SolvedPressure
-    correction: float = 0.0
-    free: tuple[bool, bool] = (True, True)
-
-    def moved(self, before: "ContactAtResolution") -> float:
-        """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
-
-        In-plane stresses follow the pressure with such a factor there.
-        """
-        lengths = max(abs(self.h - before.h), abs(self.m - before.m)) / self.h
-        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
-        at = np.concatenate([*ends, _ACROSS])
-        earlier, later = (
-            (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.settled, self.settled)
-        )
-        near = np.abs(earlier - later)[: -len(_ACROSS)].max(initial=0.0) / np.abs(later).max()
-        return max(change(before.settled, self.settled), lengths, _MORE_AT_ENDS * float(near))
-
-    @cached_property
-    def settled(self) -> SolvedPressure:
-        """The pressure, continued to zero at free ends where panels resolve it less well."""
-        pressure, free = self.pressure, self.free
-        if isinstance(pressure, Kinked) and isinstance(pressure.more, PanelledPressure):
-            return replace(pressure, more=pressure.more.vanishing(free))
-        return pressure.vanishing(free) if isinstance(pressure, PanelledPressure) else pressure
+def _contact(
+    pressure: Pressure, h: float, m: float, free: tuple[bool, bool], correction: float = 0.0
+) -> Contact:
+    """Contact at a resolution, with the relative correction that takes intensities from free ends."""
+    return Contact(pressure.continued(free), None, correction, h, m, free)
 
 
 #: Accuracy of a half-width at rest, over which others are given.
@@ -362,23 +326,22 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             SolveError: no contact carries the load, or it is not resolved.
         """
         check_exponents(self._equation(g, 1.0))
-        before, error = None, np.inf
-        for resolution in resolutions(self.kernel.rough, FIRST):
-            now = self._at_resolution(g, h, resolution)
-            h = now.h
-            if before is not None:
-                error = max(now.moved(before), now.correction)
-                if is_converged(error, self.tolerance):
-                    unit = self.punch.unit
-                    check_reach(self.punch.profile, unit * (now.m - h), unit * (now.m + h))
-                    return Contact(now.settled, before.settled, error, h, now.m, now.free)
-            before = now
-        raise not_converged(error, self.tolerance)
+
+        def at_resolution(resolution: Resolution) -> Contact:
+            nonlocal h
+            contact = self._at_resolution(g, h, resolution)
+            h = contact.half_width
+            return contact
+
+        contact = converged(at_resolution, self.tolerance, self.kernel.rough)
+        low, high = (self.punch.unit * (contact.centre + side * h) for side in (-1.0, 1.0))
+        check_reach(self.punch.profile, low, high)
+        return contact
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
 
-    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
+    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> Contact:
         """Contact at a resolution, from the half-width h on."""
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
@@ -386,8 +349,10 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         m, h = self._lengths(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
-            return ContactAtResolution(h, m, *kinked(equation, resolution, self.punch, m, h))
-        return ContactAtResolution(h, m, *vanishing(equation, resolution))
+            pressure, taken = kinked(equation, resolution, self.punch, m, h)
+        else:
+            pressure, taken = vanishing(equation, resolution)
+        return _contact(pressure, h, m, (True, True), taken)
 
     def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
         """Middle and half-width of a contact with two free ends, from a half-width on."""
@@ -400,10 +365,10 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             SolveError: no contact carries the load, or it is not resolved.
         """
         h, error = 1.0, np.inf
-        for resolution in resolutions(self.kernel.rough, FIRST):
+        for resolution in resolutions(self.kernel.rough):
             before = h
             if isinstance(self.punch.profile, Flat):
-                h = self._tilted(0.0, h, resolution).h
+                h = self._tilted(0.0, h, resolution).half_width
             else:
                 _, h = self._lengths(0.0, h, resolution)
             error = abs(h / before - 1.0)
@@ -411,7 +376,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
                 return h
         raise not_converged(error, self.tolerance)
 
-    def _tilted(self, g: float, h: float, resolution: Resolution) -> ContactAtResolution:
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> Contact:
         """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
@@ -431,12 +396,12 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         if load(whole) <= 0.0:
             slope = 2.0 * whole * punch.unit / punch.compression * rise
             pressure = each[whole][0].pressure(np.array([1.0, slope]))
-            return ContactAtResolution(whole, 0.0, pressure, free=(False, False))
+            return _contact(pressure, whole, 0.0, (False, False))
         h = half_width_of_load(load, min(h, whole), punch)
         parts, slope = each[h]
         m = float(np.sign(rise)) * (h - whole)
         pressure = parts.pressure(np.array([1.0, slope]))
-        return ContactAtResolution(h, m, pressure, free=(side == 0, side == 1))
+        return _contact(pressure, h, m, (side == 0, side == 1))
 
 
 def local_exponents(

@@ -22,15 +22,14 @@ from ..layers.layered import LayersAtSpeed
 from ..layers.stiffness import Medium
 from ..profiles import cusp, jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
-from .closed_form import FlatPunch
+from .closed_form import FlatPunch, in_plane
 from .edges import Exponents, under_punch, weights_hilbert
-from .equation import COARSE, FINE, Contact, Contacts, ContactsAtSpeed, PrescribedPressure
+from .equation import Contact, Contacts, ContactsAtSpeed
 from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
-from .pressure import ENDS, SolvedPressure, in_plane
-from .pressure import largest as largest_next_to_kinks
-from .recovery import largest
+from .prescribed_pressure import COARSE, FINE
+from .pressure import ENDS, Pressure, largest, largest_smooth
 from .solution import Places, Surface, Task, Turns, together
 
 #: The two frictions solved for a prescribed pressure.
@@ -49,8 +48,11 @@ def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> 
     body = task.body
     if body.pressure:
         speed = ContactsAtSpeed(task.response, stack, np.zeros_like, tolerance)
-        rule = float(stack.layers[0].H), speed.kernel.rough
-        fine, coarse = (PrescribedPressure(body.pressure, nodes, *rule) for nodes in (FINE, COARSE))
+        H = float(stack.layers[0].H)
+        fine, coarse = (
+            replace(body.pressure, nodes=nodes, length=H, rough=speed.kernel.rough)
+            for nodes in (FINE, COARSE)
+        )
         nodes = Contacts(_NODES, [Contact(fine, coarse, 0.0)] * len(_NODES))
         return AtSpeed(task, speed, nodes, np.zeros(1))
     if body.found:
@@ -106,7 +108,7 @@ class AtSpeed:
         regular = nodes.of_each(lambda pressure, g, h: self.strain(pressure, g, h, X))
         return OnSurface(X, np.abs(X) <= near, p, rest, regular)
 
-    def strain(self, pressure: SolvedPressure, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
+    def strain(self, pressure: Pressure, g: float, h: float, X: NDArray) -> NDArray[np.float64]:
         """Strain μ u,X that the layers add at positions (n,) on the surface, (n,).
 
         Args:
@@ -333,7 +335,7 @@ class LayeredSolution:
         profile = self.at.task.body.profile
         pressure: Any = self.at.nodes.each[0].pressure
         if len(pressure.breaks):
-            return turns_at_knots(pressure.prescribed, self.g, self._σ_XX)
+            return turns_at_knots(pressure, self.g, self._σ_XX)
         if jumps(profile) or not len(kinks(profile)) or not self.free.any():
             return None
         ends = turns_at_ends(surface, self.local)
@@ -378,10 +380,10 @@ class LayeredSolution:
         if not finite.any():
             value, place = np.full((2, len(self.g)), np.nan)
         elif not len(kinks(profile)) or not finite.all():
-            value, place = largest(self._pressure, lambda i, r: self._pressure(r, i)[0])
+            value, place = largest_smooth(self._pressure, lambda i, r: self._pressure(r, i)[0])
         else:
             of_kinks = [
-                largest_next_to_kinks(
+                largest(
                     lambda r: self._pressure(r, i)[0], self._kinks(i).tolist(), cusp(profile)  # noqa: B023
                 )
                 for i in range(len(self.g))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .solution import Solution, Task
 
 #: σ_YY over N/(2a) at positions X over a under the punch.
-Pressure = Callable[[NDArray], NDArray]
+ContactStress = Callable[[NDArray], NDArray]
 
 
 class Solver(Protocol):

@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
-from .pressure import SolvedPressure
+from .pressure import Expansion, Functions
 
 #: Points of a panel; matrices from values there to coefficients of Legendre polynomials, and to slopes.
 _NODES = 14
@@ -81,7 +81,7 @@ def _longest(x: Any, finest: float) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
-class Panels:
+class Panels(Functions):
     """Rule on panels for integrals with the weight (1 - t)^α (1 + t)^β.
 
     Attributes:
@@ -146,7 +146,7 @@ class Panels:
         middle = (self.ends[panel] + self.ends[panel + 1]) / 2.0
         return np.asarray(legendre.legvander((x - middle) / self.half[panel], _NODES - 1) @ _TO_LEGENDRE)
 
-    def values(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
+    def interpolated(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
         """Values at places x of functions p with values (n, ...) at the points, shape of x and (...)."""
         inside = np.clip(x, -_REACH, _REACH)
         values = np.empty((*inside.shape, *p.shape[1:]))
@@ -194,73 +194,57 @@ class Panels:
         places, weights = (np.concatenate(numbers) for numbers in zip(*parts))
         return places, weights
 
+    def pressure(self, p: NDArray) -> Expansion:
+        """Pressure by its values over N/(2a) without its weight at the points, (n,)."""
+        return Expansion(self.α, self.β, p, self)
 
-@dataclass(frozen=True)
-class PanelledPressure(SolvedPressure):
-    """Pressure by its values at points of panels.
+    # As functions of an :class:`Expansion`, whose coefficients are values at the points.
 
-    Attributes:
-        panels: the panels.
-        p: pressure over N/(2a) without its weight at their points, (n,).
-    """
+    def sum(self, p: NDArray, r: NDArray) -> NDArray[np.float64]:
+        return self.interpolated(p, _x(r))
 
-    near = 1.0
+    def rest(self, p: NDArray, r: NDArray, near: float) -> NDArray[np.float64]:
+        """Hilbert transform without that of the weight, see :meth:`.pressure.Pressure.rest`."""
+        values, under = np.empty(len(r)), np.abs(r) < 1.0
+        values[~under] = (self.weights * p / (self.t - r[~under, None])).sum(axis=1)
+        x = _x(r[under])
+        x = np.where(np.abs(x[:, None] - self.x).min(axis=1) < 1e-7, x + 3e-7, x)
+        difference = p - self.interpolated(p, x)[:, None]
+        values[under] = (self.weights * difference / self.apart(x[:, None], self.x - x[:, None])).sum(
+            axis=1
+        )
+        return values / np.pi
 
-    panels: Panels
-    p: NDArray[np.float64]
+    def integral(
+        self, p: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray
+    ) -> NDArray[np.float64]:
+        """Integrals with a kernel, see :meth:`.pressure.Pressure.integral`."""
+        under = np.abs(r) < 1.0
+        beside = np.einsum("rtf,t->rf", kernel(r[~under, None] - self.t), self.weights * p)
+        integrals = np.empty((len(r), beside.shape[-1]))
+        integrals[~under] = beside
+        for i, x in zip(np.flatnonzero(under), _x(r[under]).tolist()):
+            integrals[i] = p @ self.row(kernel, x)
+        return integrals
 
-    def vanishing(self, free: tuple[bool, bool] = (True, True)) -> "PanelledPressure":
-        """Pressure continued to zero at free ends, left and right: p falls like d and d log d.
+    def points(self, p: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Rule for other integrals, see :meth:`.pressure.Pressure.points`."""
+        fine = replace(self, finest=min(finest, self.finest))
+        return fine.t, fine.weights * self.interpolated(p, fine.x)
+
+    def continued(self, p: NDArray, free: tuple[bool, bool]) -> NDArray[np.float64]:
+        """Values that fall to zero at free ends, left and right, like d and d log d.
 
         Nearer to an end than ``_MENDED`` a fit of such terms replaces p; the equation, which is weighted
         there as edges need it, resolves p only relative to the largest p.
         """
-        p = self.p.copy()
-        for x in [side * self.panels.x for side, is_free in zip((-1.0, 1.0), free) if is_free]:
+        continued = p.copy()
+        for x in [side * self.x for side, is_free in zip((-1.0, 1.0), free) if is_free]:
             d = 2.0 / (1.0 + np.exp(x))
             fitted, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
-            c, *_ = np.linalg.lstsq(_to_end(d[fitted]), self.p[fitted] / d[fitted], rcond=None)
-            p[near] = d[near] * (_to_end(d[near]) @ c)
-        return PanelledPressure(self.panels, p)
-
-    @property
-    def α(self) -> float:  # type: ignore[override]
-        """Exponent at the right end."""
-        return self.panels.α
-
-    @property
-    def β(self) -> float:  # type: ignore[override]
-        """Exponent at the left end."""
-        return self.panels.β
-
-    def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self.panels.values(self.p, _x(r))
-
-    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        panels, values = self.panels, np.empty(len(r))
-        under = np.abs(r) < 1.0
-        values[~under] = (panels.weights * self.p / (panels.t - r[~under, None])).sum(axis=1)
-        x = _x(r[under])
-        x = np.where(np.abs(x[:, None] - panels.x).min(axis=1) < 1e-7, x + 3e-7, x)
-        difference = self.p - panels.values(self.p, x)[:, None]
-        values[under] = (
-            panels.weights * difference / panels.apart(x[:, None], panels.x - x[:, None])
-        ).sum(axis=1)
-        return values / np.pi
-
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        panels, under = self.panels, np.abs(r) < 1.0
-        σ = panels.weights * self.p
-        beside = np.einsum("rtf,t->rf", kernel(r[~under, None] - panels.t), σ)
-        integrals = np.empty((len(r), beside.shape[-1]))
-        integrals[~under] = beside
-        for i, x in zip(np.flatnonzero(under), _x(r[under]).tolist()):
-            integrals[i] = self.p @ panels.row(kernel, x)
-        return integrals
-
-    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = replace(self.panels, finest=min(finest, self.panels.finest))
-        return fine.t, fine.weights * self.panels.values(self.p, fine.x)
+            c, *_ = np.linalg.lstsq(_to_end(d[fitted]), p[fitted] / d[fitted], rcond=None)
+            continued[near] = d[near] * (_to_end(d[near]) @ c)
+        return continued
 
 
 def _to_end(d: NDArray) -> NDArray[np.float64]:

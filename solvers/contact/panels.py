@@ -287,6 +287,8 @@ class FreeEnds(Pressure):
     tips: Sequence[float] = ()
     cusp: float = 0.0
 
+    K_I = np.zeros(2)  # type: ignore[assignment]
+
     @property
     def α(self) -> float:  # type: ignore[override]
         """Exponent at the right end, positive."""

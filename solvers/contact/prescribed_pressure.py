@@ -6,7 +6,7 @@ logarithms cancel; far away L and σ(w) L + ... are sums of powers of 1/w, in wh
 """
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,19 +28,36 @@ _NEXT_TO_KNOT = 1e-30
 _AT_ONCE = 50_000
 
 
+#: Points of a panel, and of the coarser rule that measures the error of the finer one.
+FINE, COARSE = 20, 14
+#: Longest panel over the length of a kernel's variation; factor and number of steps by which panels
+#: shorten towards a logarithm.
+_SHARE, _GRADING, _STEPS = 1.2, 0.2, 20
+#: Panels at most.
+_MOST = 200_000
+
+
 @dataclass(frozen=True)
 class LinearPressure(Pressure):
     """σ_YY over N/(2a), linear between knots and 0 beside them.
 
+    Integrals with the kernels of layers are by Gauss's rule on pieces between knots.
+
     Attributes:
         knots: positions X/a that grow from -1 to 1, (n,).
         values: σ_YY there, not all of them 0, (n,).
+        nodes: number of points of such a piece.
+        length: length over a over which a kernel on the surface varies.
+        rough: True where the kernel has a logarithm at 0.
     """
 
-    α, β = 0.0, 0.0
+    α, β, near = 0.0, 0.0, -1.0  # its Hilbert transform is exact everywhere
 
     knots: NDArray[np.float64]
     values: NDArray[np.float64]
+    nodes: int = FINE
+    length: float = 1.0
+    rough: bool = False
 
     @property
     def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
@@ -71,6 +88,46 @@ class LinearPressure(Pressure):
 
     def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
         return self._sum(piece.change(step, share) for piece in self._pieces(z))
+
+    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return np.zeros_like(edges.α), np.zeros_like(edges.β)
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        return self.hilbert(r)
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return self._weighted(self._cut(self.knots, finest))
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        whole = self.points(self.length)
+        integrals = []
+        for place in r.tolist():
+            t, σ = self._weighted(self._towards(place)) if self.rough else whole
+            integrals.append(σ @ kernel(place - t))
+        return np.array(integrals)
+
+    def _cut(self, ends: NDArray, finest: float) -> NDArray[np.float64]:
+        """Ends of panels between ``ends``, none too long for functions that vary over ``finest``."""
+        longest = max(_SHARE * finest, 2.0 / _MOST)
+        panels = [ends[:1]]
+        for low, high in zip(ends[:-1].tolist(), ends[1:].tolist()):
+            count = max(int(np.ceil((high - low) / longest)), 1)
+            panels.append(low + (high - low) * np.arange(1, count + 1) / count)
+        return np.concatenate(panels)
+
+    def _towards(self, place: float) -> NDArray[np.float64]:
+        """Ends of panels that get shorter towards a place."""
+        near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
+        knots = self.knots
+        more = np.concatenate([place - near, place + near])
+        inside = more[(more > knots[0]) & (more < knots[-1])]
+        return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
+
+    def _weighted(self, ends: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        x, w = np.polynomial.legendre.leggauss(self.nodes)
+        half = np.diff(ends) / 2.0
+        t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
+        return t, (half[:, None] * w).ravel() * self(t)
 
     @staticmethod
     def _sum(integrals: Iterator[NDArray]) -> NDArray[Any]:

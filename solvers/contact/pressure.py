@@ -1,13 +1,16 @@
-"""Contact pressure: what all pressures have in common, and exact stresses under one."""
+"""Contact pressure, by whatever method: a weight at both ends times a smooth factor.
+
+What all pressures have in common is their value, their intensities and the search for the largest.
+Methods differ in how they find the factor.
+"""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import Response
 from .edges import weights_hilbert
 
 #: Distance over a from a cusp of the pressure at which it is sampled, on both sides.
@@ -26,8 +29,8 @@ class Pressure:
     """Contact pressure σ_YY = (1 - r)^α (1 + r)^β p(r) over N/(2a), |r| <= 1.
 
     Of one state or of several, whose exponents and coefficients then are columns that broadcast against
-    positions. Pressures over uniform half-planes also give their Hilbert transform, and most of them
-    Cauchy's integral below the surface, see :class:`galinx.solvers.solids.half_plane.Potential`.
+    positions. Pressures over uniform half-planes also give Cauchy's integral below the surface, see
+    :class:`galinx.solvers.solids.half_plane.Potential`; those of integral equations their integrals.
 
     Attributes:
         α, β: exponents at the right and the left end.
@@ -36,15 +39,17 @@ class Pressure:
         cusp: exponent below 1 of its change by the distance from a kink; 0 for none.
         breaks: ends of pieces in which it is linear; none for other pressures.
         resultant: ∫ σ_YY d(X/a) over N/(2a); -2 under a punch.
+        near: |r| up to which p can be evaluated.
     """
 
     α: Any
     β: Any
-    kinks: Sequence[float] = ()
+    kinks: Sequence[float] | NDArray = ()
     tips: Sequence[float] = ()
     cusp: float = 0.0
     breaks: Sequence[float] | NDArray = ()
     resultant: float = -2.0
+    near: float = 1.0
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         """Smooth factor p over N/(2a) at |r| <= 1."""
@@ -59,33 +64,31 @@ class Pressure:
         at_end = np.any(np.abs(r) == 1.0)
         return np.where(np.isinf(stress), np.nan, stress) if at_end else stress
 
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """Intensities at the left and the right end as in Eqs 56-57, 0 at a free end, (..., 2).
+
+        Beside a free end the other end has twice the smooth factor, as the weight there is that of a flat
+        punch times the distance from the free end, 2.
+        """
+        exponents = np.concatenate([np.atleast_1d(self.β), np.atleast_1d(self.α)], axis=-1)
+        K = -0.5 * self.series(ENDS) * 2.0 ** (self.α + self.β + 1.0)
+        return np.where(exponents < 0.0, K, 0.0)
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place, (states,) each; of a finite pressure."""
+        top, at = largest(lambda r: -self.σ_YY(r), self.kinks, self.cusp)
+        return np.array([top]), np.array([at])
+
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface; NaN at an end where it is infinite."""
-        raise NotImplementedError
+        transform, close = self.rest(r, self.near), np.abs(r) <= self.near
+        transform[close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
+        return transform
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")
-
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), finite, and its place, (states,) each."""
-        top, at = largest(lambda r: -self.σ_YY(r), self.kinks, self.cusp)
-        return np.array([top]), np.array([at])
-
-
-class SolvedPressure(Pressure):
-    """Contact pressure of an integral equation, with its integrals.
-
-    Attributes:
-        near: |r| up to which p can be evaluated.
-    """
-
-    near: float
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """Intensities at the left and the right end as in Eqs 56-57, dimensionless, (2,)."""
-        return -0.5 * self.series(ENDS)
 
     def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Exponents α and β at other frictions, (states,), by the local analysis of sharp edges there."""
@@ -95,11 +98,6 @@ class SolvedPressure(Pressure):
         """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
         raise NotImplementedError
 
-    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
-        transform, close = self.rest(r, self.near), np.abs(r) <= self.near
-        transform[close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
-        return transform
-
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
         raise NotImplementedError
@@ -108,9 +106,89 @@ class SolvedPressure(Pressure):
         """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
         raise NotImplementedError
 
+    def continued(self, free: tuple[bool, bool]) -> "Pressure":
+        """Pressure continued to zero at free ends, left and right, where it resolves them less well."""
+        return self
+
+
+class Functions:
+    """Functions f_k whose sums are pressures without their weight."""
+
+    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Values of ``count`` functions at r, (*r.shape, count)."""
+        raise NotImplementedError
+
+    def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
+        """Σ c_k f_k at r, in the shape of r; of each state where c is (states, functions)."""
+        return np.tensordot(c, self.values(r, c.shape[-1]), (-1, -1))
+
+    def near(self, count: int) -> float:
+        """|r| up to which sums of so many functions can be evaluated."""
+        return 1.0
+
+    def continued(self, c: NDArray, free: tuple[bool, bool]) -> NDArray[np.float64]:
+        """Coefficients of :meth:`Pressure.continued`."""
+        return c
+
+
+@dataclass(frozen=True)
+class Expansion(Pressure):
+    """Pressure as a sum of functions under its weight, p = Σ c_k f_k, of one state or of several.
+
+    Attributes:
+        α, β: exponents at the right and the left end, numbers or (states, 1).
+        c: coefficients over N/(2a), (functions,) or (states, functions).
+        functions: functions f_k, which know their integrals.
+    """
+
+    α: Any
+    β: Any
+    c: NDArray[np.float64]
+    functions: Any
+
+    @property
+    def near(self) -> float:  # type: ignore[override]
+        return float(self.functions.near(len(self.c)))
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return np.asarray(self.functions.sum(self.c, r))
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a) and its place, NaN where it is infinite, (states,) each."""
+        top = largest_smooth(lambda r: -self.σ_YY(r), lambda i, r: -self.σ_YY(r)[i])
+        value, place = np.where(np.ravel(np.minimum(self.α, self.β)) < 0.0, np.nan, top)
+        return value, place
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        return np.asarray(self.functions.rest(self.c, r, near))
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        return np.asarray(self.functions.integral(self.c, kernel, r))
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        t, forces = self.functions.points(self.c, finest)
+        return t, forces
+
+    def continued(self, free: tuple[bool, bool]) -> "Expansion":
+        return replace(self, c=self.functions.continued(self.c, free))
+
+    @property
+    def unresolved(self) -> NDArray[np.float64]:
+        """Relative error measured on the last of the functions, (states,)."""
+        return np.asarray(self.functions.unresolved(self.c))
+
+    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
+
+        Args:
+            r: positions over a in [-1, 1], (points,).
+            length: misplacement of each edge over a.
+        """
+        return np.asarray(self.functions.moved_edges(self, r, length))
+
 
 def largest(
-    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] = (), cusp: float = 0.0
+    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] | NDArray = (), cusp: float = 0.0
 ) -> tuple[float, float]:
     """Largest pressure under a punch and its place, by ever finer samples about several tops.
 
@@ -133,7 +211,7 @@ def largest(
 
 
 def _nearer(
-    pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float]
+    pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float] | NDArray
 ) -> tuple[float, float]:
     """Largest pressure between two places, and its place; by a parabola at last, if there is no kink."""
     for _ in range(_ROUNDS):
@@ -153,56 +231,48 @@ def _nearer(
     return max((float(p.max()), float(r[p.argmax()])), (float(top), float(r[i] + u * step)))
 
 
-class Loaded:
-    """Uniform half-plane under a contact pressure with friction, at one speed; all stresses are exact.
-
-    Attributes:
-        response: of the half-plane at that speed.
-        g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
-        pressure: the pressure, with Cauchy's integral.
-    """
-
-    response: Response
-    g: Any
-    pressure: Any
-
-    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
-        """In-plane stress over N/(2a) on the whole surface Y = 0; NaN where it is infinite (Eq 32)."""
-        σ_YY = self.pressure.σ_YY(r)
-        return in_plane(self.response, self.g, σ_YY, self.pressure.hilbert(r))
-
-    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
-        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
-
-    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
-        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
-        on, σ_YY = Y == 0.0, self.pressure.σ_YY(X)
-        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
-        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))
+#: Positions over a at which the search for the largest pressure starts, rounds of refinement, factor of
+#: each, and least distance between places.
+_STARTS = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
+_HALVINGS, _NEARER, _NEAREST = 6, 8.0, 1e-4
+#: Most tops that are refined, and three places around each.
+_SMOOTH_TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
 
 
-@dataclass(frozen=True)
-class LoadedHalfPlane(Loaded):
-    """Uniform half-plane under a pressure, see :class:`Loaded`."""
-
-    response: Response
-    g: Any
-    pressure: Any
-
-
-def in_plane(
-    response: Response, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
-) -> NDArray[np.float64]:
-    """In-plane stress over N/(2a) on the surface.
+def largest_smooth(
+    pressure: Callable[[NDArray], NDArray], of_state: Callable[[int, NDArray], NDArray]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value of a smooth pressure and its place over a, (states,) each.
 
     Args:
-        response: of the surface's solid.
-        g: σ_XY/σ_YY under the punch.
-        σ_YY: contact stress over N/(2a).
-        H: its Hilbert transform.
-        strain: strain μ u,X over N/(2a) that layers add.
+        pressure: function of positions over a, (n,), that gives the pressure of all states, (states, n).
+        of_state: function of a state's number and positions (n,), that gives its pressure, (n,).
     """
-    u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + strain
-    return response.σ_XX(u_X, σ_YY, g * σ_YY)
+    p = pressure(_STARTS)
+    inner = p[:, 1:-1]
+    top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
+    best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_SMOOTH_TOPS]
+    values, places = zip(*(_top_of_each(of_state, i) for i in best.T))
+    first, rows = np.argmax(values, axis=0), np.arange(len(p))
+    return np.array(values)[first, rows], np.array(places)[first, rows]
+
+
+def _top_of_each(
+    of_state: Callable[[int, NDArray], NDArray], i: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value and its place between the neighbours of position i of each state, (states,) each."""
+    places = _STARTS[i[:, None] + [-1, 0, 1]]
+    for _ in range(_HALVINGS):
+        three = np.stack([of_state(k, x) for k, x in enumerate(places)])
+        half = (places[:, 2] - places[:, 0]) / 2.0
+        divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
+        bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
+        round_ = (bend < 0.0) & (top > places[:, 0]) & (top < places[:, 2])
+        top = np.where(round_, top, places[np.arange(len(i)), three.argmax(axis=1)])
+        to_left, to_middle = top - places[:, 0], top - places[:, 1]
+        value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
+        half = np.maximum(half / _NEARER, _NEAREST)
+        places = np.clip(top, -1.0 + 2.0 * half, 1.0 - 2.0 * half)[:, None] + half[:, None] * _THREE
+    return value, top

@@ -24,7 +24,7 @@ of functions, and the last functions measure their effect on the intensities.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +33,7 @@ from scipy.special import gammaln, roots_legendre
 
 from .edges import under_punch
 from .panelled import Panels
+from .pressure import Expansion, Functions
 
 #: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
 #: another profile add further moments, and the highest measure how well these are resolved.
@@ -40,7 +41,7 @@ MOMENTS = 9
 
 
 @dataclass(frozen=True)
-class Polynomials:
+class Polynomials(Functions):
     """Chebyshev polynomials of r, which follow a pressure without its weight on a uniform solid."""
 
     def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
@@ -61,77 +62,9 @@ class Polynomials:
         """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
         return np.zeros(len(c))
 
-    def moved_edges(self, pressure: "RecoveredPressure", r: NDArray, _: float) -> NDArray[np.float64]:
+    def moved_edges(self, pressure: Expansion, r: NDArray, _: float) -> NDArray[np.float64]:
         """Change of the smooth factor where both edges are misplaced, 0: no edge of the mesh is."""
         return np.zeros((len(pressure.c), len(r)))
-
-
-@dataclass(frozen=True)
-class RecoveredPressure:
-    """Contact stress of several states, σ_YY/(N/2a) = (1 - r)^α (1 + r)^β Σ c_k f_k(r), r = X/a.
-
-    Attributes:
-        α, β: exponents at X = a and X = -a, (states,).
-        c: coefficients of the smooth factor, dimensionless, (states, functions).
-        functions: functions f_k.
-        free: True where the left and the right end are free, with an exponent larger by 1, (states, 2);
-            None for sharp edges.
-    """
-
-    α: NDArray[np.float64]
-    β: NDArray[np.float64]
-    c: NDArray[np.float64]
-    functions: "Polynomials | Stretch" = Polynomials()
-    free: NDArray[np.bool_] | None = None
-
-    #: Places in the contact at which the pressure is not smooth, and between which it is polynomial.
-    kinks: ClassVar[tuple[float, ...]] = ()
-    breaks: ClassVar[tuple[float, ...]] = ()
-
-    def factor(self, r: NDArray) -> NDArray[np.float64]:
-        """Smooth factor Σ c_k f_k(r) at r in [-1, 1], (states, points)."""
-        return np.asarray(self.c @ self.functions.values(r, self.c.shape[1]).T)
-
-    def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r = X/a, (states, points); NaN outside (-1, 1)."""
-        r = np.asarray(r, dtype=float)
-        inside = under_punch(r)
-        log_left, log_right = np.log1p(r[inside]), np.log1p(-r[inside])
-        result = np.full((len(self.c), len(r)), np.nan)
-        weight = np.exp(np.outer(self.α, log_right) + np.outer(self.β, log_left))
-        result[:, inside] = weight * self.factor(r[inside])
-        return result
-
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """Stress intensity factors at X = -a and X = a, dimensionless as in Eqs 56-57, (states, 2).
-
-        They are 0 at free ends. Beside a free end the other end has twice the smooth factor, as the
-        weight there is that of a flat punch times the distance from the free end, 2.
-        """
-        K = -0.5 * self.factor(np.array([-1.0, 1.0]))
-        return K if self.free is None else np.where(self.free, 0.0, K * 2.0 ** self.free[:, ::-1])
-
-    @property
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a) and its place over a, NaN where it is infinite, (states,) each."""
-        value, top = largest(lambda r: -self.σ_YY(r), lambda i, r: -self.σ_YY(r)[i])
-        infinite = np.minimum(self.α, self.β) < 0.0
-        return np.where(infinite, np.nan, value), np.where(infinite, np.nan, top)
-
-    @property
-    def unresolved(self) -> NDArray[np.float64]:
-        """Relative error measured on the last of the functions, (states,)."""
-        return self.functions.unresolved(self.c)
-
-    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
-
-        Args:
-            r: positions over a in [-1, 1], (points,).
-            length: misplacement of each edge over a.
-        """
-        return self.functions.moved_edges(self, r, length)
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
@@ -161,7 +94,7 @@ def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
 
 def from_moments(
     moments: NDArray, α: NDArray, β: NDArray, functions: "Polynomials | Stretch" = Polynomials()
-) -> RecoveredPressure:
+) -> Expansion:
     """Pressure with given moments.
 
     Args:
@@ -170,7 +103,7 @@ def from_moments(
             sharp edges, α + β = -1.
         functions: functions f_k, which represent the smooth factor.
     """
-    return RecoveredPressure(α, β, functions.coefficients(moments, α, β), functions)
+    return Expansion(α[:, None], β[:, None], functions.coefficients(moments, α, β), functions)
 
 
 @lru_cache(maxsize=4)
@@ -334,53 +267,6 @@ def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
     return at_t @ np.linalg.inv(at_nodes)
 
 
-#: Positions over a at which the search for the largest pressure starts, rounds of refinement, factor of
-#: each, and least distance between places.
-_STARTS = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
-_ROUNDS, _NEARER, _NEAREST = 6, 8.0, 1e-4
-#: Most tops that are refined, and three places around each.
-_TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
-
-
-def largest(
-    pressure: Callable[[NDArray], NDArray], of_state: Callable[[int, NDArray], NDArray]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest value of a smooth pressure and its place over a, (states,) each.
-
-    Args:
-        pressure: function of positions over a, (n,), that gives the pressure of all states, (states, n).
-        of_state: function of a state's number and positions (n,), that gives its pressure, (n,).
-    """
-    p = pressure(_STARTS)
-    inner = p[:, 1:-1]
-    top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
-    best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS]
-    values, places = zip(*(_nearer(of_state, i) for i in best.T))
-    first, rows = np.argmax(values, axis=0), np.arange(len(p))
-    return np.array(values)[first, rows], np.array(places)[first, rows]
-
-
-def _nearer(
-    of_state: Callable[[int, NDArray], NDArray], i: NDArray
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest value and its place between the neighbours of position i of each state, (states,) each."""
-    places = _STARTS[i[:, None] + [-1, 0, 1]]
-    for _ in range(_ROUNDS):
-        three = np.stack([of_state(k, x) for k, x in enumerate(places)])
-        half = (places[:, 2] - places[:, 0]) / 2.0
-        divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
-        bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
-        round_ = (bend < 0.0) & (top > places[:, 0]) & (top < places[:, 2])
-        top = np.where(round_, top, places[np.arange(len(i)), three.argmax(axis=1)])
-        to_left, to_middle = top - places[:, 0], top - places[:, 1]
-        value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
-        half = np.maximum(half / _NEARER, _NEAREST)
-        places = np.clip(top, -1.0 + 2.0 * half, 1.0 - 2.0 * half)[:, None] + half[:, None] * _THREE
-    return value, top
-
-
 #: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.
 _FINE = 0.3
 #: Number of last polynomials that measure how well a pressure is resolved, and on graded solids, where
@@ -405,7 +291,7 @@ _TIMES = 2
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Stretch(Functions):
     """Functions of a coordinate stretched towards the ends, which follow a pressure without its weight.
 
     Attributes:
@@ -431,7 +317,7 @@ class Stretch:
         r = np.clip(r, -1.0, 1.0)  # a contact node at an edge may be a rounding beyond it
         with np.errstate(divide="ignore"):
             x = np.log1p(r) - np.log1p(-r)
-        return _rule(-0.5, -0.5, self).values(_orthonormal(self, count), x)
+        return _rule(-0.5, -0.5, self).interpolated(_orthonormal(self, count), x)
 
     def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
         """Functions as in :meth:`functions`, before they are orthonormal, (len(r), functions)."""
@@ -486,7 +372,7 @@ class Stretch:
         tail = _TAIL_STIFFENING if self.stiffens else _TAIL
         return float((tail if self.graded else 1.0) * share)
 
-    def moved_edges(self, pressure: RecoveredPressure, r: NDArray, length: float) -> NDArray[np.float64]:
+    def moved_edges(self, pressure: Expansion, r: NDArray, length: float) -> NDArray[np.float64]:
         """Change of the smooth factor where both edges are misplaced by a length, (states, points).
 
         The pressure is stretched from the opposite edge. Its moments change like the functions over the
@@ -498,7 +384,7 @@ class Stretch:
             c = np.trim_zeros(c, "b")
             count = len(c)
             f, at_r = _at_points(self, count), self.values(r, count)
-            weights = _rule(float(pressure.α[i]), float(pressure.β[i]), self).weights
+            weights = _rule(float(pressure.α[i, 0]), float(pressure.β[i, 0]), self).weights
             moments = _moved(self, count, length) @ (weights * (f @ c))
             to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
             change[i] = np.abs(at_r @ to_factor).sum(axis=1)

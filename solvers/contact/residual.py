@@ -47,7 +47,7 @@ _DEEP = 1e-3
 _OF_KERNEL = 1e-10
 
 #: σ_YY over N/(2a) at positions (n,) of all states: (states, n).
-Pressure = Callable[[NDArray], NDArray]
+Stress = Callable[[NDArray], NDArray]
 
 
 class Rule:
@@ -79,12 +79,12 @@ class Rule:
         """Weights of ∫ (1 - t)^α (1 + t)^β F dt, (states, n); exponents (states,)."""
         return self._weights * self.right ** α[:, None] * self.left ** β[:, None]
 
-    def smooth(self, pressure: Pressure, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    def smooth(self, pressure: Stress, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Smooth part of a pressure, σ_YY over (1 - t)^α (1 + t)^β at :attr:`t`, (states, n)."""
         return _smooth(pressure, np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END), α, β)
 
 
-def _smooth(pressure: Pressure, r: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+def _smooth(pressure: Stress, r: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
     return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
 
 
@@ -92,8 +92,8 @@ def of_pressure(
     response: Response,
     g: NDArray,
     exponents: tuple[NDArray, NDArray],
-    slope: Pressure,
-    pressure: Pressure,
+    slope: Stress,
+    pressure: Stress,
     kinks: Sequence[float] | NDArray = (),
     breaks: Sequence[float] | NDArray = (),
     layers: Sequence[Scaled] = (),
@@ -142,7 +142,7 @@ def of_contact(
     g: NDArray,
     local: Any,
     body: Any,
-    pressure: Pressure,
+    pressure: Stress,
     lengths: tuple[NDArray, NDArray] | None = None,
     kinks: Sequence[float] | NDArray = (),
     breaks: Sequence[float] | NDArray = (),
@@ -204,7 +204,7 @@ def of_field(
     response: Any,
     g: NDArray,
     exponents: tuple[NDArray, NDArray],
-    pressure: Pressure,
+    pressure: Stress,
     inside: Callable[[NDArray, NDArray], NDArray],
     points: NDArray,
     kinks: Sequence[float] | NDArray = (),

@@ -222,6 +222,29 @@ class Task:
         return np.concatenate([values[run] for run in self.runs])
 
 
+def solved_once(
+    task: Task, g: NDArray, load: NDArray | None
+) -> tuple[NDArray[np.float64], NDArray | None, Any, Any]:
+    """States to solve for; contacts that are similar under all loads are solved once for each friction.
+
+    A half-plane has no length: stresses over N/(2a) do not depend on the load under a flat punch, nor
+    under a punch whose height is a power of |X|, where the half-width alone follows the load.
+
+    Args:
+        task: the speed.
+        g: σ_XY/σ_YY, (states,).
+        load: load of each state [N/m], (states,); the task's if None.
+
+    Returns:
+        Frictions and loads of the states to solve for, None for the task's load; the number of each state
+        among these, a slice where they are the same; and its half-width over that of the solved state.
+    """
+    if load is None or not task.body.alike:
+        return g, load, slice(None), 1.0
+    different, rows = np.unique(g, return_inverse=True)
+    return different, None, rows, task.body.growth(load)
+
+
 @dataclass(frozen=True)
 class Turns:
     """Limits of the stresses on the surface at free ends of a contact and at kinks of the punch.

@@ -25,12 +25,11 @@ from ..profiles import check_reach, cusp, jumps
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
 from ..solids.solid import Response
-from .closed_form import FlatPunch, Weighted
+from .closed_form import FlatPunch, Weighted, in_plane
 from .edges import Exponents
 from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
-from .prescribed_pressure import LinearPressure
-from .pressure import Pressure, in_plane
+from .pressure import Pressure
 
 #: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
 NEXT_TO_TIP = 1e-6
@@ -48,14 +47,17 @@ class Group:
         rows: numbers of these states, (rows,).
         pressure: pressure of all these states or of the only one.
         half_width, centre: half-width and centre of the contact [m], (rows,).
-        K_I: intensities at the left and the right end, (rows, 2).
     """
 
     rows: NDArray[np.int64]
     pressure: Any
     half_width: NDArray[np.float64]
     centre: NDArray[np.float64]
-    K_I: NDArray[np.float64]
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """Intensities at the left and the right end, (rows, 2)."""
+        return np.broadcast_to(self.pressure.K_I, (len(self.rows), 2))
 
     @property
     def α(self) -> NDArray[np.float64]:
@@ -112,10 +114,6 @@ class Contacts:
         for group, of_group in zip(self.groups, each):
             of_states[group.rows] = of_group
         return of_states
-
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at r in (-1, 1), off infinite values, (states, points)."""
-        return self.joined(lambda group: group.contact_stress(group.off_tips(r)))
 
     def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
         """In-plane stress on the whole surface, off the ends, (states, points)."""
@@ -216,34 +214,31 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
 
 
-def prescribed(response: Response, g: NDArray, pressure: LinearPressure, half_width: float) -> Contacts:
-    """Contacts under a prescribed pressure, of a half-width [m]."""
-    ends = np.tile(-0.5 * pressure.values[[0, -1]], (len(g), 1))
-    return _fixed(response, g, pressure, half_width, ends)
+def contacts_of(body: Any, response: Response, g: NDArray) -> Contacts:
+    """Contacts of a body, prescribed, with free ends or sharp.
 
-
-def sharp(response: Response, g: NDArray, body: Any) -> Contacts:
-    """Contacts of a punch with two sharp edges, see :class:`galinx.solvers.contact.solution.Body`."""
-    if body.flat:
-        K_I = np.column_stack([FlatPunch(response, g).K_I] * 2)
-        return _fixed(response, g, FlatPunch(response, g[:, None]), body.half_width, K_I)
+    Args:
+        body: see :class:`galinx.solvers.contact.solution.Body`.
+        response: of the half-plane at a speed.
+        g: σ_XY/σ_YY, (states,).
+    """
+    if body.found and not body.pressure:
+        return contacts(response, g, body.profile, body.compression)
+    if body.pressure or body.flat:
+        pressure = body.pressure or FlatPunch(response, g[:, None])
+        return Contacts(response, g, (_fixed(np.arange(len(g)), pressure, body.half_width),))
     from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 
-    loads = np.broadcast_to(body.load, g.shape).tolist()
-    groups = []
+    groups, loads = [], np.broadcast_to(body.load, g.shape).tolist()
     for i, (value, load) in enumerate(zip(g.tolist(), loads)):
         pressure = Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
-        own = (np.array([i]), pressure, np.full(1, body.half_width), np.zeros(1), pressure.K_I[None])
-        groups.append(Group(*own))
+        groups.append(_fixed(np.array([i]), pressure, body.half_width))
     return Contacts(response, g, tuple(groups))
 
 
-def _fixed(
-    response: Response, g: NDArray, pressure: Pressure, half_width: float, K_I: NDArray
-) -> Contacts:
-    """Contacts of one kind with given ends, of a half-width [m]."""
-    of_each = np.full(len(g), half_width), np.zeros(len(g))
-    return Contacts(response, g, (Group(np.arange(len(g)), pressure, *of_each, K_I),))
+def _fixed(rows: NDArray, pressure: Pressure, half_width: float) -> Group:
+    """States with given ends, of a half-width [m]."""
+    return Group(rows, pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
 
 
 def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
@@ -278,7 +273,7 @@ def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, l
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
     A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
     pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
-    return Group(np.arange(len(g)), pressure, h, h * (b - a), np.zeros((len(g), 2)))
+    return Group(np.arange(len(g)), pressure, h, h * (b - a))
 
 
 def _tilted(
@@ -304,7 +299,7 @@ def _tilted(
         if len(rows):
             column = np.s_[rows, None]
             pressure = Weighted(α[column], β[column], A[column], B[column], kind)
-            groups.append(Group(rows, pressure, h[rows], centre[rows], pressure.K_I[:, 0]))
+            groups.append(Group(rows, pressure, h[rows], centre[rows]))
     return tuple(groups)
 
 
@@ -325,8 +320,7 @@ def _by_quadrature(
         check_reach(profile, m - h, m + h)
         pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
         rows = np.flatnonzero(inverse == k)
-        of_each = np.full(len(rows), h), np.full(len(rows), m), np.zeros((len(rows), 2))
-        groups.append(Group(rows, pressure, *of_each))
+        groups.append(Group(rows, pressure, np.full(len(rows), h), np.full(len(rows), m)))
     return groups
 
 

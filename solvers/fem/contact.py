@@ -28,10 +28,10 @@ from galinx.meshes.layered import OnLayers
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import FemPlan
 from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
+from ..contact.pressure import Expansion
 from ..contact.recovery import (
     ContactRecovery,
     Polynomials,
-    RecoveredPressure,
     chebyshev,
     contact_recovery,
     from_moments,
@@ -145,7 +145,7 @@ class SharpEnds(Ends):
         half_width = np.full(len(g), float(body.half_width))
         return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
 
-    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> RecoveredPressure:
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
         return level.over_flat(ends.contact, ends.contact.g)
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
@@ -176,10 +176,10 @@ class FreeEnds(Ends):
         contact = combined(g, parts, amplitudes)
         return SolvedEnds(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
 
-    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> RecoveredPressure:
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
         whole, free = level.over_flat(ends.contact, ends.contact.g), ends.free
         smooth = without_zeros(whole.c, free)
-        return RecoveredPressure(whole.α + free[:, 1], whole.β + free[:, 0], smooth, free=free)
+        return replace(whole, α=whole.α + free[:, 1:], β=whole.β + free[:, :1], c=smooth)
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
@@ -372,7 +372,7 @@ class PunchLevel:
         """True where there is a mirror image on the same mesh."""
         return self.task.response.mirrored and not self.ends.single
 
-    def over_flat(self, part: Part, g: NDArray, more: float = 0.0) -> RecoveredPressure:
+    def over_flat(self, part: Part, g: NDArray, more: float = 0.0) -> Expansion:
         """Pressure from moments, with exponents of sharp edges at frictions g, or larger ones."""
         local = EdgeExponents(self.task.response, g)
         functions = self.plan.tests.stretch if self.plan.tests else Polynomials()

@@ -99,11 +99,13 @@ class Displacement:
         return self._task.response.stresses_at(points[:, 1], gradients, side)
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
-        """Stresses on the surface, by weights (states, fields) and σ_YY, NaN beside the punch."""
+        """Stresses on the surface, by weights (states, fields) and σ_YY, (states, n) or (n,)."""
         u_X, v_X = self._slopes.of(weights)
-        σ = np.nan_to_num(σ_YY)
+        places = self._task.places
+        σ = np.where(places.under, σ_YY, 0.0)
         σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
-        return Surface(self._task.places, σ_YY, σ_XX, raw, v_X)
+        σ_YY = np.broadcast_to(np.where(places.under, σ_YY, np.nan), σ_XX.shape)
+        return Surface(places, σ_YY, σ_XX, raw, v_X)
 
     def around(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at the points checked for yield, (3, states, k)."""

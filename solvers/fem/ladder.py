@@ -20,7 +20,7 @@ from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD, stre
 from ..contact.edges import from_edge
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import FemPlan, levels
-from ..contact.recovery import RecoveredPressure
+from ..contact.pressure import Expansion
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
@@ -59,7 +59,7 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
-def of_pressure(pressure: RecoveredPressure, moments: NDArray, moved: float = 0.0) -> Gauge:
+def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:
@@ -67,7 +67,7 @@ def of_pressure(pressure: RecoveredPressure, moments: NDArray, moved: float = 0.
         moments: of it, (states, moments).
         moved: distance over a by which the edges of the contact seem off, on cells that no degree mends.
     """
-    factor = pressure.factor(_ACROSS)
+    factor = pressure.series(_ACROSS)
     values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
     unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
     return Gauge(

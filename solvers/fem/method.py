@@ -12,7 +12,7 @@ from galinx.clock import Clock
 
 from ..contact import FREE_ENDS, OWN_PRESSURE
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
-from ..contact.method import Pressure, Solver
+from ..contact.method import ContactStress, Solver
 from ..contact.solution import Task
 from .contact import PunchLevel, shared_mesh
 from .discretisation import Discretisation, quiet_compiler
@@ -83,7 +83,7 @@ class FiniteElements:
     @contextmanager
     def one_state(
         self, task: Task, g: float, degree: int
-    ) -> Iterator[tuple[Space, Any, NDArray, Pressure]]:
+    ) -> Iterator[tuple[Space, Any, NDArray, ContactStress]]:
         """Space, displacement fields, their weights and the pressure of one state, without estimates.
 
         A prescribed pressure acts as a whole, not piece by piece.

@@ -51,7 +51,7 @@ from ..contact.free_ends import (
     slopes_towards_ends,
     turns_at_ends,
 )
-from ..contact.recovery import RecoveredPressure
+from ..contact.pressure import Expansion
 from ..contact.solution import Body, Places, Surface, Task, Turns
 from ..contact.stresses import NEAR_TIP, off_tips
 from ..errors import SolveError
@@ -350,8 +350,8 @@ class BalancedEnds(Ends):
         lengths = np.full(1, h * np.exp(-off / GROWTH)), np.full(1, h * lean)
         return BalancedContact(contact, *lengths, _FREE, off=off, lean=lean)
 
-    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> RecoveredPressure:
-        return replace(level.over_flat(ends.contact, ends.contact.g, 1.0), free=_FREE)
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
+        return level.over_flat(ends.contact, ends.contact.g, 1.0)
 
     def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
         assert level.plan.tests
@@ -365,8 +365,8 @@ class BalancedEnds(Ends):
         σ, lengths = pressure.σ_YY(_ACROSS), np.array([[balanced.off / GROWTH, balanced.lean]])
         of_others = [2.0 + 0.0 * moments, np.ones_like(lengths)]
         # What the last functions add is largest where they are multiplied by most.
-        factor = np.abs(pressure.factor(_ACROSS)).max(axis=1)
-        ends = np.abs(pressure.factor(np.array([-1.0, 1.0]))).max(axis=1)
+        factor = np.abs(pressure.series(_ACROSS)).max(axis=1)
+        ends = np.abs(pressure.series(np.array([-1.0, 1.0]))).max(axis=1)
         values = np.concatenate([σ, moments, lengths], axis=1)
         scale = np.concatenate([stresses.of_factor(σ), *of_others], axis=1)
         return Gauge(INTENSITIES, values, scale, pressure.unresolved * ends / factor)

@@ -6,7 +6,7 @@ mode ``traction`` it is that of a flat punch by its closed form (:class:`Formula
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..contact.closed_form import FlatPunch
 from ..contact.free_ends import turns_at_knots
 from ..contact.prescribed_pressure import LinearPressure
+from ..contact.pressure import Pressure
 from ..contact.solution import Places, Surface, Task, Turns
 from ..rays import NEAR, rays
 from .discretisation import Discretisation
@@ -26,26 +27,6 @@ from .punch import ContactStates
 from .solution import SolvedStates
 from .space import Space
 from .traction import LinearLoads, LoadedHalfPlane, Pieces
-
-
-@dataclass(frozen=True)
-class PressureOfStates:
-    """Prescribed contact stress of several states.
-
-    Attributes:
-        values: function of positions over a under the punch, (n,), that gives σ_YY over N/(2a),
-            (states, n) or (n,) for all states.
-        states: number of states.
-    """
-
-    values: Callable[[NDArray], NDArray]
-    states: int
-
-    def σ_YY(self, r: NDArray) -> NDArray[np.float64]:
-        """Contact stress over N/(2a) at positions over a, (states, n); NaN beside the punch."""
-        σ, under = np.full((self.states, len(r)), np.nan), np.abs(r) < 1.0
-        σ[:, under] = self.values(r[under])
-        return σ
 
 
 class LoadsLevel:
@@ -90,9 +71,9 @@ class LoadsLevel:
         assert self.task.body.pressure
         return self.task.body.pressure
 
-    def pressure(self, g: NDArray) -> PressureOfStates:
-        """Contact stress of states with values g of σ_XY/σ_YY, (states,)."""
-        return PressureOfStates(self.prescribed, len(g))
+    def pressure(self, g: NDArray) -> Pressure:
+        """Pressure of states with values g of σ_XY/σ_YY, (states,), or one of all."""
+        return self.prescribed
 
     def load_of(self, g: NDArray) -> NDArray[np.int64]:
         """Number of the load of each state, (states,)."""
@@ -123,7 +104,7 @@ class LoadsLevel:
 
         def σ_XX(X: NDArray) -> NDArray[np.float64]:
             at = self.displacement_at(replace(self.task, places=Places(X, np.empty((0, 2)))))
-            return at.surface(g, weights, np.tile(self.prescribed(X), (len(g), 1))).σ_XX
+            return at.surface(g, weights, self.prescribed(X)).σ_XX
 
         return lambda surface: turns_at_knots(self.prescribed, g, σ_XX)
 
@@ -184,9 +165,8 @@ class FormulaLevel(FieldsLevel):
     def load_of(self, g: NDArray) -> NDArray[np.int64]:
         return np.array([self._numbers[value] for value in g.tolist()])
 
-    def pressure(self, g: NDArray) -> PressureOfStates:
-        local = FlatPunch(self.task.response, g[:, None])
-        return PressureOfStates(lambda r: local.σ_YY_by_distance(1.0 + r, 1.0 - r), len(g))
+    def pressure(self, g: NDArray) -> Pressure:
+        return FlatPunch(self.task.response, g[:, None])
 
     def turns(self, g: NDArray, weights: NDArray) -> None:
         return None

@@ -17,7 +17,7 @@ from ..contact.edges import EdgeExponents, Exponents
 from ..contact.free_ends import turns_at_ends
 from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
-from ..contact.solution import Body, Places, Surface, Task, Turns, together
+from ..contact.solution import Body, Places, Surface, Task, Turns, solved_once, together
 from ..contact.yielding import Strength
 from .displacement import Displacement
 from .punch import ContactStates
@@ -31,8 +31,7 @@ class SolvedStates:
         task: the speed, and places of stresses; with lengths over the half-width of a mesh drawn for it.
         body: the sliding contact, under the load of each state.
         contact: nodal forces, and weights of the displacement fields.
-        pressure: contact pressure, a :class:`galinx.solvers.contact.recovery.RecoveredPressure`
-            or similar.
+        pressure: contact pressure, a :class:`galinx.solvers.contact.pressure.Pressure`.
         displacement: stresses by the fields.
         half_width, centre: half-width and middle of each contact [m], (states,).
         free: True where the left and the right end are free, (states, 2).
@@ -98,14 +97,14 @@ class Solution:
         solved: solved states, mesh by mesh.
         rows: number of each state among all solved states, (states,).
         body: the sliding contact, under the load of each state.
-        growth: half-width of each state over that of its solved state, (states,).
+        growth: half-width of each state over that of its solved state, (states,), or a number of all.
     """
 
     task: Task
     solved: Sequence[SolvedStates]
     rows: NDArray[np.int64]
     body: Body
-    growth: NDArray[np.float64]
+    growth: Any
 
     def _joined(self, of: Callable[[SolvedStates], NDArray], axis: int = 0) -> NDArray[Any]:
         """Values of all states by those of the solved states on each mesh, along an axis of states."""
@@ -145,7 +144,7 @@ class Solution:
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        value, place = self._joined(lambda states: np.array(states.pressure.largest), 1)
+        value, place = self._joined(lambda states: np.array(states.pressure.largest()), 1)
         return value, place
 
     @cached_property
@@ -246,8 +245,6 @@ def solution_of(
         g: σ_XY/σ_YY, (states,).
         load: load of each state [N/m], (states,); the task's if None.
     """
-    body, rows, growth = task.body.loaded(load), np.arange(len(g)), np.ones(len(g))
-    if load is not None and body.alike:
-        g, rows = np.unique(g, return_inverse=True)
-        load, growth = None, task.body.growth(load)
-    return Solution(task, solve(g, load), rows, body, growth)
+    g, of_solved, rows, growth = solved_once(task, g, load)
+    rows = np.arange(len(g))[rows]
+    return Solution(task, solve(g, of_solved), rows, task.body.loaded(load), growth)

@@ -45,7 +45,7 @@ def test_a_shared_mesh_gives_what_one_rank_gives(mesh, form):
 
 
 def test_shared_tractions_give_what_one_rank_gives():
-    load = FlatPunch(MovingFrame(2.0, 0.6), -0.66).σ_YY_by_distance
+    load = FlatPunch(MovingFrame(2.0, 0.6), -0.66).traction
     slopes = []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         solver = LoadedHalfPlane(space_on("confocal", REFINEMENT, 5, comm), MovingFrame(2.0, 0.6))

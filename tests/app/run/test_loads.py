@@ -197,9 +197,9 @@ def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
     known = ExactSolution
     asked = []
 
-    def given(task, g):
+    def given(task, g, load):
         asked.append(task.body.load)
-        return known(task, g)
+        return known(task, g, load)
 
     monkeypatch.setitem(PROFILES, "crowned", _Crowned)
     changes = ALL | CLOSED | {"output.quantities": ["sif", "surface"], "output.points": None}
@@ -210,6 +210,24 @@ def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
     monkeypatch.setitem(METHODS, "closed_form", alone)
     found = computed("tables4_5", changes | {"punch.load": list(LOADS)})
     assert asked == list(LOADS)
+    for path, values in of_states(expected.data).items():
+        np.testing.assert_array_equal(found.data[path], values, err_msg=path)
+
+
+def test_a_method_that_takes_loads_is_given_that_of_each_state(monkeypatch):
+    """Also under a flat punch, whose stresses over N/(2a) do not depend on it."""
+    asked = []
+
+    def given(task, g, load):
+        asked.append(load)
+        return ExactSolution(task, g, load)
+
+    changes = ALL | CLOSED | punch("flat") | {"punch.load": list(LOADS)}
+    expected = computed("tables4_5", changes)
+    method = replace(METHODS["closed_form"], made=lambda plan, progress, clock: ClosedForm(given))
+    monkeypatch.setitem(METHODS, "closed_form", method)
+    found = computed("tables4_5", changes)
+    assert [load.tolist() for load in asked] == [expected.data["states/load"].tolist()]
     for path, values in of_states(expected.data).items():
         np.testing.assert_array_equal(found.data[path], values, err_msg=path)
 

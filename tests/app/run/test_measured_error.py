@@ -1,5 +1,6 @@
 """What an estimate is made of, and when a ladder of degrees ends: errors of levels are prescribed."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
-from galinx.solvers.contact.recovery import MOMENTS, RecoveredPressure
+from galinx.solvers.contact.pressure import Expansion
+from galinx.solvers.contact.recovery import MOMENTS, Polynomials
 from galinx.solvers.fem import ladder as error
 from galinx.solvers.fem.ladder import Gauge, Ladder, MeasuredError, climb, solved_to_tolerance
 
@@ -199,13 +201,13 @@ def test_changes_that_a_bound_on_rounding_explains_are_rounding_unless_they_fall
 
 def test_the_pressure_and_its_moments_are_gauged():
     smooth = np.array([[-0.3, 0.1, *[0.0] * (MOMENTS - 2)]])
-    pressure = RecoveredPressure(np.array([-0.4]), np.array([-0.6]), smooth)
+    pressure = Expansion(np.array([[-0.4]]), np.array([[-0.6]]), smooth, Polynomials())
     one = error.of_pressure(pressure, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]))
     for i in range(1, 6):
         moments = np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])
         moments[0, i] += 2e-3
         assert error.of_pressure(pressure, moments).change(one)[0] == pytest.approx(1e-3)
-    steeper = RecoveredPressure(pressure.α, pressure.β, smooth + 1e-3 * (np.arange(MOMENTS) == 2))
+    steeper = replace(pressure, c=smooth + 1e-3 * (np.arange(MOMENTS) == 2))
     assert error.of_pressure(steeper, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])).change(one) > 2e-3
 
 

@@ -40,7 +40,7 @@ def transform(punch, at):
         d = (ends[1:, None] + ends[:-1, None]) / 2.0 + half * x
         distances = (d, 2.0 - d) if edge < 0.0 else (2.0 - d, d)
         t = edge + np.sign(other) * d
-        regular = (punch.σ_YY_by_distance(*distances) - punch.σ_YY(at)) / (t - at)
+        regular = (punch.traction(*distances) - punch.σ_YY(at)) / (t - at)
         return float(np.sum(half * w * regular))
 
     pole = punch.σ_YY(at) * np.log((1.0 - at) / (1.0 + at))

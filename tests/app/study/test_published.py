@@ -122,7 +122,7 @@ def test_intensities_with_dimensions_are_the_limits_of_the_pressure(tables_run):
         c = float(row[0].split()[1])
         punch, d = FlatPunch(T302.response(c), g), 1e-9
         near = -1e-6 * N / (2 * a) * np.array(
-            [punch.σ_YY_by_distance(d, 2.0 - d), punch.σ_YY_by_distance(2.0 - d, d)]
+            [punch.traction(d, 2.0 - d), punch.traction(2.0 - d, d)]
         )  # fmt: skip
         limits = near * [2.0**-punch.α * (2 * d) ** -punch.β, 2.0**-punch.β * (2 * d) ** -punch.α]
         assert [float(cell) for cell in row[4:]] == pytest.approx(limits, abs=6e-5)

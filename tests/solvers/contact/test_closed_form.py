@@ -35,7 +35,7 @@ def test_pressure_carries_the_load_and_leaves_the_punch_flat():
     t, w = np.polynomial.legendre.leggauss(60)
     τ = (t + 1.0) / 2.0  # distance = τ^8 takes the singular ends away
     total = sum(
-        np.sum(w / 2.0 * 8.0 * τ**7 * punch.σ_YY_by_distance(*ends))
+        np.sum(w / 2.0 * 8.0 * τ**7 * punch.traction(*ends))
         for ends in ((τ**8, 2.0 - τ**8), (2.0 - τ**8, τ**8))
     )
     assert total == pytest.approx(-2.0, rel=1e-12)
@@ -45,8 +45,8 @@ def test_pressure_carries_the_load_and_leaves_the_punch_flat():
 def test_intensities_are_the_limits_of_the_pressure_at_both_ends(g):
     """Eqs 56-58: -σ_YY over N/a times (1 - r)^-α (1 + r)^-β, at r = 1 and r = -1, by two routes."""
     punch, d = FlatPunch(MovingFrame(2.0, 0.6), g), 1e-200
-    at_right = -punch.σ_YY_by_distance(2.0, d) / 2.0 * d**-punch.α * 2.0**-punch.β
-    at_left = -punch.σ_YY_by_distance(d, 2.0) / 2.0 * 2.0**-punch.α * d**-punch.β
+    at_right = -punch.traction(2.0, d) / 2.0 * d**-punch.α * 2.0**-punch.β
+    at_left = -punch.traction(d, 2.0) / 2.0 * 2.0**-punch.α * d**-punch.β
     assert (at_left, at_right) == pytest.approx((punch.K_I, punch.K_I), rel=1e-12)
     ratio = punch.g * punch.response.q / punch.response.n
     assert np.pi * punch.K_I == pytest.approx(1.0 / np.sqrt(1.0 + ratio**2), rel=1e-14)

@@ -6,8 +6,8 @@ from line_loads_reference import FreeContact, Lines, Rule
 from random_solids import anisotropic, cubic, orthotropic, stiffness
 from support import THOROUGH
 
+from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.profiles.power import Parabolic, Power, Wedge

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from isotropic_field import field
 
+from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.solids.isotropic import MovingFrame
 
 PRESSURES = {

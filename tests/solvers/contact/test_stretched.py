@@ -91,9 +91,9 @@ def test_moved_edges_are_those_of_a_contact_that_ends_elsewhere(graded, polynomi
     """Read by the same functions, which know nothing of where it ends."""
     stretch, length, r = Stretch(0.8, graded), 1e-6, np.linspace(-1.0, 1.0, 7)
     whole = of_flat_punch(stretch, polynomials)
-    assert whole.factor(r) == pytest.approx(1.0 / np.pi, rel=1e-6)
+    assert whole.series(r) == pytest.approx(1.0 / np.pi, rel=1e-6)
     shorter = of_flat_punch(stretch, polynomials, -0.5 * length, 1.0 - 0.5 * length)
-    right = np.abs(shorter.factor(r) - whole.factor(r))[0]
+    right = np.abs(shorter.series(r) - whole.series(r))[0]
     moved = whole.moved_edges(r, length)[0]
     assert moved == pytest.approx(right + right[::-1], rel=1e-2, abs=1e-3 * moved.max())
     assert moved[0] > 0.3 * polynomials**2 * length / np.pi

@@ -24,12 +24,8 @@ def moment_error(mesh, refinement, degree, c=0.6, g=0.66):
     near, stretch = τ**8, 8.0 * τ**7
     errors = []
     for n in range(6):
-        moment = np.sum(
-            w * stretch * exact.σ_YY_by_distance(near, 2.0 - near) * eval_chebyt(n, near - 1.0)
-        )
-        moment += np.sum(
-            w * stretch * exact.σ_YY_by_distance(2.0 - near, near) * eval_chebyt(n, 1.0 - near)
-        )
+        moment = np.sum(w * stretch * exact.traction(near, 2.0 - near) * eval_chebyt(n, near - 1.0))
+        moment += np.sum(w * stretch * exact.traction(2.0 - near, near) * eval_chebyt(n, 1.0 - near))
         errors.append(abs(state.normal[0] @ eval_chebyt(n, X) - moment) / 2.0)
     solver.destroy()
     return max(errors)

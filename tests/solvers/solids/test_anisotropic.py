@@ -5,9 +5,8 @@ import pytest
 from random_solids import isotropic_as, random_solid, stiffness
 
 from galinx.solvers.contact import stresses
-from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch, LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.solids.anisotropic import Anisotropic
 from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.pressure import LoadedHalfPlane
 from galinx.solvers.contact.solution import Body
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.contact.yielding import Strength

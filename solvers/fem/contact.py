@@ -365,7 +365,7 @@ class PunchLevel:
     @cached_property
     def displacement(self) -> Displacement:
         """Displacement, for stresses at all places."""
-        return self.displacement_at(self.task)
+        return self._gauges.displacement(self.task) or self.displacement_at(self.task)
 
     @property
     def mirrored(self) -> bool:

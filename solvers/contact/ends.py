@@ -130,7 +130,8 @@ def half_width_of_load(
         load: logarithm of the load that is carried over the punch's load, by the half-width.
         h: half-width to begin with.
         punch: the punch.
-        rounding: relative error of the half-width, which ends the search where each call is expensive.
+        rounding: relative error of the half-width, which ends the search where each call is expensive. A
+            logarithm that is smaller counts as 0: loads grow no slower than half-widths, or hardly so.
 
     Raises:
         SolveError: no half-width carries the load.
@@ -138,7 +139,8 @@ def half_width_of_load(
 
     @cache
     def of_logarithm(x: float) -> float:
-        return load(h * float(np.exp(x)))
+        value = load(h * float(np.exp(x)))
+        return value if abs(value) > rounding else 0.0
 
     try:
         expected = abs(of_logarithm(0.0)) / _GROWTH

@@ -365,7 +365,7 @@ class PunchLevel:
     @cached_property
     def displacement(self) -> Displacement:
         """Displacement, for stresses at all places."""
-        return self.displacement_at(self.task)
+        return self._gauges.displacement(self.task) or self.displacement_at(self.task)
 
     @property
     def mirrored(self) -> bool:
@@ -461,11 +461,14 @@ class PunchLevel:
 
 
 def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
-    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's."""
+    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's.
+
+    Rounding may put a node at an edge a little beyond it, where functions of ends are not defined.
+    """
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
+    return lambda r: tests.stretch.functions(np.clip(r, -1.0, 1.0), tests.count + more * tests.a_degree)
 
 
 class AtSpeed:

@@ -5,13 +5,13 @@ the ends are solved for first, on the mesh of all speeds, where a few polynomial
 every friction and every load, and cells need not resolve a kink (:class:`EndsLevel`). Then every state
 has a mesh with cells graded towards its kinks (:class:`EndsBetweenKinks`).
 
-**Layers** have a length, so each contact has a mesh drawn for its half-width, which is searched for on a
-few meshes, at a lower degree at first, until the load that makes a contact of that size is the load of
-the task (:class:`_Search`). Three displacements are prescribed under the punch: its height around a
-nearby middle, the change of that height where the middle moves, and a constant. Their loads and the
-intensities at both ends are linear in their amplitudes. So the half-width of a mesh has a load of its
-own, at which both intensities vanish, and a middle: of a parabola at once, of other profiles once the
-middle hardly moves (:class:`BalancedEnds`).
+**Layers** have a length, so each contact has a mesh drawn for its half-width. That is searched for by
+:mod:`galinx.solvers.contact.ends`, at a lower degree first: the load that makes a contact of the mesh's
+half-width is to be the load of the task (:class:`_Search`). Three displacements are prescribed under the
+punch: its height around a nearby middle, the change of that height where the middle moves, and a
+constant. Their loads and the intensities at both ends are linear in their amplitudes. So the half-width
+of a mesh has a load of its own, at which both intensities vanish, and a middle: of a parabola at once, of
+other profiles once the middle hardly moves (:class:`BalancedEnds`).
 
 On the mesh of a contact the degree rises until the measured error is within tolerance. Where contacts of
 all loads differ in size alone, a single state of a friction stands for all of them.
@@ -32,6 +32,7 @@ from galinx.meshes.rings import Refinement
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents
+from ..contact.ends import Punch, half_width_of_load
 from ..contact.fem_plan import (
     NEAR_FREE_END,
     OWN_MESHES_KEPT,
@@ -423,12 +424,9 @@ class Sized:
         )  # fmt: skip
 
 
-#: Meshes at most, the largest step of the half-width's logarithm, and the least and the most by which the
-#: load's may grow with it.
-_MESHES, _LARGEST, _SLOPES = 40, 1.2, (0.5, 15.0)
-#: Step of the half-width's logarithm below which the degree is raised, by how much it is lower until
-#: then, and step over the tolerance below which the half-width is accepted.
-_ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.1
+#: Error of the half-width at a lower degree, and by how much that is lower; the error over the tolerance
+#: at the usual degree.
+_ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.5
 #: Least difference of the half-width's logarithm from which the growth of the load is computed.
 _APART = 1e-5
 #: Largest error of the half-width over the tolerance once all is solved; else another mesh is drawn.
@@ -447,67 +445,62 @@ class _Search:
 
     def __init__(self, work: Discretisation, task: Task, g: float, done: WorkDone) -> None:
         self._work, self._task, self._g, self._done = work, task, np.array([g]), done
-        self._growth, self._centre = GROWTH, 0.0
-        self._before: tuple[float, float] | None = None
+        #: Middle over the half-width; logarithms of loads, by the half-width, at the last degree.
+        self._lean = 0.0
+        self._tried: dict[float, float] = {}
 
     def half_width(self, h: float) -> float:
         """Half-width [m] of the contact that carries the load, from a half-width near by.
 
         Raises:
-            SolveError: no half-width was found.
+            SolveError: no half-width carries the load.
         """
-        x, tolerance, rough = float(np.log(h)), self._work.plan.tolerance, True
-        for _ in range(_MESHES):
-            off, lean = self._off(float(np.exp(x)), rough)
-            self._learn(x, off)
-            x_next = self._moved(x, off)
-            # The shift of the middle is accurate to its square.
-            step = max(abs(x_next - x), lean**2)
-            if not rough and step <= _SETTLED * tolerance:
-                return float(np.exp(x_next))
-            if rough and step <= max(_ROUGH, _SETTLED * tolerance):
-                # Loads of a low degree do not compare with those of a high one.
-                rough, self._before = False, None
-            x = x_next
-        raise SolveError(
-            f"finite elements did not find the half-width of the contact: after {_MESHES} meshes it is "
-            f"near {np.exp(x):.6g} m and still moves; take a speed farther from the limit"
-        )
+        body, settled = self._task.body, _SETTLED * self._work.plan.tolerance
+        punch = Punch(body.profile, 1.0, float(body.compression))
+        for lower, error in ((_LOWER, max(_ROUGH, settled)), (0, settled)):
+            # Loads of a low degree do not compare with those of a high one.
+            self._tried = {}
+            h = half_width_of_load(lambda h: self._off(h, lower, error), h, punch, error)  # noqa: B023
+            h = self._moved(h, self._tried[h])
+        return h
 
-    def _moved(self, x: float, off: float) -> float:
-        """Next logarithm of the half-width, by the growth of the load with it."""
-        return x - float(np.clip(off / self._growth, -_LARGEST, _LARGEST))
+    def _moved(self, h: float, off: float) -> float:
+        """Half-width under the task's load, by that under a load near by; its logarithm is off."""
+        (first, of_first), *_, (last, of_last) = 2 * [*self._tried.items()]
+        apart = float(np.log(last / first))
+        growth = (of_last - of_first) / apart if abs(apart) > _APART else GROWTH
+        return h * float(np.exp(-off / growth))
 
-    def _learn(self, x: float, off: float) -> None:
-        """Update the growth of the load with the half-width, by two half-widths of equal degree."""
-        if self._before is not None and abs(x - self._before[0]) > _APART:
-            low, high = _SLOPES
-            self._growth = float(np.clip((off - self._before[1]) / (x - self._before[0]), low, high))
-        self._before = x, off
+    def _off(self, h: float, lower: int, error: float) -> float:
+        """Logarithm of the load that makes a contact of half-width h [m], over the task's.
 
-    def _off(self, h: float, rough: bool) -> tuple[float, float]:
-        """Logarithm of the load that makes a contact of half-width h [m], over the task's; and shift of
-        the middle over h."""
+        Args:
+            h: half-width [m].
+            lower: difference of the degree from the usual one.
+            error: relative error that is allowed.
+        """
         sized, none = Sized(self._task, h), frozenset[str]()
-        mesh, ends = self._work.on(sized.plan(self._work.plan, none), none), self._ends(h)
-        degree = mesh.plan.degrees[self._task.number]
-        space = mesh.space(max(degree - _LOWER, DEGREES[0]) if rough else degree)
-        level = PunchLevel(mesh, sized.scaled, space, self._g, ends=ends)
-        self._done.count(level)
-        level.destroy()
-        balanced: Any = level.only
-        before, self._centre = self._centre, h * balanced.lean
-        return balanced.off, (self._centre - before) / h
+        mesh = self._work.on(sized.plan(self._work.plan, none), none)
+        degree = max(mesh.plan.degrees[self._task.number] - lower, DEGREES[0])
+        moved = np.inf
+        while moved**2 > error:  # the shift of the middle is accurate to its square
+            level = PunchLevel(mesh, sized.scaled, mesh.space(degree), self._g, ends=self._ends(h))
+            self._done.count(level)
+            level.destroy()
+            balanced: Any = level.only
+            moved, self._lean = balanced.lean - self._lean, balanced.lean
+        self._tried[h] = float(balanced.off)
+        return self._tried[h]
 
     def _ends(self, h: float) -> BalancedEnds:
-        return BalancedEnds(self._task.body.profile, h, self._centre)
+        return BalancedEnds(self._task.body.profile, h, h * self._lean)
 
     def solved(self, h: float) -> tuple["OwnState", float]:
         """Contact on a mesh drawn for a half-width [m], solved to the tolerance; its half-width [m]."""
         sized, words, ends = Sized(self._task, h), self._work.stresses, self._ends(h)
-        mesh = self._work.on(sized.plan(self._work.plan, words))
+        mesh = self._work.on(sized.plan(self._work.plan, words), words)
         state = own_state(mesh, sized.scaled, self._g, ends, self._done)
-        return state, float(np.exp(self._moved(float(np.log(h)), state.level.only.off)))  # type: ignore[union-attr]
+        return state, self._moved(h, state.level.only.off)  # type: ignore[union-attr]
 
 
 def solved_over_layers(

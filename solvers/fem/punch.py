@@ -8,9 +8,10 @@ the normal reactions caused by tangential forces r, friction requires
     (I - g T) R = R₀.
 
 The Krylov space of (T, R₀), made by Arnoldi's method, holds the contact forces of every g at that speed;
-a profile P that is not flat has a space of its own. For few contact nodes T is formed as a matrix. For a
-contact with free ends P is a combination of several shapes, each with a space of its own. Every state of
-a punch with friction is a sum of these parts.
+a profile P that is not flat has a space of its own. Where that takes many loads, as in some anisotropic
+solids with much friction, T is formed as a matrix. For a contact with free ends P is a combination of
+several shapes, each with a space of its own. Every state of a punch with friction is a sum of these
+parts.
 
 At a speed between others at which the punch was solved, its parts are interpolated. At a solved speed
 they are sampled at some frictions, between which they are polynomials in g to rounding. At another speed
@@ -41,7 +42,11 @@ from .space import Space
 LEAST = 1e-13
 #: Relative residual that refined solutions may bring back; what is larger takes further loads.
 _BROUGHT_BACK = 1e-12
+#: Most loads applied one after the other by an iterative solver.
 LIMIT = 120
+#: Number of loads from which on a factor takes loads at all contact nodes, and the rest is dense algebra;
+#: loads that are taken at once. A pass over the factor for a single load takes as long as six of these.
+_MANY, _AT_ONCE = 40, 64
 
 #: Numbers of frictions up to which each is solved for itself; beyond, all share a triangular form.
 _FEW = 40
@@ -52,23 +57,26 @@ class KrylovSpace:
 
     It grows by what is left of the equations at the worst friction. That is Arnoldi's method, but for
     rounding: loads are applied one after the other by rough solutions, and these are refined together.
-    What is left then is as small as the changes, and another few loads take it away.
+    What is left then is as small as the changes, and another few loads take it away. Where that takes
+    many loads, dense algebra gives the last ones (:meth:`complete_by`).
 
     Args:
         field: the punch without friction.
         forces: its forces in X and Y at the contact nodes, (2, n).
         refines: solutions are refined.
         left: relative residual of the contact forces that may remain, if it is above the least.
+        limit: most loads.
 
     Attributes:
         fields: displacements, of the punch without friction first, then of each tangential load.
         forces: their forces at the contact nodes, those of rough fields included, (fields, 2, n).
-        rough: displacements of the last loads at this rank's rows, not yet refined.
+        rough: displacements of loads without fields at this rank's rows, not yet refined; the last loads
+            may lack them.
         complete: the space holds every answer.
     """
 
-    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float) -> None:
-        self.fields, self.forces, self.refines = [field], forces[None], refines
+    def __init__(self, field: PETSc.Vec, forces: NDArray, refines: bool, left: float, limit: int) -> None:
+        self.fields, self.forces, self.refines, self.limit = [field], forces[None], refines, limit
         self.rough: list[NDArray[np.float64]] = []
         self.left = max(left, LEAST)
         self._size = np.linalg.norm(forces[1])
@@ -87,17 +95,17 @@ class KrylovSpace:
         return self._V[:, self.applied :]
 
     @property
-    def of_rough(self) -> NDArray[np.float64]:
-        """Loads of the rough displacements, (n, loads)."""
+    def unsettled(self) -> NDArray[np.float64]:
+        """Loads that are applied and have no fields yet, (n, loads)."""
         return self._V[:, len(self.fields) - 1 : self.applied]
 
     def take(self, rough: NDArray, forces: NDArray) -> None:
-        """Take displacements (rows, loads) and forces (loads, 2, n) that the waiting loads cause."""
+        """Take forces (loads, 2, n) of waiting loads, and displacements, (rows, loads) or (rows, 0)."""
         self.rough += list(rough.T)
         self.forces = np.concatenate([self.forces, forces])
 
     def settle(self, fields: Sequence[PETSc.Vec], forces: NDArray) -> None:
-        """Replace the rough displacements by fields and their forces (fields, 2, n)."""
+        """Take the fields of the unsettled loads, and their forces (fields, 2, n)."""
         self.forces[len(self.fields) :] = forces
         self.fields += fields
         self.rough = []
@@ -115,21 +123,43 @@ class KrylovSpace:
         worst = int(np.argmax(residuals))
         if self.complete or residuals[worst] <= self.left:
             return y
-        if self.applied >= LIMIT:
+        if self.applied >= self.limit:
             raise SolveError(
                 f"the contact forces at g = {g[worst]:g} (dimensionless) did not converge in "
-                f"{LIMIT} steps: residual {residuals[worst]:.3g}, expected {self.left:g}"
+                f"{self.applied} steps: residual {residuals[worst]:.3g}, expected {self.left:g}"
             )
         while residuals[worst] > self.left:
             along = rest[:, worst] / residuals[worst]
             rest = rest - np.outer(along, along @ rest)
-            load = directions @ along
-            for _ in range(2):  # twice is enough
-                load = load - self._V @ (self._V.T @ load)
+            load = self._beside(directions @ along)
             self._V = np.column_stack([self._V, load / np.linalg.norm(load)])
             residuals = np.linalg.norm(rest, axis=0)
             worst = int(np.argmax(residuals))
         return None
+
+    def complete_by(self, T: NDArray, g: NDArray) -> None:
+        """Add to the waiting loads what is left of the equations at every g, solved by dense algebra.
+
+        Args:
+            T: normal forces under a tangential load at each contact node, (n, n), a column a load.
+            g: values of σ_XY/σ_YY, (states,).
+        """
+        left = np.tile(self._V[:, :1], len(g))
+        if self.applied:
+            _, directions, rest = self.solve(g)
+            short = np.linalg.norm(rest, axis=0) > self.left
+            g, left = g[short], directions @ rest[:, short]
+        answers = [np.linalg.solve(np.eye(len(T)) - value * T, r) for value, r in zip(g, left.T)]
+        R = np.column_stack([answer / np.linalg.norm(answer) for answer in answers])
+        loads, size, _ = np.linalg.svd(self._beside(R), full_matrices=False)
+        more, _ = np.linalg.qr(self._beside(loads[:, size > LEAST]))
+        self._V = np.column_stack([self._V, more])
+
+    def _beside(self, loads: NDArray) -> NDArray[np.float64]:
+        """Parts of loads (n, k) that are orthogonal to the others."""
+        for _ in range(2):  # twice is enough
+            loads = loads - self._V @ (self._V.T @ loads)
+        return loads
 
     def solve(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """Coefficients y of R = V y for every g, and what is left of (I - g T) R = R₀ over R.
@@ -271,9 +301,6 @@ def combined(g: NDArray, parts: Sequence[Part], amplitudes: NDArray) -> ContactS
 #: Frictions for which a basis is completed at most.
 _SPREAD = 33
 
-#: Nodes of a contact up to which loads at all of them at once cost less than one after the other.
-_FEW_NODES = 64
-
 
 class SlidingPunch(Punch):
     """All friction states of the punch at one speed, from one factorisation.
@@ -319,7 +346,6 @@ class SlidingPunch(Punch):
         self._boundary = FarBoundary(space, response, A)
         A = space.held(A, response, ("contact", "far"))
         self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
-        self._nodal: tuple[NDArray, NDArray] | None = None
         #: Krylov spaces of the flat punch, and of each shape.
         self._spaces = self._begin(shaped, negligible)
 
@@ -356,7 +382,7 @@ class SlidingPunch(Punch):
         self.destroy()
 
     def destroy(self) -> None:
-        self._nodal = None
+        self.__dict__.pop("_of_nodes", None)
         for held in (self.factor, self._boundary, *self._rows, *self.fields):
             held.destroy()
 
@@ -384,11 +410,11 @@ class SlidingPunch(Punch):
         if flat:
             X = self.space.chart.surface_position(self.space.contact.s)
             self._boundary.take(fields[:flat], X, after[:flat])
-        spaces = []
+        spaces, limit = [], len(self.space.contact.s) if self.factor.direct else LIMIT
         for field, rough, forces in zip(fields[flat:], before[flat:], after[flat:]):
             change = np.linalg.norm(forces - rough) / np.linalg.norm(rough)
             forces = self._boundary.follow(forces, field)
-            spaces.append(KrylovSpace(field, forces, bool(change > negligible), self._left))
+            spaces.append(KrylovSpace(field, forces, bool(change > negligible), self._left, limit))
         return spaces
 
     def _contact_forces(
@@ -403,27 +429,27 @@ class SlidingPunch(Punch):
         while True:
             coefficients = [space.converged(g) for space in spaces]
             short = [space for space, y in zip(spaces, coefficients) if y is None]
-            rough = [space for space in spaces if space.rough]
             if short:
-                self._extend(short)
-            elif rough:
-                for space in rough:
+                self._extend(short, g)
+            elif unsettled := [space for space in spaces if space.unsettled.size]:
+                for space in unsettled:
                     self._settle(space)
             else:
                 return [y for y in coefficients if y is not None]
 
-    def _extend(self, spaces: Sequence[KrylovSpace]) -> None:
-        """Rough displacements and forces of the waiting loads of each space, all solved for at once."""
-        if len(self.space.contact.s) <= _FEW_NODES and self.factor.direct:
-            fields, of_nodes = self._of_nodes(any(space.refines for space in self._spaces))
+    def _extend(self, spaces: Sequence[KrylovSpace], g: NDArray) -> None:
+        """Forces of the waiting loads of each space, and rough displacements, all solved for at once.
+
+        Loads at all nodes, where there are many, give forces alone.
+        """
+        if self.factor.direct and max(space.applied for space in spaces) >= _MANY:
             for space in spaces:
-                load = space.waiting
-                solved, forces = fields @ load, np.einsum("mcn,mk->kcn", of_nodes, load)
-                space.take(solved, forces)
-                space.settle([vector(self.factor.A, field) for field in solved.T], forces)
+                space.complete_by(self._of_nodes[:, 1].T, g)
+                forces = np.einsum("mcn,mk->kcn", self._of_nodes, space.waiting, optimize=True)
+                space.take(np.empty((len(self._motions), 0)), forces)
             return
         waiting = [space.waiting for space in spaces]
-        x = self._displacements(self._tangential(np.column_stack(waiting)))
+        x = self._sheared(np.column_stack(waiting))
         forces = np.array([self._boundary.follow(force) for force in self._reactions(x)])
         ends = np.cumsum([loads.shape[1] for loads in waiting])
         for space, end, loads in zip(spaces, ends, waiting):
@@ -431,8 +457,13 @@ class SlidingPunch(Punch):
             space.take(x[:, columns], forces[columns])
 
     def _settle(self, space: KrylovSpace) -> None:
-        """Check the rough displacements of a space, refine them all at once if that is needed."""
-        x = self._answers(space.of_rough, space.refines, np.column_stack(space.rough))
+        """Fields of the unsettled loads of a space: rough ones are checked, and refined if needed."""
+        more, b = space.unsettled[:, len(space.rough) :], self._tangential(space.unsettled)
+        x = np.column_stack([*space.rough, *([self._sheared(more)] if more.shape[1] else [])])
+        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
+        self.factor.check(b, x, residuals)
+        if space.refines:
+            x = x + self._corrections(residuals)
         fields, forces = [vector(self.factor.A, column) for column in x.T], self._reactions(x)
         space.settle(
             fields,
@@ -441,24 +472,19 @@ class SlidingPunch(Punch):
         if space.refines:  # loads that follow are as small as what was changed
             space.refines, space.left = False, max(space.left, _BROUGHT_BACK)
 
-    def _answers(self, loads: NDArray, refines: bool, x: NDArray) -> NDArray[np.float64]:
-        """Displacements x (rows, k) under tangential loads (n, k), checked and refined if needed."""
-        b = self._tangential(loads)
-        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
-        self.factor.check(b, x, residuals)
-        return x + self._corrections(residuals) if refines else x
+    @cached_property
+    def _of_nodes(self) -> NDArray[np.float64]:
+        """Forces that a tangential load at each contact node causes, (n, 2, n)."""
+        loads, forces = np.eye(len(self.space.contact.s)), []
+        for start in range(0, len(loads), _AT_ONCE):
+            x = self._sheared(loads[:, start : start + _AT_ONCE])
+            forces += [self._boundary.follow(force) for force in self._reactions(x)]
+        return np.array(forces)
 
-    def _of_nodes(self, refines: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Displacements (rows, n) and forces (n, 2, n) that a tangential load at each node causes."""
-        if self._nodal is None:
-            loads = np.eye(len(self.space.contact.s))
-            x = self._answers(loads, refines, self._displacements(self._tangential(loads)))
-            fields = [vector(self.factor.A, column) for column in x.T]
-            forces = [self._boundary.follow(*pair) for pair in zip(self._reactions(x), fields)]
-            self._nodal = np.column_stack([field.array_r for field in fields]), np.array(forces)
-            for field in fields:
-                field.destroy()
-        return self._nodal
+    def _sheared(self, forces: NDArray) -> NDArray[np.float64]:
+        """Rough displacements (rows, k) under tangential forces at the contact nodes, (n, k)."""
+        rows = self.space.contact.dofs(0) - self._first
+        return self._displacements(self._tangential(forces), rows=rows)
 
     def _tangential(self, forces: NDArray) -> NDArray[np.float64]:
         """Loads (rows, k) of tangential forces at the contact nodes, (n, k)."""
@@ -466,9 +492,16 @@ class SlidingPunch(Punch):
         b[nodes.dofs(0) - self._first] = forces[nodes.owned]
         return b
 
-    def _displacements(self, b: NDArray, checked: bool = False) -> NDArray[np.float64]:
-        """Displacements under nodal forces (rows, k), the effect of held displacements included."""
-        x, held = self.factor.solve(b, checked), self._held
+    def _displacements(
+        self, b: NDArray, checked: bool = False, rows: NDArray | None = None
+    ) -> NDArray[np.float64]:
+        """Displacements under nodal forces (rows, k), the effect of held displacements included.
+
+        Args:
+            b: the forces.
+            checked, rows: as of :meth:`.linear.LinearSolver.solve`.
+        """
+        x, held = self.factor.solve(b, checked, rows), self._held
         x[held] = b[held]  # an iterative solver only comes near them
         return x
 

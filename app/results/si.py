@@ -11,6 +11,7 @@ from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities.states import CENTRE, FRICTION, HALF_WIDTH, LOAD, SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.tables import LENGTHS, Scaled, Scaling, as_archived
+from galinx.solvers.contact.solution import GIVEN_ENDS
 
 from ..plan.states import order
 from ..scene.scene import Scene
@@ -80,8 +81,9 @@ def in_si(row: Quantity, name: str, scene: Scene, data: Mapping[str, Any]) -> Sc
         The column's name, unit and factor; None for a quantity that equals another one in SI.
     """
     body = scene.body
-    ends = contacts_of_states(data) if body.found else None
-    if body.found and ends is None and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
+    ends = contacts_of_states(data)
+    own = ends is None and GIVEN_ENDS in body.lacks
+    if own and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
         return as_archived(row, name)  # no contact is archived
     if row.unit == "N/(2a)":
         return Scaled(name, "Pa", stress_of_states(data, scene)[:, 0] if ends else unit_of_stress(scene))

@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -362,17 +363,18 @@ def _of_edges(bodies: list[Body], V: float, g: float) -> tuple[list[PolarPanel],
     return [*panels, PolarPanel("$K_I$", {"": K_I})], f"{what}, and K_I, the same at both"
 
 
-def _of_contacts(bodies: list[Body], V: float, g: float) -> tuple[list[PolarPanel], str]:
+def _of_contacts(
+    bodies: list[Body], V: float, g: float, nearest: float = 0.0
+) -> tuple[list[PolarPanel], str]:
     """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end; and what
-    they show."""
+    they show. Tensions are no nearer to an end than a distance over a."""
 
     def numbers(response: Any, body: Body) -> list[float]:
         contact = contacts(response, np.array([g]), body.profile, body.compression)
         h = float(contact.of("half_width")[0])
         unit = 1e-6 * body.load / (2.0 * h)
         X = surface_grid()
-        if body.ends == ONE_FREE:  # beside a sharp edge it is infinite
-            X = X[np.abs(np.abs(X) - 1.0) >= NEAR]
+        X = X[np.abs(np.abs(X) - 1.0) >= nearest]
         tension = float(contact.σ_XX(X).max())
         return [1e3 * h, unit * float(contact.largest()[0][0]), unit * tension, *contact.of("K_I")[0]]
 
@@ -392,9 +394,12 @@ def _of_contacts(bodies: list[Body], V: float, g: float) -> tuple[list[PolarPane
 
 
 #: Panels over the angle, and what they show, by the ends of the contact.
-_OVER_ANGLE = {
-    SHARP: _of_edges, PRESCRIBED: _of_edges, FREE: _of_contacts, ONE_FREE: _of_contacts,
-}  # fmt: skip
+_OVER_ANGLE: dict[str, Callable[[list[Body], float, float], tuple[list[PolarPanel], str]]] = {
+    SHARP: _of_edges,
+    PRESCRIBED: _of_edges,
+    FREE: _of_contacts,
+    ONE_FREE: partial(_of_contacts, nearest=NEAR),  # beside a sharp edge it is infinite
+}
 
 
 def _at(body: Body, V: float, of: Callable[[Any, Body], Any]) -> Any:

@@ -570,14 +570,12 @@ def _quantities(
     """Quantities that are evaluated, and messages about those that a method cannot give."""
     computed: dict[str, Quantity] = {}
     refused = []
-    # Fields next to the edges of a punch are not those of a prescribed pressure.
-    sources = (*methods, *(LOCAL,) * (PUNCH in body.modes))
     # Quantities that are computed from others come after them, wherever they stand in the table.
     for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
         applies = (
             bool(methods)
             and quantity.solved
-            and quantity.method in sources
+            and quantity.method in (*methods, LOCAL)
             and quantity.mode in modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in computed for need in quantity.needs)

@@ -56,11 +56,11 @@ SPEED_LIMIT = Quantity(
 
 ALPHA = Quantity(
     "states/alpha", "1", "exponent of the pressure at X = a, local analysis", (STATE,),
-    lambda s, _: s.local.α, LOCAL,
+    lambda s, _: s.local.α, LOCAL, PUNCH,
 )  # fmt: skip
 BETA = Quantity(
     "states/beta", "1", "exponent of the pressure at X = -a, local analysis", (STATE,),
-    lambda s, _: s.local.β, LOCAL,
+    lambda s, _: s.local.β, LOCAL, PUNCH,
 )  # fmt: skip
 
 K_I_BOTH = Quantity(

@@ -190,6 +190,11 @@ class Body(ABC):
         return len(self.solid.depths) > 0
 
     @property
+    def shared_ends(self) -> tuple[Any, float] | None:
+        """Half-width and middle [m] of the contacts of all states; None where each has its own."""
+        return self.half_width, 0.0
+
+    @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:
         """Unit of interfaces' depths, "1" over a half-width that all states share or "m", and these."""
         return "1", self.solid.depths / self.half_width
@@ -301,7 +306,7 @@ class PrescribedContact(SharpContact):
 class FreeEndContact(Body):
     """Contact of which the pressure determines an end, or both."""
 
-    found, flat = True, False
+    found, flat, shared_ends = True, False, None
 
     @property
     def lacks(self) -> dict[str, str]:

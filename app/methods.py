@@ -11,9 +11,19 @@ from typing import Any
 from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.registry import Registry
-from galinx.solvers.contact import FREE_ENDS, OWN_PRESSURE
+from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
-from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, SOLVED, Body
+from galinx.solvers.contact.solution import (
+    EQUAL_ENDS,
+    FLAT,
+    FREE,
+    ONE_FREE,
+    PRESCRIBED,
+    PUNCH,
+    SHARP,
+    SOLVED,
+    Body,
+)
 from galinx.solvers.profiles import smooth
 
 #: Modes of the finite elements that scenes name: a punch, or a prescribed pressure.
@@ -58,10 +68,22 @@ def _refusal(quantity: Quantity | None, body: Body, lacks: dict[str, str]) -> st
     return next((reasons[word] for word in words if word in reasons), "")
 
 
+#: What the closed form does not give of punches that are not flat, by the ends of the contact.
+_OF_FLAT_PUNCHES = {
+    SHARP: {
+        EQUAL_ENDS: "the two ends differ",
+        BELOW: "known below flat punches only",
+        YIELD: "known below flat punches only",
+        PUNCH: "known of flat punches only",
+    }
+}
+
+
 def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
     if scene.layers:
         return "the solid has layers, and no closed form"
-    return _refusal(quantity, body, body.lacks_in_closed_form)
+    lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
+    return _refusal(quantity, body, lacks)
 
 
 def _layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:

@@ -35,7 +35,7 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.solution import FLAT, GIVEN_ENDS, PUNCH, Body, Places
+from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Body, Places
 from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
@@ -427,10 +427,11 @@ def _in_time(plan: Plan) -> float:
 
 def _equations(plan: Plan) -> float:
     """Seconds of contacts over layers whose integral equations are solved one by one."""
-    if SIE not in plan.methods or plan.body.interpolated:
+    kinked = bool(len(kinks(plan.body.profile)))
+    # Between few frictions others are interpolated under all other contacts.
+    if SIE not in plan.methods or not {FREE: kinked, ONE_FREE: True}.get(plan.body.ends):
         return 0.0
-    kinked, graded = bool(len(kinks(plan.body.profile))), plan.body.solid.layers[0].bottom is not None
-    return cost.seconds_of_equations(plan.states, kinked, graded)
+    return cost.seconds_of_equations(plan.states, kinked, plan.body.solid.layers[0].bottom is not None)
 
 
 def _inside(plan: Plan) -> float:

@@ -356,7 +356,8 @@ def contradictions(scene: Scene) -> list[str]:
         faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")
     if fixed and solve.mode == "traction":
         faults.append('solve.degree needs solve.mode = "contact"')
-    if solve.pressure != "closed_form" and solve.mode != "traction":
+    own = solve.pressure != "closed_form"
+    if own and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')
     return faults
 

@@ -6,7 +6,6 @@ change with a power of the distance, and the largest may lie between samples: a 
 limits there, :class:`Turns`.
 """
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
@@ -14,10 +13,10 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
+from ..profiles import Profile, exponent, half_width, has_free_end, jumps
 from ..solids import Solid
 from ..solids.solid import Response
-from . import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
+from . import FREE_ENDS, OWN_PRESSURE, YIELD
 from .edges import under_punch
 from .prescribed_pressure import LinearPressure
 
@@ -61,7 +60,7 @@ FLAT, EQUAL_ENDS, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = (
 
 
 @dataclass(frozen=True)
-class Body(ABC):
+class Body:
     """Punch and half-plane in SI; :func:`make_contact` makes the kind that the ends of the contact are.
 
     The units of results are numbers for a single load, and arrays (states,) for a load of each state.
@@ -88,23 +87,23 @@ class Body(ABC):
     free: ClassVar[bool] = False
 
     @property
-    @abstractmethod
     def half_width(self) -> Any:
         """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
+        return half_width(self.profile)
 
     @property
-    @abstractmethod
     def flat(self) -> bool:
         """True if the punch is flat and not tilted."""
+        return False
 
     @property
-    @abstractmethod
     def growth_exponent(self) -> float | None:
         """Exponent of the load by which similar contacts grow; None if other loads make others.
 
         Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
         prescribed pressure.
         """
+        return None
 
     @property
     def alike(self) -> bool:
@@ -127,24 +126,16 @@ class Body(ABC):
         return ()
 
     @property
-    def interpolated(self) -> bool:
-        """True if contacts over layers are solved for few frictions, between which others follow."""
-        return True
-
-    @property
     def lacks(self) -> dict[str, str]:
         """Reasons why there are no quantities that require something of the contact.
 
         Keys are requirements, as ``FLAT``, modes, as ``PUNCH``, or words of output.quantities, as
         :data:`galinx.solvers.contact.YIELD`.
         """
-        unknown = {OUT_OF_PLANE: "σ_ZZ is not known without solid.stiffness_Z"}
-        return {} if self.solid.knows_σ_ZZ else unknown
-
-    @property
-    def lacks_in_closed_form(self) -> dict[str, str]:
-        """Reasons why the closed form alone has no quantities, by the keys of :attr:`lacks`."""
-        return {}
+        reasons = {FLAT: "the punch is not flat"} if not self.flat else {}
+        if not self.solid.knows_σ_ZZ:
+            reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
+        return reasons
 
     def response(self, c: float) -> Response:
         """Response of the half-plane at a speed over its wave speed, dimensionless.
@@ -215,7 +206,7 @@ class Body(ABC):
 
     def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
         """Those of the loads [N/m] under which contacts differ in more than their size."""
-        return loads[:1] if self.alike else loads
+        return loads if self.growth_exponent is None else loads[:1]
 
     @property
     def compression(self) -> Any:
@@ -260,10 +251,6 @@ class SharpContact(Body):
 
     ends = SHARP
 
-    @property
-    def half_width(self) -> Any:
-        return half_width(self.profile)
-
     @cached_property
     def flat(self) -> bool:
         """True if the slope of the punch vanishes at 101 positions."""
@@ -272,16 +259,6 @@ class SharpContact(Body):
     @property
     def growth_exponent(self) -> float | None:
         return 0.0 if self.flat else None
-
-    @property
-    def lacks(self) -> dict[str, str]:
-        return super().lacks | ({} if self.flat else {FLAT: "the punch is not flat"})
-
-    @property
-    def lacks_in_closed_form(self) -> dict[str, str]:
-        below = "known below flat punches only"
-        reasons = {BELOW: below, YIELD: below, PUNCH: "known of flat punches only"}
-        return {} if self.flat else {EQUAL_ENDS: "the two ends differ"} | reasons
 
 
 class PrescribedContact(SharpContact):
@@ -298,20 +275,15 @@ class PrescribedContact(SharpContact):
     def lacks(self) -> dict[str, str]:
         return super().lacks | {SOLVED: "the pressure is prescribed"}
 
-    @property
-    def lacks_in_closed_form(self) -> dict[str, str]:
-        return {}
-
 
 class FreeEndContact(Body):
     """Contact of which the pressure determines an end, or both."""
 
-    found, flat, shared_ends = True, False, None
+    found, shared_ends = True, None
 
     @property
     def lacks(self) -> dict[str, str]:
-        reasons = {
-            FLAT: "the punch is not flat",
+        reasons = super().lacks | {
             PUNCH: "the contact has free ends",
             GIVEN_ENDS: "whose contact ends where the pressure says",
         }
@@ -321,7 +293,7 @@ class FreeEndContact(Body):
             reasons[YIELD] = (
                 "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
             )
-        return super().lacks | reasons
+        return reasons
 
     @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:
@@ -355,7 +327,7 @@ class FreeEndContact(Body):
 class OneFreeContact(FreeEndContact):
     """Contact between a sharp corner of the punch and an end that is free where the punch lifts off."""
 
-    ends, modes, interpolated, growth_exponent = ONE_FREE, (PUNCH, FREE_ENDS), False, None
+    ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
 
 
 class FreeContact(FreeEndContact):
@@ -370,10 +342,6 @@ class FreeContact(FreeEndContact):
     @property
     def finite(self) -> bool:
         return not jumps(self.profile)
-
-    @property
-    def interpolated(self) -> bool:
-        return not len(kinks(self.profile))
 
     @property
     def growth_exponent(self) -> float | None:

@@ -13,17 +13,7 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
-from galinx.solvers.contact.solution import (
-    EQUAL_ENDS,
-    FLAT,
-    FREE,
-    ONE_FREE,
-    PRESCRIBED,
-    PUNCH,
-    SHARP,
-    SOLVED,
-    Body,
-)
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, PUNCH, SHARP, SOLVED, Body
 from galinx.solvers.profiles import smooth
 
 #: Modes of the finite elements that scenes name: a punch, or a prescribed pressure.
@@ -71,7 +61,7 @@ def _refusal(quantity: Quantity | None, body: Body, lacks: dict[str, str]) -> st
 #: What the closed form does not give of punches that are not flat, by the ends of the contact.
 _OF_FLAT_PUNCHES = {
     SHARP: {
-        EQUAL_ENDS: "the two ends differ",
+        states.K_I_BOTH.path: "the two ends differ",
         BELOW: "known below flat punches only",
         YIELD: "known below flat punches only",
         PUNCH: "known of flat punches only",

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE
-from galinx.solvers.contact.solution import EQUAL_ENDS, FLAT, PUNCH, SOLVED
+from galinx.solvers.contact.solution import FLAT, PUNCH, SOLVED
 from galinx.solvers.contact.stresses import flatness
 from galinx.solvers.parameters import Range
 
@@ -66,7 +66,7 @@ BETA = Quantity(
 K_I_BOTH = Quantity(
     "states/closed_form/K_I", "1",
     "normalised stress intensity factor, both ends of a flat punch (Eq 58)",
-    (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, EQUAL_ENDS, PUNCH),
+    (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, PUNCH),
 )  # fmt: skip
 K_I_LEFT = {
     CLOSED_FORM: Quantity(

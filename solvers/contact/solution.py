@@ -52,11 +52,9 @@ SHARP, FREE, ONE_FREE, PRESCRIBED = "sharp", "free", "one free", "prescribed"
 #: Modes of a punch, and of stresses that are finite everywhere.
 PUNCH, FINITE = "punch", "finite stresses"
 
-#: What a quantity may require of a contact: a flat punch, equal ends, ends that are given, a pressure
-#: that is solved for, a height that is a power of |X|, a known stress out of the plane.
-FLAT, EQUAL_ENDS, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = (
-    "flat punch", "equal ends", "given ends", "solved pressure", "power of |X|", "σ_ZZ",
-)  # fmt: skip
+#: What a quantity may require of a contact: a flat punch, ends that are given, a pressure that is solved
+#: for, a height that is a power of |X|, a known stress out of the plane.
+FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,6 @@ class Body:
         yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
         ends: ``SHARP``, ``FREE``, ``ONE_FREE`` or ``PRESCRIBED``.
         found: True if an end of the contact is free: the half-width then depends on the state.
-        free: True if both ends of the contact are free at every load.
     """
 
     solid: Solid
@@ -84,7 +81,6 @@ class Body:
 
     ends: ClassVar[str]
     found: ClassVar[bool] = False
-    free: ClassVar[bool] = False
 
     @property
     def half_width(self) -> Any:
@@ -205,7 +201,7 @@ class Body:
         return None if k is None else (load / self.load) ** k
 
     def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
-        """Those of the loads [N/m] under which contacts differ in more than their size."""
+        """Loads [N/m], of several, under which contacts differ in more than their size."""
         return loads if self.growth_exponent is None else loads[:1]
 
     @property
@@ -333,7 +329,7 @@ class OneFreeContact(FreeEndContact):
 class FreeContact(FreeEndContact):
     """Contact between two free ends, of a convex punch."""
 
-    ends, free = FREE, True
+    ends = FREE
 
     @property
     def modes(self) -> tuple[str, ...]:

@@ -1,18 +1,23 @@
-"""Methods that solve the contact, by the name that scenes use: titles, and quantities they refuse.
+"""Methods that solve the contact, by the name that scenes use: titles, and what they do not give.
 
-Scenes and plans need nothing else of methods; :mod:`galinx.app.run.make` makes them.
+Scenes and plans need nothing else of methods; :mod:`galinx.app.run.make` makes them. What a contact has
+not, whatever the method, it says itself: :attr:`galinx.solvers.contact.solution.Body.lacks`.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from galinx.postprocess.quantities import Quantity, layers, states, stresses, validity, yielding
-from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, PUNCH, SIE
+from galinx.postprocess.quantities import Quantity, states, stresses
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.registry import Registry
-from galinx.solvers.contact import YIELD
-from galinx.solvers.contact.solution import Body
-from galinx.solvers.profiles import exponent, smooth
+from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
+from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, PUNCH, SHARP, SOLVED, Body
+from galinx.solvers.profiles import smooth
+
+#: Modes of the finite elements that scenes name: a punch, or a prescribed pressure.
+CONTACT, TRACTION = MODES = ("contact", "traction")
 
 
 @dataclass(frozen=True)
@@ -36,103 +41,88 @@ class MethodKind:
     of_layers: bool = False
 
 
-def _layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
-    if not body.layered:
-        return "the solid has no layers, and closed_form knows the solution"
-    if body.pressure and quantity in _INTENSITIES_OF_LAYERS:
-        return "the pressure is prescribed"
-    return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
+def _refusal(quantity: Quantity | None, body: Body, lacks: dict[str, str]) -> str:
+    """Reason why there is no quantity of a contact, "" where there is one, and for None.
 
-
-def _without_σ_ZZ(body: Body, quantity: Quantity | None) -> str:
-    """Reason why there is no von Mises stress, "" where there is."""
-    needs_σ_ZZ = any(quantity is invariants[-1] for invariants in stresses.INVARIANTS_INSIDE.values())
-    return (
-        "σ_ZZ is not known without solid.stiffness_Z" if needs_σ_ZZ and not body.solid.knows_σ_ZZ else ""
-    )
-
-
-def _free_ends_refusal(body: Body, quantity: Quantity | None) -> str:
-    """Reason why a contact with free ends has no such quantity, "" where it has."""
-    if not body.found or quantity is None:
+    Args:
+        quantity: the quantity.
+        body: the contact.
+        lacks: what its method does not give, with reasons, as in :attr:`Body.lacks` or by a path.
+    """
+    if quantity is None:
         return ""
-    if quantity.asked_by == YIELD and not body.finite:
-        return "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
-    if quantity in yielding.FIRST_LOAD.values() and not (exponent(body.profile) or 0.0) > 1.0:
-        return "known where the height is a power of |X|: the contact grows with the load"
-    if quantity.mode == PUNCH or quantity in _SHARP_EDGES_ONLY:
-        return "the contact has free ends"
-    return ""
+    reasons = body.lacks | lacks
+    words = quantity.path, quantity.asked_by, *quantity.requires, quantity.mode
+    return next((reasons[word] for word in words if word in reasons), "")
 
 
-#: Quantities of contacts with two sharp edges alone.
-_SHARP_EDGES_ONLY = (states.K_I_BOTH, states.FITTED_ALPHA, states.FITTED_BETA, *validity.STRAINED)
+#: What the closed form does not give of punches that are not flat, by the ends of the contact.
+_OF_FLAT_PUNCHES = {
+    SHARP: {
+        states.K_I_BOTH.path: "the two ends differ",
+        BELOW: "known below flat punches only",
+        YIELD: "known below flat punches only",
+        PUNCH: "known of flat punches only",
+    }
+}
 
 
 def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
-    if body.layered:
+    if scene.layers:
         return "the solid has layers, and no closed form"
-    if body.found:
-        return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
-    if body.pressure:
-        return "the pressure is prescribed" if quantity in _INTENSITIES else ""
-    if quantity and not body.flat and quantity.asked_by in (stresses.BELOW, YIELD):
-        return "known below flat punches only"
-    if quantity and not body.flat and quantity is states.K_I_BOTH:
-        return "the two ends differ"
-    if quantity and not body.flat and quantity in validity.STRAINED:
-        return "known of flat punches only"
-    return _without_σ_ZZ(body, quantity)
+    lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
+    return _refusal(quantity, body, lacks)
 
 
-#: Quantities that a prescribed pressure has not.
-_INTENSITIES_OF_LAYERS = (*layers.K_I_LEFT.values(), *layers.K_I_RIGHT.values(), layers.ESTIMATE)
-_INTENSITIES = (
-    states.RESIDUAL[CLOSED_FORM],
-    states.K_I_BOTH,
-    states.K_I_LEFT[CLOSED_FORM],
-    states.K_I_RIGHT[CLOSED_FORM],
-)
+def _layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+    if not scene.layers:
+        return "the solid has no layers, and closed_form knows the solution"
+    return _refusal(quantity, body, {})
 
 
-def _fem_layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
-    """Reason why finite elements do not give a quantity of layers, "" where they do."""
-    if body.solid.nearly_incompressible:
-        return "a solid is nearly incompressible; the integral equation takes such layers"
-    if scene.solve.degree or scene.solve.mesh != "confocal":
-        return "layers have meshes of their own: no mesh, and no degree"
-    if body.found and not (body.free and smooth(body.profile)):
-        return (
-            "over layers meshes follow contacts of smooth punches with two free ends alone; sie takes all"
-        )
-    if quantity is None:
-        return ""
-    if quantity is states.RESIDUAL[FEM] and body.pressure:
-        return "the pressure is prescribed"
-    if quantity is states.INDENTATION:
-        return "the far boundary moves with the load"
-    if body.found and quantity is stresses.RAW_PRESSURE:
-        return "σ_YY itself is that of the nodal forces there"
-    if not body.flat and quantity is states.SLOPE:
-        return "the punch is not flat"
-    return _free_ends_refusal(body, quantity) or _without_σ_ZZ(body, quantity)
+#: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
+#: uniform and on layered solids; "" where no mesh follows the contact.
+_MODES = {
+    SHARP: ((CONTACT, CONTACT), (CONTACT, CONTACT)),
+    PRESCRIBED: ((OWN_PRESSURE, OWN_PRESSURE), (PRESCRIBED_ON_LAYERS, PRESCRIBED_ON_LAYERS)),
+    FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, "")),
+    ONE_FREE: ((FREE_ENDS, OWN_MESHES), ("", "")),
+}
+_RECOVERED = {stresses.RAW_PRESSURE.path: "σ_YY itself is that of the nodal forces there"}
+_PRESCRIBED = {SOLVED: "the pressure is prescribed"}
+#: What finite elements do not give in a mode, with the reason.
+_LACKING = {
+    TRACTION: _PRESCRIBED,
+    OWN_PRESSURE: _PRESCRIBED | {FLAT: "the pressure is prescribed"},
+    OWN_MESHES: _RECOVERED,
+    FREE_ON_LAYERS: _RECOVERED,
+}
+
+
+def fem_mode(scene: Any) -> str:
+    """Mode of a scene's finite elements, see :class:`galinx.solvers.contact.fem_plan.FemPlan`."""
+    body = scene.body
+    mode = _MODES[body.ends][bool(scene.layers)][not smooth(body.profile)]
+    return scene.solve.mode if mode == CONTACT else mode
 
 
 def _finite_elements_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
-    if body.layered:
-        return _fem_layers_refusal(scene, body, quantity)
-    if body.found and not smooth(body.profile):
-        if quantity is None and (scene.solve.mesh != "confocal" or scene.solve.degree):
-            return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
-        if quantity is stresses.RAW_PRESSURE:
-            return "σ_YY itself is that of the nodal forces there"
-    if why := _free_ends_refusal(body, quantity):
-        return why
-    if quantity is states.RESIDUAL[FEM] and scene.solve.mode == "traction":
-        return "the pressure is prescribed"
-    if quantity is states.SLOPE and (body.pressure or not body.flat):
-        return "the pressure is prescribed" if body.pressure else "the punch is not flat"
-    return _without_σ_ZZ(body, quantity)
+    mode, solve = fem_mode(scene), scene.solve
+    lacks = _LACKING.get(mode, {})
+    if scene.layers:
+        if body.solid.nearly_incompressible:
+            return "a solid is nearly incompressible; the integral equation takes such layers"
+        if solve.degree or solve.mesh != "confocal":
+            return "layers have meshes of their own: no mesh, and no degree"
+        if not mode:
+            return (
+                "over layers meshes follow contacts of smooth punches with two free ends alone; sie "
+                "takes all"
+            )
+        lacks = lacks | {states.INDENTATION.path: "the far boundary moves with the load"}
+    elif mode == OWN_MESHES and (solve.mesh != "confocal" or solve.degree):
+        return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
+    return _refusal(quantity, body, lacks)
 
 
 METHODS: Registry[MethodKind] = Registry(
@@ -144,6 +134,3 @@ METHODS: Registry[MethodKind] = Registry(
     },
     MethodKind,
 )
-
-#: Modes of the finite elements: a punch, or a prescribed pressure.
-MODES = ("contact", "traction")

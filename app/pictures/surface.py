@@ -24,6 +24,7 @@ from galinx.postprocess.quantities.layers import ALONG_X, INTERFACE_DEPTH, INTER
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, METHODS, POINT, STATE
 from galinx.postprocess.quantities.states import FRICTION, POSITION
 from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
+from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 
 from ..scene.scene import Scene
@@ -64,6 +65,13 @@ def stresses_of(data: dict[str, Any], choice: Choice) -> list[Stress]:
     ]
 
 
+#: Ends of captions by the ends of the contact.
+_ENDS = {SHARP: ": at its edges they grow without bound.", PRESCRIBED: "."} | dict.fromkeys(
+    (FREE, ONE_FREE),
+    "; lengths are over each state's own half-width, from the middle of its contact.",
+)
+
+
 def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     """Figure of stresses along the surface: a column for each speed, or else for each value of the
     parameter that varies most slowly."""
@@ -84,12 +92,8 @@ def surface(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
         data[SURFACE_X.path], stresses_of(data, choice), columns, choice.size, choice.ends
     )
     caption = "Stresses along the surface, under the punch (grey) and beside it"
-    if choice.ends is not None:
-        caption += "; positions are from the punch's axis."
-    elif scene.body.found:
-        caption += "; lengths are over each state's own half-width, from the middle of its contact."
-    else:
-        caption += "." if scene.solve.own_pressure else ": at its edges they grow without bound."
+    from_axis = "; positions are from the punch's axis."
+    caption += _ENDS[scene.body.ends] if choice.ends is None else from_axis
     if same:
         caption += " Over N/(2a) they are the same under every load."
     if any(axis.child_axes for axis in figure.axes):
@@ -267,11 +271,9 @@ class Fields:
 
     @property
     def interfaces(self) -> tuple[float, ...]:
-        """Depths over a of the lower faces of layers."""
-        body, solid = self._scene.body, self._scene.solid
-        if body.found:  # over every state's own half-width they are elsewhere
-            return ()
-        return tuple((solid.depths / body.half_width).tolist())
+        """Depths over a of the lower faces of layers; none where every state has its own half-width."""
+        unit, depths = self._scene.body.depths
+        return tuple(depths.tolist()) * (unit == "1")
 
     def grid(self) -> tuple[NDArray, NDArray]:
         """Positions over a along both axes."""

@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 from galinx.postprocess.tables import as_archived
 from galinx.solvers.contact import layered as on_layers
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.solution import Body, Places, Task
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Body, Places, Task
 from galinx.solvers.contact.stresses import NEAR
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
@@ -322,16 +323,8 @@ def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     limits = np.array([solid.limit() * solid.c_s for solid in turned])
     panels = [PolarPanel("speed limit [m/s]", {"": limits})]
     bodies = [replace(scene.body, solid=solid) for solid in turned]
-    if scene.body.found:
-        panels += _of_contacts(bodies, V, steepest)
-        what = (
-            "half-width, largest pressure and tension on the surface of the contact under "
-            f"{number(scene.punch.load)} N/m"
-        )
-    else:
-        panels += _of_edges(bodies, V, steepest)
-        what = "how strong the pressure's singularity is at either end"
-        what += ", and K_I, the same at both" * scene.body.flat
+    more, what = _OVER_ANGLE[scene.body.ends](bodies, V, steepest)
+    panels += more
     around = np.concatenate([_ANGLES, _ANGLES[1:] + 180.0])
     twice = [
         PolarPanel(
@@ -350,8 +343,8 @@ def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     return Drawing("angles", caption, polar_figure(around, twice, now, choice.size))
 
 
-def _of_edges(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
-    """Panels of -α and -β of sharp edges, and of K_I of a flat punch."""
+def _of_edges(bodies: list[Body], V: float, g: float) -> tuple[list[PolarPanel], str]:
+    """Panels of -α and -β of sharp edges, and of K_I of a flat punch; and what they show."""
     flat = [_at(body, V, lambda response, body: FlatPunch(response, g)) for body in bodies]
     at_left, at_right = (
         np.array([np.nan if punch is None else -getattr(punch, name) for punch in flat])
@@ -363,22 +356,25 @@ def _of_edges(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
             {"$-\\alpha$, at $X = a$": at_right, "$-\\beta$, at $X = -a$": at_left},
         )
     ]
-    if bodies[0].flat:
-        K_I = np.array([np.nan if punch is None else punch.K_I for punch in flat])
-        panels.append(PolarPanel("$K_I$", {"": K_I}))
-    return panels
+    what = "how strong the pressure's singularity is at either end"
+    if FLAT in bodies[0].lacks:
+        return panels, what
+    K_I = np.array([np.nan if punch is None else punch.K_I for punch in flat])
+    return [*panels, PolarPanel("$K_I$", {"": K_I})], f"{what}, and K_I, the same at both"
 
 
-def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
-    """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end."""
+def _of_contacts(
+    bodies: list[Body], V: float, g: float, nearest: float = 0.0
+) -> tuple[list[PolarPanel], str]:
+    """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end; and what
+    they show. Tensions are no nearer to an end than a distance over a."""
 
     def numbers(response: Any, body: Body) -> list[float]:
         contact = contacts(response, np.array([g]), body.profile, body.compression)
         h = float(contact.of("half_width")[0])
         unit = 1e-6 * body.load / (2.0 * h)
         X = surface_grid()
-        if not body.free:  # beside a sharp edge it is infinite
-            X = X[np.abs(np.abs(X) - 1.0) >= NEAR]
+        X = X[np.abs(np.abs(X) - 1.0) >= nearest]
         tension = float(contact.σ_XX(X).max())
         return [1e3 * h, unit * float(contact.largest()[0][0]), unit * tension, *contact.of("K_I")[0]]
 
@@ -393,7 +389,17 @@ def _of_contacts(bodies: list[Body], V: float, g: float) -> list[PolarPanel]:
         panels.append(
             PolarPanel("$K_I$", {label: values for label, values in ends.items() if values.any()})
         )
-    return panels
+    what = "half-width, largest pressure and tension on the surface of the contact under"
+    return panels, f"{what} {number(bodies[0].load)} N/m"
+
+
+#: Panels over the angle, and what they show, by the ends of the contact.
+_OVER_ANGLE: dict[str, Callable[[list[Body], float, float], tuple[list[PolarPanel], str]]] = {
+    SHARP: _of_edges,
+    PRESCRIBED: _of_edges,
+    FREE: _of_contacts,
+    ONE_FREE: partial(_of_contacts, nearest=NEAR),  # beside a sharp edge it is infinite
+}
 
 
 def _at(body: Body, V: float, of: Callable[[Any, Body], Any]) -> Any:
@@ -426,7 +432,7 @@ _SHOWN = (
 def has_thicknesses(data: dict[str, Any], scene: Scene) -> bool:
     """Return True if a punch with sharp edges was solved over uniform layers by the integral equation."""
     solved = any(path.startswith(f"states/{SIE}/") for path in data)
-    sharp = not (scene.body.found or scene.solve.own_pressure)
+    sharp = scene.body.ends == SHARP
     least = _THINNEST * scene.body.half_width
     # Graded ones take a second or two a thickness.
     quick = all(layer.bottom is None and layer.thickness >= least for layer in scene.layers)

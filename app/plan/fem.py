@@ -1,6 +1,6 @@
 """Plan of the finite elements of a scene, from its keys: mode, mesh, degrees, solver, assembler."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,10 +14,7 @@ from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
     DOLFINX,
     FITTED,
-    FREE_ON_LAYERS,
     NEAR_FREE_END,
-    OWN_MESHES,
-    PRESCRIBED_ON_LAYERS,
     FemPlan,
     kind_of,
     largest_level,
@@ -32,15 +29,16 @@ from galinx.solvers.contact.fem_plan import (
     unknowns,
 )
 from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
-from galinx.solvers.contact.solution import Places
+from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, Places
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles import exponent, smooth
+from galinx.solvers.profiles import exponent
 from galinx.solvers.rays import NEAR
 from galinx.solvers.solids.solid import Response
 
 from .. import ranks
 from ..errors import BadInput
+from ..methods import fem_mode
 from ..scene.scene import Scene
 from . import cost
 
@@ -64,11 +62,10 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         BadInput: the weak form does not allow the scene's degree or solver.
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
-    mode = _mode(scene)
+    mode = fem_mode(scene)
     if scene.layers:
         depths = scene.solid.depths / scene.body.half_width
-        knots = np.array(solve.pressure)[:, 0].tolist() if solve.own_pressure else (-1.0, 1.0)
-        kind, name = kind_of(depths, responses, knots), "layered"
+        kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
     _check_degree_and_solver(scene)
     mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
     exponent = min(
@@ -76,7 +73,9 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     )
     spread = max(response.spread for response in responses)
     planes = [response.contraction for response in responses]
-    required = _by_contact(scene, mode, requirements(solve.tolerance, places, exponent, spread, planes))
+    required = requirements(solve.tolerance, places, exponent, spread, planes)
+    if required_of_kind := _REQUIRED.get((scene.body.ends, bool(scene.layers))):
+        required = required_of_kind(required, scene, mode)
     refinement = kind.refinement(required)
     degrees = tuple(
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
@@ -99,22 +98,20 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
     )  # fmt: skip
 
 
-def _by_contact(scene: Scene, mode: str, required: Requirements) -> Requirements:
-    """Requirements on the mesh with those of the kind of contact: its ends, its pressure, the layers."""
-    solve = scene.solve
-    if scene.layers:
-        if scene.body.free:
-            return no_nearer(required, NEAR_FREE_END)
-        if solve.own_pressure:
-            return no_nearer(required, NEAR)  # next to knots stresses are continued
-        return required_over_layers(required, scene.solid)
-    if scene.body.free:
-        required = required_of_free_ends(required)
-        # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
-        required = replace(required, bends=mode == FREE_ENDS)
-    if solve.own_pressure:
-        required = required_of_pieces(required, np.array(solve.pressure)[:, 0])
-    return required
+#: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
+_REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
+    (SHARP, True): lambda required, scene, _: required_over_layers(required, scene.solid),
+    (PRESCRIBED, False): lambda required, scene, _: required_of_pieces(
+        required, np.array(scene.body.knots)
+    ),
+    # Next to knots stresses are continued.
+    (PRESCRIBED, True): lambda required, *_: no_nearer(required, NEAR),
+    # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
+    (FREE, False): lambda required, _, mode: replace(
+        required_of_free_ends(required), bends=mode == FREE_ENDS
+    ),
+    (FREE, True): lambda required, *_: no_nearer(required, NEAR_FREE_END),
+}
 
 
 def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
@@ -124,8 +121,10 @@ def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
     fastest speed, and at the least and the largest load and friction.
     """
     profile, most = scene.punch.profile, 0
-    if not scene.body.free or exponent(profile) == 2.0:
-        return 2 if scene.body.free else 1  # a parabola, or a tilted base
+    if scene.body.ends == ONE_FREE:
+        return 1  # a tilted base
+    if exponent(profile) == 2.0:
+        return 2
     ends = [max(responses, key=lambda r: r.margin), min(responses, key=lambda r: r.margin)]
     loads = np.repeat([min(scene.punch.loads), max(scene.punch.loads)], 3)
     frictions = np.tile([g.min(), 0.0, g.max()], 2)
@@ -138,16 +137,6 @@ def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
             size = np.abs(slopes_of_shapes(profile, m, h, 2 * _MOST_SHAPES))
             most = max(most, int(np.flatnonzero(size > _ROUNDED * size.max())[-1]) + 1)
     return int(np.clip(most, SHAPES, _MOST_SHAPES))
-
-
-def _mode(scene: Scene) -> str:
-    if not scene.body.found:
-        return (
-            PRESCRIBED_ON_LAYERS if scene.layers and scene.solve.own_pressure else scene.solve.modes[-1]
-        )
-    if scene.layers:
-        return FREE_ON_LAYERS
-    return FREE_ENDS if smooth(scene.punch.profile) else OWN_MESHES
 
 
 def shares_speeds(unknowns: int, speeds: int) -> bool:

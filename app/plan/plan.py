@@ -7,12 +7,11 @@ warn where an answer costs accuracy. :func:`lines` are the plan's steps in words
 
 import json
 from bisect import bisect_left
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
@@ -36,8 +35,7 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.solution import Body, Places
+from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Body, Places
 from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
@@ -158,7 +156,7 @@ def check_mode(scene: Scene, body: Body) -> None:
     Raises:
         BadInput: the scene gives none, and the punch has none in closed form.
     """
-    if scene.solve.mode == "traction" and not scene.solve.own_pressure and not body.flat:
+    if scene.solve.mode == "traction" and not scene.solve.own_pressure and FLAT in body.lacks:
         raise BadInput(
             'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
             'give solve.pressure, or take mode = "contact"'
@@ -171,9 +169,9 @@ def check_free_ends(scene: Scene, body: Body, methods: Collection[str]) -> None:
     Raises:
         BadInput: none does, or the scene prescribes a pressure, which would need the ends.
     """
-    if not body.found:
+    if GIVEN_ENDS not in body.lacks:
         return
-    about = f"found a {body.profile.words()}, whose contact ends where the pressure says"
+    about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
     if scene.solve.mode == "traction":
         raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
     if scene.solve.methods and not methods and set(scene.output.quantities) - {FRICTION_ALONE}:
@@ -202,7 +200,7 @@ def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
     if "fem" in scene.solve.methods:
         faults += _of_meshes(scene)
     if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS and not faults:
-        about = f" with a {body.profile.words()}" * body.found
+        about = f" with a {body.profile.words()}" * (GIVEN_ENDS in body.lacks)
         faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}{about}")
     if faults:
         raise BadInput(
@@ -220,16 +218,14 @@ def _of_meshes(scene: Scene) -> Iterator[str]:
             yield f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
 
 
-def check_pressure(scene: Scene, body: Body) -> None:
-    """Check that finite elements can be loaded by the prescribed pressure.
+def check_pressure(scene: Scene, knots: Sequence[float]) -> None:
+    """Check that finite elements can be loaded by a prescribed pressure with knots X/a.
 
     Raises:
         BadInput: they cannot.
     """
-    if body.pressure is None:
-        return
     if scene.layers:
-        _check_knots(body.pressure.knots)
+        _check_knots(knots)
         return
     kind = MESHES[scene.solve.mesh]
     if kind.walls or not kind.rings:
@@ -244,7 +240,7 @@ def check_pressure(scene: Scene, body: Body) -> None:
             f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
             "differ so much in size that with an unknown pressure rounding spoils the matrix"
         )
-    width = float(np.diff(body.pressure.knots).min())
+    width = float(np.diff(knots).min())
     if width < _NARROWEST:
         raise BadInput(
             f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
@@ -252,7 +248,7 @@ def check_pressure(scene: Scene, body: Body) -> None:
         )
 
 
-def _check_knots(knots: NDArray) -> None:
+def _check_knots(knots: Sequence[float]) -> None:
     """Check that cells along interfaces can be graded towards all knots X/a of a pressure."""
     width = float(np.diff(knots).min())
     if len(knots) > _KNOTS or width < _APART:
@@ -431,20 +427,17 @@ def _in_time(plan: Plan) -> float:
 
 def _equations(plan: Plan) -> float:
     """Seconds of contacts over layers whose integral equations are solved one by one."""
-    body, layers = plan.body, plan.body.solid.layers
-    if not (body.found and layers and SIE in plan.methods):
+    kinked = bool(len(kinks(plan.body.profile)))
+    # Between few frictions others are interpolated under all other contacts.
+    if SIE not in plan.methods or not {FREE: kinked, ONE_FREE: True}.get(plan.body.ends):
         return 0.0
-    kinked = bool(len(kinks(body.profile)))
-    if not kinked and body.free:
-        return 0.0  # solved for a few frictions, between which others are interpolated
-    graded = layers[0].bottom is not None
-    return cost.seconds_of_equations(plan.states, kinked, graded)
+    return cost.seconds_of_equations(plan.states, kinked, plan.body.solid.layers[0].bottom is not None)
 
 
 def _inside(plan: Plan) -> float:
     """Seconds to compute and archive stresses inside."""
     shape = len(plan.places.points), len(plan.tasks), plan.different
-    pieces = len(plan.body.pressure.knots) - 1 if plan.body.pressure else 0
+    pieces = max(len(plan.body.knots) - 1, 0)
     by_fem, exact = (plan.asks(stresses.BELOW, method) for method in (FEM, CLOSED_FORM))
     seconds = cost.seconds_inside(*shape, pieces, by_fem, exact)
     if not plan.fem:
@@ -504,8 +497,7 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
     states = order(scene)
     check_states(len(states))
     check_sliders(scene)
-    pressure = LinearPressure(*np.array(scene.solve.pressure).T) if scene.solve.own_pressure else None
-    body = replace(scene.body, pressure=pressure)
+    body = scene.body
     methods = _methods(scene, body)
     for load in {min(states.loads), max(states.loads)}:
         check_size(body.loaded(load), methods)
@@ -522,7 +514,8 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
     if "fem" in methods:
         assert friction
         check_mode(scene, body)
-        check_pressure(scene, body)
+        if scene.solve.own_pressure:
+            check_pressure(scene, body.knots)
         check_places(scene, places)
         responses = [body.response(c) for c in states.speeds]
         fem = plan_fem(scene, responses, _output_places(scene, places), friction.g)
@@ -578,14 +571,12 @@ def _quantities(
     """Quantities that are evaluated, and messages about those that a method cannot give."""
     computed: dict[str, Quantity] = {}
     refused = []
-    # Fields next to the edges of a punch are not those of a prescribed pressure.
-    sources = methods if body.pressure else (*methods, LOCAL)
     # Quantities that are computed from others come after them, wherever they stand in the table.
     for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
         applies = (
             bool(methods)
             and quantity.solved
-            and quantity.method in sources
+            and quantity.method in (*methods, LOCAL)
             and quantity.mode in modes
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in computed for need in quantity.needs)
@@ -621,7 +612,7 @@ def _skipped(
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
-    if YIELD in words and not body.pressure:
+    if YIELD in words and PUNCH in body.modes:
         skipped.append(
             "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
             "edges of a punch, and any load makes these yield"

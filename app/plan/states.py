@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, nan
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -296,15 +295,14 @@ def _flutter(solid: Solid) -> list[float]:
     return [g if isfinite(g) else nan for g in getattr(solid, "flutter", (nan, nan))]
 
 
-def _half_widths(scene: Scene, order: Order) -> Any:
-    """Half-width [m] of the contact at rest without friction, under each state's load, or one for all."""
-    if len(order.loads) == 1 or not scene.body.found:
-        return scene.body.half_width
-    of_loads = scene.body.loaded(np.array(order.loads)).half_width
+def _half_widths(scene: Scene, order: Order) -> NDArray[np.float64]:
+    """Half-width [m] of the contact at rest without friction, under each state's load, (states,)."""
+    several = np.array(order.loads) if len(order.loads) > 1 else None
+    of_loads = np.broadcast_to(scene.body.loaded(several).half_width, len(order.loads))
     return np.tile(np.repeat(of_loads, order.laws * len(order.own)), len(order.given))
 
 
-def _crossings(scene: Scene, lengths: NDArray, a: Any, c: NDArray) -> NDArray[np.float64]:
+def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:
     """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c), NaN at rest."""
     with np.errstate(divide="ignore", invalid="ignore"):
         often = lengths * scene.friction.pre_sliding / (2.0 * a * c)

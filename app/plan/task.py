@@ -11,7 +11,7 @@ from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, OWN_MESHES_KEPT, FemPlan
-from galinx.solvers.contact.solution import Body, Places, Task
+from galinx.solvers.contact.solution import SOLVED, Body, Places, Task
 
 from .over_time import Starts
 from .states import Order, States
@@ -85,7 +85,8 @@ class Plan:
     @property
     def different(self) -> int:
         """Number of states that are solved: one for all loads where contacts are similar under them."""
-        return self.states // (len(self.tasks.order.loads) if self.body.alike else 1)
+        loads = self.tasks.order.loads
+        return self.states // len(loads) * len(self.body.dissimilar(loads))
 
     @property
     def shared(self) -> bool:
@@ -108,10 +109,8 @@ class Plan:
             X, Y = self.places.points.T
             datasets |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
         if self.asks(layers.AT_INTERFACES):
-            if self.body.found:
-                datasets[layers.INTERFACE_DEPTH_IN_M.path] = self.body.solid.depths  # type: ignore[attr-defined]
-            else:
-                datasets[layers.INTERFACE_DEPTH.path] = self.places.interfaces
+            unit, depths = self.body.depths
+            datasets[layers.DEPTHS[unit].path] = depths
             datasets[layers.ALONG_X.path] = self.places.along
         return datasets
 
@@ -122,7 +121,7 @@ class Plan:
         A prescribed pressure is compared with its own exact solution: it need not carry the load.
         """
         names = {FINITE, *(rule for quantity in self.quantities for rule in quantity.compared)}
-        own = self.body.pressure is not None
+        own = SOLVED in self.body.lacks
         in_time = self.starts.rules if self.starts else frozenset()
         return in_time | frozenset(name for name in names if RULES[name].own_pressure or not own)
 

@@ -39,7 +39,7 @@ from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import unknowns
 from galinx.solvers.contact.residual import indentation, places
-from galinx.solvers.contact.solution import Places, Task
+from galinx.solvers.contact.solution import FLAT, Places, Task
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import smooth
 
@@ -151,10 +151,8 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
 
 def _recomputed(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
     """Numbers to compute again: methods, states and quantities."""
-    count, most_of_all = plan.states, _FLAT if plan.body.flat else _most(plan)
+    count, most_of_all = plan.states, _most(plan) if FLAT in plan.body.lacks else _FLAT
     for method in (CLOSED_FORM, SIE):
-        if method not in plan.methods and not (method == CLOSED_FORM and not plan.body.pressure):
-            continue
         # Residuals may be rounding alone; comparisons have them.
         own = [
             quantity
@@ -261,7 +259,7 @@ def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[
         or not slow
     ):
         return
-    if states.INDENTATION.path in data and fem.terms and not body.pressure:
+    if states.INDENTATION.path in data and fem.terms:
         yield from _of_indentations(data, plan, selected)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
     if all(path in data for path in loads) and not _near(data[loads[0]], data[loads[1]], _FROM_EXACT):
@@ -326,10 +324,7 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.i
                 σ_YY = solution.surface.σ_YY
         except SolveError:
             continue
-        ends = -body.half_width
-        if body.found:
-            ends = solution.centre - solution.half_width
-        height = body.profile.height(np.broadcast_to(ends, len(rows)))
+        height = body.profile.height(solution.centre - solution.half_width)
         v0 = body.displacement * indentation(task.response, g[rows], σ_YY, height / body.displacement)
         far = np.abs(held[rows] - v0) > _INDENTATION * np.abs(v0)
         if far.any():

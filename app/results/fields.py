@@ -20,11 +20,12 @@ from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
-from galinx.solvers.contact.closed_form import FlatPunch, Loaded, LoadedHalfPlane
 from galinx.solvers.contact.edges import under_punch
+from galinx.solvers.contact.exact import contacts_of
 from galinx.solvers.contact.fem_plan import FemPlan
-from galinx.solvers.contact.solution import Task
+from galinx.solvers.contact.solution import GIVEN_ENDS, Task
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
+from galinx.solvers.contact.uniform import Contacts
 
 from .. import ranks
 from ..console import Progress
@@ -104,7 +105,7 @@ def select_states(
             )
     if not numbers:
         raise BadInput("states: found none, expected numbers of some")
-    if scene.body.found:
+    if GIVEN_ENDS in scene.body.lacks:
         raise BadInput(
             f"states: found a {scene.punch.profile.words()}, whose contact has another half-width in "
             "every state; fields of single states are there for a given half-width only. Stresses "
@@ -428,9 +429,7 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         "contact_pressure": body.stress * _pressure(solution, sampled.points),
     }
     if state.exact:
-        exact: Loaded = FlatPunch(task.response, state.g)
-        if body.pressure:
-            exact = LoadedHalfPlane(task.response, state.g, body.pressure)
+        exact = contacts_of(task, np.array([state.g]))
         data["sigma_error"] = body.stress * _error(exact, sampled.points, stresses)
     return StateField(body.half_width * sampled.points, sampled.quads, data)
 
@@ -451,9 +450,9 @@ def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
     return pressure
 
 
-def _error(exact: Loaded, points: NDArray, stresses: NDArray) -> NDArray[np.float64]:
+def _error(exact: Contacts, points: NDArray, stresses: NDArray) -> NDArray[np.float64]:
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     inside, error = _inside(points), np.full(len(points), np.nan)
     X, Y = points[inside].T
-    error[inside] = np.abs(stresses[:, inside] - exact.inside(X, Y)).max(axis=0)
+    error[inside] = np.abs(stresses[:, inside] - exact.inside(X, Y)[:, 0]).max(axis=0)
     return error

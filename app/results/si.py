@@ -12,7 +12,6 @@ from galinx.postprocess.quantities.states import CENTRE, FRICTION, HALF_WIDTH, L
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.tables import LENGTHS, Scaled, Scaling, as_archived
 
-from ..plan.states import order
 from ..scene.scene import Scene
 
 _OVER_HALF_WIDTH = {row.path for row in (SURFACE_X, INSIDE_X, INSIDE_Y, *LENGTHS)}
@@ -30,14 +29,6 @@ def scaling(scene: Scene | None, data: Mapping[str, Any]) -> Scaling:
     if scene is None:
         return as_archived
     return lambda row, name: in_si(row, name, scene, data)
-
-
-def unit_of_stress(scene: Scene) -> Any:
-    """N/(2a) [Pa], that of each state where they differ in their load, (states,)."""
-    if len(scene.punch.loads) == 1:
-        return scene.body.stress
-    sequence = order(scene)
-    return scene.body.loaded(sequence.load(slice(0, len(sequence)))).stress
 
 
 def stress_of_states(data: Mapping[str, Any], scene: Scene) -> NDArray[np.float64]:
@@ -60,7 +51,7 @@ def drawn_in_si(data: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
     where every state has its own."""
     ends = contacts_of_states(data)
     if not ends and len(scene.punch.loads) == 1:
-        return {"unit": 1e-6 * unit_of_stress(scene)}
+        return {"unit": 1e-6 * scene.body.stress}
     return {
         "unit": 1e-6 * stress_of_states(data, scene)[:, 0],
         "ends": (1e3 * ends[0], 1e3 * ends[1]) if ends else None,
@@ -79,17 +70,16 @@ def in_si(row: Quantity, name: str, scene: Scene, data: Mapping[str, Any]) -> Sc
     Returns:
         The column's name, unit and factor; None for a quantity that equals another one in SI.
     """
-    body = scene.body
-    ends = contacts_of_states(data) if body.found else None
-    if body.found and ends is None and (row.unit == "N/(2a)" or row.path in _OVER_HALF_WIDTH):
-        return as_archived(row, name)  # no contact is archived
-    if row.unit == "N/(2a)":
-        return Scaled(name, "Pa", stress_of_states(data, scene)[:, 0] if ends else unit_of_stress(scene))
-    if row.path in _OVER_HALF_WIDTH:
-        name_in_si = name.removesuffix("_over_a")
+    over = row.path in _OVER_HALF_WIDTH
+    if over or row.unit == "N/(2a)":
+        ends = contacts_of_states(data) or scene.body.shared_ends
         if ends is None:
-            return Scaled(name_in_si, "m", body.half_width)
-        return Scaled(name_in_si, "m", ends[0], ends[1] if row.path.endswith(_ALONG_X) else 0.0)
+            return as_archived(row, name)  # no contact is archived
+        half_width, middle = ends
+        if not over:
+            return Scaled(name, "Pa", data.get(LOAD.path, scene.punch.load) / (2.0 * half_width))
+        middle = middle if row.path.endswith(_ALONG_X) else 0.0
+        return Scaled(name.removesuffix("_over_a"), "m", half_width, middle)
     if row is SPEED:
-        return Scaled("speed", "m/s", body.solid.c_s)
+        return Scaled("speed", "m/s", scene.solid.c_s)
     return None if row is VELOCITY else as_archived(row, name)

@@ -16,7 +16,6 @@ from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.method import Method, Solver
 from galinx.solvers.contact.solution import Body, Task
-from galinx.solvers.contact.uniform import local_exponents
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
@@ -95,7 +94,7 @@ class Work:
         if len(task.loads) > 1:
             load = np.concatenate([self.plan.load(slice(row, row + 1)) for row in rows.tolist()])
         body = task.body.loaded(load)
-        data = self._of(LOCAL, Edges(_local(task, g, body)), body)
+        data = self._of(LOCAL, Edges(task.body.local_exponents(task.response, g, load)), body)
         for name, method in self.methods.items():
             with ExitStack() as stack:
                 solver = None
@@ -109,7 +108,7 @@ class Work:
         for runs in self._batches(task):
             reasons = dict(failures.whole)
             parts = list(self._parts(task, runs, solvers, reasons))
-            if reasons == failures.whole or len(task.loads) == 1 or task.body.alike:
+            if reasons == failures.whole or len(task.body.dissimilar(task.loads)) == 1:
                 failures.whole = reasons
                 failures.solved |= len(task.loads) > 1 and not reasons
                 yield from parts
@@ -154,7 +153,7 @@ class Work:
             load = np.concatenate([self.plan.load(rows) for rows in runs])
         body = task.body.loaded(load)
         with self.clock(_STEPS["closed_form"]):
-            data = self._of(LOCAL, Edges(_local(task, g, body)), body)
+            data = self._of(LOCAL, Edges(task.body.local_exponents(task.response, g, load)), body)
         for name in self.methods:
             try:
                 if name not in failures:
@@ -213,19 +212,6 @@ class Work:
     def _compared(self, data: dict[str, NDArray], g: NDArray, load: Any) -> list[compare.Comparison]:
         given = {states.RATIO.path: g} | self.plan.positions
         return compare.comparisons(data | given, load, self.plan.rules)
-
-
-def _local(task: Task, g: NDArray, body: Body) -> Any:
-    """Exponents of the pressure at the ends of states."""
-    if not body.layered:
-        return local_exponents(task.response, g, body.profile, body.compression)
-    from galinx.solvers.contact import (
-        free_on_layers as free_contact,  # SciPy's special functions, a slow import
-    )
-
-    return free_contact.local_exponents(
-        task.response, g, body.profile, task.body.half_width, body.compression
-    )
 
 
 #: Clock's step for the evaluation of a method's solutions, by method.

@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities.over_time import TIME
-from galinx.postprocess.quantities.quantity import FINITE, FRICTION_ALONE, PUNCH
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
-from galinx.solvers.contact import AT_INTERFACES, FREE_ENDS, OWN_PRESSURE
-from galinx.solvers.contact.solution import Body
+from galinx.solvers.contact import AT_INTERFACES
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.solution import FREE, Body, make_contact
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
@@ -194,11 +195,6 @@ class Solve:
         """True where the scene prescribes a pressure of its own, not that of a closed form."""
         return self.mode == "traction" and self.pressure != "closed_form"
 
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Names of the modes, by which quantities and rules that apply are selected."""
-        return ("", self.mode, OWN_PRESSURE) if self.own_pressure else ("", PUNCH, self.mode)
-
 
 @dataclass(frozen=True)
 class Output:
@@ -292,18 +288,15 @@ class Scene:
 
     @cached_property
     def body(self) -> Body:
-        """Contact of the punch and the solid under the first load, without a prescribed pressure."""
-        return Body(self.solid, self.punch.profile, self.punch.load, None, self.half_plane.yield_strength)
+        """Contact of the punch, or of the prescribed pressure, and the solid under the first load."""
+        pressure = LinearPressure(*np.array(self.solve.pressure).T) if self.solve.own_pressure else None
+        strength = self.half_plane.yield_strength
+        return make_contact(self.solid, self.punch.profile, self.punch.load, pressure, strength)
 
     @property
     def modes(self) -> tuple[str, ...]:
         """Names of the modes, by which quantities and rules that apply are selected."""
-        own = self.solve.own_pressure
-        return (
-            *self.solve.modes,
-            *(FREE_ENDS,) * self.body.found,
-            *(FINITE,) * (own or self.body.finite),
-        )
+        return ("", self.solve.mode, *self.body.modes)
 
     @property
     def sha256(self) -> str:
@@ -363,7 +356,8 @@ def contradictions(scene: Scene) -> list[str]:
         faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")
     if fixed and solve.mode == "traction":
         faults.append('solve.degree needs solve.mode = "contact"')
-    if solve.pressure != "closed_form" and solve.mode != "traction":
+    own = solve.pressure != "closed_form"
+    if own and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')
     return faults
 
@@ -418,7 +412,7 @@ def _too_much(scene: Scene) -> Iterator[str]:
 
 def _too_small(scene: Scene) -> Iterator[str]:
     """Warning about a contact with free ends that is a few atoms wide; for a flat punch its key warns."""
-    if not scene.body.free:
+    if scene.body.ends != FREE:
         return
     load = min(scene.punch.loads)
     a = scene.body.loaded(load).half_width

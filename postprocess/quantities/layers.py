@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE
+from galinx.solvers.contact.solution import SOLVED
 from galinx.solvers.contact.stresses import extreme
 from galinx.solvers.parameters import Range
 
@@ -18,7 +19,7 @@ def _intensity(side: str, at: str, i: int) -> Quantity:
     return Quantity(
         f"states/sie/K_I_{side}", "1",
         f"normalised stress intensity factor at {at}, layered half-plane", (STATE,),
-        lambda s, _: s.K_I[:, i], SIE, compared=("K_I of layers",),
+        lambda s, _: s.K_I[:, i], SIE, compared=("K_I of layers",), requires=(SOLVED,),
     )  # fmt: skip
 
 
@@ -30,7 +31,7 @@ ESTIMATE = Quantity(
     "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's error",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], SIE,
     compared=("estimate of the integral equation",),
-    range=Range(at_least=0.0), accuracy=True,
+    range=Range(at_least=0.0), accuracy=True, requires=(SOLVED,),
 )  # fmt: skip
 
 PRESSURE = {
@@ -59,6 +60,8 @@ INTERFACE_DEPTH_IN_M = Quantity(
     "interfaces/depth", "m", "depths of the interfaces, where contacts have free ends", (INTERFACE,),
     asked_by=AT_INTERFACES, range=Range(above=0.0),
 )  # fmt: skip
+#: Depths of interfaces by their unit.
+DEPTHS = {row.unit: row for row in (INTERFACE_DEPTH, INTERFACE_DEPTH_IN_M)}
 ALONG_X = Quantity(
     "interfaces/X_over_a", "1", "positions along interfaces over the half-width", (ALONG,),
     asked_by=AT_INTERFACES,

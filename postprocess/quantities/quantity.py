@@ -31,10 +31,6 @@ METHODS = {CLOSED_FORM: "closed form", SIE: "integral equation", FEM: "finite el
 #: Places where NaN is an answer.
 NEVER, BESIDE, ANYWHERE = "never", "beside the punch", "anywhere"
 
-#: Mode of the pressure of a punch with edges; and of all finite stresses, under a punch with free ends
-#: or a prescribed pressure.
-PUNCH, FINITE = "punch", "finite stresses"
-
 #: Mode of one method alone, the numbers of which are compared with no other's.
 ALONE = "one method"
 
@@ -68,6 +64,7 @@ class Quantity:
         whole: its numbers are integers. None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
         accuracy: it says how good other numbers are, and nothing of the contact.
+        requires: what a contact may lack, see :attr:`galinx.solvers.contact.solution.Body.lacks`.
     """
 
     path: str
@@ -86,6 +83,7 @@ class Quantity:
     whole: bool = False
     range: Range = Range()
     accuracy: bool = False
+    requires: tuple[str, ...] = ()
 
     @property
     def type(self) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE
+from galinx.solvers.contact.solution import FLAT, PUNCH, SOLVED
 from galinx.solvers.contact.stresses import flatness
 from galinx.solvers.parameters import Range
 
@@ -55,22 +56,22 @@ SPEED_LIMIT = Quantity(
 
 ALPHA = Quantity(
     "states/alpha", "1", "exponent of the pressure at X = a, local analysis", (STATE,),
-    lambda s, _: s.local.α, LOCAL,
+    lambda s, _: s.local.α, LOCAL, PUNCH,
 )  # fmt: skip
 BETA = Quantity(
     "states/beta", "1", "exponent of the pressure at X = -a, local analysis", (STATE,),
-    lambda s, _: s.local.β, LOCAL,
+    lambda s, _: s.local.β, LOCAL, PUNCH,
 )  # fmt: skip
 
 K_I_BOTH = Quantity(
     "states/closed_form/K_I", "1",
     "normalised stress intensity factor, both ends of a flat punch (Eq 58)",
-    (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM,
+    (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, PUNCH),
 )  # fmt: skip
 K_I_LEFT = {
     CLOSED_FORM: Quantity(
         "states/closed_form/K_I_left", "1", "normalised stress intensity factor at X = -a", (STATE,),
-        lambda s, _: s.K_I[:, 0], CLOSED_FORM,
+        lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED,),
     ),
     FEM: Quantity(
         "states/fem/K_I_left", "1", "normalised stress intensity factor at X = -a, Jacobi moments",
@@ -80,7 +81,7 @@ K_I_LEFT = {
 K_I_RIGHT = {
     CLOSED_FORM: Quantity(
         "states/closed_form/K_I_right", "1", "normalised stress intensity factor at X = a", (STATE,),
-        lambda s, _: s.K_I[:, 1], CLOSED_FORM,
+        lambda s, _: s.K_I[:, 1], CLOSED_FORM, requires=(SOLVED,),
     ),
     FEM: Quantity(
         "states/fem/K_I_right", "1", "normalised stress intensity factor at X = a, Jacobi moments",
@@ -91,10 +92,12 @@ K_I_RIGHT = {
 FITTED_ALPHA = Quantity(
     "states/fem/alpha", "1", "exponent of the pressure at X = a, fitted from the raw pressure", (STATE,),
     lambda s, _: s.exponents[:, 0], FEM, _CONTACT, nan_allowed=ANYWHERE, compared=("exponents",),
+    requires=(PUNCH,),
 )  # fmt: skip
 FITTED_BETA = Quantity(
     "states/fem/beta", "1", "exponent of the pressure at X = -a, fitted from the raw pressure", (STATE,),
     lambda s, _: s.exponents[:, 1], FEM, _CONTACT, nan_allowed=ANYWHERE, compared=("exponents",),
+    requires=(PUNCH,),
 )  # fmt: skip
 NORMAL_FORCE = Quantity(
     "states/fem/normal_force", "N/m", "resultant of the nodal normal forces under the punch", (STATE,),
@@ -192,7 +195,7 @@ RESIDUAL = {
         "residual of the integral equation at the contact pressure, by a rule of its own, over the "
         "pressure's part in it",
         (STATE,), lambda s, _: s.residual, method, ALONE, compared=(rule,), range=_NOT_NEGATIVE,
-        accuracy=True,
+        accuracy=True, requires=(SOLVED,),
     )
     for method, rule in ((CLOSED_FORM, "residual"), (FEM, "residual of finite elements"))
 }  # fmt: skip
@@ -200,7 +203,7 @@ SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",
     (STATE,), lambda s, _: flatness(s.surface), FEM, asked_by="surface",
-    compared=("slope under the punch",), range=_NOT_NEGATIVE, accuracy=True,
+    compared=("slope under the punch",), range=_NOT_NEGATIVE, accuracy=True, requires=(FLAT,),
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

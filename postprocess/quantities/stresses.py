@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.contact import BELOW, ON_SURFACE
 from galinx.solvers.contact.free_ends import extreme_in_plane
+from galinx.solvers.contact.solution import OUT_OF_PLANE
 from galinx.solvers.contact.stresses import principal, von_mises
 from galinx.solvers.parameters import Range
 
@@ -139,17 +140,13 @@ STRESSES_INSIDE = {
 }
 
 
-def _invariant(method: str, name: str, about: str, of: Callable[[Any, Any], NDArray]) -> Quantity:
+def _invariant(
+    method: str, name: str, about: str, of: Callable[[Any, Any], NDArray], *requires: str
+) -> Quantity:
     return Quantity(
         f"interior/{method}/{name}", "N/(2a)", f"{about} inside", (STATE, INSIDE), of, method,
-        asked_by=BELOW,
+        asked_by=BELOW, requires=requires,
     )  # fmt: skip
-
-
-def _von_mises(s: Any, body: Any) -> NDArray:
-    """Von Mises stress inside; over layers a solution has the σ_ZZ of the solid at each point."""
-    σ_XX, σ_YY, σ_XY = s.inside
-    return von_mises(σ_XX, σ_YY, σ_XY, s.σ_ZZ if body.layered else body.solid.σ_ZZ(σ_XX, σ_YY, σ_XY))
 
 
 def invariants(method: str) -> tuple[Quantity, ...]:
@@ -163,7 +160,11 @@ def invariants(method: str) -> tuple[Quantity, ...]:
             method, "sigma_2", "smaller principal stress in the plane",
             lambda s, _: principal(*s.inside)[1],
         ),
-        _invariant(method, "von_mises", "von Mises stress, sigma_ZZ included", _von_mises),
+        _invariant(
+            method, "von_mises", "von Mises stress, sigma_ZZ included",
+            lambda s, body: von_mises(s.inside[0], s.inside[1], s.inside[2], body.σ_ZZ_inside(s)),
+            OUT_OF_PLANE,
+        ),
     )  # fmt: skip
 
 

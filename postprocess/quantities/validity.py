@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import ON_SURFACE
+from galinx.solvers.contact.solution import PUNCH
 from galinx.solvers.contact.stresses import tension
 from galinx.solvers.parameters import Range
 
@@ -13,7 +14,6 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
-    PUNCH,
     QUANTITIES,
     STATE,
     Quantity,

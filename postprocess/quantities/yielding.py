@@ -6,6 +6,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
+from galinx.solvers.contact.solution import FINITE, POWER, PUNCH
 from galinx.solvers.contact.yielding import Peak
 from galinx.solvers.parameters import Range
 
@@ -13,8 +14,6 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
-    FINITE,
-    PUNCH,
     QUANTITIES,
     STATE,
     Quantity,
@@ -33,12 +32,14 @@ def _both(
     mode: str = "",
     compared: str = "",
     range: Range = _NOT_NEGATIVE,
+    requires: tuple[str, ...] = (),
 ) -> dict[str, Quantity]:
     """Quantity of a state by both methods."""
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
             nan_allowed=ANYWHERE, compared=(compared,) * (method == FEM and bool(compared)), range=range,
+            requires=requires,
         )
         for method in (CLOSED_FORM, FEM)
     }  # fmt: skip
@@ -78,7 +79,7 @@ FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
     "infinite",
-    lambda s, _: s.strength.first_load, FINITE,
+    lambda s, _: s.strength.first_load, FINITE, requires=(POWER,),
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",

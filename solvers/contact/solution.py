@@ -8,7 +8,7 @@ limits there, :class:`Turns`.
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps
 from ..solids import Solid
 from ..solids.solid import Response
+from . import FREE_ENDS, OWN_PRESSURE, YIELD
 from .edges import under_punch
 from .prescribed_pressure import LinearPressure
 
@@ -44,9 +45,21 @@ class Places:
         return under_punch(self.X)
 
 
+#: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
+#: those of a prescribed pressure.
+SHARP, FREE, ONE_FREE, PRESCRIBED = "sharp", "free", "one free", "prescribed"
+
+#: Modes of a punch, and of stresses that are finite everywhere.
+PUNCH, FINITE = "punch", "finite stresses"
+
+#: What a quantity may require of a contact: a flat punch, ends that are given, a pressure that is solved
+#: for, a height that is a power of |X|, a known stress out of the plane.
+FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
+
+
 @dataclass(frozen=True)
 class Body:
-    """Punch and half-plane in SI.
+    """Punch and half-plane in SI; :func:`make_contact` makes the kind that the ends of the contact are.
 
     The units of results are numbers for a single load, and arrays (states,) for a load of each state.
 
@@ -56,6 +69,8 @@ class Body:
         load: N per depth [N/m], a number, or that of each state, (states,).
         pressure: prescribed pressure; None where the punch determines it.
         yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
+        ends: ``SHARP``, ``FREE``, ``ONE_FREE`` or ``PRESCRIBED``.
+        found: True if an end of the contact is free: the half-width then depends on the state.
     """
 
     solid: Solid
@@ -64,10 +79,59 @@ class Body:
     pressure: LinearPressure | None = None
     yield_strength: float | None = None
 
-    @cached_property
-    def found(self) -> bool:
-        """True if an end of the contact is free: the half-width then depends on the state."""
-        return has_free_end(self.profile)
+    ends: ClassVar[str]
+    found: ClassVar[bool] = False
+
+    @property
+    def half_width(self) -> Any:
+        """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
+        return half_width(self.profile)
+
+    @property
+    def flat(self) -> bool:
+        """True if the punch is flat and not tilted."""
+        return False
+
+    @property
+    def growth_exponent(self) -> float | None:
+        """Exponent of the load by which similar contacts grow; None if other loads make others.
+
+        Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
+        prescribed pressure.
+        """
+        return None
+
+    @property
+    def alike(self) -> bool:
+        """True if contacts under all loads are similar: they differ in size alone."""
+        return self.growth_exponent is not None
+
+    @property
+    def finite(self) -> bool:
+        """True if all stresses are finite: both ends are free, and the profile has no tip."""
+        return False
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Modes by which quantities and rules that apply are selected."""
+        return (PUNCH,)
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Positions X/a between which a prescribed pressure is linear; none under a punch."""
+        return ()
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        """Reasons why there are no quantities that require something of the contact.
+
+        Keys are requirements, as ``FLAT``, modes, as ``PUNCH``, or words of output.quantities, as
+        :data:`galinx.solvers.contact.YIELD`.
+        """
+        reasons = {FLAT: "the punch is not flat"} if not self.flat else {}
+        if not self.solid.knows_σ_ZZ:
+            reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
+        return reasons
 
     def response(self, c: float) -> Response:
         """Response of the half-plane at a speed over its wave speed, dimensionless.
@@ -86,71 +150,59 @@ class Body:
         """
         return self.solid.σ_ZZ_at(-Y * self._length, σ)
 
+    def σ_ZZ_inside(self, solution: Any) -> NDArray[np.float64]:
+        """Normal stress out of the plane at a solution's points inside, over N/(2a), (states, m)."""
+        return solution.σ_ZZ if self.layered else self.solid.σ_ZZ(*solution.inside)
+
+    def local_exponents(self, response: Response, g: NDArray, load: Any = None) -> Any:
+        """Exponents of the pressure at the ends of states.
+
+        Args:
+            response: of the half-plane at the states' speed, lengths over this contact's half-width.
+            g: σ_XY/σ_YY under the punch, (states,).
+            load: of each state [N/m], (states,); None for this contact's.
+        """
+        compression = self.loaded(load).compression
+        if self.layered:
+            from . import free_on_layers as layers  # SciPy's special functions, a slow import
+
+            return layers.local_exponents(response, g, self.profile, self.half_width, compression)
+        from .uniform import local_exponents
+
+        return local_exponents(response, g, self.profile, compression)
+
     @property
     def layered(self) -> bool:
         """True if the half-plane has layers."""
         return len(self.solid.depths) > 0
 
     @property
+    def shared_ends(self) -> tuple[Any, float] | None:
+        """Half-width and middle [m] of the contacts of all states; None where each has its own."""
+        return self.half_width, 0.0
+
+    @property
+    def depths(self) -> tuple[str, NDArray[np.float64]]:
+        """Unit of interfaces' depths, "1" over a half-width that all states share or "m", and these."""
+        return "1", self.solid.depths / self.half_width
+
+    @property
     def _length(self) -> Any:
         """Unit of length of the half-plane [m]: a where it has layers, and any where it has no length."""
         return self.half_width if self.layered else 1.0
 
-    @cached_property
-    def free(self) -> bool:
-        """True if both ends of the contact are free at every load."""
-        return not any(getattr(self.profile, "sharp", (True, True)))
-
-    @cached_property
-    def finite(self) -> bool:
-        """True if all stresses are finite: both ends are free, and the profile has no tip."""
-        return self.free and not jumps(self.profile)
-
-    @cached_property
-    def alike(self) -> bool:
-        """True if contacts under all loads are similar: they differ in size alone.
-
-        Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
-        prescribed pressure.
-        """
-        if self.pressure is not None or self.flat:
-            return True
-        # Layers have a length: their thickness over the contact's width changes with the load.
-        return self.free and bool(exponent(self.profile)) and not self.layered
-
-    def loaded(self, load: Any = None) -> "Body":
+    def loaded(self, load: Any = None) -> Self:
         """Punch and half-plane under another load [N/m], a number or (states,); unchanged for None."""
         return self if load is None else replace(self, load=load)
 
     def growth(self, load: Any) -> Any:
-        """Half-widths of similar contacts at other loads [N/m], over that at this load."""
-        k = exponent(self.profile) if self.free else None
-        return (load / self.load) ** (1.0 / k) if k else np.ones_like(load)
+        """Half-widths at other loads [N/m] over that at this load; None if contacts are not similar."""
+        k = self.growth_exponent
+        return None if k is None else (load / self.load) ** k
 
-    @cached_property
-    def half_width(self) -> Any:
-        """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
-        if not self.found:
-            return half_width(self.profile)
-        if np.ndim(self.load) and self.alike:
-            first = self.loaded(float(self.load[0]))
-            return first.half_width * first.growth(self.load)
-        if self.layered:
-            each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
-            return np.array(each) if np.ndim(self.load) else each[0]
-        from .uniform import contacts
-
-        g = np.zeros(np.size(self.load))
-        rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
-        return rest if np.ndim(self.load) else float(rest[0])
-
-    def _at_rest(self, load: float) -> float:
-        """Half-width [m] on layers at rest, with free ends, under a load N per depth [N/m]."""
-        from .free_on_layers import half_width_at_rest
-
-        profile: Any = self.profile
-        solid: Any = self.solid
-        return half_width_at_rest(solid, profile, load / solid.μ)
+    def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
+        """Loads [N/m], of several, under which contacts differ in more than their size."""
+        return loads if self.growth_exponent is None else loads[:1]
 
     @property
     def compression(self) -> Any:
@@ -165,13 +217,6 @@ class Body:
         """Slope μ v,X under the punch over N/(2a), at X over a, in the shape of X."""
         a = self.half_width
         return self.profile.slope(a * X) * a / self.displacement
-
-    @cached_property
-    def flat(self) -> bool:
-        """True if the punch is flat and not tilted: its slope vanishes at 101 positions."""
-        if self.found:
-            return False
-        return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
 
     @property
     def force(self) -> Any:
@@ -195,6 +240,127 @@ class Body:
         With free ends a state's stresses are over its own half-width instead.
         """
         return self.load / (2.0 * self.half_width)
+
+
+class SharpContact(Body):
+    """Contact between two sharp corners of a punch."""
+
+    ends = SHARP
+
+    @cached_property
+    def flat(self) -> bool:
+        """True if the slope of the punch vanishes at 101 positions."""
+        return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
+
+    @property
+    def growth_exponent(self) -> float | None:
+        return 0.0 if self.flat else None
+
+
+class PrescribedContact(SharpContact):
+    """Prescribed pressure between two given ends."""
+
+    ends, modes, growth_exponent = PRESCRIBED, (OWN_PRESSURE, FINITE), 0.0
+    pressure: LinearPressure
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        return tuple(self.pressure.knots.tolist())
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        return super().lacks | {SOLVED: "the pressure is prescribed"}
+
+
+class FreeEndContact(Body):
+    """Contact of which the pressure determines an end, or both."""
+
+    found, shared_ends = True, None
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        reasons = super().lacks | {
+            PUNCH: "the contact has free ends",
+            GIVEN_ENDS: "whose contact ends where the pressure says",
+        }
+        if not (exponent(self.profile) or 0.0) > 1.0:
+            reasons[POWER] = "known where the height is a power of |X|: the contact grows with the load"
+        if not self.finite:
+            reasons[YIELD] = (
+                "stresses are infinite at a sharp edge or a tip, and any load makes these yield"
+            )
+        return reasons
+
+    @property
+    def depths(self) -> tuple[str, NDArray[np.float64]]:
+        return "m", self.solid.depths
+
+    @cached_property
+    def half_width(self) -> Any:
+        if np.ndim(self.load):
+            first = self.loaded(float(self.load[0]))
+            growth = first.growth(self.load)
+            if growth is not None:
+                return first.half_width * growth
+        if self.layered:
+            each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
+            return np.array(each) if np.ndim(self.load) else each[0]
+        from .uniform import contacts
+
+        g = np.zeros(np.size(self.load))
+        rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
+        return rest if np.ndim(self.load) else float(rest[0])
+
+    def _at_rest(self, load: float) -> float:
+        """Half-width [m] on layers at rest, under a load N per depth [N/m]."""
+        from .free_on_layers import half_width_at_rest
+
+        profile: Any = self.profile
+        solid: Any = self.solid
+        return half_width_at_rest(solid, profile, load / solid.μ)
+
+
+class OneFreeContact(FreeEndContact):
+    """Contact between a sharp corner of the punch and an end that is free where the punch lifts off."""
+
+    ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
+
+
+class FreeContact(FreeEndContact):
+    """Contact between two free ends, of a convex punch."""
+
+    ends = FREE
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        return (PUNCH, FREE_ENDS, *(FINITE,) * self.finite)
+
+    @property
+    def finite(self) -> bool:
+        return not jumps(self.profile)
+
+    @property
+    def growth_exponent(self) -> float | None:
+        # Layers have a length: their thickness over the contact's width changes with the load.
+        k = None if self.layered else exponent(self.profile)
+        return 1.0 / k if k else None
+
+
+def make_contact(
+    solid: Solid,
+    profile: Any,
+    load: Any,
+    pressure: LinearPressure | None = None,
+    yield_strength: float | None = None,
+) -> Body:
+    """Contact of the kind that a punch, or a prescribed pressure, makes; arguments are its attributes.
+
+    Where an end is free the punch determines the pressure, and a prescribed one is left out.
+    """
+    kind: type[Body] = PrescribedContact if pressure else SharpContact
+    if has_free_end(profile):
+        kind, pressure = OneFreeContact if any(profile.sharp) else FreeContact, None
+    return kind(solid, profile, load, pressure, yield_strength)
 
 
 @dataclass(frozen=True)

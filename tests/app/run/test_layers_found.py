@@ -19,7 +19,7 @@ from galinx.solvers.contact import stresses
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation
 from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, rule_of_ends
-from galinx.solvers.contact.solution import Body
+from galinx.solvers.contact.solution import FreeContact
 from galinx.solvers.profiles.power import Parabolic
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
@@ -187,8 +187,8 @@ def test_finite_elements_know_nothing_of_the_integral_equation(monkeypatch):
     """But where to begin: from another half-width they find the same."""
     asked = dict(methods=("fem",), tolerance=1e-3)
     one = galinx.compute(scene(**asked)).data
-    true = Body._at_rest
-    monkeypatch.setattr(Body, "_at_rest", lambda self, load: 1.7 * true(self, load))
+    true = FreeContact._at_rest
+    monkeypatch.setattr(FreeContact, "_at_rest", lambda self, load: 1.7 * true(self, load))
     other = galinx.compute(scene(**asked)).data
     for name in ("half_width", "centre"):
         found = one[f"states/fem/{name}"], other[f"states/fem/{name}"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.solution import Body
+from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.contact.yielding import Strength
 from galinx.solvers.profiles.flat import Flat
@@ -17,7 +17,7 @@ def flat(g, c, strength):
     """Yield below flat punches; the strength is over N/(2a)."""
     g, response = np.asarray(g, dtype=float), SOLID.response(c)
     exact = FlatPunch(response, g[:, None])
-    body = Body(SOLID, Flat(1e-3), 2e6, None, strength * 1e9)
+    body = make_contact(SOLID, Flat(1e-3), 2e6, None, strength * 1e9)
     field = lambda points: exact.stresses(points[..., 0], points[..., 1])  # noqa: E731
     return Strength(field, body, response, g, FlatPunch(response, g))
 

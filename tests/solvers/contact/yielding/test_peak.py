@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.solution import Body
+from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.contact.yielding import Strength
 from galinx.solvers.profiles.flat import Flat
@@ -44,7 +44,7 @@ def of_pressure(pressure, g, strength=1.0, stresses=None):
     """Yield below a pressure at rest; the strength is over N/(2a)."""
     g = np.asarray(g, dtype=float)
     exact = LoadedHalfPlane(AT_REST, g[:, None], pressure)
-    body = Body(SOLID, Flat(1e-3), 2e6, pressure, strength * 1e9)
+    body = make_contact(SOLID, Flat(1e-3), 2e6, pressure, strength * 1e9)
     field = stresses or (lambda points: exact.stresses(points[..., 0], points[..., 1]))
     return Strength(field, body, AT_REST, g, None)
 

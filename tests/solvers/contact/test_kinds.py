@@ -1,0 +1,50 @@
+"""Kinds of contacts: what the ends of each are, what it lacks, and how loads scale it."""
+
+import numpy as np
+import pytest
+
+from galinx.solvers.contact.prescribed_pressure import LinearPressure
+from galinx.solvers.contact.solution import (
+    FLAT,
+    FREE,
+    GIVEN_ENDS,
+    ONE_FREE,
+    PRESCRIBED,
+    PUNCH,
+    SHARP,
+    SOLVED,
+    make_contact,
+)
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.power import Parabolic, Wedge
+from galinx.solvers.profiles.rounded_flat import RoundedFlat
+from galinx.solvers.solids.isotropic import Isotropic
+
+SOLID = Isotropic(E=1e9, ν=0.3, ρ=1000.0)
+PRESSURE = LinearPressure(np.array([-1.0, 0.5, 1.0]), np.array([-0.5, -1.5, 0.0]))
+FREE_ENDS = {PUNCH, FLAT, GIVEN_ENDS}
+
+
+@pytest.mark.parametrize(
+    "profile, pressure, ends, lacks, growth",
+    [
+        (Flat(1e-3), None, SHARP, set(), 1.0),
+        (Flat(1e-3), PRESSURE, PRESCRIBED, {SOLVED}, 1.0),
+        (Flat(1e-3, 0.5), None, ONE_FREE, FREE_ENDS, None),
+        (Parabolic(0.1), None, FREE, FREE_ENDS, 2.0),
+        (Parabolic(0.1), PRESSURE, FREE, FREE_ENDS, 2.0),
+        (Wedge(1e-2), None, FREE, FREE_ENDS, 4.0),
+        (RoundedFlat(1e-3, 0.1), None, FREE, FREE_ENDS, None),
+    ],
+    ids=str,
+)
+def test_a_kind_says_what_it_is(profile, pressure, ends, lacks, growth):
+    contact = make_contact(SOLID, profile, 1e4, pressure)
+    assert contact.ends == ends and contact.lacks.keys() & {*FREE_ENDS, SOLVED} == lacks
+    assert contact.growth(4e4) == (growth and pytest.approx(growth, rel=1e-14))
+    assert len(contact.dissimilar((1e4, 4e4))) == (2 if growth is None else 1)
+    if growth is not None:
+        wider = contact.loaded(4e4).half_width / contact.half_width
+        assert wider == pytest.approx(growth, rel=1e-9)
+    a = contact.half_width
+    assert contact.shared_ends == (None if GIVEN_ENDS in lacks else (a, 0.0))

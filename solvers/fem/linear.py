@@ -166,37 +166,32 @@ class LinearSolver:
             "above the Rayleigh speed"
         )
 
-    def solve(
-        self, b: NDArray, checked: bool = True, rows: NDArray[np.int32] | None = None
-    ) -> NDArray[np.float64]:
+    def solve(self, b: NDArray, checked: bool = True) -> NDArray[np.float64]:
         """Solutions at this rank's rows, (rows, n); a factor is read once for all right-hand sides.
 
         Args:
             b: right-hand sides at this rank's rows, (rows, n).
             checked: measure what a factor leaves of them; the caller does so if not, by :meth:`check`.
-            rows: rows of this rank beside which b is zero; any if None.
 
         Raises:
             SolveError: a solution is not finite, or does not solve its system.
         """
-        x = self._solved(b, rows)
+        x = self._solved(b)
         if checked:
             self.check(b, x, b - times(self.A, x))
         return x
 
-    def _solved(self, b: NDArray, rows: NDArray | None) -> NDArray[np.float64]:
+    def _solved(self, b: NDArray) -> NDArray[np.float64]:
         self.solves += b.shape[1]
-        # MUMPS skips parts of its tree without loads; on several ranks it wants all loads on the first.
-        sparse = self.direct and rows is not None and self._comm.size == 1
         with self._clock("back-substitutions" if self.direct else "multigrid solves"):
-            if not self.direct or (b.shape[1] == 1 and not sparse):
+            if b.shape[1] == 1 or not self.direct:
                 return np.column_stack([self._solve_one(column) for column in b.T])
-            x = np.zeros_like(b)
+            x = np.empty_like(b)
             count = max(_AT_ONCE // self.A.getSize()[0], 1)
             for start in range(0, b.shape[1], count):
                 columns = slice(start, start + count)
-                X = dense(self.A, x[:, columns])
-                B = _sparse(b[:, columns], rows) if sparse else dense(self.A, b[:, columns])  # type: ignore[arg-type]
+                B = dense(self.A, b[:, columns])
+                X = B.duplicate()
                 self._mumps.matSolve(B, X)
                 x[:, columns] = X.getDenseArray()
                 B.destroy(), X.destroy()
@@ -272,17 +267,6 @@ def dense(A: PETSc.Mat, columns: NDArray) -> PETSc.Mat:
     B.getDenseArray()[:] = columns
     B.assemble()
     return B
-
-
-def _sparse(columns: NDArray, rows: NDArray[np.int32]) -> PETSc.Mat:
-    """A sparse matrix on this rank of columns, (all rows, n), that are zero beside some rows."""
-    rows, (size, count) = np.sort(rows), columns.shape
-    starts = np.arange(count + 1, dtype=np.int32) * np.int32(len(rows))
-    entries = (starts, np.tile(rows, count), columns[rows].T.ravel())
-    A = PETSc.Mat().createAIJ((count, size), csr=entries, comm=PETSc.COMM_SELF)
-    transposed = PETSc.Mat().createTranspose(A)
-    A.destroy()
-    return transposed
 
 
 def times(A: PETSc.Mat, columns: NDArray) -> NDArray[np.float64]:

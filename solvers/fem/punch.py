@@ -449,7 +449,7 @@ class SlidingPunch(Punch):
                 space.take(np.empty((len(self._motions), 0)), forces)
             return
         waiting = [space.waiting for space in spaces]
-        x = self._sheared(np.column_stack(waiting))
+        x = self._displacements(self._tangential(np.column_stack(waiting)))
         forces = np.array([self._boundary.follow(force) for force in self._reactions(x)])
         ends = np.cumsum([loads.shape[1] for loads in waiting])
         for space, end, loads in zip(spaces, ends, waiting):
@@ -458,8 +458,9 @@ class SlidingPunch(Punch):
 
     def _settle(self, space: KrylovSpace) -> None:
         """Fields of the unsettled loads of a space: rough ones are checked, and refined if needed."""
-        more, b = space.unsettled[:, len(space.rough) :], self._tangential(space.unsettled)
-        x = np.column_stack([*space.rough, *([self._sheared(more)] if more.shape[1] else [])])
+        b = self._tangential(space.unsettled)
+        more = b[:, len(space.rough) :]
+        x = np.column_stack([*space.rough, *([self._displacements(more)] if more.shape[1] else [])])
         residuals = self._residuals(x, b, np.zeros(b.shape[1]))
         self.factor.check(b, x, residuals)
         if space.refines:
@@ -477,14 +478,9 @@ class SlidingPunch(Punch):
         """Forces that a tangential load at each contact node causes, (n, 2, n)."""
         loads, forces = np.eye(len(self.space.contact.s)), []
         for start in range(0, len(loads), _AT_ONCE):
-            x = self._sheared(loads[:, start : start + _AT_ONCE])
+            x = self._displacements(self._tangential(loads[:, start : start + _AT_ONCE]))
             forces += [self._boundary.follow(force) for force in self._reactions(x)]
         return np.array(forces)
-
-    def _sheared(self, forces: NDArray) -> NDArray[np.float64]:
-        """Rough displacements (rows, k) under tangential forces at the contact nodes, (n, k)."""
-        rows = self.space.contact.dofs(0) - self._first
-        return self._displacements(self._tangential(forces), rows=rows)
 
     def _tangential(self, forces: NDArray) -> NDArray[np.float64]:
         """Loads (rows, k) of tangential forces at the contact nodes, (n, k)."""
@@ -492,16 +488,9 @@ class SlidingPunch(Punch):
         b[nodes.dofs(0) - self._first] = forces[nodes.owned]
         return b
 
-    def _displacements(
-        self, b: NDArray, checked: bool = False, rows: NDArray | None = None
-    ) -> NDArray[np.float64]:
-        """Displacements under nodal forces (rows, k), the effect of held displacements included.
-
-        Args:
-            b: the forces.
-            checked, rows: as of :meth:`.linear.LinearSolver.solve`.
-        """
-        x, held = self.factor.solve(b, checked, rows), self._held
+    def _displacements(self, b: NDArray, checked: bool = False) -> NDArray[np.float64]:
+        """Displacements under nodal forces (rows, k), the effect of held displacements included."""
+        x, held = self.factor.solve(b, checked), self._held
         x[held] = b[held]  # an iterative solver only comes near them
         return x
 

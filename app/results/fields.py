@@ -21,11 +21,10 @@ from galinx.meshes.kind import DEGREES
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.contact.edges import under_punch
-from galinx.solvers.contact.exact import contacts_of
 from galinx.solvers.contact.fem_plan import FemPlan
 from galinx.solvers.contact.solution import GIVEN_ENDS, Task
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
-from galinx.solvers.contact.uniform import Contacts
+from galinx.solvers.contact.uniform import Contacts, contacts_of
 
 from .. import ranks
 from ..console import Progress
@@ -429,7 +428,7 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         "contact_pressure": body.stress * _pressure(solution, sampled.points),
     }
     if state.exact:
-        exact = contacts_of(task, np.array([state.g]))
+        exact = contacts_of(task.body, task.response, np.array([state.g]))
         data["sigma_error"] = body.stress * _error(exact, sampled.points, stresses)
     return StateField(body.half_width * sampled.points, sampled.quads, data)
 

@@ -461,14 +461,11 @@ class PunchLevel:
 
 
 def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
-    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's.
-
-    Rounding may put a node at an edge a little beyond it, where functions of ends are not defined.
-    """
+    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's."""
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: tests.stretch.functions(np.clip(r, -1.0, 1.0), tests.count + more * tests.a_degree)
+    return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
 
 
 class AtSpeed:

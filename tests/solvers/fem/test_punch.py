@@ -1,7 +1,5 @@
 """A punch on a mesh: rates of convergence, refinement of its solutions."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy.special import eval_chebyt
@@ -9,9 +7,6 @@ from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.fem_plan import PressureMoments
-from galinx.solvers.contact.recovery import Stretch
-from galinx.solvers.fem import contact
 from galinx.solvers.fem import punch as punches
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -91,10 +86,3 @@ def test_loads_at_every_node_find_what_steps_from_load_to_load_find(c, frictions
         for state, punch in ((wanted, by_steps), (found, by_nodes))
     ]
     assert np.linalg.norm(fields[1] - fields[0]) <= 1e-9 * np.linalg.norm(fields[0])
-
-
-def test_a_node_that_rounding_puts_beyond_an_edge_is_at_the_edge():
-    """It left no load for contacts over layers that are graded from the surface on."""
-    functions = contact.tests_of(SimpleNamespace(tests=PressureMoments(Stretch(1.4, graded=True), 18)), 0)
-    r = np.array([-1.0, 0.3, 1.0])
-    assert np.array_equal(functions(r * (1.0 + 2.0**-52)), functions(r * [1.0, 1.0 + 2.0**-52, 1.0]))

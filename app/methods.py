@@ -1,7 +1,7 @@
 """Methods that solve the contact, by the name that scenes use: titles, and what they do not give.
 
 Scenes and plans need nothing else of methods; :mod:`galinx.app.run.make` makes them. What a contact has
-not, whatever the method, it says itself: :attr:`galinx.solvers.contact.solution.Body.lacks`.
+not, whatever the method, it says itself: :attr:`galinx.solvers.contact.solution.Contact.lacks`.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,16 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
-from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, PUNCH, SHARP, SOLVED, Body
+from galinx.solvers.contact.solution import (
+    FLAT,
+    FREE,
+    ONE_FREE,
+    PRESCRIBED,
+    PUNCH,
+    SHARP,
+    SOLVED,
+    Contact,
+)
 from galinx.solvers.profiles import smooth
 
 #: Modes of the finite elements that scenes name: a punch, or a prescribed pressure.
@@ -36,18 +45,18 @@ class MethodKind:
 
     about: str
     made: Callable[[Any, Any, Any], Any] | None = None
-    refusal: Callable[[Any, Body, Quantity | None], str] = lambda scene, body, quantity: ""
+    refusal: Callable[[Any, Contact, Quantity | None], str] = lambda scene, body, quantity: ""
     loads: bool = False
     of_layers: bool = False
 
 
-def _refusal(quantity: Quantity | None, body: Body, lacks: dict[str, str]) -> str:
+def _refusal(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) -> str:
     """Reason why there is no quantity of a contact, "" where there is one, and for None.
 
     Args:
         quantity: the quantity.
         body: the contact.
-        lacks: what its method does not give, with reasons, as in :attr:`Body.lacks` or by a path.
+        lacks: what its method does not give, with reasons, as in :attr:`Contact.lacks` or by a path.
     """
     if quantity is None:
         return ""
@@ -67,14 +76,14 @@ _OF_FLAT_PUNCHES = {
 }
 
 
-def _closed_form_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     if scene.layers:
         return "the solid has layers, and no closed form"
     lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
     return _refusal(quantity, body, lacks)
 
 
-def _layers_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+def _layers_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     if not scene.layers:
         return "the solid has no layers, and closed_form knows the solution"
     return _refusal(quantity, body, {})
@@ -106,7 +115,7 @@ def fem_mode(scene: Any) -> str:
     return scene.solve.mode if mode == CONTACT else mode
 
 
-def _finite_elements_refusal(scene: Any, body: Body, quantity: Quantity | None) -> str:
+def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
     lacks = _LACKING.get(mode, {})
     if scene.layers:

@@ -31,7 +31,7 @@ from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 from galinx.postprocess.tables import as_archived
 from galinx.solvers.contact import layered as on_layers
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Body, Places, Task
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Contact, Places, Task
 from galinx.solvers.contact.stresses import NEAR
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
@@ -343,7 +343,7 @@ def angles(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     return Drawing("angles", caption, polar_figure(around, twice, now, choice.size))
 
 
-def _of_edges(bodies: list[Body], V: float, g: float) -> tuple[list[PolarPanel], str]:
+def _of_edges(bodies: list[Contact], V: float, g: float) -> tuple[list[PolarPanel], str]:
     """Panels of -α and -β of sharp edges, and of K_I of a flat punch; and what they show."""
     flat = [_at(body, V, lambda response, body: FlatPunch(response, g)) for body in bodies]
     at_left, at_right = (
@@ -364,12 +364,12 @@ def _of_edges(bodies: list[Body], V: float, g: float) -> tuple[list[PolarPanel],
 
 
 def _of_contacts(
-    bodies: list[Body], V: float, g: float, nearest: float = 0.0
+    bodies: list[Contact], V: float, g: float, nearest: float = 0.0
 ) -> tuple[list[PolarPanel], str]:
     """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end; and what
     they show. Tensions are no nearer to an end than a distance over a."""
 
-    def numbers(response: Any, body: Body) -> list[float]:
+    def numbers(response: Any, body: Contact) -> list[float]:
         contact = contacts(response, np.array([g]), body.profile, body.compression)
         h = float(contact.of("half_width")[0])
         unit = 1e-6 * body.load / (2.0 * h)
@@ -394,7 +394,7 @@ def _of_contacts(
 
 
 #: Panels over the angle, and what they show, by the ends of the contact.
-_OVER_ANGLE: dict[str, Callable[[list[Body], float, float], tuple[list[PolarPanel], str]]] = {
+_OVER_ANGLE: dict[str, Callable[[list[Contact], float, float], tuple[list[PolarPanel], str]]] = {
     SHARP: _of_edges,
     PRESCRIBED: _of_edges,
     FREE: _of_contacts,
@@ -402,7 +402,7 @@ _OVER_ANGLE: dict[str, Callable[[list[Body], float, float], tuple[list[PolarPane
 }
 
 
-def _at(body: Body, V: float, of: Callable[[Any, Body], Any]) -> Any:
+def _at(body: Contact, V: float, of: Callable[[Any, Contact], Any]) -> Any:
     """Value of ``of`` for a body at a speed [m/s]; None from the limit on, and without a contact."""
     c = V / body.solid.c_s
     if c >= body.solid.limit():
@@ -468,13 +468,13 @@ def thicknesses(data: dict[str, Any], scene: Scene, choice: Choice) -> Drawing:
     return Drawing("thicknesses", caption, curves_figure(panels, over, size=choice.size))
 
 
-def _with_top(body: Body, thickness: float) -> Body:
+def _with_top(body: Contact, thickness: float) -> Contact:
     top, *others = body.solid.layers
     layers = (replace(top, thickness=thickness), *others)
     return replace(body, solid=replace(body.solid, layers=layers))  # type: ignore[type-var]
 
 
-def _at_thickness(body: Body, c: float, g: float) -> NDArray[np.float64]:
+def _at_thickness(body: Contact, c: float, g: float) -> NDArray[np.float64]:
     """Numbers of all panels at one thickness, (panels,).
 
     Raises:

@@ -35,7 +35,7 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Body, Places
+from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Contact, Places
 from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
@@ -61,7 +61,7 @@ _KNOTS, _APART = 12, 0.02
 _NARROWEST = 1e-9
 
 
-def check_size(body: Body, methods: Collection[str]) -> None:
+def check_size(body: Contact, methods: Collection[str]) -> None:
     """Check that floating-point numbers can hold stresses, strains and displacements.
 
     Raises:
@@ -150,7 +150,7 @@ def check_states(states: int) -> None:
         )
 
 
-def check_mode(scene: Scene, body: Body) -> None:
+def check_mode(scene: Scene, body: Contact) -> None:
     """Check that the mode "traction" has a pressure to prescribe.
 
     Raises:
@@ -163,7 +163,7 @@ def check_mode(scene: Scene, body: Body) -> None:
         )
 
 
-def check_free_ends(scene: Scene, body: Body, methods: Collection[str]) -> None:
+def check_free_ends(scene: Scene, body: Contact, methods: Collection[str]) -> None:
     """Check that a method computes the free ends of the contact.
 
     Raises:
@@ -181,7 +181,7 @@ def check_free_ends(scene: Scene, body: Body, methods: Collection[str]) -> None:
         )
 
 
-def check_layers(scene: Scene, body: Body, methods: Collection[str]) -> None:
+def check_layers(scene: Scene, body: Contact, methods: Collection[str]) -> None:
     """Check that the scene's outputs and methods can be computed over layers.
 
     Raises:
@@ -549,7 +549,7 @@ def _output_places(scene: Scene, places: Places) -> Places:
     return Places(X, points, places.around)
 
 
-def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
+def _methods(scene: Scene, body: Contact) -> tuple[str, ...]:
     """Methods that solve the contact; none where no output needs it."""
     if not _contact(scene):
         return ()
@@ -557,7 +557,7 @@ def _methods(scene: Scene, body: Body) -> tuple[str, ...]:
     return tuple(name for name in names if not METHODS[name].refusal(scene, body, None))
 
 
-def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[str]:
+def _left_out(scene: Scene, body: Contact, methods: tuple[str, ...]) -> Iterator[str]:
     """Warnings about methods that the scene names and that do not solve it."""
     for name in dict.fromkeys(scene.solve.methods if methods else ()):
         kind = METHODS[name]
@@ -566,7 +566,7 @@ def _left_out(scene: Scene, body: Body, methods: tuple[str, ...]) -> Iterator[st
 
 
 def _quantities(
-    scene: Scene, body: Body, methods: tuple[str, ...], modes: tuple[str, ...]
+    scene: Scene, body: Contact, methods: tuple[str, ...], modes: tuple[str, ...]
 ) -> tuple[tuple[Quantity, ...], list[str]]:
     """Quantities that are evaluated, and messages about those that a method cannot give."""
     computed: dict[str, Quantity] = {}
@@ -591,7 +591,7 @@ def _quantities(
 
 def _skipped(
     scene: Scene,
-    body: Body,
+    body: Contact,
     methods: tuple[str, ...],
     fem: FemPlan | None,
     quantities: Iterable[Quantity],
@@ -633,7 +633,7 @@ def surface_grid() -> np.ndarray:
 _FARTHEST = 40.0
 
 
-def interface_grid(body: Body) -> tuple[np.ndarray, np.ndarray]:
+def interface_grid(body: Contact) -> tuple[np.ndarray, np.ndarray]:
     """Depths of interfaces over a, (interfaces,), and positions X/a along them, (places,).
 
     Positions are as fine below the edges as these are near, and reach so far that a largest stress behind

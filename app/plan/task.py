@@ -11,7 +11,7 @@ from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, OWN_MESHES_KEPT, FemPlan
-from galinx.solvers.contact.solution import SOLVED, Body, Places, Task
+from galinx.solvers.contact.solution import SOLVED, Contact, Places, Task
 
 from .over_time import Starts
 from .states import Order, States
@@ -30,7 +30,7 @@ class Tasks:
         order: of the states.
     """
 
-    body: Body
+    body: Contact
     places: Places
     order: Order
 
@@ -63,7 +63,7 @@ class Plan:
         warnings: messages to the user before the work starts.
     """
 
-    body: Body
+    body: Contact
     places: Places
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]

@@ -15,7 +15,7 @@ from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.method import Method, Solver
-from galinx.solvers.contact.solution import Body, Task
+from galinx.solvers.contact.solution import Contact, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
@@ -195,7 +195,7 @@ class Work:
                     data[path][rows_of_load] = values
         return data
 
-    def _of(self, method: str, solution: Any, body: Body) -> dict[str, NDArray]:
+    def _of(self, method: str, solution: Any, body: Contact) -> dict[str, NDArray]:
         return {
             quantity.path: quantity.of(solution, body)
             for quantity in self.plan.quantities

@@ -20,7 +20,7 @@ from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.contact import AT_INTERFACES
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.solution import FREE, Body, make_contact
+from galinx.solvers.contact.solution import FREE, Contact, make_contact
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
@@ -287,7 +287,7 @@ class Scene:
         return tuple(positions(leg, self.motion.X_over_L) for leg in self.legs)
 
     @cached_property
-    def body(self) -> Body:
+    def body(self) -> Contact:
         """Contact of the punch, or of the prescribed pressure, and the solid under the first load."""
         pressure = LinearPressure(*np.array(self.solve.pressure).T) if self.solve.own_pressure else None
         strength = self.half_plane.yield_strength

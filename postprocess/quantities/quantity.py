@@ -64,7 +64,7 @@ class Quantity:
         whole: its numbers are integers. None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
         accuracy: it says how good other numbers are, and nothing of the contact.
-        requires: what a contact may lack, see :attr:`galinx.solvers.contact.solution.Body.lacks`.
+        requires: what a contact may lack, see :attr:`galinx.solvers.contact.solution.Contact.lacks`.
     """
 
     path: str

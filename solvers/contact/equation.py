@@ -220,7 +220,7 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Contact:
+class SolvedContact:
     """A contact with its pressure; lengths are over a unit that all states share.
 
     Attributes:
@@ -239,7 +239,7 @@ class Contact:
     centre: float = 0.0
     free: tuple[bool, bool] = (False, False)
 
-    def moved(self, before: "Contact") -> float:
+    def moved(self, before: "SolvedContact") -> float:
         """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
 
         In-plane stresses follow the pressure with such a factor there.
@@ -255,7 +255,9 @@ class Contact:
         return max(of_pressure, lengths / self.half_width, _MORE_AT_ENDS * float(near))
 
 
-def converged(at_resolution: Callable[[Resolution], Contact], tolerance: float, rough: bool) -> Contact:
+def converged(
+    at_resolution: Callable[[Resolution], SolvedContact], tolerance: float, rough: bool
+) -> SolvedContact:
     """Contact to a relative tolerance, by finer and finer resolutions.
 
     Args:
@@ -277,14 +279,14 @@ def converged(at_resolution: Callable[[Resolution], Contact], tolerance: float, 
     raise not_converged(error, tolerance)
 
 
-def converged_pressure(equation: Equation, tolerance: float) -> Contact:
+def converged_pressure(equation: Equation, tolerance: float) -> SolvedContact:
     """Contact with the pressure of an equation, to a relative tolerance.
 
     Raises:
         SolveError: the tolerance was not reached; the message says by how much.
     """
     check_exponents(equation)
-    return converged(lambda at: Contact(equation.pressure(at)), tolerance, equation.kernel.rough)
+    return converged(lambda at: SolvedContact(equation.pressure(at)), tolerance, equation.kernel.rough)
 
 
 def check_exponents(equation: Equation) -> None:
@@ -378,7 +380,7 @@ class ContactsAtSpeed:
                 return frictions, np.array([error])
             count = 2 * count - 1
 
-    def _each(self, g: NDArray) -> list[Contact]:
+    def _each(self, g: NDArray) -> list[SolvedContact]:
         equations = (Equation(self.response, self.kernel, value, self.slope) for value in g.tolist())
         return [converged_pressure(equation, self.tolerance) for equation in equations]
 
@@ -402,7 +404,7 @@ class Contacts:
     """
 
     g: NDArray[np.float64]
-    each: list[Contact]
+    each: list[SolvedContact]
 
     @property
     def near(self) -> float:

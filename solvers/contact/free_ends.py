@@ -481,7 +481,7 @@ def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float6
 
     Args:
         solution: states solved by any method, see :class:`galinx.solvers.contact.solution.Solution`.
-        body: punch and half-plane, see :class:`galinx.solvers.contact.solution.Body`.
+        body: punch and half-plane, see :class:`galinx.solvers.contact.solution.Contact`.
         sign: 1 for the highest, -1 for the lowest.
     """
     surface = solution.surface

@@ -38,12 +38,12 @@ from .closed_form import FlatPunch
 from .edges import Exponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
-    Contact,
     Contacts,
     ContactsAtSpeed,
     Equation,
     Parts,
     Resolution,
+    SolvedContact,
     check_exponents,
     converged,
     is_converged,
@@ -260,9 +260,9 @@ def kinked(
 
 def _contact(
     pressure: Pressure, h: float, m: float, free: tuple[bool, bool], correction: float = 0.0
-) -> Contact:
+) -> SolvedContact:
     """Contact at a resolution, with the relative correction that takes intensities from free ends."""
-    return Contact(pressure.continued(free), None, correction, h, m, free)
+    return SolvedContact(pressure.continued(free), None, correction, h, m, free)
 
 
 #: Accuracy of a half-width at rest, over which others are given.
@@ -306,8 +306,8 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             return Contacts(g, self._each(g)), np.zeros(1)
         return super().solved(g)
 
-    def _each(self, g: NDArray) -> list[Contact]:
-        answers: list[Contact] = []
+    def _each(self, g: NDArray) -> list[SolvedContact]:
+        answers: list[SolvedContact] = []
         h = 1.0
         for value in g.tolist():
             contact = self.contact(value, h)
@@ -315,7 +315,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
             answers.append(contact)
         return answers
 
-    def contact(self, g: float, h: float = 1.0) -> Contact:
+    def contact(self, g: float, h: float = 1.0) -> SolvedContact:
         """The contact with a friction.
 
         Args:
@@ -327,7 +327,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         """
         check_exponents(self._equation(g, 1.0))
 
-        def at_resolution(resolution: Resolution) -> Contact:
+        def at_resolution(resolution: Resolution) -> SolvedContact:
             nonlocal h
             contact = self._at_resolution(g, h, resolution)
             h = contact.half_width
@@ -341,7 +341,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
 
-    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> Contact:
+    def _at_resolution(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
         """Contact at a resolution, from the half-width h on."""
         if isinstance(self.punch.profile, Flat):
             return self._tilted(g, h, resolution)
@@ -376,7 +376,7 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
                 return h
         raise not_converged(error, self.tolerance)
 
-    def _tilted(self, g: float, h: float, resolution: Resolution) -> Contact:
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
         """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
         punch = self.punch
         whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise

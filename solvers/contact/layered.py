@@ -24,7 +24,7 @@ from ..profiles import cusp, jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch, in_plane
 from .edges import Exponents, under_punch, weights_hilbert
-from .equation import Contact, Contacts, ContactsAtSpeed
+from .equation import Contacts, ContactsAtSpeed, SolvedContact
 from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
@@ -53,7 +53,7 @@ def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> 
             replace(body.pressure, nodes=nodes, length=H, rough=speed.kernel.rough)
             for nodes in (FINE, COARSE)
         )
-        nodes = Contacts(_NODES, [Contact(fine, coarse, 0.0)] * len(_NODES))
+        nodes = Contacts(_NODES, [SolvedContact(fine, coarse, 0.0)] * len(_NODES))
         return AtSpeed(task, speed, nodes, np.zeros(1))
     if body.found:
         punch = Punch(body.profile, body.half_width, body.compression)

@@ -1,7 +1,7 @@
 """Contact of a punch and a half-plane, and its solutions by any method: friction states at one speed.
 
 Lengths are over the contact's half-width a, stresses over N/(2a), N the load per depth. A
-:class:`Body` has the units of both in SI. At free ends of a contact and at kinks of its punch stresses
+:class:`Contact` has the units of both in SI. At free ends of a contact and at kinks of its punch stresses
 change with a power of the distance, and the largest may lie between samples: a :class:`Surface` has
 limits there, :class:`Turns`.
 """
@@ -58,7 +58,7 @@ FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", 
 
 
 @dataclass(frozen=True)
-class Body:
+class Contact:
     """Punch and half-plane in SI; :func:`make_contact` makes the kind that the ends of the contact are.
 
     The units of results are numbers for a single load, and arrays (states,) for a load of each state.
@@ -242,7 +242,7 @@ class Body:
         return self.load / (2.0 * self.half_width)
 
 
-class SharpContact(Body):
+class SharpContact(Contact):
     """Contact between two sharp corners of a punch."""
 
     ends = SHARP
@@ -272,7 +272,7 @@ class PrescribedContact(SharpContact):
         return super().lacks | {SOLVED: "the pressure is prescribed"}
 
 
-class FreeEndContact(Body):
+class FreeEndContact(Contact):
     """Contact of which the pressure determines an end, or both."""
 
     found, shared_ends = True, None
@@ -352,12 +352,12 @@ def make_contact(
     load: Any,
     pressure: LinearPressure | None = None,
     yield_strength: float | None = None,
-) -> Body:
+) -> Contact:
     """Contact of the kind that a punch, or a prescribed pressure, makes; arguments are its attributes.
 
     Where an end is free the punch determines the pressure, and a prescribed one is left out.
     """
-    kind: type[Body] = PrescribedContact if pressure else SharpContact
+    kind: type[Contact] = PrescribedContact if pressure else SharpContact
     if has_free_end(profile):
         kind, pressure = OneFreeContact if any(profile.sharp) else FreeContact, None
     return kind(solid, profile, load, pressure, yield_strength)
@@ -377,7 +377,7 @@ class Task:
     """
 
     number: int
-    body: Body
+    body: Contact
     response: Response
     places: Places
     runs: tuple[slice, ...]

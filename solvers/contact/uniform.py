@@ -218,7 +218,7 @@ def contacts_of(body: Any, response: Response, g: NDArray) -> Contacts:
     """Contacts of a body, prescribed, with free ends or sharp.
 
     Args:
-        body: see :class:`galinx.solvers.contact.solution.Body`.
+        body: see :class:`galinx.solvers.contact.solution.Contact`.
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY, (states,).
     """

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from ..profiles import exponent
 from ..solids.solid import Response
-from .solution import Body, Turns
+from .solution import Contact, Turns
 from .stresses import maximum_shear, von_mises
 
 #: Distances over a between which rays are sampled. Nearer, stresses are extrapolated; no zone reaches
@@ -503,13 +503,13 @@ _SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
 _HARDLY = 1.0 - 1e-9
 
 
-def places(body: Body) -> NDArray[np.float64]:
+def places(body: Contact) -> NDArray[np.float64]:
     """Places X, Y over a at which the stresses of every state are sampled, (n, 2)."""
     knots = _knots(body)
     return edge_places() if knots is None else Levels(knots).places
 
 
-def _knots(body: Body) -> NDArray[np.float64] | None:
+def _knots(body: Contact) -> NDArray[np.float64] | None:
     """Knots over a of a finite pressure, (k,); None under a punch with infinite stresses."""
     if body.pressure:
         return body.pressure.knots
@@ -533,7 +533,7 @@ class Strength:
     def __init__(
         self,
         field: Field,
-        body: Body,
+        body: Contact,
         response: Response,
         g: NDArray,
         local: Any,

@@ -37,7 +37,7 @@ from ..contact.recovery import (
     from_moments,
     without_zeros,
 )
-from ..contact.solution import Body, Surface, Task, Turns
+from ..contact.solution import Contact, Surface, Task, Turns
 from ..errors import SolveError
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
@@ -100,7 +100,7 @@ class Ends:
         """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
         raise NotImplementedError
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Body) -> SolvedEnds:
+    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
         """Contacts with frictions g = σ_XY/σ_YY, (states,), under the load of the body for each.
 
         Raises:
@@ -140,7 +140,7 @@ class SharpEnds(Ends):
         body = level.task.body
         return None if body.flat else body.height(level.r)
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Body) -> SolvedEnds:
+    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
         contact = level.punch.states(g, share=level.task.body.load / body.load)
         half_width = np.full(len(g), float(body.half_width))
         return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
@@ -166,7 +166,7 @@ class FreeEnds(Ends):
     def heights(self, level: "PunchLevel") -> NDArray[np.float64]:
         return heights_of_shapes(level.r, self._shapes)
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Body) -> SolvedEnds:
+    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
         parts, local = level.punch.parts(g), EdgeExponents(level.task.response, g)
         loads = np.stack([part.load for part in parts], axis=1)
         solve = _SOLVES.get(type(body.profile), _smooth)
@@ -197,7 +197,7 @@ class FreeEnds(Ends):
 _Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
 
 
-def _parabola(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
 
     Args:
@@ -218,7 +218,7 @@ def _parabola(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _
     return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
 
 
-def _smooth(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
     """Amplitudes of v = -v₀ + the punch's height with the load, and without intensity at both ends."""
     punch, few = body.profile, slice(1 + SHAPES)
     units = np.broadcast_to(body.displacement, len(loads)).tolist()
@@ -237,7 +237,7 @@ def _smooth(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _So
     return np.column_stack([v0, shapes]), h, m, free, lowest, unresolved
 
 
-def _tilted(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s with the load; c₁ is that of the tilt, or, where the higher edge is
     lifted, that without intensity there."""
     punch = body.profile
@@ -260,7 +260,7 @@ def _tilted(body: Body, loads: NDArray, K: NDArray, local: EdgeExponents) -> _So
 _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 
-def ends_of(body: Body, plan: FemPlan) -> Ends:
+def ends_of(body: Contact, plan: FemPlan) -> Ends:
     """Ends of contacts on the mesh of all of them."""
     return FreeEnds(plan.shapes) if body.found else SharpEnds()
 

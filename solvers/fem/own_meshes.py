@@ -53,7 +53,7 @@ from ..contact.free_ends import (
     turns_at_ends,
 )
 from ..contact.pressure import Expansion
-from ..contact.solution import Body, Places, Surface, Task, Turns
+from ..contact.solution import Contact, Places, Surface, Task, Turns
 from ..contact.stresses import NEAR_TIP, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
@@ -157,7 +157,7 @@ class EndsBetweenKinks(Ends):
 
     single = True
 
-    def __init__(self, body: Body, lengths: Lengths, tolerance: float) -> None:
+    def __init__(self, body: Contact, lengths: Lengths, tolerance: float) -> None:
         self._body, self._tolerance = body, tolerance
         self._centre, self._half_width = lengths
         at = (np.array(kinks(body.profile), dtype=float) - self._centre) / self._half_width
@@ -201,7 +201,7 @@ class EndsBetweenKinks(Ends):
         X = self._centre + self._half_width * level.r
         return np.asarray(self._body.profile.height(X) / self._body.displacement)
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Body) -> SolvedEnds:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
         half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
         return SolvedEnds(level.punch.states(g), half_width, centre, _FREE)
 
@@ -331,7 +331,7 @@ class BalancedEnds(Ends):
         X = self._near + h * level.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Body) -> BalancedContact:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> BalancedContact:
         """Contact without intensities.
 
         Raises:

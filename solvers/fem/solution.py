@@ -17,7 +17,7 @@ from ..contact.edges import EdgeExponents, Exponents
 from ..contact.free_ends import turns_at_ends
 from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
-from ..contact.solution import Body, Places, Surface, Task, Turns, solved_once, together
+from ..contact.solution import Contact, Places, Surface, Task, Turns, solved_once, together
 from ..contact.yielding import Strength
 from .displacement import Displacement
 from .punch import ContactStates
@@ -44,7 +44,7 @@ class SolvedStates:
     """
 
     task: Task
-    body: Body
+    body: Contact
     contact: ContactStates
     pressure: Any
     displacement: Displacement
@@ -103,7 +103,7 @@ class Solution:
     task: Task
     solved: Sequence[SolvedStates]
     rows: NDArray[np.int64]
-    body: Body
+    body: Contact
     growth: Any
 
     def _joined(self, of: Callable[[SolvedStates], NDArray], axis: int = 0) -> NDArray[Any]:

@@ -36,7 +36,6 @@ FREE_ENDS = {PUNCH, FLAT, GIVEN_ENDS}
         (Wedge(1e-2), None, FREE, FREE_ENDS, 4.0),
         (RoundedFlat(1e-3, 0.1), None, FREE, FREE_ENDS, None),
     ],
-    ids=str,
 )
 def test_a_kind_says_what_it_is(profile, pressure, ends, lacks, growth):
     contact = make_contact(SOLID, profile, 1e4, pressure)

@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,6 +48,16 @@ def pytest_collection_modifyitems(items):
 def place_of(item):
     """The file of a test, below this folder."""
     return item.path.relative_to(Path(__file__).parent).as_posix()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node):
+    """Give a worker's main thread time to be free for the tests: another one takes no signals.
+
+    It has just said which Python it is, and takes the tests only where it has put that aside. A worker
+    whose main thread is busy runs all its tests in a thread of its own.
+    """
+    time.sleep(1.0)
 
 
 def pytest_sessionfinish(session, exitstatus):

@@ -44,9 +44,10 @@ LEAST = 1e-13
 _BROUGHT_BACK = 1e-12
 #: Most loads applied one after the other by an iterative solver.
 LIMIT = 120
-#: Number of loads from which on a factor takes loads at all contact nodes, and the rest is dense algebra;
-#: loads that are taken at once. A pass over the factor for a single load takes as long as six of these.
-_MANY, _AT_ONCE = 40, 64
+#: Number of loads from which on a factor takes loads at all contact nodes, and the rest is dense algebra,
+#: where these take no longer than the loads so far; loads that are taken at once; loads at once that take
+#: as long as a single one.
+_MANY, _AT_ONCE, _AS_LONG = 40, 64, 6.0
 
 #: Numbers of frictions up to which each is solved for itself; beyond, all share a triangular form.
 _FEW = 40
@@ -442,7 +443,8 @@ class SlidingPunch(Punch):
 
         Loads at all nodes, where there are many, give forces alone.
         """
-        if self.factor.direct and max(space.applied for space in spaces) >= _MANY:
+        many = max(_MANY, len(self.space.contact.s) / _AS_LONG)
+        if self.factor.direct and max(space.applied for space in spaces) >= many:
             for space in spaces:
                 space.complete_by(self._of_nodes[:, 1].T, g)
                 forces = np.einsum("mcn,mk->kcn", self._of_nodes, space.waiting, optimize=True)

@@ -74,6 +74,7 @@ def test_loads_at_every_node_find_what_steps_from_load_to_load_find(c, frictions
     by_steps, by_nodes = small_punch(c), small_punch(c)
     wanted = by_steps.states(g)
     monkeypatch.setattr(punches, "_MANY", 0)
+    monkeypatch.setattr(punches, "_AS_LONG", np.inf)
     found = by_nodes.states(g)
     assert by_nodes.factor.solves > len(by_nodes.space.contact.s) > by_steps.factor.solves
     # Dense algebra gives the contact forces of the frictions, no more are needed.

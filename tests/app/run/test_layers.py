@@ -240,3 +240,25 @@ def test_interfaces_and_inside():
 def test_interfaces_without_layers_are_refused():
     with pytest.raises(BadInput, match="expected \\[\\[layer\\]\\]"):
         scene(layers="", quantities=("interfaces",))
+
+
+@pytest.mark.parametrize("modulus", ["1 GPa", "450 GPa"])
+@pytest.mark.parametrize("thickness", ["2 um", "20 um", "200 um", "2 mm"])
+def test_largest_stresses_along_an_interface_lie_inside_the_window(modulus, thickness):
+    """A thin stiff layer has its largest tension six half-widths behind the punch, others farther."""
+    data = galinx.compute(
+        parse(
+            f'[solid]\nmaterial = "steel"\n[[layer]]\nE = "{modulus}"\nnu = 0.25\nrho = "5220 kg/m^3"\n'
+            f'thickness = "{thickness}"\n[punch]\nprofile = "flat"\nhalf_width = "0.15 mm"\nload = "100 N/mm"\n'
+            '[friction]\nmodel = "coulomb"\nmu_c = 0.15\n[motion]\nspeed = "100 m/s"\n'
+            'strokes = ["forward"]\nX_over_L = [1.0]\n[solve]\nmethods = ["sie"]\n'
+            '[output]\nquantities = ["interfaces"]\n'
+        )
+    ).data
+    X = data["interfaces/X_over_a"]
+    for side in ("above", "below"):
+        σ = data[f"interfaces/sie/sigma_XX_{side}"][0, 0]
+        largest = data[f"interfaces/sie/sigma_XX_{side}_max"][0, 0]
+        assert largest >= σ.max() * (1.0 - 1e-12)
+        assert X[0] < data[f"interfaces/sie/sigma_XX_{side}_max_X_over_a"][0, 0] < X[-1]
+        assert max(σ[0], σ[-1]) < 0.9 * largest

@@ -42,7 +42,7 @@ from .space import Space
 LEAST = 1e-13
 #: Relative residual that refined solutions may bring back; what is larger takes further loads.
 _BROUGHT_BACK = 1e-12
-#: Most loads applied one after the other by an iterative solver.
+#: Most loads applied one after the other.
 LIMIT = 120
 #: Number of loads from which on a factor takes loads at all contact nodes, and the rest is dense algebra,
 #: where these take no longer than the loads so far; loads that are taken at once; loads at once that take
@@ -443,7 +443,7 @@ class SlidingPunch(Punch):
 
         Loads at all nodes, where there are many, give forces alone.
         """
-        many = max(_MANY, len(self.space.contact.s) / _AS_LONG)
+        many = min(max(_MANY, len(self.space.contact.s) / _AS_LONG), LIMIT)
         if self.factor.direct and max(space.applied for space in spaces) >= many:
             for space in spaces:
                 space.complete_by(self._of_nodes[:, 1].T, g)

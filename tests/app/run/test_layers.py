@@ -249,7 +249,8 @@ def test_largest_stresses_along_an_interface_lie_inside_the_window(modulus, thic
     data = galinx.compute(
         parse(
             f'[solid]\nmaterial = "steel"\n[[layer]]\nE = "{modulus}"\nnu = 0.25\nrho = "5220 kg/m^3"\n'
-            f'thickness = "{thickness}"\n[punch]\nprofile = "flat"\nhalf_width = "0.15 mm"\nload = "100 N/mm"\n'
+            f'thickness = "{thickness}"\n[punch]\nprofile = "flat"\nhalf_width = "0.15 mm"\n'
+            'load = "100 N/mm"\n'
             '[friction]\nmodel = "coulomb"\nmu_c = 0.15\n[motion]\nspeed = "100 m/s"\n'
             'strokes = ["forward"]\nX_over_L = [1.0]\n[solve]\nmethods = ["sie"]\n'
             '[output]\nquantities = ["interfaces"]\n'

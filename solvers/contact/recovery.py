@@ -282,6 +282,8 @@ _POWERS = 3
 #: Distance over h beyond which functions of an end are nearly constant; for a larger one functions become
 #: nearly dependent.
 _SHARE = 0.25
+#: Both ends of the contact.
+_ENDS = np.array([-1.0, 1.0])
 #: Fewest polynomials beside functions of the ends.
 _FEWEST = 6
 #: Number of functions of both ends.
@@ -345,12 +347,13 @@ class Stretch(Functions):
         coefficients of the others are 0.
         """
         c, f = np.zeros_like(moments), _at_points(self, moments.shape[1])
+        at_ends = self.values(_ENDS, moments.shape[1])
         for i, row in enumerate(moments):
             weights = _rule(float(α[i]), float(β[i]), self).weights
             products, least = (f * weights[:, None]).T @ f, np.inf
             for count in self._counts(len(row)):
                 first = np.linalg.solve(products[:count, :count], row[:count])
-                unresolved = self._unresolved(first)
+                unresolved = self._unresolved(first, at_ends)
                 if unresolved < least:
                     c[i], least = np.pad(first, (0, len(row) - count)), unresolved
         return c
@@ -363,11 +366,12 @@ class Stretch(Functions):
 
     def unresolved(self, c: NDArray) -> NDArray[np.float64]:
         """Share of the last functions in the larger smooth factor at both ends, (states,)."""
-        return np.array([self._unresolved(np.trim_zeros(row, "b")) for row in c])
+        at_ends = self.values(_ENDS, c.shape[1])
+        return np.array([self._unresolved(np.trim_zeros(row, "b"), at_ends) for row in c])
 
-    def _unresolved(self, c: NDArray) -> float:
+    def _unresolved(self, c: NDArray, at_ends: NDArray) -> float:
         """Share of the last functions of a state's; see :meth:`unresolved`."""
-        last, f = _LAST_GRADED if self.graded else _LAST, self.values(np.array([-1.0, 1.0]), len(c))
+        last, f = _LAST_GRADED if self.graded else _LAST, at_ends[:, : len(c)]
         share = np.abs(c[-last:] * f[:, -last:]).sum(axis=1).max() / np.abs(f @ c).max()
         tail = _TAIL_STIFFENING if self.stiffens else _TAIL
         return float((tail if self.graded else 1.0) * share)

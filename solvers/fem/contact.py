@@ -260,9 +260,9 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
 _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 
-def ends_of(body: Contact, plan: FemPlan) -> Ends:
+def ends_of(plan: FemPlan) -> Ends:
     """Ends of contacts on the mesh of all of them."""
-    return FreeEnds(plan.shapes) if body.found else SharpEnds()
+    return FreeEnds(plan.shapes) if plan.shapes else SharpEnds()
 
 
 class PunchLevel:
@@ -292,7 +292,7 @@ class PunchLevel:
         ends: Ends | None = None,
     ) -> None:  # fmt: skip
         self.task, self.space, self.plan, self.stresses = task, space, work.plan, work.stresses
-        self.ends = ends or ends_of(task.body, work.plan)
+        self.ends = ends or ends_of(work.plan)
         self._fitted = fitted
         self.only: SolvedEnds | None = None
         self._field: Any = None

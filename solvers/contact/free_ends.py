@@ -77,12 +77,11 @@ def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int)
         centre, half_width: of the contact [m].
         count: number of shapes.
     """
-    s = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    slope = half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
-    T = np.cos(np.outer(np.arange(count), np.arccos(s)))
-    coefficients = 2.0 / count * (T @ slope)
-    coefficients[0] /= 2.0
-    return coefficients
+
+    def slope(s: NDArray) -> NDArray[np.float64]:
+        return half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
+
+    return np.polynomial.chebyshev.chebinterpolate(slope, count - 1)  # type: ignore[arg-type]
 
 
 def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[EndConditions]":

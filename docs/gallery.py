@@ -45,9 +45,8 @@ SHOWN = {
 _HEAD = """\
 # Gallery
 
-Written by `docs/make.py` from the scenes in `scenes/`; every picture is one of the figures that `plot`
-makes of the scene's archive, or one of the study's that `./run.sh` writes into `results/`. To have one of
-your own, copy its scene and change it:
+Written by `docs/make.py` from the scenes in `scenes/`. Every picture is a figure that `plot` makes of the
+scene's archive, or one that `./run.sh` writes into `results/`. Copy a scene and change it:
 
 ```console
 ./run.sh init fig8 -o mine.toml

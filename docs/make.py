@@ -7,6 +7,7 @@ mkdocs loads it as a hook, so the program is imported only where pages are made.
 import json
 import os
 import runpy
+from collections import Counter
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -133,12 +134,12 @@ with h5py.File("out.h5") as file:
 
 [Read archives](howto_read_archive.md) shows other ways.
 
-In the tables METHOD stands for the methods of the column "there with": `closed_form`, `sie` (integral
-equation) or `fem` (finite elements). A path that names a method needs it. The other words of the column
-are those of `solve.mode` or `output.quantities`; where the column is empty, the run writes the dataset
-in any case. Words with a slash between them follow the order of the names in their row. NaN among the
-values says that there may be no answer. Each parameter of a friction law is a dataset `/states/KEY` in
-the SI unit of [its row](scene.md#friction). [Your own quantities](howto_extend.md) come beside these.
+METHOD in a path stands for the methods of the column "with": `closed_form`, `sie` (integral equation)
+or `fem` (finite elements). Its other words are those of `solve.mode` or `output.quantities`; where it
+is empty, the run, or the method in the path, writes the dataset in any case. Words with a slash between
+them follow the order of the names in their row. Values without a unit are dimensionless; NaN means that
+there may be no answer. Each parameter of a friction law is a dataset `/states/KEY` in the SI unit of
+[its row](scene.md#friction). [Your own quantities](howto_extend.md) come beside these.
 """
 
 _WHOLE = """\
@@ -221,12 +222,11 @@ def scene_page() -> str:
             f"`{m.kind}`",
             m.told.replace(" (dimensionless)", ""),
             m.source,
-            m.yield_strength or "–",
-            m.yield_source or "–",
+            f"{m.yield_strength}, {m.yield_source}" if m.yield_strength else "–",
         )
         for n, m in LIBRARY.items()
     ]
-    heads = ("name", "solid", "kind", "constants", "source", "yield strength", "its source")
+    heads = ("name", "solid", "kind", "constants", "source", "yield strength")
     parts.append(_table(heads, rows))
     return "\n".join(parts)
 
@@ -241,20 +241,14 @@ def archive_page() -> str:
     parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
         rows = [row for path, row in known.items() if path.startswith(f"{group}/") and not _laws(row)]
-        heads = ("dataset", "what", "shape", "unit", "values", "there with")
         (word, *others) = {row.asked_by for row in rows}
-        asked = "" if others or not word else f"With `{word}` among `output.quantities`.\n"
-        parts += filter(None, (f"## /{group}\n", asked, _table(heads, _datasets(rows, not asked))))
-    rules = [
-        (
-            name,
-            rule.text,
-            ", ".join(f"`{name}`" for name in _by_method(filter(_method, rule.needs))),
-            _limit(rule),
-        )
-        for name, rule in RULES.items()
-    ]
-    parts.append(_COMPARISONS + _table(("name", "text", "datasets", "at most"), rules))
+        (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
+        told = [f"With `{word}` among `output.quantities`."] * bool(word and not others)
+        told += [f"Shape, if no other is given: {over}."] * (count > 1)
+        table = _table(("dataset", "what", "values", "with"), _datasets(rows, bool(others), over))
+        parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
+    rules = [(name, rule.text, _limit(rule)) for name, rule in RULES.items()]
+    parts.append(_COMPARISONS + _table(("name", "text", "at most"), rules))
     return "\n".join(parts)
 
 
@@ -290,7 +284,7 @@ def _section(section: Any) -> list[str]:
     from galinx.registry import Registry
     from galinx.solvers.parameters import parameters
 
-    heads = ("key", "value", "default", "allowed", "meaning")
+    heads = ("key", "value", "default", "meaning")
 
     def rows(keys: dict[str, Any]) -> list[tuple[str, ...]]:
         return [_row(key, known, section.or_else) for key, known in keys.items()]
@@ -348,7 +342,8 @@ def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
     allowed = "[materials](#materials)" if of_library else _allowed(described)
     meaning = "; ".join(filter(None, (known.about, known.note)))
     value = _value(known.kind)
-    return f"`{key}`", "" if value == "a text" else value, default, allowed, meaning
+    values = ", ".join(filter(None, ("" if value == "a text" else value, allowed)))
+    return f"`{key}`", values, default, meaning
 
 
 def _laws(row: Any) -> list[str]:
@@ -367,39 +362,41 @@ def _method(row: Any) -> str:
     return row.method or next((part for part in row.path.split("/") if part in METHODS), "")
 
 
-def _by_method(rows: Any) -> list[str]:
-    """Paths with METHOD for the method, once each, those of a folder without it but for the first."""
-    paths = dict.fromkeys(row.path.replace(f"/{_method(row)}/", "/METHOD/") for row in rows)
-    return _names(list(paths))
-
-
 def _names(paths: list[str]) -> list[str]:
     """Paths, without the folder where the one before has the same."""
     pairs = zip([None, *(path.rpartition("/")[0] for path in paths)], paths, strict=False)
     return [path.rpartition("/")[2] if path.rpartition("/")[0] == last else path for last, path in pairs]
 
 
-def _datasets(rows: list[Any], asked: bool) -> list[tuple[str, ...]]:
+def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]:
     """Rows of datasets: one for all methods, and for those whose meanings differ in a word.
 
-    ``asked``: with the word of output.quantities that asks for them.
+    ``asked``: with the word of output.quantities that asks for them; ``usual``: shape that is left out.
     """
     from galinx.postprocess.quantities.quantity import ANYWHERE, LOCAL, METHODS, NUMBER, TEXT, WHOLE
 
     kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
     of_methods: dict[str, list[Any]] = {}
     for row in rows:
-        of_methods.setdefault(_by_method([row])[0], []).append(row)
+        path = row.path.replace(f"/{_method(row)}/", "/METHOD/")
+        of_methods.setdefault(path, []).append(row)
     table: list[tuple[list[str], str, tuple[str, ...]]] = []
     for path, same in of_methods.items():
         row, methods = same[0], [_method(r) for r in same]
         if len(same) == 1:
-            path, methods = row.path, [m for m in methods if f"/{m}/" not in row.path]
+            path, methods = row.path, ["any method"] * (methods == [LOCAL])
         nan = any(r.nan_allowed == ANYWHERE for r in same)
-        values = ", ".join(filter(None, (kinds[row.type], str(row.range), "NaN" * nan)))
-        words = [f"`{m}`" if m != LOCAL else "any method" for m in methods if m]
+        over, unit = " × ".join(row.over), row.unit if row.unit not in ("none", "1") else ""
+        values = (over if over != usual else "", kinds[row.type], unit, str(row.range), "NaN" * nan)
+        words = (
+            ["any method"]
+            if len(same) == len(METHODS)
+            else methods
+            if len(same) == 1
+            else [f"`{m}`" for m in methods]
+        )
         words += [f"`{word}`" for word in (row.mode, row.asked_by * asked) if word]
-        rest = " × ".join(row.over), row.unit.replace("none", ""), values, ", ".join(words)
+        rest = ", ".join(filter(None, values)), ", ".join(filter(None, words))
         abouts = [r.about for r in same]
         for said in METHODS.values():
             abouts = [about.removesuffix(f", {said}") for about in abouts]

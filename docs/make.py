@@ -80,11 +80,11 @@ c = 0.3                          # over the shear wave speed
 
 - A number is in the unit of its row, dimensionless where there is none. A text carries its own unit:
   `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, `"25000 1/m"`, with `*`, `/` and whole powers `^`. `"5 %"`
-  is 0.05. A unit of another dimension is an error, and so are degrees, counts and bits for numbers.
-- The values of `c` or `speed`, of the load and of the friction law's parameters may be lists or ranges.
-  All combinations are computed, each on all `strokes` at all `X_over_L`. Each combination is a state.
-  States are numbered from 0. `c` changes most slowly, then the load, the law's parameters in the order
-  of their rows, stroke, position.
+  is 0.05. A unit of another dimension is an error; so are degrees, counts and bits for numbers.
+- `c` or `speed`, `load`, `X_over_L` and the numbers and words of a friction law may be lists or ranges.
+  All combinations are computed, each on all `strokes`. Each combination is a state, numbered from 0.
+  `c` changes most slowly, then the load, the law's parameters in the order of their rows, stroke,
+  position.
 - Each table `[[friction.vary]]` is such a product of its own; it takes what it leaves out from
   [friction]. These are 4 laws, since 0.5 with 25 000 /m is in both tables:
 
@@ -177,8 +177,8 @@ _ATTRIBUTES = """\
 _COMPARISONS = """\
 ## Comparisons
 
-The attribute `comparisons` has the largest value over all states, by text. The verdict is FAIL where
-one exceeds its limit. T is `solve.tolerance`.
+The attribute `comparisons` has the largest value over all states by these texts. The verdict is FAIL
+where one exceeds its limit. T is `solve.tolerance`.
 
 """
 
@@ -247,8 +247,8 @@ def archive_page() -> str:
         told += [f"Shape, if no other is given: {over}."] * (count > 1)
         table = _table(("dataset", "what", "values", "with"), _datasets(rows, bool(others), over))
         parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
-    rules = [(name, rule.text, _limit(rule)) for name, rule in RULES.items()]
-    parts.append(_COMPARISONS + _table(("name", "text", "at most"), rules))
+    rules = [(rule.text, _limit(rule)) for rule in RULES.values()]
+    parts.append(_COMPARISONS + _table(("comparison", "at most"), rules))
     return "\n".join(parts)
 
 
@@ -452,8 +452,7 @@ def _value(kind: Any) -> str:
     unit = getattr(kind, "unit", None)
     text = text.partition(", as [[")[0]  # of rows, which the page describes once
     if unit is not None:
-        several = ", list or range" if type(kind).__name__ == "Numbers" else ""
-        return f"number{f' [{unit}]' * bool(unit)}{several}"
+        return f"number{f' [{unit}]' * bool(unit)}"
     return text[0].lower() + text[1:] if text[:2] != "`{" else text
 
 

@@ -42,7 +42,7 @@ from galinx.texts import counted
 
 from .. import ranks
 from ..errors import BadInput, listed
-from ..methods import METHODS
+from ..methods import METHODS, OWN_METHODS
 from ..run.slider import check_sliders
 from ..scene.scene import FRICTIONS, Scene, oddities
 from . import cost
@@ -558,7 +558,9 @@ def _methods(scene: Scene, body: Contact) -> tuple[str, ...]:
 
 
 def _left_out(scene: Scene, body: Contact, methods: tuple[str, ...]) -> Iterator[str]:
-    """Warnings about methods that the scene names and that do not solve it."""
+    """Warnings about methods that the scene names, unless all, and that do not solve it."""
+    if set(OWN_METHODS) <= set(scene.solve.methods):
+        return
     for name in dict.fromkeys(scene.solve.methods if methods else ()):
         kind = METHODS[name]
         if name not in methods and (scene.layers or not kind.of_layers):

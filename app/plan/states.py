@@ -303,10 +303,13 @@ def _half_widths(scene: Scene, order: Order) -> NDArray[np.float64]:
 
 
 def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:
-    """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c), NaN at rest."""
+    """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c).
+
+    NaN at rest, and in steady sliding without strokes.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
-    return np.where(c > 0.0, often, np.nan)
+    return np.where((c > 0.0) & (not scene.steady), often, np.nan)
 
 
 def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:

@@ -1,6 +1,6 @@
 """Changes of a scene's text, made where the value stands; comments and layout stay."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 import tomlkit
@@ -18,6 +18,9 @@ from ..errors import BadInput, excerpt, nearest, short
 _CONSTANTS = ["solid.kind", "solid.yield_strength"] + [
     f"solid.{key}" for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
 ]
+
+#: Two names of a number: a new value is given to that name which the scene has.
+_ONE_NUMBER = {"friction.mu": "friction.mu_c", "friction.mu_c": "friction.mu"}
 
 #: Longest text that a change may set, in characters: the time of tomlkit grows with their square.
 _LONGEST = 10_000
@@ -78,6 +81,7 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     try:
         tree = tomlkit.parse(text)
         keys = [*_keys(tree)]
+        changes = {_own_name(key, keys): value for key, value in changes.items()}
         if stale := [path for path in _stale(tree, changes) if path in keys]:
             changes = dict.fromkeys(stale) | dict(changes)
         for path, value in changes.items():
@@ -90,6 +94,12 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         raise BadInput(f"{name} cannot be changed: {error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
+
+
+def _own_name(key: str, keys: Collection[str]) -> str:
+    """Name by which a scene of these keys has the number of a key."""
+    other = _ONE_NUMBER.get(key, key)
+    return other if other in keys else key
 
 
 def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
@@ -128,7 +138,7 @@ def _of_old_model(
 
 def _parameter(key: str) -> str:
     """Name of the parameter that a key sets."""
-    return "sigma0_over_load" if key == "sigma0" else key
+    return {"sigma0": "sigma0_over_load", "mu": "mu_c"}.get(key, key)
 
 
 def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:

@@ -11,17 +11,19 @@ import re
 import tomllib
 from collections import deque
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from galinx import files
+from galinx.solvers.friction import LAWS
 from galinx.texts import unseen
 
 from ..console import program
 from ..errors import BadInput, excerpt, nearest, short
 from .library import LIBRARY
-from .scene import Scene, contradictions
+from .scene import Scene, contradictions, usual_quantities
 from .sections import SECTIONS, Section
 from .units import to_si
 from .values import Rows, Wrapped
@@ -263,6 +265,9 @@ def parse(text: str, name: str = "scene") -> Scene:
     faults = list(control_characters(tree))
     _fill_in_material(tree)
     faults += _fill_in_stiffness(tree)
+    faults += _fill_in_coefficient(tree)
+    steady = _fill_in_motion(tree)
+    named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
     title = tree.pop("title", "")
     if not isinstance(title, str):
         faults.append(f"title: found {excerpt(title)}, expected a text")
@@ -273,7 +278,12 @@ def parse(text: str, name: str = "scene") -> Scene:
     ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
     if not faults:
-        scene = Scene(title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), **read)
+        scene = Scene(
+            title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady, **read
+        )
+        if steady and not named and scene.solve.methods:
+            output = replace(scene.output, quantities=usual_quantities(scene))
+            scene = replace(scene, output=output)
         faults = contradictions(scene)
         if not faults:
             return scene
@@ -321,3 +331,37 @@ def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:
         ]
     tree["friction"]["sigma0_over_load"] = [value / loads[0] for value in stiffness]
     return []
+
+
+def _fill_in_coefficient(tree: dict[str, Any]) -> list[str]:
+    """Give ``friction.mu`` to Coulomb's coefficient, of Coulomb's law by default; returns the faults."""
+    friction = tree.get("friction")
+    if not isinstance(friction, dict) or "mu" not in friction:
+        return []
+    friction = {"model": "coulomb"} | friction
+    key = SECTIONS["friction"].keys(friction).get("mu")
+    if key is None:
+        return []  # the section says that there is no such key
+    if "mu_c" in friction:
+        return ["friction: mu and mu_c are the same number; keep one"]
+    try:
+        key.kind(friction["mu"])
+        tree["friction"] = friction | {"mu_c": friction["mu"]}
+    except ValueError:  # one fault, which mu's own key reports
+        tree["friction"] = friction | {"mu_c": 1.0}
+    return []
+
+
+def _fill_in_motion(tree: dict[str, Any]) -> bool:
+    """True for steady sliding: a law without memory, and no strokes; these are filled in then."""
+    friction, motion = tree.get("friction", {}), tree.get("motion", {})
+    if not isinstance(friction, dict) or not isinstance(motion, dict):
+        return False
+    name = friction.get("model")
+    law = LAWS.get(name) if isinstance(name, str) else None
+    if law is None or law.has_memory or motion.keys() & {"strokes", "X_over_L", "path", "rest"}:
+        return False
+    if "time" in tree or "slider" in tree:
+        return False
+    tree["motion"] = motion | {"strokes": ["forward"], "X_over_L": [1.0]}
+    return True

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
-from galinx.solvers.contact import AT_INTERFACES
+from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, ON_SURFACE, YIELD
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.solution import FREE, Contact, make_contact
+from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
@@ -248,6 +248,7 @@ class Scene:
         slider: a mass on a spring, None for none.
         layers: layers on the solid, from the top down.
         time: a motion in time, None for none.
+        steady: True for steady sliding at each speed, of a law without memory and no strokes.
     """
 
     title: str
@@ -261,6 +262,7 @@ class Scene:
     slider: Slider | None = None
     layers: tuple[Layer, ...] = ()
     time: Time | None = None
+    steady: bool = False
 
     @cached_property
     def solid(self) -> Solid:
@@ -314,6 +316,16 @@ _PRESSED = 0.1
 _ATOMS = 1e-9
 
 
+def usual_quantities(scene: Scene) -> tuple[str, ...]:
+    """Quantities of steady sliding that a scene does not name: those that say what the solid bears."""
+    body, quantities = scene.body, [FRICTION_ALONE, INTENSITIES, ON_SURFACE]
+    quantities += [AT_INTERFACES] * bool(scene.layers)
+    known = scene.solid.knows_σ_ZZ and YIELD not in body.lacks and not scene.layers
+    finite = FINITE in body.modes
+    quantities += [YIELD] * (known and (finite or (STRENGTH not in body.lacks and body.flat)))
+    return tuple(quantities)
+
+
 def contradictions(scene: Scene) -> list[str]:
     """Faults of keys that exclude or need one another, one sentence each."""
     faults: list[str] = []
@@ -337,10 +349,10 @@ def contradictions(scene: Scene) -> list[str]:
             "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
             "to, number)"
         )
-    if "yield" in quantities and scene.half_plane.yield_strength is None:
+    if "yield" in quantities and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes:
         faults.append(
-            'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
-            '"205 MPa", or a material that has one'
+            'output.quantities asks for "yield": stresses are infinite at sharp edges, expected '
+            'solid.yield_strength, as in yield_strength = "205 MPa", or a material that has one'
         )
     if "yield" in quantities and not scene.solid.knows_σ_ZZ:
         faults.append(
@@ -387,7 +399,7 @@ def oddities(scene: Scene) -> list[str]:
     """Warnings about unusual values, one sentence a key: the unit may be another than meant."""
     warnings = []
     for path, numbers, unit, (low, high) in _usual(scene):
-        odd = [f"{value:g}" for value in numbers if not low <= value <= high]
+        odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0 has no unit
         of_unit, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
         if len(odd) == 1:
             warnings.append(f"{path} = {odd[0]}{of_unit} is unusual, {usual}; is its unit as meant?")

@@ -26,7 +26,7 @@ from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
 from ..errors import excerpt, nearest, short
-from ..methods import METHODS, MODES
+from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
 from .scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (
@@ -435,9 +435,9 @@ def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...])
 
 
 def _friction(
-    law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, **rest: Any
+    law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, mu: Any = None, **rest: Any
 ) -> Friction:
-    """Section [friction]; ``sigma0`` is unused: the reader has divided it by the load already."""
+    """Section [friction]; ``sigma0`` and ``mu`` are unused: the reader has made parameters of them."""
     return Friction(law, values, **rest)
 
 
@@ -484,7 +484,8 @@ _SOLID_KEYS = {
         "what is written beside it replaces the material's",
     ),
     "yield_strength": Key(
-        Number("Pa", _POSITIVE), "uniaxial yield strength", None, 'for the quantity `"yield"`',
+        Number("Pa", _POSITIVE), "uniaxial yield strength", None,
+        'for the quantity `"yield"`; stresses alone need none',
     ),
 }  # fmt: skip
 
@@ -496,6 +497,11 @@ _PUNCH_KEYS = {
 }  # fmt: skip
 
 _FRICTION_KEYS = {
+    "mu": Key(
+        Numbers("", Range(at_least=0.0)), "coefficient of friction", None,
+        "another name of `mu_c`; without `model` it is Coulomb's law, and 0 is no friction",
+        stands_for="mu_c",
+    ),
     "sigma0": Key(
         Numbers("N/m^2", _POSITIVE), "stiffness σ₀ per depth, instead of σ₀ l/N", None,
         "divided by punch.load it is `sigma0_over_load`. The study's σ₀ = 1.5922 N/µm and N = 55.3 N, "
@@ -527,8 +533,9 @@ _MOTION_KEYS = {
     ),
     "strokes": Key(
         Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
-        "a stroke `{to = 0.8}` goes on from where the one before ended; it may have a `speed` of its "
-        "own, `rest` is the time at rest before it",
+        "of a law without memory, Coulomb's or Stribeck's, there is a single steady state forward if "
+        "neither `strokes` nor `X_over_L` is given; a stroke `{to = 0.8}` goes on from where the one "
+        "before ended; it may have a `speed` of its own, `rest` is the time at rest before it",
     ),
     "rest": Key(
         Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
@@ -547,7 +554,7 @@ _MOTION_KEYS = {
 
 _SOLVE_KEYS = {
     "methods": Key(
-        Choices(METHODS, at_least=0), "methods that solve the contact", ("closed_form", "sie", "fem"),
+        Choices(METHODS, at_least=0), "methods that solve the contact", OWN_METHODS,
         "an empty list for friction alone",
     ),
     "tolerance": Key(
@@ -634,6 +641,7 @@ _TIME_KEYS = {
 _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "quantities to compute", ("friction", "sif", "surface"),
+        "of a scene without strokes also `interfaces` and `yield`, where there are any; "
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",

@@ -26,15 +26,15 @@ def column(name: str) -> str:
 
 def table() -> dict[str, Quantity]:
     """Every quantity by its path, the parameters of all registered friction laws among them."""
-    of_laws = {
-        column(key): Quantity(
-            column(key), "none" if parameter.options else parameter.unit or "1", parameter.about,
-            (STATE,), symbol=parameter.symbol or key, range=parameter.range,
-        )
-        for law in LAWS.values()
-        for key, parameter in parameters(law).items()
-        if parameter.single
-    }  # fmt: skip
+    of_laws: dict[str, Quantity] = {}
+    for key, parameter in (pair for law in LAWS.values() for pair in parameters(law).items()):
+        if parameter.single:
+            known = of_laws.get(column(key))
+            of_laws[column(key)] = Quantity(
+                column(key), "none" if parameter.options else parameter.unit or "1", parameter.about,
+                (STATE,), symbol=parameter.symbol or key,
+                range=known.range | parameter.range if known else parameter.range,
+            )  # fmt: skip
     return of_laws | QUANTITIES
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
-from galinx.solvers.contact.solution import FINITE, POWER, PUNCH
+from galinx.solvers.contact.solution import FINITE, POWER, PUNCH, STRENGTH
 from galinx.solvers.contact.yielding import Peak
 from galinx.solvers.parameters import Range
 
@@ -79,7 +79,7 @@ FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
     "infinite",
-    lambda s, _: s.strength.first_load, FINITE, requires=(POWER,),
+    lambda s, _: s.strength.first_load, FINITE, requires=(POWER, STRENGTH),
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",
@@ -96,7 +96,7 @@ DEPTH = _both(
     "yield_depth", "1",
     "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
     f"over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.depth, compared="depth of yield",
+    lambda s, _: s.strength.depth, compared="depth of yield", requires=(STRENGTH,),
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",

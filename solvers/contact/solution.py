@@ -55,6 +55,8 @@ PUNCH, FINITE = "punch", "finite stresses"
 #: What a quantity may require of a contact: a flat punch, ends that are given, a pressure that is solved
 #: for, a height that is a power of |X|, a known stress out of the plane.
 FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
+#: The strength at which a solid yields.
+STRENGTH = "yield strength"
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,8 @@ class Contact:
         reasons = {FLAT: "the punch is not flat"} if not self.flat else {}
         if not self.solid.knows_σ_ZZ:
             reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
+        if self.yield_strength is None:
+            reasons[STRENGTH] = "solid.yield_strength is not given"
         return reasons
 
     def response(self, c: float) -> Response:

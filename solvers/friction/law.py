@@ -44,12 +44,14 @@ class FrictionLaw(Protocol):
         broadcasts: True if one law can stand for many. Their parameters are then (m, 1), their states
             (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
             slips by NumPy's rules of broadcasting.
+        has_memory: False where f depends on direction and speed alone, whatever the motion before.
         conventions: keys of parameters that are chosen, not fitted.
     """
 
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
     broadcasts: ClassVar[bool] = False
+    has_memory: ClassVar[bool] = True
     conventions: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
@@ -132,6 +134,9 @@ class Laws(Registry[type[FrictionLaw]]):
 LAWS = Laws("friction law", kind=FrictionLaw)
 
 
-def coulomb_coefficient() -> Any:
-    """Field of Coulomb's coefficient μ_C, dimensionless."""
-    return parameter("mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0))
+def coulomb_coefficient(lowest: str = "above") -> Any:
+    """Field of Coulomb's coefficient μ_C, dimensionless, ``"above"`` 0 or ``"at_least"`` 0."""
+    return parameter(
+        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", usual=(1e-4, 10.0),
+        **{lowest: 0.0},  # type: ignore[arg-type]
+    )  # fmt: skip

@@ -84,6 +84,10 @@ c = 0.3                          # over the shear wave speed
 - `c` or `speed`, and the parameters of the friction law, may be lists or ranges. All their combinations
   are computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
   from 0; `c` changes most slowly, then the law's parameters in the order of their rows, stroke, position.
+- Any other number of [solid], [[layer]], [punch] and [friction] may be a list or a range, too: `radius =
+  ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these numbers. States
+  of these variants follow each other in one archive; the number that stands last in the scene changes
+  fastest of them.
 - Tables `[[friction.vary]]` stand for a sum of such products: the lists of each are combined with each
   other and with what [friction] says of the other parameters, and not with those of the next. Here μ_C is
   varied, then σ₀l/N, in 4 laws, since that of 0.5 and 25 000 /m is in both:
@@ -233,14 +237,18 @@ def scene_page() -> str:
 
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
-    from galinx.postprocess.quantities import table
+    from galinx.postprocess.quantities import swept, table
     from galinx.postprocess.schema import ATTRIBUTES, RULES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
     parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
-        rows = [_dataset(path, row) for path, row in known.items() if path.startswith(f"{group}/")]
+        shown = [path for path in known if path.startswith(f"{group}/") and path not in swept.columns()]
+        rows = [_dataset(path, known[path]) for path in shown]
+        if group == "states":
+            what = "a swept number by its key in the scene, as `/states/solid.E`; tells states apart"
+            rows.append(("`/states/SECTION.KEY`", what, "states", "SI", "", "a sweep", ""))
         heads = ("dataset", "what", "shape", "unit", "values", "there with", "compared")
         parts += [f"## /{group}\n", _table(heads, rows)]
     rules = [

@@ -119,17 +119,19 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
 
     Example: ./run.sh plan scenes/tables4_5.toml
     """
-    from ..plan.plan import expense, lines, make_plan
+    from ..plan.plan import expense
+    from ..plan.variants import lines_of, make_variants
 
     checked = _read(scene, changes, unset)
-    planned = make_plan(checked)
+    variants = make_variants(checked)
+    plans = [variant.plan for variant in variants]
     if ranks.is_root():
-        for text in lines(checked, planned):
+        for text in lines_of(checked, variants):
             say(f"do    {text}", 6)
-        for text in planned.skipped:
+        for text in dict.fromkeys(text for planned in plans for text in planned.skipped):
             say(f"skip  {text}", 6)
-        say(f"cost  {expense(planned)}", 6)
-        for text in planned.warnings:
+        say(f"cost  {expense(*plans)}", 6)
+        for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD
 

@@ -280,6 +280,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "X_over_L": np.tile(_joined(list(scene.places)), followed),
         "c": c,
         **({"load": of_load} if loads > 1 else {}),
+        **{key: np.full(f.size, value) for key, value in scene.swept.items()},
         **values,
         "speed": np.where(np.isnan(speed), given, speed),
         **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},

@@ -25,6 +25,7 @@ from ..errors import BadInput, excerpt, nearest, short
 from .library import LIBRARY
 from .scene import Scene, contradictions, usual_quantities
 from .sections import SECTIONS, Section
+from .sweep import read_sweep, with_values, words
 from .units import to_si
 from .values import Rows, Wrapped
 
@@ -263,7 +264,38 @@ def parse(text: str, name: str = "scene") -> Scene:
     except ValueError:  # Python's limit of digits
         raise BadInput(f"{name} cannot be read: a whole number has thousands of digits") from None
     faults = list(control_characters(tree))
+    scenes = _scenes(tree, text, faults)
+    if not faults:
+        return replace(scenes[0], variants=tuple(scenes)) if scenes[0].swept else scenes[0]
+    lines = [f"  {fault}" for fault in faults[:_FAULTS]]
+    if len(faults) > _FAULTS:
+        lines.append(f"  and {len(faults) - _FAULTS} more")
+    listed = "\n".join(lines)
+    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
+
+
+def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
+    """Scenes of all combinations of swept numbers, up to the first with faults."""
     _fill_in_material(tree)
+    before = len(faults)
+    sweep = read_sweep(tree, faults)
+    scenes: list[Scene] = []
+    for values in sweep if len(faults) == before else ():
+        own: list[str] = []
+        scene = _checked(with_values(tree, values), text, values, own)
+        of_variant = f"with {words(values)}: " if scenes else ""
+        faults += [f"{of_variant}{fault}" for fault in own]
+        if scene is None or faults:
+            break
+        scenes.append(scene)
+    return scenes
+
+
+def _checked(
+    tree: dict[str, Any], text: str, swept: Mapping[str, float], faults: list[str]
+) -> Scene | None:
+    """Scene of single numbers, or None after its faults are added."""
+    before = len(faults)
     faults += _fill_in_stiffness(tree)
     faults += _fill_in_coefficient(tree)
     steady = _fill_in_motion(tree)
@@ -277,21 +309,16 @@ def parse(text: str, name: str = "scene") -> Scene:
         if key not in SECTIONS
     ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
-    if not faults:
-        scene = Scene(
-            title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady, **read
-        )
-        if steady and not named and scene.solve.methods:
-            output = replace(scene.output, quantities=usual_quantities(scene))
-            scene = replace(scene, output=output)
-        faults = contradictions(scene)
-        if not faults:
-            return scene
-    lines = [f"  {fault}" for fault in faults[:_FAULTS]]
-    if len(faults) > _FAULTS:
-        lines.append(f"  and {len(faults) - _FAULTS} more")
-    listed = "\n".join(lines)
-    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
+    if len(faults) > before:
+        return None
+    scene = Scene(
+        title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
+        swept=swept, **read,
+    )  # fmt: skip
+    if steady and not named and scene.solve.methods:
+        scene = replace(scene, output=replace(scene.output, quantities=usual_quantities(scene)))
+    faults += contradictions(scene)
+    return None if len(faults) > before else scene
 
 
 def _fill_in_material(tree: dict[str, Any]) -> None:

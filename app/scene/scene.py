@@ -5,8 +5,8 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, product
 from math import prod
@@ -249,6 +249,9 @@ class Scene:
         layers: layers on the solid, from the top down.
         time: a motion in time, None for none.
         steady: True for steady sliding at each speed, of a law without memory and no strokes.
+        swept: values of swept numbers by their keys, those of the first variant where it has some.
+        variants: scenes of all combinations of swept numbers; the scene itself is as the first. None for
+            a scene without swept numbers, and for a variant.
     """
 
     title: str
@@ -263,6 +266,13 @@ class Scene:
     layers: tuple[Layer, ...] = ()
     time: Time | None = None
     steady: bool = False
+    swept: Mapping[str, float] = field(default_factory=dict)
+    variants: tuple["Scene", ...] = ()
+
+    @property
+    def each(self) -> tuple["Scene", ...]:
+        """The variants, or the scene itself."""
+        return self.variants or (self,)
 
     @cached_property
     def solid(self) -> Solid:

@@ -654,6 +654,9 @@ _OUTPUT_KEYS = {
     ),
 }  # fmt: skip
 
+#: Sections whose numbers may be swept.
+SWEPT = ("solid", "layer", "punch", "friction")
+
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Any] = {
     "solid": ModelSection(
@@ -697,7 +700,7 @@ def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, An
     ]
     section = {
         "type": "object",
-        "properties": {name: entry(key) for name, key in every.items()},
+        "properties": {key: entry(described, name in SWEPT) for key, described in every.items()},
         "additionalProperties": False,
     }
     if name == "solid":  # a material gives the constants
@@ -714,8 +717,10 @@ def _layer_schema(table: dict[str, Any]) -> dict[str, Any]:
     return table | {"anyOf": [{"required": keys} for keys in enough]}
 
 
-def entry(key: Key) -> dict[str, Any]:
-    """JSON schema of a key's value."""
+def entry(key: Key, several: bool = False) -> dict[str, Any]:
+    """JSON schema of a key's value, of several values where a single number may be swept."""
+    if several and type(key.kind) is Number:
+        key = dataclasses.replace(key, kind=Numbers(key.kind.unit, key.kind.bounds))
     unit = getattr(key.kind, "unit", None)
     about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
     described = key.kind.schema() | {"description": about}

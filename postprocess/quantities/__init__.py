@@ -7,7 +7,7 @@ from difflib import get_close_matches
 # isort: off
 from . import runs, states  # noqa: F401
 from . import stresses, validity, yielding  # noqa: F401
-from . import over_time, layers  # noqa: F401
+from . import over_time, layers, swept  # noqa: F401
 
 # isort: on
 from galinx.solvers.contact import INTENSITIES
@@ -25,7 +25,7 @@ def column(name: str) -> str:
 
 
 def table() -> dict[str, Quantity]:
-    """Every quantity by its path, the parameters of all registered friction laws among them."""
+    """Every quantity by its path, parameters of registered laws, solids and profiles among them."""
     of_laws: dict[str, Quantity] = {}
     for key, parameter in (pair for law in LAWS.values() for pair in parameters(law).items()):
         if parameter.single:
@@ -35,7 +35,7 @@ def table() -> dict[str, Quantity]:
                 (STATE,), symbol=parameter.symbol or key,
                 range=known.range | parameter.range if known else parameter.range,
             )  # fmt: skip
-    return of_laws | QUANTITIES
+    return of_laws | swept.columns() | QUANTITIES
 
 
 def declared(path: str) -> Quantity:

@@ -48,7 +48,7 @@ def test_defaults_leave_only_what_has_none():
         ({"solid.E": "2 3 GPa"}, "2 3 GPa"),
         ({"solid.E": -1.0}, "-1"),
         ({"solid.E": float("inf")}, "finite"),
-        ({"solid.E": [1.0]}, "solid.E"),
+        ({"solid.E": []}, "solid.E"),
         ({"solid.rho": 0}, "rho"),
         ({"punch.half_width": "0 mm"}, "half_width"),
         ({"punch.load": "-55.3 N/mm"}, "load"),

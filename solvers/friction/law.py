@@ -45,13 +45,17 @@ class FrictionLaw(Protocol):
             (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
             slips by NumPy's rules of broadcasting.
         has_memory: False where f depends on direction and speed alone, whatever the motion before.
-        conventions: keys of parameters that are chosen, not fitted.
+        batched: True if :meth:`rest`, :meth:`pause`, :meth:`exact` and :meth:`friction` alone do that,
+            with tables (m, 1, rows, columns): enough for a fit, which tries many laws at once.
+        conventions: keys of parameters, or names of numbers in tables as ``"elements[0, 1]"``, that are
+            chosen, not fitted.
     """
 
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
     broadcasts: ClassVar[bool] = False
     has_memory: ClassVar[bool] = True
+    batched: ClassVar[bool] = False
     conventions: ClassVar[tuple[str, ...]] = ()
 
     @classmethod

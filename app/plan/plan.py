@@ -36,7 +36,7 @@ from galinx.solvers.contact.fem_plan import (
     unknowns,
 )
 from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Contact, Places
-from galinx.solvers.contact.yielding import places as yield_places
+from galinx.solvers.contact.yielding_of_layers import places as yield_places
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
 
@@ -189,10 +189,12 @@ def check_layers(scene: Scene, body: Contact, methods: Collection[str]) -> None:
     """
     if not scene.layers:
         return
-    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
+    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
     faults = [
         f'output.quantities has "{word}"' for word in scene.output.quantities if word not in computed
     ]
+    if YIELD in scene.output.quantities and YIELD in body.lacks:
+        faults.append(f'output.quantities has "yield", and {body.lacks[YIELD]}')
     if scene.solve.mode == "traction" and not scene.solve.own_pressure:
         faults.append(
             'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
@@ -206,7 +208,7 @@ def check_layers(scene: Scene, body: Contact, methods: Collection[str]) -> None:
         raise BadInput(
             f"layer: found layers, and {'; '.join(faults)}. Over layers methods = "
             '["sie"] solves all punches, ["fem"] those with two sharp edges, parabolas and other smooth '
-            "ones, with the quantities friction, sif, surface, interior and interfaces"
+            "ones, with the quantities friction, sif, surface, interior, interfaces and yield"
         )
 
 
@@ -560,7 +562,7 @@ def _output_places(scene: Scene, places: Places) -> Places:
     """Places at which finite elements output stresses, those along interfaces among the points inside."""
     surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
     X, points = places.X[: len(places.X) * surface], places.points[: len(places.points) * below]
-    if layers.AT_INTERFACES in scene.output.quantities and len(places.along):
+    if {layers.AT_INTERFACES, YIELD} & {*scene.output.quantities} and len(places.along):
         X_along, depth = np.meshgrid(places.along, places.interfaces)
         points = np.concatenate([points, np.column_stack([X_along.ravel(), -depth.ravel()])])
     return Places(X, points, places.around)

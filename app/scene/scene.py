@@ -330,7 +330,7 @@ def usual_quantities(scene: Scene) -> tuple[str, ...]:
     """Quantities of steady sliding that a scene does not name: those that say what the solid bears."""
     body, quantities = scene.body, [FRICTION_ALONE, INTENSITIES, ON_SURFACE]
     quantities += [AT_INTERFACES] * bool(scene.layers)
-    known = scene.solid.knows_σ_ZZ and YIELD not in body.lacks and not scene.layers
+    known = scene.solid.knows_σ_ZZ and YIELD not in body.lacks
     finite = FINITE in body.modes
     quantities += [YIELD] * (known and (finite or (STRENGTH not in body.lacks and body.flat)))
     return tuple(quantities)
@@ -361,8 +361,8 @@ def contradictions(scene: Scene) -> list[str]:
         )
     if "yield" in quantities and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes:
         faults.append(
-            'output.quantities asks for "yield": stresses are infinite at sharp edges, expected '
-            'solid.yield_strength, as in yield_strength = "205 MPa", or a material that has one'
+            'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
+            '"205 MPa", or a material that has one: stresses at sharp edges have no largest value'
         )
     if "yield" in quantities and not scene.solid.knows_σ_ZZ:
         faults.append(

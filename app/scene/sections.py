@@ -281,7 +281,13 @@ class Depths:
         return {"type": "array", "items": row, "minItems": 2}
 
 
+_YIELD_STRENGTH = Key(
+    Number("Pa", _POSITIVE), "uniaxial yield strength", None,
+    'for the quantity `"yield"`; stresses alone need none',
+)  # fmt: skip
+
 _KEYS = {
+    "yield_strength": _YIELD_STRENGTH,
     "thickness": Key(Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"),
     "material": Key(
         Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
@@ -351,19 +357,25 @@ class LayerSections:
             return self._tabulated(name, given, faults)
         material = given.get("material")
         of_library = LIBRARY.get(material) if isinstance(material, str) else None
-        constants = {"kind": of_library.kind} | of_library.values if of_library else {}
+        constants = of_library.constants if of_library else {}
         if material is not None and not of_library:  # its constants are not missing: one fault
             constants = next(iter(LIBRARY.values())).values
         kept = constants | given
         layer = self._one.read(name, kept, faults)
         if layer is None or layer.bottom is None:
-            return [] if layer is None else [Layer(layer.thickness, layer.solid)]
+            strength = layer.yield_strength if layer else None
+            return [] if layer is None else [Layer(layer.thickness, layer.solid, yield_strength=strength)]
         own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
         bottom = self._one.read(f"{name}.to", own | layer.bottom, faults)
         if bottom is None:
             return []
         try:
-            return [Layer(layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent)]
+            return [
+                Layer(
+                    layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent,
+                    layer.yield_strength,
+                )
+            ]  # fmt: skip
         except ValueError as error:
             faults.append(f"{name}: {error}")
             return []
@@ -398,7 +410,7 @@ def _plane(given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _layer(
     kind: type[Solid], values: dict[str, Any], thickness: float | None, material: str | None,
-    to: Any, grading: str, exponent: float, properties: Any,
+    to: Any, grading: str, exponent: float, properties: Any, yield_strength: float | None,
 ) -> Any:  # fmt: skip
     """A layer of one table [[layer]], whose constants at the lower face are still to be read."""
     if thickness is None:
@@ -407,17 +419,18 @@ def _layer(
         raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
     if grading != "power" and exponent != 1.0:
         raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
-    return _Read(thickness, build_model(kind, values), to, grading, exponent)
+    return _Read(thickness, build_model(kind, values), to, grading, exponent, yield_strength)
 
 
 class _Read:
     """A layer whose constants at the lower face are still as TOML gives them."""
 
     def __init__(
-        self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float
-    ) -> None:
+        self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float,
+        yield_strength: float | None,
+    ) -> None:  # fmt: skip
         self.thickness, self.solid, self.bottom = thickness, solid, bottom
-        self.grading, self.exponent = grading, exponent
+        self.grading, self.exponent, self.yield_strength = grading, exponent, yield_strength
 
 
 #: Most times of a motion at which stresses along the surface are output.
@@ -483,10 +496,7 @@ _SOLID_KEYS = {
         "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
         "what is written beside it replaces the material's",
     ),
-    "yield_strength": Key(
-        Number("Pa", _POSITIVE), "uniaxial yield strength", None,
-        'for the quantity `"yield"`; stresses alone need none',
-    ),
+    "yield_strength": _YIELD_STRENGTH,
 }  # fmt: skip
 
 _PUNCH_KEYS = {

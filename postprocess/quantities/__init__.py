@@ -54,7 +54,7 @@ def declared(path: str) -> Quantity:
 
 def of_states(path: str) -> bool:
     """True where a dataset holds values of states, or the positions of some."""
-    return path.split("/")[0] in ("states", "surface", "interior", "interfaces")
+    return path.split("/")[0] in ("states", "surface", "interior", "interfaces", "layers")
 
 
 def large(path: str) -> bool:

@@ -33,7 +33,7 @@ _ALONG, _NEAR = np.linspace(-2.5, 2.5, 41), np.linspace(-3.0, 3.0, 13)
 _FINER, _ACCURACY = np.linspace(-1.0, 1.0, 9), 1e-4
 #: Share of the largest stress on a layer's faces from which on a stress inside is searched for.
 _NEARLY = 0.98
-#: Least depth over a of places at which errors are estimated: at ends nearer ones would be all that counts.
+#: Least depth over a of places at which errors are estimated: nearer to ends one place would be all.
 _SHALLOWEST = 0.05
 #: Least depth over a, of the first depth of sampling, at which stresses are evaluated.
 _LEAST = 0.3
@@ -88,7 +88,7 @@ class StrengthOfLayers:
 
     @cached_property
     def peaks(self) -> Peak:
-        """Largest von Mises stress over N/(2a) of each layer and the solid below, (states, layers + 1)."""
+        """Largest von Mises stress over N/(2a) of every layer and the solid below, (states, parts)."""
         states, layers = len(self.g), len(self.body.solid.depths)
         best = np.full((3, states, layers + 1), -np.inf)
         _take(best[:, :, 0], *self._on_surface())
@@ -114,7 +114,7 @@ class StrengthOfLayers:
 
     @property
     def over_strength(self) -> NDArray[np.float64]:
-        """Largest stress of each layer over its strength, NaN if not given, (states, layers + 1)."""
+        """Largest stress of every layer over its strength, NaN if not given, (states, parts)."""
         strengths = np.array([np.nan if y is None else y for y in self.body.strengths])
         unit = self.body.load / (2.0 * self.half_width)
         return self.peaks.value * np.reshape(unit, (-1, 1)) / strengths

@@ -1,6 +1,7 @@
 """Commands that compute: run, plan, paper."""
 
 import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -128,12 +129,22 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     if ranks.is_root():
         for text in lines_of(checked, variants):
             say(f"do    {text}", 6)
-        for text in dict.fromkeys(text for planned in plans for text in planned.skipped):
+        for text in _together(text for planned in plans for text in planned.skipped):
             say(f"skip  {text}", 6)
         say(f"cost  {expense(*plans)}", 6)
         for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD
+
+
+def _together(texts: Iterable[str]) -> Iterator[str]:
+    """Texts, each once, those of one reason in one line: what is skipped, then why."""
+    by_reason: dict[str, dict[str, None]] = {}
+    for text in texts:
+        what, _, why = text.partition(": ")
+        by_reason.setdefault(why, {})[what] = None
+    for why, several in by_reason.items():
+        yield f"{', '.join(several)}: {why}"
 
 
 @click.command()

@@ -19,7 +19,6 @@ from galinx.postprocess.quantities.quantity import (
     ALONE,
     CLOSED_FORM,
     FEM,
-    FRICTION_ALONE,
     LOCAL,
     SIE,
     SWEPT,
@@ -35,7 +34,7 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Contact, Places
+from galinx.solvers.contact.solution import FINITE, FLAT, FREE, GIVEN_ENDS, ONE_FREE, Contact, Places
 from galinx.solvers.contact.yielding_of_layers import places as yield_places
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
@@ -174,7 +173,7 @@ def check_free_ends(scene: Scene, body: Contact, methods: Collection[str]) -> No
     about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
     if scene.solve.mode == "traction":
         raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
-    if scene.solve.methods and not methods and set(scene.output.quantities) - {FRICTION_ALONE}:
+    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
         raise BadInput(
             f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
             'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
@@ -633,7 +632,7 @@ def _skipped(
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
-    if YIELD in words and PUNCH in body.modes:
+    if YIELD in words and FINITE not in body.modes:
         skipped.append(
             "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
             "edges of a punch, and any load makes these yield"

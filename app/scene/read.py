@@ -60,6 +60,34 @@ def repeated(text: str, said: str) -> str:
     return ""
 
 
+#: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm.
+_PLACE = re.compile(r"\(at line (\d+),")
+_COMMA = re.compile(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$")
+_UNIT = re.compile(
+    r"=\s*([-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\W\d_e%]\S*(?:\s*[*/]\s*\S+)*|[-+]?[\d.]+\s*%)\s*(#.*)?$"
+)
+
+
+def unquoted(text: str, said: str) -> str:
+    """A message on a number with a comma, or with a unit without quotes; "" for any other fault.
+
+    Args:
+        text: of the scene.
+        said: message of TOML's reader.
+    """
+    place = _PLACE.search(said)
+    lines = text.splitlines()
+    if not place or int(place[1]) > len(lines):
+        return ""
+    line, number = lines[int(place[1]) - 1], place[1]
+    if comma := _COMMA.search(line):
+        point = comma[1].replace(",", ".")
+        return f"found {comma[1]} in line {number}, expected a decimal point, as in {point}"
+    if unit := _UNIT.search(line):
+        return f'found {unit[1]} in line {number}, expected quotes around a number and unit, "{unit[1]}"'
+    return ""
+
+
 def control_characters(tree: dict[str, Any]) -> Iterator[str]:
     """Faults of texts and keys of a scene with a control character, each with its place."""
     waiting: deque[tuple[str, Any]] = deque([("", tree)])  # deeper than Python's calls may be
@@ -258,7 +286,7 @@ def parse(text: str, name: str = "scene") -> Scene:
         tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         twice = repeated(text, str(error))
-        raise BadInput(f"{name} is not TOML: {twice or error}") from None
+        raise BadInput(f"{name} is not TOML: {twice or unquoted(text, str(error)) or error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be read: its brackets are nested too deeply") from None
     except ValueError:  # Python's limit of digits

@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, product
+from itertools import chain, pairwise, product
 from math import prod
 from typing import Any
 
@@ -322,6 +322,8 @@ FRICTIONS = frozenset({FRICTION_ALONE, SLIDER, TIME})
 _STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
 _PRESSED = 0.1
+#: Slope of a punch above which its angle is far from small.
+_STEEP = 0.2
 #: Half-width [m] of a contact below which a solid is no continuum: a few atoms.
 _ATOMS = 1e-9
 
@@ -417,7 +419,7 @@ def oddities(scene: Scene) -> list[str]:
             warnings.append(
                 f"{path} = {listed(odd)}{of_unit} are unusual, {usual}; is their unit as meant?"
             )
-    return [*warnings, *_too_much(scene), *_too_small(scene)]
+    return [*warnings, *_too_much(scene), *_too_small(scene), *_too_steep(scene)]
 
 
 def _too_much(scene: Scene) -> Iterator[str]:
@@ -429,6 +431,17 @@ def _too_much(scene: Scene) -> Iterator[str]:
         yield (
             f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / scene.solid.μ:.2g} "
             f"times the shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
+        )
+
+
+def _too_steep(scene: Scene) -> Iterator[str]:
+    """Warning about the slopes of a punch that is given by points: linear theory takes them for small."""
+    points = getattr(scene.punch.profile, "shape", ())
+    steepest = max((abs((z1 - z0) / (x1 - x0)) for (x0, z0), (x1, z1) in pairwise(points)), default=0.0)
+    if steepest > _STEEP:
+        yield (
+            f"punch.shape: slopes are up to {steepest:.3g}, usual is less than {_STEEP:g}; are the units "
+            "of both columns as meant? Without one they are m"
         )
 
 

@@ -110,7 +110,9 @@ class Section:
             return None
         keys = self.keys(given)
         own_faults = [
-            f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys
+            f"{name}.{short(key)}: no such key{self._other_owner(key, given) or nearest(key, [*keys])}"
+            for key in given
+            if key not in keys
         ]
         values = {}
         for key, entry in keys.items():
@@ -131,6 +133,10 @@ class Section:
                 own_faults.append(f"{name}: {error}")
         faults += own_faults
         return None
+
+    def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
+        """End of a message on a key that only other models have, which names them; "" for any other."""
+        return ""
 
     def _made(self, values: dict[str, Any]) -> Any:
         return self.build(**values)
@@ -185,6 +191,11 @@ class ModelSection(Section):
                 faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}{own}")
             return None
         return super().read(name, given, faults)
+
+    def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
+        others = [name for name, model in self._models.items() if key in parameters(model)]
+        own = given.get(self._chosen, self._default)
+        return f' of {self._chosen} = "{own}"; {", ".join(others)} has it' if others else ""
 
     def _of(self, model: str) -> dict[str, Key]:
         """Keys of a section with a model of that name."""

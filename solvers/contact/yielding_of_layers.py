@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .free_ends import turns_at_ends
 from .solution import Contact, Surface
 from .stresses import extreme, von_mises
 from .yielding import Peak
@@ -121,6 +120,8 @@ class StrengthOfLayers:
 
     def _on_surface(self) -> tuple[NDArray, NDArray, NDArray]:
         """Largest von Mises stress on the surface, X and Y over a, (states,) each."""
+        from .free_ends import turns_at_ends  # SciPy's interpolation, a slow import
+
         surface, solid = self.surface, self.body.solid.at(0.0)  # type: ignore[attr-defined]
         σ_YY = np.nan_to_num(surface.σ_YY)
 

@@ -80,7 +80,7 @@ def test_defaults_leave_only_what_has_none():
         ({"solve.methods": ["fme"]}, "expected closed_form, sie or fem; did you mean fem\\?"),
         ({"motion.strokes": ["foward"]}, "did you mean forward\\?"),
         ({"solid.material": "STEEL"}, r"has 1 fault:.*found 'STEEL', .*; did you mean steel\?"),
-        ({"solid.material": "gold"}, r"has 1 fault:.*zinc or ice$"),
+        ({"solid.material": "gold"}, r"has 1 fault:.*rubber or PTFE$"),
         ({"solve.methods": []}, "solve.methods is empty"),
         ({"solve.tolerance": 0}, "tolerance"),
         ({"solve.mesh": "round"}, "mesh"),

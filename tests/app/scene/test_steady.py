@@ -6,6 +6,7 @@ import pytest
 from galinx.app.errors import BadInput
 from galinx.app.results.result import compute
 from galinx.app.scene.read import parse
+from galinx.app.scene.scene import oddities
 from galinx.postprocess.quantities import states, validity, yielding
 
 CYLINDER = """
@@ -72,3 +73,25 @@ def test_two_names_of_a_number_are_one_too_many():
 def test_a_wrong_mu_is_one_fault_of_its_own():
     with pytest.raises(BadInput, match=r"1 fault:\n  friction.mu \(coefficient of friction\): found -1"):
         parse(CYLINDER.replace("0.15", "-1"))
+
+
+@pytest.mark.parametrize(
+    "old, new, message",
+    [
+        ("mu = 0.15", "mu = 0,15", "found 0,15 in line 9, expected a decimal point, as in 0.15"),
+        ('"5 mm"', "5 mm", 'found 5 mm in line 6, expected quotes around a number and unit, "5 mm"'),
+        ('"1 m/s"', "1 m/s # fast", "found 1 m/s in line 11, expected quotes"),
+        ('"5 mm"', '"5,5 mm"', "decimals have a point"),
+        ("mu = 0.15", "mu = 0.15\ndelta = 1", 'no such key of model = "coulomb"; dahl has it'),
+    ],
+)
+def test_messages_say_what_to_write(old, new, message):
+    with pytest.raises(BadInput) as raised:
+        parse(CYLINDER.replace(old, new))
+    assert message in str(raised.value)
+
+
+def test_a_steep_punch_is_warned_about():
+    steep = 'profile = "table"\nshape = [[-1, 1], [0, 0], [1, 1]]'
+    scene = parse(CYLINDER.replace('profile = "parabolic"\nradius = "5 mm"', steep))
+    assert any("slopes are up to 1," in text for text in oddities(scene))

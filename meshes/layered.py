@@ -242,13 +242,6 @@ class OnLayers(MeshKind):
         return 0.3 * self.innermost_size(required) / margin**0.4
 
     def moved_edges(self, required: Requirements, degree: int, margin: float) -> float:
-        """Apparent shift over a of the contact's edges, by the singularity in the innermost cells.
-
-        Args:
-            required: requirements on the mesh.
-            degree: of the cells.
-            margin: of the solid's response.
-        """
         return _MOVED * self.innermost_size(required) / (degree**2 * margin**0.4)
 
     def degree(self, required: Requirements, margin: float) -> int:

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
-from galinx.meshes.layered import OnLayers
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact import FREE_ENDS
 from galinx.solvers.contact.edges import EdgeExponents
@@ -81,7 +80,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
-    drawn = kind.drawn(required) if isinstance(kind, OnLayers) else None
+    drawn = kind.drawn(required)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))
     solver = solve.solver

@@ -330,6 +330,10 @@ class FreeEndContact(Contact):
     found, shared_ends = True, None
 
     @property
+    def tips(self) -> tuple[float, ...]:
+        return tuple(kinks(self.profile)) if jumps(self.profile) else ()
+
+    @property
     def lacks(self) -> dict[str, str]:
         reasons = super().lacks | {
             PUNCH: "the contact has free ends",
@@ -390,10 +394,6 @@ class FreeContact(FreeEndContact):
     @property
     def finite(self) -> bool:
         return not self.tips
-
-    @property
-    def tips(self) -> tuple[float, ...]:
-        return tuple(kinks(self.profile)) if jumps(self.profile) else ()
 
     @property
     def growth_exponent(self) -> float | None:

@@ -23,8 +23,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.layered import OnLayers
-
 from ..contact import INTENSITIES
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import FemPlan
@@ -151,7 +149,9 @@ class SharpEnds(Ends):
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
-        return of_pressure(states.pressure, moments, level.moved_edges)
+        plan, margin = level.plan, level.task.response.margin
+        moved = plan.kind.moved_edges(plan.wanted, level.space.degree, margin)
+        return of_pressure(states.pressure, moments, moved)
 
 
 class FreeEnds(Ends):
@@ -388,14 +388,6 @@ class PunchLevel(Level):
     def gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""
         return [self.ends.gauge(self, states), *super().gauges(states)]
-
-    @property
-    def moved_edges(self) -> float:
-        """Distance over a by which the edges seem off on straight cells along layers; 0 on others."""
-        if not isinstance(self.plan.kind, OnLayers):
-            return 0.0
-        margin = self.task.response.margin
-        return self.plan.kind.moved_edges(self.plan.wanted, self.space.degree, margin)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.

@@ -11,7 +11,6 @@ from mpi4py import MPI
 
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
-from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
@@ -130,8 +129,8 @@ class Discretisation:
 def on_finer_cells(plan: FemPlan) -> FemPlan:
     """Plan with cells for a tighter tolerance, and twice as many of them in angle and in distance."""
     kind, target = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
-    if isinstance(kind, OnLayers):
-        return replace(plan, wanted=target, drawn=kind.drawn(target))
+    if drawn := kind.drawn(target):
+        return replace(plan, wanted=target, drawn=drawn)
     rings = kind.refinement(target)
     columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
     refinement = replace(

@@ -18,7 +18,7 @@ all loads differ in size alone, a single state of a friction stands for all of t
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, log
@@ -615,7 +615,7 @@ class OwnMeshesAtSpeed:
     def record(self) -> dict[str, Any]:
         return self._record | vars(self._done)
 
-    def destroy(self) -> None:
+    def close(self) -> None:
         """Free the kept states."""
         for state in self._kept.values():
             state.level.destroy()
@@ -637,11 +637,8 @@ def over_layers(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnMes
         first = min(near)[1] if near else float(alone.body.half_width)
         return solved_over_layers(work, alone, g, first, done)
 
-    at = OwnMeshesAtSpeed(task, solve, done)
-    try:
+    with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
         yield at
-    finally:
-        at.destroy()
 
 
 @contextmanager
@@ -664,12 +661,9 @@ def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnM
             errors[INTENSITIES] = errors[INTENSITIES] + off
             return state
 
-        at = OwnMeshesAtSpeed(task, solve, done)
         done.add(ladder.done)
-        try:
+        with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
             yield at
-        finally:
-            at.destroy()
 
 
 def _ends_of(ladder: Ladder, error: MeasuredError, g: float, load: float) -> tuple[Lengths, float]:

@@ -184,12 +184,12 @@ class PiecesLevel(LoadsLevel):
 
     def _solve(self) -> None:
         self._pieces = Pieces(self.prescribed.knots, self.prescribed.values)
-        self._loads: LinearLoads | None = LinearLoads(self.space, self.task.response)
+        #: Linear loads of an interval; None once they are freed.
+        self._loads: Any = LinearLoads(self.space, self.task.response)
         self.factor = self._loads.factor
         self.resultants = np.array([self._pieces.resultant(self._loads)])
 
     def displacement_at(self, task: Task) -> Displacement:
-        assert self._loads
         return PiecesDisplacement(task, self.space, self._pieces, self._loads)
 
     def release(self) -> None:

@@ -649,9 +649,9 @@ class FittedPunch(Punch):
     @property
     def slopes(self) -> Slopes:
         """Slopes of the fields at the places on the surface."""
-        slopes, rounding = self._samples.slopes, self._samples.rounding
-        basis = slopes.reshape(2, -1, slopes.shape[-1])
-        return Slopes(basis.swapaxes(1, 2), rounding.reshape(-1, rounding.shape[-1]).T)
+        # Part after part, of both displacements.
+        basis = np.concatenate(list(np.moveaxis(self._samples.slopes, 1, 0)), axis=1)
+        return Slopes(basis.swapaxes(1, 2), np.concatenate(list(self._samples.rounding)).T)
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         shares = self._at.shares(g)

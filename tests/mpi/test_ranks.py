@@ -64,7 +64,7 @@ def test_next_to_an_edge_corrected_loads_have_the_digits_that_the_motion_of_all_
         solver.load(lambda left, right: -1.0 + 0.0 * left)
         solver.correct()
         assert solver.resultants == pytest.approx([-2.0, 0.0], rel=1e-12)
-        at = fields.SurfaceSlopes(solver.space, solver.fields, np.array([-1.0 - 1e-6, 1.0 - 1e-6]))
+        at = fields.surface_slopes(solver.space, solver.fields, np.array([-1.0 - 1e-6, 1.0 - 1e-6]))
         slopes.append(np.stack(at.of(np.tile([1.0, -0.5], (1, 2)))))
         solver.destroy()
     np.testing.assert_allclose(slopes[1], slopes[0], rtol=2.5e-10)

@@ -7,7 +7,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from ..parameters import parameter
 from .law import LAWS
@@ -125,6 +124,8 @@ class _Yielding:
         self._y = self._first + _WIDTH * np.arange(count + 1)
         pieces = self._pieces(self._y[:-1], self._y[1:])
         self._x, self._short = np.hstack([np.zeros((2, 1)), np.cumsum(pieces, axis=1)])
+        from scipy.interpolate import CubicHermiteSpline  # a slow import
+
         self._near = CubicHermiteSpline(self._x, self._y, 1.0 / self._slopes(self._y))
 
     def after(self, x: NDArray, w: float | NDArray) -> NDArray[np.float64]:

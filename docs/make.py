@@ -163,9 +163,8 @@ sliders. What contradicts that is a fault, exit status 1. Who changes numbers so
 and the schema, and makes the
 digest again, has made another archive.
 
-Archives of schema version 1 have no digest and no attribute `datasets`. They are read, by another
-process first since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema is
-not found in them. Those before version 3 do not tell of their solid and its speeds.
+Archives of schema version 1 had no digest and are not read. Those of version 2 do not tell of their solid
+and its speeds.
 """
 
 _ATTRIBUTES = """\

@@ -1,14 +1,16 @@
 """What a command meets before it can do anything: closed streams, encodings, limits, variables."""
 
+import errno
 import os
 import stat
 import subprocess
 import sys
+import tempfile
 
 import pytest
 from support import HOME, SCENE, clean_environment, here
 
-from galinx.app import job, ranks
+from galinx.app import job
 from galinx.postprocess.hdf5 import archive
 
 #: A run that needs no finite elements.
@@ -64,18 +66,20 @@ def test_another_folder_serves_for_temporary_files(tmp_path, count, folder):
     assert b"Open MPI" not in done.stderr and b"ompi" not in done.stderr
 
 
-def test_no_folder_for_temporary_files_is_told(monkeypatch, capsys, tmp_path):
-    def refuse(*_):
-        raise PermissionError
+def test_no_folder_for_temporary_files_is_told(monkeypatch):
+    def refuse():
+        raise FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/a']")
 
-    monkeypatch.setattr(os, "mkdir", refuse)
+    monkeypatch.setattr(tempfile, "gettempdir", refuse)
     # What ends ignores signals from then on, and so would the processes of later tests.
-    monkeypatch.setattr(job.process, "fail", lambda status, message: print(message, file=sys.stderr))
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(job.process, "fail", lambda status, message: said.append(message))
+    said = []
     with pytest.raises(SystemExit) as ended:
-        job._find_temporary_folder()
+        job._check_machine()
     assert ended.value.code == 3
-    assert f"none can be made in {tmp_path}, /tmp, /var/tmp" in capsys.readouterr().err
+    assert said == [
+        "No usable temporary directory found in ['/a']; set TMPDIR to a folder that can be written"
+    ]
 
 
 @on_ranks
@@ -101,28 +105,9 @@ def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
     assert "?, ?: exponents of the pressure" in done.stdout.decode(encoding)
 
 
-@pytest.mark.parametrize("shell", ['"$@" /dev/stdin', '"$@" /dev/fd/0', '"$@" <(cat)'])
-def test_every_rank_reads_a_scene_that_is_no_file(tmp_path, shell):
-    done = galinx(tmp_path, "-n", "2", "plan", shell=shell, text=SCENE.read_bytes())
-    assert done.returncode == 0 and not done.stderr
-    assert b"ranks: 2" in done.stdout and done.stdout.count(b"cost ") == 1
-
-
-def test_ranks_are_not_given_what_has_no_end(tmp_path):
-    done = galinx(tmp_path, "-n", "2", "plan", shell='"$@" /dev/stdin </dev/zero')
-    is_refused(done, 2, "is larger than 50 MB")
-
-
-def test_a_scene_that_one_rank_alone_could_read_is_refused(tmp_path, monkeypatch):
-    from click.testing import CliRunner
-
-    from galinx.app.cli import cli
-    from galinx.app.errors import BadInput
-
-    os.mkfifo(tmp_path / "scene")
-    monkeypatch.setattr(ranks, "size", lambda: 2)
-    done = CliRunner().invoke(cli, ["plan", str(tmp_path / "scene")])
-    assert isinstance(done.exception, BadInput) and "only one of several ranks" in str(done.exception)
+def test_a_scene_for_several_ranks_is_a_file(tmp_path):
+    done = galinx(tmp_path, "-n", "2", "plan", "/dev/stdin", text=SCENE.read_bytes())
+    is_refused(done, 2, "only one of several ranks could read /dev/stdin; expected a file")
 
 
 @pytest.mark.parametrize(

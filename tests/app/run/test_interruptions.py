@@ -24,7 +24,7 @@ from galinx.solvers.fem.punch import SlidingPunch
 #: GALINX_THOROUGH=1 asks for as many kills and signals as a release does.
 #: The one message of a run that was stopped or killed.
 SAID = re.compile(
-    r"error: (interrupted|(rank [01] or its )?mpirun was killed( \(.*\))?)"
+    r"error: (interrupted|a rank or mpirun was killed \(did the machine lack memory\?\))"
     r"(; ((\d+ finished states are|what is finished is) kept, go on with --resume"
     r"|nothing was (finished|written)))?\n"
 )
@@ -199,24 +199,6 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
         env=clean_environment(), capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.stdout == "[False, False, True]\n", done.stderr
-
-
-def test_a_library_that_drops_the_request_says_nothing_of_it():
-    script = (
-        "from galinx.app import process; process.listen()\n"
-        "class Library:\n"
-        "    def __init__(self, error): self.error = error\n"
-        "    def __del__(self): raise self.error\n"
-        "Library(process.Interrupted()); Library(ValueError('its own'))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        env=clean_environment(),
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert "Asked" not in done.stderr and "ValueError: its own" in done.stderr
 
 
 def test_two_runs_do_not_write_the_same_archive(sweep, tmp_path):

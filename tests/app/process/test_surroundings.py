@@ -40,28 +40,24 @@ def is_refused(done, status, *words):
 
 
 @on_ranks
-def test_closed_streams_are_the_null_device(tmp_path, count):
-    done = galinx(tmp_path, *count, *RUN, shell='"$@" <&- >&- 2>&-')
-    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+@pytest.mark.parametrize("closed", ["<&- >&- 2>&-", "2>&-"])  # bash hands its script on as stream 2
+def test_closed_streams_are_the_null_device(tmp_path, count, closed):
+    done = galinx(tmp_path, *count, *RUN, shell=f'"$@" {closed}')
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert (b"archive: x.h5" in done.stdout) == (closed == "2>&-")
     assert archive.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
-    is_refused(galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
     assert galinx(tmp_path, *count, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
+
+
+def test_a_message_needs_no_output_stream(tmp_path):
+    is_refused(galinx(tmp_path, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
     assert galinx(tmp_path, "-n", "many", *PLAN, shell='"$@" 2>&-').returncode == 2
 
 
 @on_ranks
-def test_a_closed_error_stream_costs_no_run(tmp_path, count):
-    """It alone: bash hands its script on under the number that is free."""
-    done = galinx(tmp_path, *count, *RUN, shell='"$@" 2>&-')
-    assert done.returncode == 0 and b"archive: x.h5" in done.stdout
-
-
-@on_ranks
-@pytest.mark.parametrize("folder", ["file", "/proc", "/no/such/folder"])
-def test_another_folder_serves_for_temporary_files(tmp_path, count, folder):
-    (tmp_path / "file").touch()
+def test_another_folder_serves_for_temporary_files(tmp_path, count):
     words = (*RUN, "--set", 'solve.methods=["fem"]', "--set", "solve.tolerance=1e-2")
-    done = galinx(tmp_path, *count, *words, TMPDIR=os.path.join(tmp_path, folder))
+    done = galinx(tmp_path, *count, *words, TMPDIR="/no/such/folder")
     assert done.returncode == 0, done.stderr
     assert b"Open MPI" not in done.stderr and b"ompi" not in done.stderr
 
@@ -82,10 +78,9 @@ def test_no_folder_for_temporary_files_is_told(monkeypatch):
     ]
 
 
-@on_ranks
-@pytest.mark.parametrize("words", [PLAN, ("materials",), ("plan", "--help")])
-def test_what_cannot_be_written_is_named(tmp_path, count, words):
-    done = galinx(tmp_path, *count, *words, shell='"$@" >/dev/full')
+@pytest.mark.parametrize("words", [PLAN, ("-n", "2", *PLAN), ("plan", "--help")])
+def test_what_cannot_be_written_is_named(tmp_path, words):
+    done = galinx(tmp_path, *words, shell='"$@" >/dev/full')
     is_refused(done, 3, "cannot write the output: No space left on device; make room")
 
 
@@ -97,7 +92,7 @@ def test_a_summary_that_cannot_be_written_costs_no_archive(tmp_path):
     assert all(line.startswith(b"warning: ") for line in done.stderr.splitlines())
 
 
-@pytest.mark.parametrize("count, encoding", [((), "ascii"), (("-n", "2"), "ascii"), ((), "latin-1")])
+@pytest.mark.parametrize("count, encoding", [(("-n", "2"), "ascii"), ((), "latin-1")])
 def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
     assert here(*RUN, cwd=tmp_path).returncode == 0
     done = galinx(tmp_path, *count, "show", "x.h5", PYTHONIOENCODING=encoding)
@@ -120,17 +115,19 @@ def test_a_scene_for_several_ranks_is_a_file(tmp_path):
     ids=["MPICH", "Open MPI", "nonsense"],
 )
 def test_what_another_mpirun_left_is_no_rank(tmp_path, variables):
-    done = galinx(tmp_path, *RUN, **variables)
-    assert done.returncode == 0 and b"archive: x.h5" in done.stdout
-    (tmp_path / "x.h5").unlink()
-    done = subprocess.run(  # without run.sh the variables are there, and MPI is asked
-        [sys.executable, "-m", "galinx", *RUN], cwd=tmp_path, env=clean_environment() | variables,
-        capture_output=True, timeout=60,
-    )  # fmt: skip
-    assert done.returncode == 0 and b"archive: x.h5" in done.stdout, done.stderr
+    scripts = [HOME / "run.sh"], [sys.executable, "-m", "galinx"]  # which asks MPI
+    for start in scripts:
+        done = subprocess.run(
+            [*start, *PLAN],
+            cwd=tmp_path,
+            env=clean_environment() | variables,
+            capture_output=True,
+            timeout=60,
+        )
+        assert done.returncode == 0 and done.stdout.startswith(b"do    friction"), done.stderr
 
 
-@pytest.mark.parametrize("count, megabytes", [((), 30), ((), 60), ((), 400), (("-n", "2"), 200)])
+@pytest.mark.parametrize("count, megabytes", [((), 30), ((), 400), (("-n", "2"), 200)])
 def test_little_address_space_is_refused(tmp_path, count, megabytes):
     done = galinx(tmp_path, *count, *RUN, shell=f'ulimit -v {megabytes}000; "$@"')
     is_refused(done, 3, "the address space is limited", "ulimit -v")

@@ -8,7 +8,6 @@ from support import SCENE, clean_environment, command, here, mpirun, widest
 
 from galinx.app.cli import cli
 
-
 BAD = [
     (("run", "missing.toml"), "cannot read missing.toml"),
     (("show", "bad.toml"), "bad.toml is a scene or another text, expected an archive"),

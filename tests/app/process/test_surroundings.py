@@ -1,7 +1,6 @@
 """What a command meets before it can do anything: closed streams, encodings, limits, variables."""
 
 import errno
-import os
 import stat
 import subprocess
 import sys

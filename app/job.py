@@ -106,6 +106,28 @@ def _check_machine() -> None:
 _PATIENCE, _LONGEST = 3.0, 10**6
 
 
+class _Rank(threading.Thread):
+    """A rank as its job sees it: it is given the job's streams, and listened to until it ends.
+
+    Attributes:
+        process: its number.
+        reports: the last of each kind.
+    """
+
+    def __init__(self, line: socket.socket, process: int) -> None:
+        super().__init__(daemon=True)
+        self._line, self.process = line, process
+        self.reports: dict[str, Any] = {}
+
+    def run(self) -> None:
+        with suppress(OSError):  # it may be killed at any moment
+            socket.send_fds(self._line, [b"."], [1, 2])
+        with suppress(OSError), self._line.makefile("rb") as reports:
+            for report in reports:
+                if report.endswith(b"\n"):
+                    self.reports |= json.loads(report)
+
+
 def run(command: list[str]) -> int:
     """Run mpirun to its end; return the status of the job, whose reason was printed.
 
@@ -120,8 +142,8 @@ def run(command: list[str]) -> int:
     server = socket.socket(socket.AF_UNIX)
     server.bind(process.address(name))
     server.listen(1024)
-    lines: dict[socket.socket, int] = {}
-    threading.Thread(target=_serve, args=(server, lines), daemon=True).start()
+    ranks: list[_Rank] = []
+    threading.Thread(target=_serve, args=(server, ranks), daemon=True).start()
     words = os.memfd_create("mpirun")
     child = subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=words, stderr=words,
@@ -132,10 +154,10 @@ def run(command: list[str]) -> int:
 
     def hand_on(number: int, _: object) -> None:
         stopped.append(number)
-        for rank in list(lines.values()):
+        for rank in ranks:
             with suppress(ProcessLookupError):
-                os.kill(rank, signal.SIGTERM)
-        patience = threading.Timer(_PATIENCE * bool(lines), child.terminate)
+                os.kill(rank.process, signal.SIGTERM)
+        patience = threading.Timer(_PATIENCE * bool(ranks), child.terminate)
         patience.daemon = True
         patience.start()
 
@@ -143,8 +165,10 @@ def run(command: list[str]) -> int:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, hand_on)
     child.wait()
-    reports = [_reports(line) for line in lines]
-    root = next((report for report in reports if report["rank"] == 0), {})
+    for rank in ranks:
+        rank.join()
+    reports = [rank.reports for rank in ranks]
+    root = next((report for report in reports if report.get("rank") == 0), {})
     if "status" not in root:
         process.erase_bar()
     for report in (root, *reports):
@@ -163,28 +187,18 @@ def run(command: list[str]) -> int:
     return errors.FAILURE
 
 
-def _serve(server: socket.socket, lines: dict[socket.socket, int]) -> None:
-    """Give ranks the streams of the job; keep their lines and processes; other users' are no ranks."""
+def _serve(server: socket.socket, ranks: list[_Rank]) -> None:
+    """Take in ranks as they come; another user's process is none."""
     while True:
         line, _ = server.accept()
         peer = line.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
         number, user, _ = struct.unpack("iII", peer)
-        if user == os.getuid():
-            lines[line] = number
-            with suppress(OSError):  # the rank is gone
-                socket.send_fds(line, [b"."], [1, 2])
-
-
-def _reports(line: socket.socket) -> dict[str, Any]:
-    """All that a rank that has ended reported, the last of each kind."""
-    data = b""
-    with suppress(OSError):
-        while part := line.recv(65536):
-            data += part
-    reports: dict[str, Any] = {"rank": None}
-    for text in data.splitlines():
-        reports |= json.loads(text)
-    return reports
+        if user != os.getuid():
+            line.close()
+        else:
+            rank = _Rank(line, number)
+            rank.start()
+            ranks.append(rank)
 
 
 def main() -> None:

@@ -10,13 +10,15 @@ from galinx.app import errors
 
 #: Starts a job whose mpirun is the command given.
 JOB = "import sys; from galinx.app import job; sys.exit(job.run(sys.argv[1:]))"
-#: A rank that says that all is well.
+#: A rank that reports what it is given.
 RANK = """
-import os, socket
+import json, os, socket, sys
 line = socket.socket(socket.AF_UNIX)
 line.connect("\\0" + os.environ["GALINX_JOB"])
 try:
-    line.sendall(b'{"rank": 0, "status": 0}\\n')
+    line.recv(1)
+    report = {"rank": 0, "status": int(sys.argv[1]), "words": sys.argv[2] * 10**6}
+    line.sendall(json.dumps(report).encode() + b"\\n")
 except OSError:
     pass
 """
@@ -35,7 +37,9 @@ def job(*mpirun):
 
 
 def test_a_rank_tells_how_its_job_ends():
-    assert job(sys.executable, "-c", RANK) == (errors.GOOD, "")
+    assert job(sys.executable, "-c", RANK, "0", "") == (errors.GOOD, "")
+    long = f"error: {'é' * 10**6}\n"  # more than a socket holds
+    assert job(sys.executable, "-c", RANK, "2", "é") == (errors.BAD_INPUT, long)
 
 
 def test_an_mpirun_that_starts_no_rank_is_said():
@@ -45,7 +49,7 @@ def test_an_mpirun_that_starts_no_rank_is_said():
 
 
 def test_another_user_is_no_rank(stranger):
-    status, said = job(*stranger, sys.executable, "-c", RANK)
+    status, said = job(*stranger, sys.executable, "-c", RANK, "0", "")
     assert status == errors.FAILURE and "mpirun could not start the ranks" in said
 
 

@@ -19,7 +19,6 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-from galinx import files
 from galinx.clock import Clock
 
 from . import process, ranks
@@ -205,10 +204,9 @@ class _LogFile(logging.Handler):
         super().__init__()
         self._path, self._full = path, False
         try:
-            handle = files.open_file(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+            self._file = open(path, "ab", buffering=0)  # noqa: SIM115 - closed by close
         except OSError as error:
             raise MachineFailure(f"cannot write the log {path}: {error.strerror}") from None
-        self._file = open(handle, "ab", buffering=0)  # noqa: SIM115 - closed by close
 
     def emit(self, record: logging.LogRecord) -> None:
         if self._full:

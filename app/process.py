@@ -60,21 +60,6 @@ def is_there() -> bool:
     return _line is not None
 
 
-def leave(words: str) -> None:
-    """Report to the job the sentence on finished work, for whatever happens from now on."""
-    _report(left=words)
-
-
-def interrupted() -> None:
-    """Report to the job that this rank ends because it was interrupted."""
-    _report(interrupted=True)
-
-
-def end(status: int, words: str = "") -> None:
-    """Report to the job the status with which this rank ends; ``words`` say why, which the job prints."""
-    _report(status=status, words=words)
-
-
 def _report(**report: int | str) -> None:
     if _line:
         with suppress(OSError):  # a job that is gone needs no answer
@@ -104,7 +89,6 @@ def listen() -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # run.sh has them wait until here
     signal.signal(signal.SIGALRM, lambda *_: end_stopped(NOTHING))
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")  # a library of MPIs, which would take SIGHUP for itself
-    sys.unraisablehook = _dropped
 
 
 @contextmanager
@@ -119,7 +103,7 @@ def leaving(tidy: Callable[[], str], words: str) -> Iterator[None]:
     """
     global _leave
     _leave = tidy
-    leave(words)
+    _report(left=words)
     try:
         yield
     finally:
@@ -136,8 +120,7 @@ def end_stopped(words: str) -> NoReturn:
     """End an interrupted process, and print the sentence on its finished work."""
     files.give_up()
     if is_there():
-        leave(words)
-        interrupted()
+        _report(left=words)
     elif ranks.from_environment()[0] == 0:
         erase_bar()
         with suppress(OSError):  # below Python's stream, which the signal may have met at work
@@ -152,9 +135,9 @@ def erase_bar() -> None:
 
 
 def finish(status: int, message: str = "") -> None:
-    """Report the end of the process: a job ends its ranks when one has failed."""
+    """Report to the job the status with which this rank ends, and why, which the job prints."""
     too_late()
-    end(status, message)
+    _report(status=status, words=message)
 
 
 def fail(status: int, message: str) -> None:
@@ -170,12 +153,6 @@ def complain(message: str) -> None:
     """Print why the work ended."""
     with suppress(OSError):
         print(f"error: {message}", file=sys.stderr, flush=True)
-
-
-def _dropped(exception: "sys.UnraisableHookArgs") -> None:
-    """Handle an exception that a library drops: nothing is printed for the one that ends the process."""
-    if not isinstance(exception.exc_value, Interrupted):
-        sys.__unraisablehook__(exception)
 
 
 def _on_signal(*_: object) -> None:

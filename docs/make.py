@@ -170,9 +170,8 @@ elements, stresses over layers by these alone, motions in time and of sliders. A
 fault, status 1. Whoever changes numbers consistently and computes the digest again has made another
 archive.
 
-Archives of schema version 1 have no digest and no attribute `datasets`. Another process reads them
-first, since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema goes
-unnoticed. Archives before version 3 have no attributes of their solid and its speeds.
+Archives of schema version 1 have no digest and are not read. Archives of version 2 have no attributes of
+their solid and its speeds.
 """
 
 _ATTRIBUTES = """\

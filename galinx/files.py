@@ -2,10 +2,8 @@
 
 import errno
 import os
-import re
 import secrets
 import stat
-import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -13,8 +11,6 @@ from pathlib import Path
 _OPEN = ("/dev/stdin", "/dev/fd/", "/proc/self/fd/")
 #: Errors of file systems without hard links when one is made.
 _NO_LINKS = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS}
-#: Hidden names of files in the making, and seconds after which such a file is abandoned.
-_TEMPORARY, _DAY = re.compile(r"\.\d+-[0-9a-f]{8}\.partial"), 86400.0
 
 #: Hidden names of files in the making.
 _unfinished: set[Path] = set()
@@ -52,7 +48,7 @@ class NewFile:
         _unfinished.discard(self.temporary)
 
     def publish(self, replace: bool) -> None:
-        """Bring the file to the disk, then give it its name, at once; abandoned files are removed there.
+        """Bring the file to the disk, then give it its name, at once.
 
         Args:
             replace: a file of that name; its permissions are kept.
@@ -71,7 +67,6 @@ class NewFile:
             self._link()
         with suppress(OSError):  # some file systems cannot synchronise folders
             synchronise(self.path.parent)
-        _sweep(self.path.parent)
 
     def _link(self) -> None:
         """Take a name that is free: a rename would replace a file that appeared a moment ago."""
@@ -96,15 +91,6 @@ def write(path: Path, data: bytes, replace: bool = True) -> None:
         new.publish(replace)
 
 
-def _sweep(folder: Path) -> None:
-    """Remove files in the making whose process was killed: nobody has touched them for a day."""
-    with suppress(OSError):
-        for path in folder.glob(".*.partial"):
-            old = time.time() - path.lstat().st_mtime > _DAY
-            if old and _TEMPORARY.fullmatch(path.name):
-                path.unlink()
-
-
 def give_up() -> None:
     """Remove all files in the making, for a process that ends where it stands."""
     for path in _unfinished:
@@ -125,25 +111,16 @@ def synchronise(path: Path) -> None:
         os.close(handle)
 
 
-def open_file(path: Path, flags: int = os.O_RDONLY) -> int:
-    """A descriptor of a regular file; nothing else is opened, so nobody is waited for.
-
-    Args:
-        path: the file.
-        flags: of ``os.open``.
+def expect_file(path: Path) -> None:
+    """Check that a file is a regular one, before it is opened: opening a FIFO would wait for a writer.
 
     Raises:
-        OSError: it cannot be opened, or is a folder, FIFO, device or socket.
+        OSError: it is not there, or is a folder, FIFO, device or socket.
     """
-    with suppress(FileNotFoundError):
-        _expect_file(os.stat(path))  # before it is opened: that alone can make a device do something
-    handle = os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC, 0o666)
-    try:
-        _expect_file(os.fstat(handle))  # it may have been exchanged since
-    except OSError:
-        os.close(handle)
-        raise
-    return handle
+    mode = os.stat(path).st_mode
+    if not stat.S_ISREG(mode):
+        number = errno.EISDIR if stat.S_ISDIR(mode) else errno.EINVAL
+        raise OSError(number, f"it is {noun(mode)}, expected a file")
 
 
 def read(path: Path, most: int = -1) -> bytes:
@@ -156,8 +133,9 @@ def read(path: Path, most: int = -1) -> bytes:
     Raises:
         OSError: it cannot be read, or is a folder, FIFO, device or socket.
     """
-    handle = os.open(path, os.O_RDONLY) if str(path).startswith(_OPEN) else open_file(path)
-    with open(handle, "rb") as file:
+    if not str(path).startswith(_OPEN):
+        expect_file(path)
+    with open(path, "rb") as file:
         return file.read(most)
 
 
@@ -170,10 +148,3 @@ def noun(mode: int) -> str:
     if stat.S_ISSOCK(mode):
         return "a socket"
     return "a file" if stat.S_ISREG(mode) else "a device"
-
-
-def _expect_file(status: os.stat_result) -> None:
-    """Raise OSError unless the status is that of a regular file."""
-    if not stat.S_ISREG(status.st_mode):
-        number = errno.EISDIR if stat.S_ISDIR(status.st_mode) else errno.EINVAL
-        raise OSError(number, f"it is {noun(status.st_mode)}, expected a file")

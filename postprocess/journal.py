@@ -23,8 +23,6 @@ from .compare import Comparison
 from .errors import ArchiveInUse, LeftOver, refused
 
 _SUFFIX = ".part"
-#: Name of the file that identifies the archive that a run was about to publish.
-_MARK = "published"
 
 
 @dataclass(frozen=True)
@@ -89,9 +87,8 @@ class Journal:
 
     def __enter__(self) -> "Journal":
         try:
-            _sweep(self.target.parent)
             self.folder.mkdir(exist_ok=True)
-            self._lock = open(files.open_file(self.folder / "lock", os.O_RDWR | os.O_CREAT), "r+b")
+            self._lock = open(self.folder / "lock", "ab")
             try:
                 fcntl.lockf(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
@@ -112,8 +109,6 @@ class Journal:
     def leave(self) -> None:
         """Clean up at the end of a process, regular or not: finished parts of an unfinished run stay."""
         if self._complete or not any(self._files()):
-            for path in self._files():  # before the mark, which says that parts are not needed
-                path.unlink(missing_ok=True)
             shutil.rmtree(self.folder, ignore_errors=True)
 
     @property
@@ -144,19 +139,6 @@ class Journal:
             raise refused(self.target, error) from error
         self._rows.add((part.rows.start, part.rows.stop))
 
-    def about_to_publish(self, archive: Path) -> None:
-        """Mark the folder with the identity of the archive that will make it useless.
-
-        If this process is killed after it has published the archive, a later run removes the folder.
-
-        Args:
-            archive: the finished file, before it gets its name.
-
-        Raises:
-            OSError: the file system refused.
-        """
-        (self.folder / _MARK).write_text(_identity(archive), encoding="utf-8")
-
     def complete(self) -> None:
         """Declare the archive complete; the parts are removed at the end."""
         self._complete = True
@@ -185,23 +167,8 @@ class Journal:
         else:
             for path in there:
                 path.unlink()
-        for path in (*self.folder.glob(".*.partial"), self.folder / _MARK):
+        for path in self.folder.glob(".*.partial"):
             path.unlink(missing_ok=True)
-
-
-def _sweep(folder: Path) -> None:
-    """Remove folders of runs that were killed after they had published their archives."""
-    for mark in folder.glob(f".*.work/{_MARK}"):
-        with suppress(OSError):
-            archive = folder / mark.parent.name.removeprefix(".").removesuffix(".work")
-            if mark.read_text(encoding="utf-8") == _identity(archive):
-                shutil.rmtree(mark.parent, ignore_errors=True)
-
-
-def _identity(archive: Path) -> str:
-    """Device, number, size and time of a file, which identify it under any name."""
-    about = archive.stat()
-    return f"{about.st_dev} {about.st_ino} {about.st_size} {about.st_mtime_ns}"
 
 
 def _name(rows: slice) -> str:

@@ -24,6 +24,9 @@ from .compare import FINITE, RULES, not_finite
 from .quantities import Quantity, layers, runs, states, stresses, table
 from .quantities.quantity import ALONG, INSIDE, POINT
 
+#: Version of the layout, and the first version that is read: earlier archives had no digest.
+VERSION, FIRST = 4, 2
+
 
 @dataclass(frozen=True)
 class Attribute:
@@ -39,7 +42,7 @@ class Attribute:
     about: str
     expected: str
     fits: Callable[[Any], bool]
-    since: int = 1
+    since: int = FIRST
 
 
 def is_text(value: Any) -> bool:
@@ -113,7 +116,7 @@ ATTRIBUTES = {
     "complete": Attribute(
         "nothing is missing", "true", lambda value: isinstance(value, np.bool_) and bool(value)
     ),
-    "datasets": Attribute("their paths", _LIST, _list, since=2),
+    "datasets": Attribute("their paths", _LIST, _list),
     "scene_sha256": Attribute("hash of the scene's text", "a text", is_text),
     "title": Attribute("of the scene", "a text", is_text),
     "load": Attribute(
@@ -156,9 +159,6 @@ ATTRIBUTES = {
     "machine": Attribute("that it ran on", "a text", is_text),
 }
 
-
-#: Version of the layout, and the first version whose archives have a digest of their bytes.
-VERSION, SEALED = 4, 2
 
 #: Datasets that every run writes.
 _ALWAYS = (

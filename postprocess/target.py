@@ -33,7 +33,8 @@ class Kind:
 
     def of(self, path: Path) -> bool:
         """True where the file of a path is of this kind."""
-        with open(files.open_file(path), "rb") as file:
+        files.expect_file(path)
+        with open(path, "rb") as file:
             if not os.fstat(file.fileno()).st_size:  # which cannot be mapped
                 return bool(self.looks.match(b""))
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:

@@ -2,7 +2,6 @@
 
 import errno
 import os
-import signal
 import socket
 import stat
 from pathlib import Path
@@ -70,23 +69,6 @@ def test_a_process_that_ends_where_it_stands_leaves_no_unfinished_file(tmp_path)
     assert (tmp_path / "a").read_bytes() == b"one" and os.listdir(tmp_path) == ["a"]
 
 
-def test_what_a_killed_process_left_is_removed_when_it_is_old(tmp_path):
-    if not (child := os.fork()):
-        with files.NewFile(tmp_path / "a") as new:
-            (tmp_path / "old").symlink_to(new.temporary.name)
-            os.kill(os.getpid(), signal.SIGKILL)
-    os.waitpid(child, 0)
-    old = tmp_path / os.readlink(tmp_path / "old")
-    files.write(tmp_path / "a", b"one")
-    assert old.exists()  # it may be somebody's on another machine
-    young, other = tmp_path / ".1-0123abcd.partial", tmp_path / ".mine.partial"
-    young.touch(), other.touch()
-    for path in (old, other):
-        os.utime(path, (0.0, 0.0))
-    files.write(tmp_path / "a", b"two")
-    assert not old.exists() and young.exists() and other.exists()
-
-
 def test_it_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
     done, rename, synchronise = [], os.replace, os.fsync
     monkeypatch.setattr(os, "fsync", lambda handle: (synchronise(handle), done.append("synchronised")))
@@ -103,9 +85,6 @@ def test_nobody_is_waited_for(tmp_path):
         for name, what in expected.items():
             with at_once(), pytest.raises(OSError, match=f"it is {what}, expected a file"):
                 files.read(tmp_path / name)
-    for flags in (os.O_WRONLY, os.O_WRONLY | os.O_CREAT | os.O_APPEND):
-        with at_once(), pytest.raises(OSError, match="it is a FIFO"):
-            files.open_file(tmp_path / "fifo", flags)
     with pytest.raises(OSError, match="it is a device"):
         files.read(Path("/dev/zero"))
 

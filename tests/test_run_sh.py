@@ -31,13 +31,11 @@ def test_without_rights_the_command_for_an_administrator_is_shown(tmp_path):
 @pytest.mark.parametrize(
     "path, arguments",
     [
-        (None, ("plan", SCENE)),
         ("::", ("plan", SCENE)),  # empty entries mean the current folder
         (":/nowhere", ("plan", SCENE)),
-        (None, ("run", SCENE, *FEW_DEGREES)),
         (None, ("-n", "2", "run", SCENE, *FEW_DEGREES)),
     ],
-    ids=["plan", "plan ::", "plan :/nowhere", "run", "two ranks"],
+    ids=["plan ::", "plan :/nowhere", "two ranks"],
 )
 def test_files_of_the_current_folder_are_no_libraries(tmp_path, path, arguments):
     for name in NAMESAKES:

@@ -90,7 +90,7 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
                 process.too_late()
             progress.say("checking the archive")
             with clock("archive"):
-                writer.finish(attributes, journal.about_to_publish)
+                writer.finish(attributes)
             journal.complete()
             progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
     except UnwritableArchive as error:

@@ -6,7 +6,7 @@ refuses what it holds, so it writes to a file that takes every write and remembe
 
 The digest stands in the room that HDF5 leaves to others at a file's start. It is of every byte that
 follows, so names, shapes, types, units and attributes are covered like numbers. HDF5 itself crashes over
-some damaged files: what is sealed is verified before HDF5 opens it.
+some damaged files: the digest is verified before HDF5 opens one.
 
 All reading goes through :func:`opened` and :func:`read`: an archive that passes is as it was written, and
 fits the schema.
@@ -15,12 +15,9 @@ fits the schema.
 import hashlib
 import io
 import json
-import os
 import re
-import subprocess
-import sys
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
@@ -41,7 +38,6 @@ from ..quantities.runs import FAILURES
 from ..quantities.stresses import SURFACE_X
 from ..schema import VERSION
 from ..target import Target, as_target
-from . import walk
 
 
 class PatientFile(io.RawIOBase):
@@ -108,8 +104,6 @@ class PatientFile(io.RawIOBase):
 ROOM = 512
 #: Text of the seal; its digest by hand: ``tail -c +513 ARCHIVE | sha256sum``.
 _TITLE, _WORDS = "galinx archive\n", "sha256 of all bytes after the first 512:\n{}\n"
-#: First bytes of every HDF5 file without a user block.
-_HDF5 = b"\x89HDF\r\n\x1a\n"
 #: Beginning of a scene: a section or a key, after comments and a title, and no control character.
 _SCENE = re.compile(rb"\A[^\0-\x08\x0e-\x1f]*^\s*(?:\[[\w.]+\]|\w+\s*=)", re.MULTILINE)
 
@@ -129,17 +123,15 @@ def put(path: Path, seal: bytes | None = None) -> None:
         file.write(seal)
 
 
-def is_sealed(path: Path) -> bool:
-    """True where a file has a seal that fits; archives of schema version 1 have none.
+def verify(path: Path) -> None:
+    """Verify the seal of a file.
 
     Raises:
         OSError: the file cannot be read.
-        UnreadableArchive: the seal does not fit what follows, or this is no HDF5 file.
+        UnreadableArchive: it has no seal, or one that does not fit what follows.
     """
     with path.open("rb") as file:
         start = file.read(ROOM)
-    if start.startswith(_HDF5):
-        return False
     if b"\0" not in start and _SCENE.search(start):
         raise UnreadableArchive(
             f"{path} is a scene or another text, expected an archive of results; the command run makes "
@@ -147,15 +139,14 @@ def is_sealed(path: Path) -> bool:
         )
     if not start.startswith(_TITLE.encode()):
         raise UnreadableArchive(
-            f"{path} begins neither as an archive of galinx does nor as HDF5: it is something else, or "
-            "damaged; expected a file that galinx wrote"
+            f"{path} does not begin as an archive of galinx does: it is something else, or damaged; "
+            "expected a file that galinx wrote"
         )
     if start != made(path):
         raise UnreadableArchive(
             f"{path} is damaged: its bytes are not those that its digest is of; one was changed since it "
             "was written, or it was cut short; take another copy, or run again"
         )
-    return True
 
 
 def made(path: Path) -> bytes:
@@ -251,15 +242,8 @@ class Writer:
             dataset[rows] = values
             self._written.append((name, rows, _checksum(dataset.dtype, values)))
 
-    def finish(
-        self, attributes: dict[str, Any], before: Callable[[Path], None] = lambda path: None
-    ) -> None:
-        """Complete the archive and give it its name.
-
-        Args:
-            attributes: the root's own.
-            before: is called with the finished file before it gets its name.
-        """
+    def finish(self, attributes: dict[str, Any]) -> None:
+        """Complete the archive, whose root gets these attributes, and give it its name."""
         with self._refusals():
             created = datetime.now(UTC).isoformat(timespec="seconds")
             common = {"program": "galinx", "created": created}
@@ -270,7 +254,6 @@ class Writer:
                 digest = beside.submit(made, self._new.temporary)
                 self._compare()
                 put(self._new.temporary, digest.result())
-            before(self._new.temporary)
             self._target.publish(self._new, self._bytes)
 
     def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:
@@ -312,10 +295,6 @@ def _checksum(dtype: np.dtype, values: NDArray) -> int:
 
 #: Faults that a message lists at most.
 _LISTED = 8
-#: Seconds for a walk through a file without a seal, and bytes that it reads in another.
-_PATIENCE, _PACE = 60.0, 1e7
-#: Beginnings of names of variables that MPI sets for its processes; h5py starts MPI where it meets them.
-_OF_MPI = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MPI_", "HYDI_", "HYDRA_")
 
 
 class Archive:
@@ -327,11 +306,9 @@ class Archive:
         names: of all datasets.
     """
 
-    def __init__(self, path: Path, file: h5py.File, sealed: bool) -> None:
+    def __init__(self, path: Path, file: h5py.File) -> None:
         self._path, self._file = path, file
         self.attributes, described = _described(path, file)
-        if not sealed and self.attributes["schema_version"] >= schema.SEALED:
-            _refuse(path, ["its digest: missing, expected in its first bytes"])
         _refuse(path, schema.faults(self.attributes, described))
         self.names = list(described)
         self.data = {name: self._read(name) for name in self.names if not large(name)}
@@ -389,12 +366,11 @@ def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
     if not there:
         raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
     with _reading(path):
-        sealed = just_sealed or is_sealed(path)
-        if not sealed:
-            _walk(path)
+        if not just_sealed:
+            verify(path)
         file = h5py.File(path, "r")
     with file:
-        yield Archive(path, file, sealed)
+        yield Archive(path, file)
 
 
 def read(
@@ -417,22 +393,6 @@ def read(
         return archive.all() if stresses else archive.data, archive.attributes
 
 
-def _walk(path: Path) -> None:
-    """Let another process read all of a file first: if HDF5 crashes over it, that process ends."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(_OF_MPI)}
-    patience = _PATIENCE + path.stat().st_size / _PACE
-    try:
-        done = subprocess.run(
-            [sys.executable, "-P", walk.__file__, path], env=kept, capture_output=True, text=True,
-            errors="replace", timeout=patience,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        raise OSError(f"HDF5 did not come to an end within {patience:.0f} s") from None
-    if done.returncode:
-        said = done.stderr.strip().splitlines()
-        raise OSError(said[-1] if said and done.returncode > 0 else "HDF5 crashes over it")
-
-
 def _described(path: Path, file: h5py.File) -> tuple[dict[str, Any], dict[str, schema.Described]]:
     datasets: dict[str, schema.Described] = {}
 
@@ -452,9 +412,10 @@ def _check_kind(path: Path, attributes: dict[str, Any]) -> None:
     program, version = attributes.get("program"), attributes.get("schema_version")
     if not isinstance(program, str) or program != "galinx":
         raise UnreadableArchive(f"{path} is HDF5, but not an archive of galinx")
-    if not isinstance(version, np.integer) or version < 1:
+    if not isinstance(version, np.integer) or version < schema.FIRST:
         raise UnreadableArchive(
-            f"{path}: attribute schema_version: found {version!r}, expected 1 to {schema.VERSION}"
+            f"{path}: attribute schema_version: found {version!r}, expected {schema.FIRST} to "
+            f"{schema.VERSION}"
         )
     if version > schema.VERSION:
         raise UnreadableArchive(
@@ -468,7 +429,10 @@ def _type(dataset: h5py.Dataset) -> str:
 
 
 def _whole(dataset: h5py.Dataset) -> bool:
-    return walk.is_there(dataset) and (dataset.fletcher32 or _type(dataset) == TEXT)
+    """True where the file has room for all values of a dataset, and a checksum of numbers."""
+    room = dataset.id.get_storage_size()
+    there = dataset.shape is not None and room >= dataset.size * dataset.dtype.itemsize
+    return there and (dataset.fletcher32 or _type(dataset) == TEXT)
 
 
 def _refuse(path: Path, faults: list[str]) -> None:

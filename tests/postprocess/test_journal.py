@@ -5,7 +5,7 @@ import random
 
 import numpy as np
 import pytest
-from support import at_once, full_disk
+from support import full_disk
 
 from galinx import sealed
 from galinx.postprocess.compare import Comparison
@@ -55,26 +55,6 @@ def kept(target, key="key"):
         found = [[*map(exactly, PARTS)].index(exactly(part)) for part in journal.parts()]
         assert journal.states == sum(PARTS[n].rows.stop - PARTS[n].rows.start for n in found)
     return found, journal.damaged
-
-
-@pytest.mark.parametrize("replace", [False, True])
-def test_a_run_killed_after_publishing_leaves_nothing_for_ever(tmp_path, replace):
-    """The next run in that folder takes away what a published archive has made useless, no more."""
-    target, other = tmp_path / "out.h5", tmp_path / "other.h5"
-    if replace:
-        target.write_bytes(b"earlier")
-    folder, unpublished = interrupted(target), interrupted(other)
-    for archive, journal in ((target, Journal(target, "key")), (other, Journal(other, "key"))):
-        new = journal.folder / ".1.partial"
-        new.write_bytes(b"archive")
-        journal.about_to_publish(new)
-        if archive == target:
-            os.replace(new, target) if replace else (os.link(new, target), new.unlink())
-    other.write_bytes(b"archive")  # an earlier one: the new one was never published
-    with Journal(tmp_path / "third.h5", "key"):
-        assert not folder.exists() and unpublished.exists()
-    assert target.read_bytes() == b"archive"
-    assert kept(other) == ([0, 1, 2], 0)
 
 
 def test_parts_of_another_scene_are_refused(tmp_path):
@@ -166,10 +146,3 @@ def test_a_full_disk_leaves_nothing_where_nothing_is_kept(tmp_path):
     with full_disk(0), pytest.raises(UnwritableArchive, match="File too large"), journal:
         journal.keep(part(0, 3))
     assert not list(tmp_path.iterdir())
-
-
-def test_a_lock_that_is_a_fifo_is_not_waited_for(tmp_path):
-    (tmp_path / ".a.h5.work").mkdir()
-    os.mkfifo(tmp_path / ".a.h5.work" / "lock")
-    with at_once(), pytest.raises(UnwritableArchive, match="it is a FIFO"):
-        Journal(tmp_path / "a.h5", "key").__enter__()

@@ -12,6 +12,7 @@ import socket
 import stat
 import subprocess
 import sys
+from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
 
@@ -174,6 +175,18 @@ def check_made(place, name, kind: Kind | None):
         assert place.read_bytes().endswith(b"\n") and here("plan", place).returncode == 0
 
 
+@contextmanager
+def patch_input(file):
+    """A file as this process's standard input in the block."""
+    before = os.dup(0)
+    os.dup2(file.fileno(), 0)
+    try:
+        yield
+    finally:
+        os.dup2(before, 0)
+        os.close(before)
+
+
 @pytest.mark.parametrize(
     "words, message",
     [
@@ -197,11 +210,8 @@ def test_what_is_no_place_is_said(made, tmp_path, words, message):
         (tmp_path / name).write_bytes(FOREIGN)
     os.mkfifo(tmp_path / "fifo")
     before = content(tmp_path)
-    with (tmp_path / "scene.toml").open() as scene:
-        done = subprocess.run(
-            [HOME / "run.sh", *words], cwd=tmp_path, env=clean_environment(), capture_output=True,
-            text=True, timeout=300, stdin=scene,
-        )  # fmt: skip
+    with (tmp_path / "scene.toml").open() as scene, patch_input(scene):
+        done = ended(words, tmp_path)
     assert done.returncode == 2 and message in done.stderr and done.stderr.count("error: ") == 1
     assert content(tmp_path) == before
 

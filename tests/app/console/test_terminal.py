@@ -75,9 +75,9 @@ def test_progress_is_drawn_on_a_terminal_unless_quiet(tmp_path):
 
 
 def test_quiet_says_warnings_only(tmp_path):
-    done = command("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED, *SLOW)
+    done = here("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED, *SLOW)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    done = command("run", SCENE, "-o", tmp_path / "b.h5", "-q", *CLOSED, "--set", "motion.c=0.915")
+    done = here("run", SCENE, "-o", tmp_path / "b.h5", "-q", *CLOSED, "--set", "motion.c=0.915")
     assert done.stdout == "" and "within 1 % of the Rayleigh speed" in done.stderr
 
 
@@ -102,8 +102,8 @@ def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
 
 
 def test_options_that_contradict_and_logs_that_cannot_be_written_are_refused(tmp_path):
-    both = command("run", SCENE, "-q", "-v", cwd=tmp_path)
+    both = here("run", SCENE, "-q", "-v", cwd=tmp_path)
     assert both.returncode == 2 and "exclude each other" in both.stderr
-    nowhere = command("run", SCENE, "--log", tmp_path / "no" / "l.txt", "-o", "a.h5", cwd=tmp_path)
+    nowhere = here("run", SCENE, "--log", tmp_path / "no" / "l.txt", "-o", "a.h5", cwd=tmp_path)
     assert nowhere.returncode == 2 and "no does not exist" in nowhere.stderr
     assert "Traceback" not in nowhere.stderr and not (tmp_path / "a.h5").exists()

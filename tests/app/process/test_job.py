@@ -9,17 +9,22 @@ from support import SCENE, clean_environment, command
 from galinx.app import errors
 
 #: Starts a job whose mpirun is the command given.
-JOB = "import sys; from galinx.app.job import Job; sys.exit(Job(sys.argv[1:]).run())"
-#: A rank that says that all is well.
+JOB = "import sys; from galinx.app import job; sys.exit(job.run(sys.argv[1:]))"
+#: A rank that reports what it is given.
 RANK = """
-import os, socket
+import json, os, socket, sys
 line = socket.socket(socket.AF_UNIX)
 line.connect("\\0" + os.environ["GALINX_JOB"])
 try:
-    line.sendall(b'{"rank": 0, "status": 0}\\n')
+    line.recv(1)
+    report = {"rank": 0, "status": int(sys.argv[1]), "words": sys.argv[2] * 10**6}
+    line.sendall(json.dumps(report).encode() + b"\\n")
 except OSError:
     pass
 """
+
+
+STOPPED = "error: a rank or mpirun was killed (did the machine lack memory?); nothing was written\n"
 
 
 def job(*mpirun):
@@ -32,19 +37,19 @@ def job(*mpirun):
 
 
 def test_a_rank_tells_how_its_job_ends():
-    assert job(sys.executable, "-c", RANK) == (errors.GOOD, "")
+    assert job(sys.executable, "-c", RANK, "0", "") == (errors.GOOD, "")
+    long = f"error: {'é' * 10**6}\n"  # more than a socket holds
+    assert job(sys.executable, "-c", RANK, "2", "é") == (errors.BAD_INPUT, long)
 
 
-def test_an_mpirun_that_is_killed_before_its_ranks_come_is_said():
-    assert job("sh", "-c", "kill -KILL $$") == (
-        errors.FAILURE, "error: mpirun was killed; nothing was written\n"
-    )  # fmt: skip
+def test_an_mpirun_that_starts_no_rank_is_said():
+    assert job("sh", "-c", "kill -KILL $$") == (errors.FAILURE, STOPPED)
     status, said = job("sh", "-c", "echo no slots; exit 1")
     assert status == errors.FAILURE and said.startswith("no slots\nerror: mpirun could not start")
 
 
 def test_another_user_is_no_rank(stranger):
-    status, said = job(*stranger, sys.executable, "-c", RANK)
+    status, said = job(*stranger, sys.executable, "-c", RANK, "0", "")
     assert status == errors.FAILURE and "mpirun could not start the ranks" in said
 
 
@@ -52,9 +57,8 @@ def test_a_job_that_is_killed_leaves_nothing_behind(tmp_path):
     mpirun = tmp_path / "mpirun"
     mpirun.write_text("#!/bin/sh\nkill -KILL $PPID\n", encoding="utf-8")
     mpirun.chmod(0o700)
-    words = [mpirun, "2", sys.executable, "plan", "/dev/stdin"]
     done = subprocess.run(
-        [sys.executable, "-m", "galinx.app.job", *words], input=b"a scene", timeout=60,
+        [sys.executable, "-m", "galinx.app.job", mpirun, "2", sys.executable, "plan", SCENE], timeout=60,
         env=clean_environment() | {"TMPDIR": str(tmp_path)},
     )  # fmt: skip
     assert done.returncode == -signal.SIGKILL and [*tmp_path.iterdir()] == [mpirun]
@@ -85,6 +89,4 @@ signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
 def test_what_mpi_says_of_a_killed_rank_is_not_shown(tmp_path):
     (tmp_path / "killed.py").write_text(KILLED, encoding="utf-8")
     done = command("-n", 2, "-x", tmp_path / "killed.py", "plan", SCENE)
-    assert done.returncode == errors.FAILURE and done.stderr == (
-        "error: rank 1 or its mpirun was killed (did the machine lack memory?); nothing was written\n"
-    )
+    assert (done.returncode, done.stderr) == (errors.FAILURE, STOPPED)

@@ -36,13 +36,13 @@ def ended(function, *words):
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize("function", ["process.end", "process.complain"])
+@pytest.mark.parametrize("function", ["process._report", "process.complain"])
 def test_a_failure_is_said_to_its_end(function):
     assert ended(function, "plan", "no.toml") == (2, NOT_THERE)
 
 
 def test_what_has_ended_well_has_ended_well():
-    assert ended("process.end", "plan", str(SCENE)) == (0, "")
+    assert ended("process._report", "plan", str(SCENE)) == (0, "")
 
 
 @pytest.mark.parametrize(

@@ -24,14 +24,14 @@ from galinx.solvers.fem.punch import SlidingPunch
 #: GALINX_THOROUGH=1 asks for as many kills and signals as a release does.
 #: The one message of a run that was stopped or killed.
 SAID = re.compile(
-    r"error: (interrupted|(rank [01] or its )?mpirun was killed( \(.*\))?)"
+    r"error: (interrupted|a rank or mpirun was killed \(did the machine lack memory\?\))"
     r"(; ((\d+ finished states are|what is finished is) kept, go on with --resume"
     r"|nothing was (finished|written)))?\n"
 )
 
-#: A sweep of 6 speeds with two parts each: of 1000 states, and of the other 20.
+#: A sweep of 4 speeds with two parts each: of 1000 states, and of the other 20.
 SWEEP = {
-    "motion.c": [round(0.14 * n, 2) for n in range(6)],
+    "motion.c": [0.0, 0.2, 0.4, 0.6],
     "motion.X_over_L": [round(n / 339, 6) for n in range(340)],
     "solve.tolerance": 1e-4,
 }
@@ -118,9 +118,9 @@ HITS = [
 if THOROUGH:
     draw = random.Random(3)
     hit = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
-    HITS += [(1, "galinx", draw.choice(hit), draw.randrange(-3, 9)) for _ in range(60)]
+    HITS += [(1, "galinx", draw.choice(hit), draw.randrange(-3, 7)) for _ in range(60)]
     HITS += [
-        (2, draw.choice(("galinx", "mpirun", "0", "1")), draw.choice(hit), draw.randrange(-3, 9))
+        (2, draw.choice(("galinx", "mpirun", "0", "1")), draw.choice(hit), draw.randrange(-3, 7))
         for _ in range(140)
     ]
 
@@ -150,19 +150,24 @@ def test_whoever_is_hit_the_run_ends_in_order_and_is_resumed(
     else:
         # It was done before the signal came, and tells what it tells of its scene.
         assert target.exists() and all(line.startswith("warning: ") for line in errors.splitlines())
-    if not target.exists():
+    if resumed := not target.exists():
         done = command(*ranks, "run", scene, "-o", target, "--resume")
         assert done.returncode == 0, done.stderr
     same(contents(target), whole if count == 1 else on_two_ranks)
-    assert not list(tmp_path.glob(".*"))
+    if resumed or not process.returncode:  # or it was killed when it was about to clear up
+        assert not list(tmp_path.glob(".*"))
 
 
-def test_sigterm_keeps_what_is_finished(sweep, tmp_path):
+def test_a_run_is_locked_and_when_it_is_stopped_keeps_what_is_finished(sweep, tmp_path):
     scene, whole, _ = sweep
     target = tmp_path / "out.h5"
     with started("run", scene, "-o", target) as process:
         wait_for_parts(tmp_path, 3)
+        process.send_signal(signal.SIGSTOP)
+        second = command("run", scene, "-o", target)
+        assert second.returncode == 3 and "another run is writing" in second.stderr
         process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGCONT)
         _, errors = process.communicate(timeout=30)
     assert process.returncode == 3
     assert "interrupted; " in errors and "go on with --resume" in errors and "Traceback" not in errors
@@ -199,36 +204,6 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
         env=clean_environment(), capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.stdout == "[False, False, True]\n", done.stderr
-
-
-def test_a_library_that_drops_the_request_says_nothing_of_it():
-    script = (
-        "from galinx.app import process; process.listen()\n"
-        "class Library:\n"
-        "    def __init__(self, error): self.error = error\n"
-        "    def __del__(self): raise self.error\n"
-        "Library(process.Interrupted()); Library(ValueError('its own'))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        env=clean_environment(),
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert "Asked" not in done.stderr and "ValueError: its own" in done.stderr
-
-
-def test_two_runs_do_not_write_the_same_archive(sweep, tmp_path):
-    scene, whole, _ = sweep
-    target = tmp_path / "out.h5"
-    with started("run", scene, "-o", target) as process:
-        wait_for_parts(tmp_path)
-        second = command("run", scene, "-o", target)
-        process.communicate(timeout=60)
-    assert second.returncode == 3 and "another run is writing" in second.stderr
-    assert process.returncode == 0
-    same(contents(target), whole)
 
 
 def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(tables_run, monkeypatch, tmp_path):

@@ -48,7 +48,7 @@ def test_anyone_can_verify_the_seal(tmp_path):
     content = path.read_bytes()
     assert content[512:].startswith(b"\x89HDF")
     assert hashlib.sha256(content[512:]).hexdigest().encode() in content[:512]
-    assert archive.is_sealed(path)
+    archive.verify(path)
 
 
 def test_every_dataset_has_unit_and_name(tmp_path):

@@ -177,8 +177,8 @@ TAMPERED = {
     "not even empty": (attribute("title", h5py.Empty("f")), "attribute title: found"),
     "moment": (attribute("created", "yesterday"), "attribute created: found 'yesterday'"),
     "one more": (attribute("colour", "red"), "attribute 'colour': no archive has one"),
-    "layout of words": (attribute("schema_version", "2"), "schema_version: found '2', expected 1 to 4"),
-    "layout before the first": (attribute("schema_version", 0), "schema_version: found 0"),
+    "layout of words": (attribute("schema_version", "2"), "schema_version: found '2', expected 2 to 4"),
+    "layout before the first": (attribute("schema_version", 1), "schema_version: found 1"),
     "newer": (attribute("schema_version", 99), "install a newer one"),
     "foreign": (attribute("program", "other"), "not an archive of galinx"),
 }  # fmt: skip

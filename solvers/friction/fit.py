@@ -13,15 +13,16 @@ from .integrate import exactly
 from .law import FrictionLaw, MeasuredFriction
 
 #: Most starts of the search, the first from the guess, and how far the others lie from it, as a factor.
-_STARTS, _AWAY = 16, 3.0
+_STARTS, _AWAY = 48, 3.0
 #: Moves that laws follow in the search, all starts together, from which on no other start begins.
 _SEARCHED = 25_000
 #: Samples of all measurements through which starts search, and most that the best of them is fitted to.
 _FEW, _MOST = 150, 3000
 #: Tolerance and most steps of the search from a start, and of the fit from the best of them.
 _SEARCH, _FIT = (1e-4, 30), (1e-7, 40)
-#: Relative difference of sums of squares below which two starts led to one law: the search ends.
-_AGAIN = 1e-4
+#: Relative difference of sums of squares below which two starts led to one law, and times that this
+#: happens until the search ends.
+_AGAIN, _ENOUGH = 1e-4, 2
 #: Difference of unknowns, over their size, in a derivative.
 _STEP = 1e-6
 #: Residual where a law rejects its parameters.
@@ -292,15 +293,15 @@ def _best_start(
     """Unknowns at which the best of several starts ends."""
     rng = np.random.default_rng(0)
     best = _least(data, search, np.clip(search.begin, search.low, search.high), *_SEARCH)
-    steps = best.nfev
+    steps, again = best.nfev, 0
     for n in range(1, _STARTS):
         step(n, _STARTS)
         θ = search.begin + search.reach * rng.uniform(-1.0, 1.0, len(search.begin))
         result = _least(data, search, np.clip(θ, search.low, search.high), *_SEARCH)
-        again = abs(result.cost - best.cost) <= _AGAIN * best.cost
+        again += abs(result.cost - best.cost) <= _AGAIN * best.cost
         best = min(best, result, key=lambda one: one.cost)
         steps += result.nfev
-        if again or steps * len(data.motion) > _SEARCHED:
+        if again == _ENOUGH or steps * len(data.motion) > _SEARCHED:
             break
     return best.x
 

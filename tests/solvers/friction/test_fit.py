@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import random_laws
 
 from galinx.solvers.friction import LAWS
+from galinx.solvers.friction import fit as module
 from galinx.solvers.friction.fit import Measured, fit, friction, moves
 from galinx.solvers.parameters import build_model
 
@@ -63,6 +65,84 @@ def test_known_parameters_are_found_within_three_standard_deviations(name):
     assert (off <= 3.0 * found.deviations).all(), dict(zip(found.names, off / found.deviations))
     assert np.nanstd(found.f[0] - f) == pytest.approx(NOISE, rel=0.15)
     assert len(found.names) >= len(true) - 1
+
+
+def random_fit(name, seed):
+    """Random parameters of a law, and its fit to noisy friction along random strokes."""
+    rng = np.random.default_rng(seed)
+    true = random_laws.parameters(name, rng)
+    true = {key: value[:3] if key == "elements" else value for key, value in true.items()}
+    fixed = {key: true[key] for key in ("reference_speed", "evolution") if key in true}
+    t, X = motion(rng.permutation(np.geomspace(1e-4, 3e-2, 10)), 600)
+    kind = LAWS[name]
+    f = friction(build_model(kind, true), moves(t, X, kind.depends_on_speed), len(t))
+    f = f + NOISE * rng.standard_normal(len(t))
+    return true, fit(kind, [Measured(t, X, f)], fixed, {}, len(true.get("elements", ())) or 3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("name", ["coulomb", "dahl", "bouc_wen", "stribeck", "lugre", "rate_and_state"])
+def test_random_laws_are_found_within_four_standard_deviations(name, seed):
+    true, found = random_fit(name, seed)
+    off = np.abs(found.best - numbers({"state0": 1.0, "delta": 1.0} | true, found.names))
+    sure = found.determined
+    assert (off[sure] <= 4.0 * found.deviations[sure]).all(), dict(zip(found.names, off))
+    assert found.rms == pytest.approx(NOISE, rel=0.1)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", ["elasto_plastic", "maxwell_slip", "gms"])
+def test_laws_of_many_numbers_leave_little_more_than_noise(name, seed):
+    """Elements have no order, and small ones hide behind others: friction tells, not the numbers."""
+    _, found = random_fit(name, seed)
+    assert found.rms <= 1.1 * NOISE
+
+
+@pytest.mark.parametrize("name", [name for name in LAWS if LAWS[name].batched or LAWS[name].broadcasts])
+def test_many_laws_in_one_pass_are_each_of_them(name):
+    rng = np.random.default_rng(5)
+    given = [random_laws.parameters(name, rng) for _ in range(4)]
+    if "elements" in given[0]:
+        rows = min(len(one["elements"]) for one in given)
+        given = [one | {"elements": one["elements"][:rows]} for one in given]
+    together = {
+        key: np.reshape([one[key] for one in given], (4, 1, *np.shape(given[0][key]))) for key in given[0]
+    }
+    t, X = motion(rng.permutation(np.geomspace(1e-4, 3e-2, 6)), 60)
+    way = moves(t, X, True)
+    many = friction(build_model(LAWS[name], together), way, len(t), 4)
+    for row, one in zip(many, given):
+        alone = friction(build_model(LAWS[name], one), way, len(t))
+        np.testing.assert_allclose(row, alone, rtol=1e-12, atol=1e-14)
+
+
+def sinusoid(samples, noise=NOISE):
+    """Friction by Dahl's law along a motion whose speed changes at every sample."""
+    t = np.linspace(0.0, 1.0, samples)
+    X = 5e-5 * (1.0 - np.cos(4.0 * np.pi * t))
+    law = build_model(LAWS["dahl"], {"mu_c": 0.4, "sigma0_over_load": 2.2e4})
+    f = friction(law, moves(t, X, False), samples)
+    f[0] = 0.0
+    return Measured(t, X, f + noise * np.random.default_rng(1).standard_normal(samples))
+
+
+@pytest.mark.parametrize("name", ["gms", "elasto_plastic"])
+def test_the_work_of_a_fit_is_bounded(name, monkeypatch):
+    passes = []
+
+    def counted(law, way, samples, laws=0):
+        passes.append(len(way))
+        return friction(law, way, samples, laws)
+
+    monkeypatch.setattr(module, "friction", counted)
+    monkeypatch.setattr(module, "_FEW", 40)
+    monkeypatch.setattr(module, "_MOST", 80)
+    monkeypatch.setattr(module, "_SEARCHED", 2000)
+    found = fit(LAWS[name], [sinusoid(400)], {}, {})
+    assert found.every == 5 and found.samples <= 90 and len(found.f[0]) == 400
+    search = [moves_ for moves_ in passes if moves_ < 50]
+    assert sum(search) <= 2000 + 31 * 50
+    assert len(passes) - len(search) <= 45
 
 
 def test_without_noise_the_parameters_are_found_to_the_last_digits():

@@ -25,6 +25,8 @@ from galinx.solvers.contact.solution import (
 )
 from galinx.solvers.profiles import smooth
 
+#: Methods of galinx itself, the default of scenes: each solves what it can.
+OWN_METHODS = (CLOSED_FORM, SIE, FEM)
 #: Modes of the finite elements that scenes name: a punch, or a prescribed pressure.
 CONTACT, TRACTION = MODES = ("contact", "traction")
 

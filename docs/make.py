@@ -85,6 +85,9 @@ c = 0.3                          # over the shear wave speed
   All combinations are computed, each on all `strokes`. Each combination is a state, numbered from 0.
   `c` changes most slowly, then the load, the law's parameters in the order of their rows, stroke,
   position.
+- Any other number of [solid], [[layer]], [punch] and [friction] may be a list or a range, too: `radius =
+  ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these numbers, whose
+  states follow each other in one archive; the number that stands last changes fastest of them.
 - Each table `[[friction.vary]]` is such a product of its own; it takes what it leaves out from
   [friction]. These are 4 laws, since 0.5 with 25 000 /m is in both tables:
 
@@ -135,11 +138,14 @@ with h5py.File("out.h5") as file:
 [Read archives](howto_read_archive.md) shows other ways.
 
 METHOD in a path stands for the methods of the column "with": `closed_form`, `sie` (integral equation)
-or `fem` (finite elements). Its other words are those of `solve.mode` or `output.quantities`; where it
-is empty, the run, or the method in the path, writes the dataset in any case. Words with a slash between
-them follow the order of the names in their row. Values without a unit are dimensionless; NaN means that
-there may be no answer. Each parameter of a friction law is a dataset `/states/KEY` in the SI unit of
-[its row](scene.md#friction). [Your own quantities](howto_extend.md) come beside these.
+or `fem` (finite elements). The column also has words of `solve.mode` and `output.quantities`, and what
+else it takes: a punch of sharp edges (punch) or with free ends, a pressure of your own, finite
+stresses, a single method, fitted speeds. Where it is empty, the run, or the method in the path, writes
+the dataset in any case. Words with a slash between them follow the order of the names in their row.
+Values without a unit are dimensionless; NaN means that there may be no answer. Each parameter of a
+friction law is a dataset `/states/KEY`, each swept number of another section `/states/SECTION.KEY`, as
+`/states/solid.E`, in the SI unit of [its row](scene.md#friction). [Your own quantities](howto_extend.md)
+come beside these.
 """
 
 _WHOLE = """\
@@ -233,14 +239,18 @@ def scene_page() -> str:
 
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
-    from galinx.postprocess.quantities import table
+    from galinx.postprocess.quantities import swept, table
     from galinx.postprocess.schema import ATTRIBUTES, RULES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
     parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
-        rows = [row for path, row in known.items() if path.startswith(f"{group}/") and not _laws(row)]
+        rows = [
+            row
+            for path, row in known.items()
+            if path.startswith(f"{group}/") and not _laws(row) and path not in swept.columns()
+        ]
         (word, *others) = {row.asked_by for row in rows}
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
         told = [f"With `{word}` among `output.quantities`."] * bool(word and not others)
@@ -373,6 +383,7 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
 
     ``asked``: with the word of output.quantities that asks for them; ``usual``: shape that is left out.
     """
+    from galinx.app.methods import MODES
     from galinx.postprocess.quantities.quantity import ANYWHERE, LOCAL, METHODS, NUMBER, TEXT, WHOLE
 
     kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
@@ -395,7 +406,9 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
             if len(same) == 1
             else [f"`{m}`" for m in methods]
         )
-        words += [f"`{word}`" for word in (row.mode, row.asked_by * asked) if word]
+        # Modes of the scene are code; others are words, of which one is an older name.
+        words += [f"`{row.mode}`" if row.mode in MODES else row.mode.replace("found", "free")]
+        words += [f"`{row.asked_by}`"] * bool(row.asked_by and asked)
         rest = ", ".join(filter(None, values)), ", ".join(filter(None, words))
         abouts = [r.about for r in same]
         for said in METHODS.values():

@@ -382,6 +382,14 @@ def _largest_stresses(data: dict[str, Any], _: float) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: all are infinite
 
 
+def _largest_on_layers(rows: Mapping[str, Any]) -> Callable[[dict[str, Any], Any], float]:
+    def measure(data: dict[str, Any], _: Any) -> float:
+        fem, exact = (data[rows[method].path] for method in (FEM, SIE))
+        return float(np.max(np.abs(fem / exact - 1.0)))
+
+    return measure
+
+
 def _yielded_zone(data: dict[str, Any], _: float) -> float | None:
     """Largest relative error of stresses that the reach d of yield stands for: they are a power of d."""
     off = []
@@ -519,8 +527,16 @@ RULES: Registry[Rule] = Registry(
         ),
         "largest stresses": Rule(
             "largest von Mises and shear stress, relative",
-            (*to.VON_MISES.values(), *to.SHEAR.values()), _largest_stresses, tolerances=1.0,
-            own_pressure=True,
+            tuple(row[method] for row in (to.VON_MISES, to.SHEAR) for method in (CLOSED_FORM, FEM)),
+            _largest_stresses, tolerances=1.0, own_pressure=True,
+        ),
+        "largest stresses over layers": Rule(
+            "largest von Mises stress against the integral equation, relative",
+            (to.VON_MISES[SIE], to.VON_MISES[FEM]), _largest_on_layers(to.VON_MISES), tolerances=1.0,
+        ),
+        "largest stresses of layers": Rule(
+            "largest von Mises stress of each layer against the integral equation, relative",
+            (*to.OF_LAYERS.values(),), _largest_on_layers(to.OF_LAYERS), tolerances=1.0,
         ),
         "yielded zone": Rule(
             "distance from the edges within which yield is passed, as a stress, relative",

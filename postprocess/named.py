@@ -5,14 +5,14 @@ from typing import Any
 import xarray
 
 from .quantities import Quantity, of_states, table
-from .quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, POINT, STATE
+from .quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, LAYER, POINT, STATE
 from .quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from .tables import parameters
 
 #: Names of dimensions, and of the positions along them.
 _DIMENSIONS = {
     STATE: "state", POINT: "X_over_a", INSIDE: "point", INNER: "inner",
-    INTERFACE: "interface", ALONG: "along",
+    INTERFACE: "interface", ALONG: "along", LAYER: "layer",
 }  # fmt: skip
 _POSITIONS = {
     SURFACE_X.path: "X_over_a",

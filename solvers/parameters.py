@@ -34,6 +34,14 @@ class Range:
             and (self.at_most is None or np.all(value <= self.at_most))
         )
 
+    def __or__(self, other: "Range") -> "Range":
+        """Least range that holds the numbers of both, of ranges with lower bounds of one kind or not."""
+        if self == other:
+            return self
+        lows = [self.above, self.at_least, other.above, other.at_least]
+        low = None if lows.count(None) > 2 else min(bound for bound in lows if bound is not None)
+        return Range(at_least=low)
+
     def __str__(self) -> str:
         signs = {">": self.above, ">=": self.at_least, "<": self.below, "<=": self.at_most}
         return ", ".join(f"{sign} {bound:g}" for sign, bound in signs.items() if bound is not None)

@@ -1,6 +1,7 @@
 """Commands that compute: run, plan, paper."""
 
 import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -119,19 +120,31 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
 
     Example: ./run.sh plan scenes/tables4_5.toml
     """
-    from ..plan.plan import expense, lines, make_plan
+    from ..plan.plan import expense
+    from ..plan.variants import lines_of, make_variants
 
     checked = _read(scene, changes, unset)
-    planned = make_plan(checked)
+    variants = make_variants(checked)
+    plans = [variant.plan for variant in variants]
     if ranks.is_root():
-        for text in lines(checked, planned):
+        for text in lines_of(checked, variants):
             say(f"do    {text}", 6)
-        for text in planned.skipped:
+        for text in _together(text for planned in plans for text in planned.skipped):
             say(f"skip  {text}", 6)
-        say(f"cost  {expense(planned)}", 6)
-        for text in planned.warnings:
+        say(f"cost  {expense(*plans)}", 6)
+        for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD
+
+
+def _together(texts: Iterable[str]) -> Iterator[str]:
+    """Texts, each once, those of one reason in one line: what is skipped, then why."""
+    by_reason: dict[str, dict[str, None]] = {}
+    for text in texts:
+        what, _, why = text.partition(": ")
+        by_reason.setdefault(why, {})[what] = None
+    for why, several in by_reason.items():
+        yield f"{', '.join(several)}: {why}"
 
 
 @click.command()

@@ -20,10 +20,11 @@ from galinx.postprocess.figures.surface import (
     surface_figure,
 )
 from galinx.postprocess.quantities import layers, stresses
-from galinx.postprocess.quantities.layers import ALONG_X, INTERFACE_DEPTH, INTERFACE_DEPTH_IN_M
+from galinx.postprocess.quantities.layers import ALONG_X, INTERFACE_DEPTH
 from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, METHODS, POINT, STATE
 from galinx.postprocess.quantities.states import FRICTION, POSITION
 from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
+from galinx.postprocess.quantities.swept import interface_depths
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 
@@ -208,7 +209,7 @@ def _depths(data: dict[str, Any], scene: Scene) -> tuple[NDArray, NDArray, str]:
     """Depths of interfaces as titles show them, their reach over a half-width, and the unit of titles."""
     if INTERFACE_DEPTH.path in data:
         return data[INTERFACE_DEPTH.path], data[INTERFACE_DEPTH.path], "a"
-    depths = data[INTERFACE_DEPTH_IN_M.path]
+    depths = interface_depths(data)[1][0]
     return 1e3 * depths, depths / scene.body.half_width, r"\mathrm{mm}"
 
 

@@ -283,6 +283,9 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
     """
     solid, tolerance = scene.solid, scene.solve.tolerance
     faults = []
+    if not isinstance(scene.punch.profile, Flat):
+        words = scene.punch.profile.words()
+        faults.append(f"found a {words}; a start from rest is computed for flat punches")
     if not methods:
         faults.append("solve.methods has neither fem nor sie, which follow a start from rest")
     if not _TIGHTEST <= tolerance <= _COARSEST:
@@ -295,8 +298,6 @@ def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
         faults.append(
             "a start from rest is computed where ν is not near 1/2: pressure waves are too fast"
         )
-    if not isinstance(scene.punch.profile, Flat):
-        faults.append("a start from rest is computed for flat punches")
     if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
         faults.append("strokes with a speed or a rest of their own are not computed in time")
     if scene.solve.mode != "contact":

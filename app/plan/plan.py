@@ -19,7 +19,6 @@ from galinx.postprocess.quantities.quantity import (
     ALONE,
     CLOSED_FORM,
     FEM,
-    FRICTION_ALONE,
     LOCAL,
     SIE,
     SWEPT,
@@ -35,14 +34,14 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.solution import FLAT, FREE, GIVEN_ENDS, ONE_FREE, PUNCH, Contact, Places
-from galinx.solvers.contact.yielding import places as yield_places
+from galinx.solvers.contact.solution import FINITE, FLAT, FREE, GIVEN_ENDS, ONE_FREE, Contact, Places
+from galinx.solvers.contact.yielding_of_layers import places as yield_places
 from galinx.solvers.profiles import kinks
 from galinx.texts import counted
 
 from .. import ranks
 from ..errors import BadInput, listed
-from ..methods import METHODS
+from ..methods import METHODS, OWN_METHODS
 from ..run.slider import check_sliders
 from ..scene.scene import FRICTIONS, Scene, oddities
 from . import cost
@@ -174,7 +173,7 @@ def check_free_ends(scene: Scene, body: Contact, methods: Collection[str]) -> No
     about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
     if scene.solve.mode == "traction":
         raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
-    if scene.solve.methods and not methods and set(scene.output.quantities) - {FRICTION_ALONE}:
+    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
         raise BadInput(
             f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
             'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
@@ -189,10 +188,12 @@ def check_layers(scene: Scene, body: Contact, methods: Collection[str]) -> None:
     """
     if not scene.layers:
         return
-    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES}
+    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
     faults = [
         f'output.quantities has "{word}"' for word in scene.output.quantities if word not in computed
     ]
+    if YIELD in scene.output.quantities and YIELD in body.lacks:
+        faults.append(f'output.quantities has "yield", and {body.lacks[YIELD]}')
     if scene.solve.mode == "traction" and not scene.solve.own_pressure:
         faults.append(
             'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
@@ -206,7 +207,7 @@ def check_layers(scene: Scene, body: Contact, methods: Collection[str]) -> None:
         raise BadInput(
             f"layer: found layers, and {'; '.join(faults)}. Over layers methods = "
             '["sie"] solves all punches, ["fem"] those with two sharp edges, parabolas and other smooth '
-            "ones, with the quantities friction, sif, surface, interior and interfaces"
+            "ones, with the quantities friction, sif, surface, interior, interfaces and yield"
         )
 
 
@@ -386,19 +387,33 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     return result
 
 
-def expense(plan: Plan) -> str:
-    """Estimated time and memory of a plan, and the size of its archive."""
+def expense(*plans: Plan) -> str:
+    """Estimated time and memory of plans of all variants of a scene, and the size of their archive."""
+    first = plans[0]
+    positions = sum(len(values) for values in first.positions.values())
+    numbers = sum(plan.states for plan in plans) * (first.numbers + len(first.quantities)) + positions
+    archived = f"an archive of {_size(cost.bytes_archived(numbers, len(first.quantities)))}"
+    each = [_expense(plan) for plan in plans]
+    memory = max(of_plan for _, of_plan in each)
+    parts = {"start": cost.START if first.fem else cost.START_WITHOUT_FEM} | {
+        name: sum(seconds[name] for seconds, _ in each) for name in each[0][0]
+    }
+    total = f"about {sum(parts.values()):.2g} s"
+    if not first.fem:
+        return f"{total}, {_size(memory)} and {archived}"
+    by_part = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
+    return f"{total} ({by_part}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+
+
+def _expense(plan: Plan) -> tuple[dict[str, float], float]:
+    """Estimated seconds of a plan's parts, but the start, and its memory [B]."""
     together = plan.chunk * plan.numbers
-    positions = sum(len(values) for values in plan.positions.values())
-    numbers = plan.states * (plan.numbers + len(plan.quantities)) + positions
-    archived = f"an archive of {_size(cost.bytes_archived(numbers, len(plan.quantities)))}"
     if not plan.fem:
-        seconds = cost.START_WITHOUT_FEM + plan.integrated + _inside(plan) + cost.seconds_of_states(
+        states = cost.seconds_of_states(
             plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
-        )  # fmt: skip
-        seconds += _in_time(plan) + _equations(plan)
-        memory = cost.bytes_without_fem(plan.states, together)
-        return f"about {seconds:.2g} s, {_size(memory)} and {archived}"
+        )
+        seconds = plan.integrated + _inside(plan) + states + _in_time(plan) + _equations(plan)
+        return {"states": seconds}, cost.bytes_without_fem(plan.states, together)
     fem = plan.fem
     speeds = _seconds_of_levels(fem, plan.different) / ranks.size()
     states = cost.STATE * plan.states + plan.integrated
@@ -408,16 +423,13 @@ def expense(plan: Plan) -> str:
     numbers = max(CHUNK_NUMBERS, together)
     memory = cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", numbers)
     parts = {
-        "start": cost.START,
         "starts from rest": _in_time(plan),
         "finite elements": speeds,
         "states": states,
         "stresses inside": inside,
         "integral equations": _equations(plan),
     }
-    by_part = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
-    total = sum(parts.values())
-    return f"about {total:.2g} s ({by_part}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+    return parts, memory
 
 
 def _in_time(plan: Plan) -> float:
@@ -484,12 +496,17 @@ _PLACES = {
 }
 
 
-def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> Plan:
+def make_plan(
+    scene: Scene,
+    done: Callable[[int, int], None] = lambda laws, of: None,
+    along: np.ndarray | None = None,
+) -> Plan:
     """Plan of a scene's work; none of it is done yet but friction, where the plan depends on that.
 
     Args:
-        scene: the scene.
+        scene: the scene, the first variant of one with swept numbers.
         done: called with the number of laws whose friction is computed, and with that of all laws.
+        along: positions X/a along interfaces, (places,); None for those that suit the scene.
 
     Raises:
         BadInput: an output of the scene has no answer by the scene's methods.
@@ -506,7 +523,8 @@ def make_plan(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: 
     check_assembler(scene)
     around = yield_places(body) if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
-    places = Places(surface_grid(), points, around, *interface_grid(body))
+    depths, positions = interface_grid(body)
+    places = Places(surface_grid(), points, around, depths, positions if along is None else along)
     warnings = [*oddities(scene), *check_speeds(scene, states.speeds, "fem" in methods)]
     warnings += _left_out(scene, body, methods)
     friction = enumerate_states(scene, done) if "fem" in methods or scene.time else None
@@ -543,7 +561,7 @@ def _output_places(scene: Scene, places: Places) -> Places:
     """Places at which finite elements output stresses, those along interfaces among the points inside."""
     surface, below = (word in scene.output.quantities for word in (stresses.ON_SURFACE, stresses.BELOW))
     X, points = places.X[: len(places.X) * surface], places.points[: len(places.points) * below]
-    if layers.AT_INTERFACES in scene.output.quantities and len(places.along):
+    if {layers.AT_INTERFACES, YIELD} & {*scene.output.quantities} and len(places.along):
         X_along, depth = np.meshgrid(places.along, places.interfaces)
         points = np.concatenate([points, np.column_stack([X_along.ravel(), -depth.ravel()])])
     return Places(X, points, places.around)
@@ -558,7 +576,9 @@ def _methods(scene: Scene, body: Contact) -> tuple[str, ...]:
 
 
 def _left_out(scene: Scene, body: Contact, methods: tuple[str, ...]) -> Iterator[str]:
-    """Warnings about methods that the scene names and that do not solve it."""
+    """Warnings about methods that the scene names, unless all, and that do not solve it."""
+    if set(OWN_METHODS) <= set(scene.solve.methods):
+        return
     for name in dict.fromkeys(scene.solve.methods if methods else ()):
         kind = METHODS[name]
         if name not in methods and (scene.layers or not kind.of_layers):
@@ -612,7 +632,7 @@ def _skipped(
     for word, what in _PLACES.items():
         if word not in words:
             skipped.append(f"{what}: not in output.quantities")
-    if YIELD in words and PUNCH in body.modes:
+    if YIELD in words and FINITE not in body.modes:
         skipped.append(
             "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
             "edges of a punch, and any load makes these yield"
@@ -633,15 +653,19 @@ def surface_grid() -> np.ndarray:
 _FARTHEST = 40.0
 
 
-def interface_grid(body: Contact) -> tuple[np.ndarray, np.ndarray]:
+def interface_grid(body: Contact, several: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Depths of interfaces over a, (interfaces,), and positions X/a along them, (places,).
 
     Positions are as fine below the edges as these are near, and reach so far that a largest stress behind
     the punch is among them.
+
+    Args:
+        body: punch and solid.
+        several: depths over a, sorted, of all interfaces that the positions suit; None for the body's.
     """
     if not body.solid.layers:
         return np.empty(0), np.empty(0)
-    depths = body.solid.depths / body.half_width
+    depths = body.solid.depths / body.half_width if several is None else several
     near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()
     far = np.geomspace(5.0, max(_FARTHEST, 5.0 * depths[-1]), 49)
     X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0, -far, far])

@@ -280,6 +280,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "X_over_L": np.tile(_joined(list(scene.places)), followed),
         "c": c,
         **({"load": of_load} if loads > 1 else {}),
+        **{key: np.full(f.size, value) for key, value in scene.swept.items()},
         **values,
         "speed": np.where(np.isnan(speed), given, speed),
         **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},
@@ -303,10 +304,13 @@ def _half_widths(scene: Scene, order: Order) -> NDArray[np.float64]:
 
 
 def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:
-    """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c), NaN at rest."""
+    """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c).
+
+    NaN at rest, and in steady sliding without strokes.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
-    return np.where(c > 0.0, often, np.nan)
+    return np.where((c > 0.0) & (not scene.steady), often, np.nan)
 
 
 def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:

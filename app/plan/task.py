@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.compare import FINITE, RULES
 from galinx.postprocess.quantities import Quantity, layers, stresses
-from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, POINT
+from galinx.postprocess.quantities.quantity import ALONG, INSIDE, INTERFACE, LAYER, POINT
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, OWN_MESHES_KEPT, FemPlan
 from galinx.solvers.contact.solution import SOLVED, Contact, Places, Task
 
@@ -130,6 +130,7 @@ class Plan:
         sizes = {
             POINT: len(self.places.X), INSIDE: len(self.places.points),
             INTERFACE: len(self.places.interfaces), ALONG: len(self.places.along),
+            LAYER: len(self.places.interfaces) + 1,
         }  # fmt: skip
         return tuple(sizes[dimension] for dimension in quantity.over[1:])
 

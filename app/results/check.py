@@ -46,9 +46,8 @@ from galinx.solvers.profiles import smooth
 
 from ..console import Progress
 from ..methods import METHODS
-from ..plan.plan import make_plan
-from ..plan.states import enumerate_states, order
 from ..plan.task import Plan
+from ..plan.variants import Variant, joined_positions, joined_states, make_variants, restricted
 from ..run.flow import Judge, scene_attributes
 from ..run.make import make
 from ..run.solve import Work
@@ -69,15 +68,14 @@ _FROM_EXACT = 1e-2
 _ONE_MESH = ("contact", "traction", FREE_ENDS)
 
 
-def recomputed_faults(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
+def recomputed_faults(archive: Any, scene: Scene, plan: Plan) -> Iterator[str]:
     """Differences between archived numbers and numbers computed again, one sentence each.
 
     Args:
-        archive: one that fits the schema.
+        archive: one that fits the schema, of states of one problem.
         scene, plan: of the archive.
     """
     data = archive.data
-    yield from _of_warnings(data, archive.attributes["warnings"], scene, plan)
     if runs.RECORD["c"].path in data and not len(data[runs.FAILURES.path]):
         yield from _of_record(data, plan)
     for methods, selected, quantities in _recomputed(plan):
@@ -351,23 +349,53 @@ def faults(path: Path) -> list[str]:
     """
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
-        texts = [*_of_states(archive, scene)]
+        variants = make_variants(scene)
+        texts = [*_of_states(archive, variants)]
         if archive.attributes["version"] == __version__:  # other versions plan and tell otherwise
-            plan = make_plan(scene)
-            texts += _of_plan(archive, scene, plan)
+            texts += _of_plan(archive, scene, variants)
             if not texts:
-                texts += recomputed_faults(archive, scene, plan)
+                texts += _of_warnings(
+                    archive.data, archive.attributes["warnings"], scene, variants[0].plan
+                )
+                texts += _recomputed_faults(archive, variants)
         return [*texts, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
-def _of_states(archive: reader.Archive, scene: Scene) -> Iterator[str]:
+def _recomputed_faults(archive: reader.Archive, variants: Sequence[Variant]) -> Iterator[str]:
+    """Differences from numbers that are computed again, variant by variant."""
+    for variant in variants:
+        view = archive if variant.alone else _View(archive, variant)
+        for text in recomputed_faults(view, variant.scene, variant.plan):
+            yield text if variant.alone else f"with {variant.words}: {text}"
+
+
+class _View:
+    """An archive as that of a single variant.
+
+    Args:
+        archive: of all variants.
+        variant: the variant.
+    """
+
+    def __init__(self, archive: reader.Archive, variant: Variant) -> None:
+        self._archive, self._first = archive, variant.rows.start
+        quantities = table()
+        self.data = restricted(archive.data, variant, lambda path: quantities[path].over)
+        self.attributes, self.names = archive.attributes, archive.names
+
+    def rows(self, rows: slice, names: Sequence[str] | None = None) -> dict[str, Any]:
+        """Values of some of the variant's states."""
+        return self._archive.rows(slice(rows.start + self._first, rows.stop + self._first), names)
+
+
+def _of_states(archive: reader.Archive, variants: Sequence[Variant]) -> Iterator[str]:
     """States and friction that differ from those of the scene, whose friction is followed once more."""
     data, older = archive.data, archive.attributes["schema_version"] < VERSION
-    count, held = len(order(scene)), len(data[SPEED.path])
+    states = joined_states(variants)
+    count, held = len(states), len(data[SPEED.path])
     if count != held:
         yield f"it holds {held} states, its scene has {count}"
         return
-    states = enumerate_states(scene)
     for name, values in states.datasets.items():
         if name not in data:
             if not older:  # whose layout has fewer
@@ -385,15 +413,16 @@ def _same(archived: Any, expected: Any) -> bool:
     return np.allclose(archived, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
 
-def _of_plan(archive: reader.Archive, scene: Scene, plan: Plan) -> Iterator[str]:
+def _of_plan(archive: reader.Archive, scene: Scene, variants: Sequence[Variant]) -> Iterator[str]:
     """Attributes, positions and names of datasets that differ from those of the scene."""
+    plan = variants[0].plan
     attributes, data = archive.attributes, archive.data
     given = scene_attributes(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
         if name in attributes and attributes[name] != value:  # older layouts have fewer
             archived = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {archived!r}, its scene gives {value!r}"
-    for name, positions in plan.positions.items():
+    for name, positions in joined_positions(variants).items():
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"
     rows, planned = table(), {quantity.path for quantity in plan.quantities}

@@ -48,7 +48,7 @@ def _no_figure(data: _Data, scene: Scene, choice: Choice) -> Drawing:
 
 #: By name, in the order they are drawn.
 _FIGURES = {
-    "friction": _Figure({"states"}, lambda data, scene, _: True, friction.friction),
+    "friction": _Figure({"states"}, lambda data, scene, _: not scene.steady, friction.friction),
     "parameters": _Figure(
         {"states", "method", "x", "y", "by"}, sweep.has_parameters,
         sweep.parameters,

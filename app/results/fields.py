@@ -28,10 +28,11 @@ from galinx.solvers.contact.uniform import Contacts, contacts_of
 
 from .. import ranks
 from ..console import Progress
-from ..errors import BadInput, finite_elements_installed
+from ..errors import BadInput, finite_elements_installed, listed
 from ..plan.plan import farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.task import Plan
+from ..plan.variants import of_state
 from ..scene.scene import FRICTIONS, Output, Scene
 
 
@@ -95,15 +96,24 @@ def select_states(
     Raises:
         BadInput: there is no such state, or finite elements have no answer for it.
     """
-    states = enumerate_states(scene)
-    for number in numbers:
-        if not 0 <= number < len(states):
-            raise BadInput(
-                f"state {number}: no such state; expected 0 to {len(states) - 1}, the scene has "
-                f"{len(states)}"
-            )
     if not numbers:
         raise BadInput("states: found none, expected numbers of some")
+    count = len(order(scene)) * len(scene.each)
+    for number in numbers:
+        if not 0 <= number < count:
+            raise BadInput(
+                f"state {number}: no such state; expected 0 to {count - 1}, the scene has {count}"
+            )
+    if scene.variants:
+        own = [of_state(scene, number) for number in numbers]
+        if any(variant is not own[0][0] for variant, _ in own):
+            raise BadInput(
+                f"states: found {listed([*map(str, numbers)])}, expected states of one solid and one "
+                f"punch, with the same {listed([*scene.swept])}"
+            )
+        of_variant = select_states(own[0][0], [number for _, number in own], degrees, extent)
+        return [replace(state, number=number) for state, number in zip(of_variant, numbers)]
+    states = enumerate_states(scene)
     if GIVEN_ENDS in scene.body.lacks:
         raise BadInput(
             f"states: found a {scene.punch.profile.words()}, whose contact has another half-width in "
@@ -207,7 +217,9 @@ def displacement_under_punch(
         at_nodes = np.empty((2, len(nodes.s)))
         for i in (0, 1):
             values = [field.getValues(nodes.dofs(i)) for field in solution.fields]
-            at_nodes[i, nodes.owned] = scene.body.displacement * (solution.weights @ np.array(values))
+            at_nodes[i, nodes.owned] = solution.state.task.body.displacement * (
+                solution.weights @ np.array(values)
+            )
         fields.append(at_nodes)
     return X, np.array(fields)
 

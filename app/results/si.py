@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import Quantity
+from galinx.postprocess.quantities import Quantity, swept
 from galinx.postprocess.quantities.states import CENTRE, FRICTION, HALF_WIDTH, LOAD, SPEED, VELOCITY
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.tables import LENGTHS, Scaled, Scaling, as_archived
@@ -35,7 +35,8 @@ def stress_of_states(data: Mapping[str, Any], scene: Scene) -> NDArray[np.float6
     """N/(2a) [Pa] of every state of an archive, (states, 1)."""
     load = data.get(LOAD.path, np.full(len(data[FRICTION.path]), scene.punch.load))
     ends = contacts_of_states(data)
-    return (load / (2.0 * (ends[0] if ends else scene.body.half_width)))[:, None]
+    half_width = ends[0] if ends else data.get(swept.HALF_WIDTH.path, scene.body.half_width)
+    return (load / (2.0 * half_width))[:, None]
 
 
 def contacts_of_states(data: Mapping[str, Any]) -> tuple[NDArray, NDArray] | None:
@@ -50,7 +51,7 @@ def drawn_in_si(data: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
     """Attributes of :class:`galinx.app.pictures.choice.Choice` for figures in SI: ``unit``, and ``ends``
     where every state has its own."""
     ends = contacts_of_states(data)
-    if not ends and len(scene.punch.loads) == 1:
+    if not ends and len(scene.punch.loads) == 1 and not scene.variants:
         return {"unit": 1e-6 * scene.body.stress}
     return {
         "unit": 1e-6 * stress_of_states(data, scene)[:, 0],
@@ -75,11 +76,11 @@ def in_si(row: Quantity, name: str, scene: Scene, data: Mapping[str, Any]) -> Sc
         ends = contacts_of_states(data) or scene.body.shared_ends
         if ends is None:
             return as_archived(row, name)  # no contact is archived
-        half_width, middle = ends
+        half_width, middle = data.get(swept.HALF_WIDTH.path, ends[0]), ends[1]
         if not over:
             return Scaled(name, "Pa", data.get(LOAD.path, scene.punch.load) / (2.0 * half_width))
         middle = middle if row.path.endswith(_ALONG_X) else 0.0
         return Scaled(name.removesuffix("_over_a"), "m", half_width, middle)
     if row is SPEED:
-        return Scaled("speed", "m/s", scene.solid.c_s)
+        return Scaled("speed", "m/s", data.get(swept.WAVE_SPEED.path, scene.solid.c_s))
     return None if row is VELOCITY else as_archived(row, name)

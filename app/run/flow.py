@@ -9,8 +9,10 @@ collector, which judges finished parts and writes them (:class:`Collector`).
 import json
 import platform
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
+from itertools import chain
 from math import inf
 from time import perf_counter
 from typing import Any, Protocol
@@ -33,9 +35,15 @@ from galinx.solvers.transient.late_time import approach
 
 from .. import ranks
 from ..console import Progress
-from ..plan.plan import lines, make_plan
-from ..plan.states import States, enumerate_states
+from ..plan.states import States
 from ..plan.task import Plan
+from ..plan.variants import (
+    Variant,
+    joined_positions,
+    joined_states,
+    lines_of,
+    make_variants,
+)
 from ..scene.scene import Scene
 from .make import make
 from .over_time import solve_motions
@@ -182,12 +190,12 @@ class Judge:
 
 
 def _steady(scene: Scene) -> Steady | None:
-    """Time until starts are steady, for flat punches on uniform solids; None for all others.
+    """Time until starts are steady, for flat punches on uniform solids that are not swept; else None.
 
     It is infinite from the speed of the wave along the surface on.
     """
     solid = scene.solid
-    if scene.layers or not isinstance(scene.punch.profile, Flat):
+    if scene.layers or scene.variants or not isinstance(scene.punch.profile, Flat):
         return None
 
     def within(c: float, g: float) -> float:
@@ -211,7 +219,7 @@ class Collector:
         judge: takes comparisons into account.
         progress: shows the states done.
         journal: keeps parts; None for no journal.
-        plan: the plan of the run.
+        variants: variants of the scene, with their plans.
         clock: takes wall time by step.
     """
 
@@ -221,20 +229,22 @@ class Collector:
         judge: Judge,
         progress: Progress,
         journal: Journal | None,
-        plan: Plan,
+        variants: Sequence[Variant],
         clock: Clock,
     ) -> None:
-        self._sink, self._judge, self._progress, self._plan = sink, judge, progress, plan
+        self._sink, self._judge, self._progress, self._plan = sink, judge, progress, variants[0].plan
+        self._states = sum(variant.plan.states for variant in variants)
+        self._tasks = sum(len(variant.plan.tasks) for variant in variants)
         self._journal, self._clock, self._done = journal, clock, 0
         self._small: list[Part] = []
         self._kept = perf_counter()
         self._records: dict[int, dict[str, Any]] = {}
-        for quantity in plan.quantities:
-            sink.reserve(quantity.path, (plan.states, *plan.shape(quantity)))
+        for quantity in self._plan.quantities:
+            sink.reserve(quantity.path, (self._states, *self._plan.shape(quantity)))
 
     def earlier(self) -> NDArray[np.bool_]:
         """Take in the journal's parts; True for the states they hold, (states,)."""
-        finished = np.zeros(self._plan.states, dtype=bool)
+        finished = np.zeros(self._states, dtype=bool)
         if self._journal and self._journal.damaged:
             self._progress.warn(f"kept parts that are damaged: {self._journal.damaged}; computed again")
         for part in self._journal.parts() if self._journal else ():
@@ -277,7 +287,7 @@ class Collector:
         if part.record:
             self._records[part.record["speed"]] = part.record
         self._done += part.rows.stop - part.rows.start
-        self._progress.done(self._done, self._plan.states)
+        self._progress.done(self._done, self._states)
 
     def finish(self) -> None:
         """Write the records of the speeds.
@@ -292,7 +302,7 @@ class Collector:
         failures = [
             f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
         ]
-        if len(failures) == len(self._plan.tasks) and not any(record.get("solved") for record in records):
+        if len(failures) == self._tasks and not any(record.get("solved") for record in records):
             raise SolveError(failures[0])
         self._judge.failures = failures
         if self._plan.fem or failures:
@@ -338,10 +348,9 @@ def compute(
     progress, clock = progress or Progress(), Clock() if clock is None else clock
     with clock("friction"):
         progress.say("friction")
-        followed = partial(progress.done, what="friction loops")
-        plan = make_plan(scene, followed)
-        states = plan.friction or enumerate_states(scene, followed)
-        _put_states(sink, scene, plan, states)
+        variants = make_variants(scene, partial(progress.done, what="friction loops"))
+        plan, states = variants[0].plan, joined_states(variants)
+        _put_states(sink, scene, variants, states)
     if scene.slider:
         with clock("slider"):
             progress.say("slider")
@@ -352,19 +361,36 @@ def compute(
         _put_starts(sink, plan, judge, progress, clock)
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
-        collector = Collector(sink, judge, progress, journal, plan, clock)
-        for part in _parts(plan, states, collector.earlier(), progress, clock):
-            collector.take(part)
+        collector = Collector(sink, judge, progress, journal, variants, clock)
+        finished = collector.earlier()
+        for variant in variants:
+            if not variant.alone:
+                progress.say(variant.words)
+            for part in _parts(variant.plan, variant.states, finished[variant.rows], progress, clock):
+                collector.take(_placed(part, variant))
         collector.finish()
-    _put_work(sink, scene, plan, clock)
-    return _attributes(scene, plan, judge)
+    _put_work(sink, scene, variants, clock)
+    return _attributes(scene, variants, judge)
 
 
-def _put_states(sink: Sink, scene: Scene, plan: Plan, states: States) -> None:
+def _placed(part: Part, variant: Variant) -> Part:
+    """A part of a variant with the places of its states and of its speed among those of all."""
+    if variant.alone:
+        return part
+    (first, speed), record = variant.first, part.record
+    if record:
+        record = record | {"speed": record["speed"] + speed}
+        if "failure" in record:
+            record["failure"] = f"{record['failure']}, {variant.words}"
+    return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
+
+
+def _put_states(sink: Sink, scene: Scene, variants: Sequence[Variant], states: States) -> None:
+    plan = variants[0].plan
     sink.put(runs.SCENE.path, scene.text)
     for path, values in states.datasets.items():
         sink.put(path, values)
-    for path, positions in plan.positions.items():
+    for path, positions in joined_positions(variants).items():
         sink.put(path, positions)
     if plan.asks(stresses.BELOW) and scene.output.map:
         sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
@@ -405,16 +431,17 @@ def _parts(
             yield from work.parts(task)
 
 
-def _put_work(sink: Sink, scene: Scene, plan: Plan, clock: Clock) -> None:
-    sink.put(runs.DONE.path, lines(scene, plan))
-    sink.put(runs.SKIPPED.path, list(plan.skipped))
+def _put_work(sink: Sink, scene: Scene, variants: Sequence[Variant], clock: Clock) -> None:
+    sink.put(runs.DONE.path, lines_of(scene, variants))
+    sink.put(runs.SKIPPED.path, list(dict.fromkeys(chain(*(each.plan.skipped for each in variants)))))
     clock.lap()
     names = sorted(clock)  # a run that goes on does them in another order
     sink.put(runs.STEPS.path, names)
     sink.put(runs.SECONDS.path, np.array([clock[name] for name in names], dtype=float))
 
 
-def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:
+def _attributes(scene: Scene, variants: Sequence[Variant], judge: Judge) -> dict[str, Any]:
+    warnings = dict.fromkeys(chain(*(each.plan.warnings for each in variants)))
     verdict, reasons = judge.verdict()
     return {
         "version": __version__,
@@ -422,9 +449,9 @@ def _attributes(scene: Scene, plan: Plan, judge: Judge) -> dict[str, Any]:
         "machine": machine(),
         "scene_sha256": scene.sha256,
         **scene_attributes(scene),
-        "rules": json.dumps(sorted(plan.rules)),
+        "rules": json.dumps(sorted(variants[0].plan.rules)),
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
         "comparisons": json.dumps(judge.worst, ensure_ascii=False),
-        "warnings": json.dumps([*plan.warnings, *judge.validity.words()], ensure_ascii=False),
+        "warnings": json.dumps([*warnings, *judge.validity.words()], ensure_ascii=False),
     }

@@ -1,6 +1,7 @@
 """Changes of a scene's text, made where the value stands; comments and layout stay."""
 
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 import tomlkit
@@ -18,6 +19,13 @@ from ..errors import BadInput, excerpt, nearest, short
 _CONSTANTS = ["solid.kind", "solid.yield_strength"] + [
     f"solid.{key}" for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
 ]
+
+#: Two names of a number: a new value is given to that name which the scene has.
+_ONE_NUMBER = {"friction.mu": "friction.mu_c", "friction.mu_c": "friction.mu"}
+
+#: Section with a number, as ``layer[0]``; and a list or a range with one unit for all, as ``[1, 2] mm``.
+_NUMBERED = re.compile(r"(\w+)\[(\d{1,3})\]")
+_WITH_UNIT = re.compile(r"(\[[^\[\]{}\"']*\])\s*([^\s\[\]\"'][^\[\]\"']*)")
 
 #: Longest text that a change may set, in characters: the time of tomlkit grows with their square.
 _LONGEST = 10_000
@@ -56,11 +64,21 @@ def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any
         try:
             changes[key.strip()] = tomlkit.value(value.strip())
         except (TOMLKitError, ValueError, RecursionError):
-            changes[key.strip()] = value.strip()
+            changes[key.strip()] = _with_unit(value.strip())
     for key in unset:
         if key in changes:
             raise BadInput(f"--set and --unset {short(key)} exclude each other; keep one")
     return changes | dict.fromkeys(unset, UNSET)
+
+
+def _with_unit(value: str) -> Any:
+    """A list of numbers with their unit, of ``[5, 10, 20] µm``; any other text unchanged."""
+    match = _WITH_UNIT.fullmatch(value)
+    if not match:
+        return value
+    return [
+        f"{number.strip()} {match[2]}" for number in match[1].strip("[]").split(",") if number.strip()
+    ]
 
 
 def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
@@ -78,6 +96,7 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     try:
         tree = tomlkit.parse(text)
         keys = [*_keys(tree)]
+        changes = {_own_name(key, keys): value for key, value in changes.items()}
         if stale := [path for path in _stale(tree, changes) if path in keys]:
             changes = dict.fromkeys(stale) | dict(changes)
         for path, value in changes.items():
@@ -90,6 +109,12 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         raise BadInput(f"{name} cannot be changed: {error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
+
+
+def _own_name(key: str, keys: Collection[str]) -> str:
+    """Name by which a scene of these keys has the number of a key."""
+    other = _ONE_NUMBER.get(key, key)
+    return other if other in keys else key
 
 
 def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
@@ -128,7 +153,7 @@ def _of_old_model(
 
 def _parameter(key: str) -> str:
     """Name of the parameter that a key sets."""
-    return "sigma0_over_load" if key == "sigma0" else key
+    return {"sigma0": "sigma0_over_load", "mu": "mu_c"}.get(key, key)
 
 
 def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
@@ -147,7 +172,10 @@ def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
 def _keys(tree: Mapping[str, Any]) -> Iterator[str]:
     """Keys of a scene, as ``"section.key"`` or ``"title"``."""
     for name, value in tree.items():
-        yield from (f"{name}.{key}" for key in value) if isinstance(value, dict) else [name]
+        if isinstance(value, list) and all(isinstance(table, dict) for table in value):
+            yield from (f"{name}[{i}].{key}" for i, table in enumerate(value) for key in table)
+        else:
+            yield from (f"{name}.{key}" for key in value) if isinstance(value, dict) else [name]
 
 
 def _change(tree: Any, path: str, value: Any) -> None:
@@ -158,13 +186,31 @@ def _change(tree: Any, path: str, value: Any) -> None:
     if isinstance(value, str) and len(value) > _LONGEST:
         raise ValueError(f"found a text of {len(value)} characters, expected at most {_LONGEST}")
     for section in sections:
-        tree = tree.setdefault(section, tomlkit.table())
-        if not isinstance(tree, dict):
-            raise ValueError(f"found {excerpt(section)} without keys, expected a section")
+        tree = _section(tree, section)
     if value is None:
         del tree[key]
     else:
         tree[key] = _item(value)
+
+
+def _section(tree: Any, name: str) -> Any:
+    """Section of a scene, which is made where it is missing, or a layer by its number, ``layer[0]``."""
+    match = _NUMBERED.fullmatch(name)
+    tables = tree.get(match[1] if match else name)
+    if isinstance(tables, list) or match or name == "layer":
+        count = len(tables) if isinstance(tables, list) else 0
+        number = int(match[2]) if match else count
+        if number >= count:
+            first = "the first of them layer[0]" if count else "and no layer stands in it"
+            raise ValueError(
+                f"found {excerpt(name)}, expected layers by their number from the top: the scene has "
+                f"{count}, {first}, as in layer[0].thickness"
+            )
+        return tables[number]  # type: ignore[index]
+    section = tree.setdefault(name, tomlkit.table())
+    if not isinstance(section, dict):
+        raise ValueError(f"found {excerpt(name)} without keys, expected a section")
+    return section
 
 
 def _item(value: Any) -> Any:

@@ -11,18 +11,21 @@ import re
 import tomllib
 from collections import deque
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from galinx import files
+from galinx.solvers.friction import LAWS
 from galinx.texts import unseen
 
 from ..console import program
 from ..errors import BadInput, excerpt, nearest, short
 from .library import LIBRARY
-from .scene import Scene, contradictions
+from .scene import Scene, contradictions, usual_quantities
 from .sections import SECTIONS, Section
+from .sweep import read_sweep, with_values, words
 from .units import to_si
 from .values import Rows, Wrapped
 
@@ -54,6 +57,34 @@ def repeated(text: str, said: str) -> str:
             what = "put its keys together" if head else "keep one"
             return f"found {name} twice, in lines {places[name]} and {number}; {what}"
         places.setdefault(name, number)
+    return ""
+
+
+#: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm.
+_PLACE = re.compile(r"\(at line (\d+),")
+_COMMA = re.compile(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$")
+_UNIT = re.compile(
+    r"=\s*([-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\W\d_e%]\S*(?:\s*[*/]\s*\S+)*|[-+]?[\d.]+\s*%)\s*(#.*)?$"
+)
+
+
+def unquoted(text: str, said: str) -> str:
+    """A message on a number with a comma, or with a unit without quotes; "" for any other fault.
+
+    Args:
+        text: of the scene.
+        said: message of TOML's reader.
+    """
+    place = _PLACE.search(said)
+    lines = text.splitlines()
+    if not place or int(place[1]) > len(lines):
+        return ""
+    line, number = lines[int(place[1]) - 1], place[1]
+    if comma := _COMMA.search(line):
+        point = comma[1].replace(",", ".")
+        return f"found {comma[1]} in line {number}, expected a decimal point, as in {point}"
+    if unit := _UNIT.search(line):
+        return f'found {unit[1]} in line {number}, expected quotes around a number and unit, "{unit[1]}"'
     return ""
 
 
@@ -255,14 +286,48 @@ def parse(text: str, name: str = "scene") -> Scene:
         tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         twice = repeated(text, str(error))
-        raise BadInput(f"{name} is not TOML: {twice or error}") from None
+        raise BadInput(f"{name} is not TOML: {twice or unquoted(text, str(error)) or error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be read: its brackets are nested too deeply") from None
     except ValueError:  # Python's limit of digits
         raise BadInput(f"{name} cannot be read: a whole number has thousands of digits") from None
     faults = list(control_characters(tree))
+    scenes = _scenes(tree, text, faults)
+    if not faults:
+        return replace(scenes[0], variants=tuple(scenes)) if scenes[0].swept else scenes[0]
+    lines = [f"  {fault}" for fault in faults[:_FAULTS]]
+    if len(faults) > _FAULTS:
+        lines.append(f"  and {len(faults) - _FAULTS} more")
+    listed = "\n".join(lines)
+    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
+
+
+def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
+    """Scenes of all combinations of swept numbers, up to the first with faults."""
     _fill_in_material(tree)
+    before = len(faults)
+    sweep = read_sweep(tree, faults)
+    scenes: list[Scene] = []
+    for values in sweep if len(faults) == before else ():
+        own: list[str] = []
+        scene = _checked(with_values(tree, values), text, values, own)
+        of_variant = f"with {words(values)}: " if scenes else ""
+        faults += [f"{of_variant}{fault}" for fault in own]
+        if scene is None or faults:
+            break
+        scenes.append(scene)
+    return scenes
+
+
+def _checked(
+    tree: dict[str, Any], text: str, swept: Mapping[str, float], faults: list[str]
+) -> Scene | None:
+    """Scene of single numbers, or None after its faults are added."""
+    before = len(faults)
     faults += _fill_in_stiffness(tree)
+    faults += _fill_in_coefficient(tree)
+    steady = _fill_in_motion(tree)
+    named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
     title = tree.pop("title", "")
     if not isinstance(title, str):
         faults.append(f"title: found {excerpt(title)}, expected a text")
@@ -272,16 +337,16 @@ def parse(text: str, name: str = "scene") -> Scene:
         if key not in SECTIONS
     ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
-    if not faults:
-        scene = Scene(title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), **read)
-        faults = contradictions(scene)
-        if not faults:
-            return scene
-    lines = [f"  {fault}" for fault in faults[:_FAULTS]]
-    if len(faults) > _FAULTS:
-        lines.append(f"  and {len(faults) - _FAULTS} more")
-    listed = "\n".join(lines)
-    raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
+    if len(faults) > before:
+        return None
+    scene = Scene(
+        title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
+        swept=swept, **read,
+    )  # fmt: skip
+    if steady and not named and scene.solve.methods:
+        scene = replace(scene, output=replace(scene.output, quantities=usual_quantities(scene)))
+    faults += contradictions(scene)
+    return None if len(faults) > before else scene
 
 
 def _fill_in_material(tree: dict[str, Any]) -> None:
@@ -321,3 +386,37 @@ def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:
         ]
     tree["friction"]["sigma0_over_load"] = [value / loads[0] for value in stiffness]
     return []
+
+
+def _fill_in_coefficient(tree: dict[str, Any]) -> list[str]:
+    """Give ``friction.mu`` to Coulomb's coefficient, of Coulomb's law by default; returns the faults."""
+    friction = tree.get("friction")
+    if not isinstance(friction, dict) or "mu" not in friction:
+        return []
+    friction = {"model": "coulomb"} | friction
+    key = SECTIONS["friction"].keys(friction).get("mu")
+    if key is None:
+        return []  # the section says that there is no such key
+    if "mu_c" in friction:
+        return ["friction: mu and mu_c are the same number; keep one"]
+    try:
+        key.kind(friction["mu"])
+        tree["friction"] = friction | {"mu_c": friction["mu"]}
+    except ValueError:  # one fault, which mu's own key reports
+        tree["friction"] = friction | {"mu_c": 1.0}
+    return []
+
+
+def _fill_in_motion(tree: dict[str, Any]) -> bool:
+    """True for steady sliding: a law without memory, and no strokes; these are filled in then."""
+    friction, motion = tree.get("friction", {}), tree.get("motion", {})
+    if not isinstance(friction, dict) or not isinstance(motion, dict):
+        return False
+    name = friction.get("model")
+    law = LAWS.get(name) if isinstance(name, str) else None
+    if law is None or law.has_memory or motion.keys() & {"strokes", "X_over_L", "path", "rest"}:
+        return False
+    if "time" in tree or "slider" in tree:
+        return False
+    tree["motion"] = motion | {"strokes": ["forward"], "X_over_L": [1.0]}
+    return True

@@ -5,10 +5,10 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, product
+from itertools import chain, pairwise, product
 from math import prod
 from typing import Any
 
@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
-from galinx.solvers.contact import AT_INTERFACES
+from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, ON_SURFACE, YIELD
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.solution import FREE, Contact, make_contact
+from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
@@ -248,6 +248,10 @@ class Scene:
         slider: a mass on a spring, None for none.
         layers: layers on the solid, from the top down.
         time: a motion in time, None for none.
+        steady: True for steady sliding at each speed, of a law without memory and no strokes.
+        swept: values of swept numbers by their keys, those of the first variant where it has some.
+        variants: scenes of all combinations of swept numbers; the scene itself is as the first. None for
+            a scene without swept numbers, and for a variant.
     """
 
     title: str
@@ -261,6 +265,14 @@ class Scene:
     slider: Slider | None = None
     layers: tuple[Layer, ...] = ()
     time: Time | None = None
+    steady: bool = False
+    swept: Mapping[str, float] = field(default_factory=dict)
+    variants: tuple["Scene", ...] = ()
+
+    @property
+    def each(self) -> tuple["Scene", ...]:
+        """The variants, or the scene itself."""
+        return self.variants or (self,)
 
     @cached_property
     def solid(self) -> Solid:
@@ -310,8 +322,20 @@ FRICTIONS = frozenset({FRICTION_ALONE, SLIDER, TIME})
 _STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
 _PRESSED = 0.1
+#: Slope of a punch above which its angle is far from small.
+_STEEP = 0.2
 #: Half-width [m] of a contact below which a solid is no continuum: a few atoms.
 _ATOMS = 1e-9
+
+
+def usual_quantities(scene: Scene) -> tuple[str, ...]:
+    """Quantities of steady sliding that a scene does not name: those that say what the solid bears."""
+    body, quantities = scene.body, [FRICTION_ALONE, INTENSITIES, ON_SURFACE]
+    quantities += [AT_INTERFACES] * bool(scene.layers)
+    known = scene.solid.knows_σ_ZZ and YIELD not in body.lacks
+    finite = FINITE in body.modes
+    quantities += [YIELD] * (known and (finite or (STRENGTH not in body.lacks and body.flat)))
+    return tuple(quantities)
 
 
 def contradictions(scene: Scene) -> list[str]:
@@ -337,10 +361,10 @@ def contradictions(scene: Scene) -> list[str]:
             "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
             "to, number)"
         )
-    if "yield" in quantities and scene.half_plane.yield_strength is None:
+    if "yield" in quantities and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes:
         faults.append(
             'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
-            '"205 MPa", or a material that has one'
+            '"205 MPa", or a material that has one: stresses at sharp edges have no largest value'
         )
     if "yield" in quantities and not scene.solid.knows_σ_ZZ:
         faults.append(
@@ -387,7 +411,7 @@ def oddities(scene: Scene) -> list[str]:
     """Warnings about unusual values, one sentence a key: the unit may be another than meant."""
     warnings = []
     for path, numbers, unit, (low, high) in _usual(scene):
-        odd = [f"{value:g}" for value in numbers if not low <= value <= high]
+        odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0 has no unit
         of_unit, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
         if len(odd) == 1:
             warnings.append(f"{path} = {odd[0]}{of_unit} is unusual, {usual}; is its unit as meant?")
@@ -395,7 +419,7 @@ def oddities(scene: Scene) -> list[str]:
             warnings.append(
                 f"{path} = {listed(odd)}{of_unit} are unusual, {usual}; is their unit as meant?"
             )
-    return [*warnings, *_too_much(scene), *_too_small(scene)]
+    return [*warnings, *_too_much(scene), *_too_small(scene), *_too_steep(scene)]
 
 
 def _too_much(scene: Scene) -> Iterator[str]:
@@ -407,6 +431,17 @@ def _too_much(scene: Scene) -> Iterator[str]:
         yield (
             f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / scene.solid.μ:.2g} "
             f"times the shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
+        )
+
+
+def _too_steep(scene: Scene) -> Iterator[str]:
+    """Warning about the slopes of a punch that is given by points: linear theory takes them for small."""
+    points = getattr(scene.punch.profile, "shape", ())
+    steepest = max((abs((z1 - z0) / (x1 - x0)) for (x0, z0), (x1, z1) in pairwise(points)), default=0.0)
+    if steepest > _STEEP:
+        yield (
+            f"punch.shape: slopes are up to {steepest:.3g}, usual is less than {_STEEP:g}; are the units "
+            "of both columns as meant? Without one they are m"
         )
 
 

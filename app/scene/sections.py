@@ -26,7 +26,7 @@ from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
 from ..errors import excerpt, nearest, short
-from ..methods import METHODS, MODES
+from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
 from .scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (
@@ -110,7 +110,9 @@ class Section:
             return None
         keys = self.keys(given)
         own_faults = [
-            f"{name}.{short(key)}: no such key{nearest(key, [*keys])}" for key in given if key not in keys
+            f"{name}.{short(key)}: no such key{self._other_owner(key, given) or nearest(key, [*keys])}"
+            for key in given
+            if key not in keys
         ]
         values = {}
         for key, entry in keys.items():
@@ -131,6 +133,10 @@ class Section:
                 own_faults.append(f"{name}: {error}")
         faults += own_faults
         return None
+
+    def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
+        """End of a message on a key that only other models have, which names them; "" for any other."""
+        return ""
 
     def _made(self, values: dict[str, Any]) -> Any:
         return self.build(**values)
@@ -185,6 +191,11 @@ class ModelSection(Section):
                 faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}{own}")
             return None
         return super().read(name, given, faults)
+
+    def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
+        others = [name for name, model in self._models.items() if key in parameters(model)]
+        own = given.get(self._chosen, self._default)
+        return f' of {self._chosen} = "{own}"; {", ".join(others)} has it' if others else ""
 
     def _of(self, model: str) -> dict[str, Key]:
         """Keys of a section with a model of that name."""
@@ -281,7 +292,13 @@ class Depths:
         return {"type": "array", "items": row, "minItems": 2}
 
 
+_YIELD_STRENGTH = Key(
+    Number("Pa", _POSITIVE), "uniaxial yield strength", None,
+    'for the quantity `"yield"`; stresses alone need none',
+)  # fmt: skip
+
 _KEYS = {
+    "yield_strength": _YIELD_STRENGTH,
     "thickness": Key(Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"),
     "material": Key(
         Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
@@ -351,19 +368,25 @@ class LayerSections:
             return self._tabulated(name, given, faults)
         material = given.get("material")
         of_library = LIBRARY.get(material) if isinstance(material, str) else None
-        constants = {"kind": of_library.kind} | of_library.values if of_library else {}
+        constants = of_library.constants if of_library else {}
         if material is not None and not of_library:  # its constants are not missing: one fault
             constants = next(iter(LIBRARY.values())).values
         kept = constants | given
         layer = self._one.read(name, kept, faults)
         if layer is None or layer.bottom is None:
-            return [] if layer is None else [Layer(layer.thickness, layer.solid)]
+            strength = layer.yield_strength if layer else None
+            return [] if layer is None else [Layer(layer.thickness, layer.solid, yield_strength=strength)]
         own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
         bottom = self._one.read(f"{name}.to", own | layer.bottom, faults)
         if bottom is None:
             return []
         try:
-            return [Layer(layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent)]
+            return [
+                Layer(
+                    layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent,
+                    layer.yield_strength,
+                )
+            ]  # fmt: skip
         except ValueError as error:
             faults.append(f"{name}: {error}")
             return []
@@ -398,7 +421,7 @@ def _plane(given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _layer(
     kind: type[Solid], values: dict[str, Any], thickness: float | None, material: str | None,
-    to: Any, grading: str, exponent: float, properties: Any,
+    to: Any, grading: str, exponent: float, properties: Any, yield_strength: float | None,
 ) -> Any:  # fmt: skip
     """A layer of one table [[layer]], whose constants at the lower face are still to be read."""
     if thickness is None:
@@ -407,17 +430,18 @@ def _layer(
         raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
     if grading != "power" and exponent != 1.0:
         raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
-    return _Read(thickness, build_model(kind, values), to, grading, exponent)
+    return _Read(thickness, build_model(kind, values), to, grading, exponent, yield_strength)
 
 
 class _Read:
     """A layer whose constants at the lower face are still as TOML gives them."""
 
     def __init__(
-        self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float
-    ) -> None:
+        self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float,
+        yield_strength: float | None,
+    ) -> None:  # fmt: skip
         self.thickness, self.solid, self.bottom = thickness, solid, bottom
-        self.grading, self.exponent = grading, exponent
+        self.grading, self.exponent, self.yield_strength = grading, exponent, yield_strength
 
 
 #: Most times of a motion at which stresses along the surface are output.
@@ -435,9 +459,9 @@ def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...])
 
 
 def _friction(
-    law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, **rest: Any
+    law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, mu: Any = None, **rest: Any
 ) -> Friction:
-    """Section [friction]; ``sigma0`` is unused: the reader has divided it by the load already."""
+    """Section [friction]; ``sigma0`` and ``mu`` are unused: the reader has made parameters of them."""
     return Friction(law, values, **rest)
 
 
@@ -483,9 +507,7 @@ _SOLID_KEYS = {
         "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
         "what is written beside it replaces the material's",
     ),
-    "yield_strength": Key(
-        Number("Pa", _POSITIVE), "uniaxial yield strength", None, 'for the quantity `"yield"`',
-    ),
+    "yield_strength": _YIELD_STRENGTH,
 }  # fmt: skip
 
 _PUNCH_KEYS = {
@@ -496,6 +518,11 @@ _PUNCH_KEYS = {
 }  # fmt: skip
 
 _FRICTION_KEYS = {
+    "mu": Key(
+        Numbers("", Range(at_least=0.0)), "coefficient of friction", None,
+        "another name of `mu_c`; without `model` it is Coulomb's law, and 0 is no friction",
+        stands_for="mu_c",
+    ),
     "sigma0": Key(
         Numbers("N/m^2", _POSITIVE), "stiffness σ₀ per depth, instead of σ₀ l/N", None,
         "divided by punch.load it is `sigma0_over_load`. The study's σ₀ = 1.5922 N/µm and N = 55.3 N, "
@@ -527,8 +554,9 @@ _MOTION_KEYS = {
     ),
     "strokes": Key(
         Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
-        "a stroke `{to = 0.8}` goes on from where the one before ended; it may have a `speed` of its "
-        "own, `rest` is the time at rest before it",
+        "of a law without memory, Coulomb's or Stribeck's, there is a single steady state forward if "
+        "neither `strokes` nor `X_over_L` is given; a stroke `{to = 0.8}` goes on from where the one "
+        "before ended; it may have a `speed` of its own, `rest` is the time at rest before it",
     ),
     "rest": Key(
         Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
@@ -547,7 +575,7 @@ _MOTION_KEYS = {
 
 _SOLVE_KEYS = {
     "methods": Key(
-        Choices(METHODS, at_least=0), "methods that solve the contact", ("closed_form", "sie", "fem"),
+        Choices(METHODS, at_least=0), "methods that solve the contact", OWN_METHODS,
         "an empty list for friction alone",
     ),
     "tolerance": Key(
@@ -634,6 +662,7 @@ _TIME_KEYS = {
 _OUTPUT_KEYS = {
     "quantities": Key(
         Choices(WORDS), "quantities to compute", ("friction", "sif", "surface"),
+        "of a scene without strokes also `interfaces` and `yield`, where there are any; "
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
@@ -645,6 +674,9 @@ _OUTPUT_KEYS = {
         Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'
     ),
 }  # fmt: skip
+
+#: Sections whose numbers may be swept.
+SWEPT = ("solid", "layer", "punch", "friction")
 
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Any] = {
@@ -689,7 +721,7 @@ def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, An
     ]
     section = {
         "type": "object",
-        "properties": {name: entry(key) for name, key in every.items()},
+        "properties": {key: entry(described, name in SWEPT) for key, described in every.items()},
         "additionalProperties": False,
     }
     if name == "solid":  # a material gives the constants
@@ -706,8 +738,10 @@ def _layer_schema(table: dict[str, Any]) -> dict[str, Any]:
     return table | {"anyOf": [{"required": keys} for keys in enough]}
 
 
-def entry(key: Key) -> dict[str, Any]:
-    """JSON schema of a key's value."""
+def entry(key: Key, several: bool = False) -> dict[str, Any]:
+    """JSON schema of a key's value, of several values where a single number may be swept."""
+    if several and type(key.kind) is Number:
+        key = dataclasses.replace(key, kind=Numbers(key.kind.unit, key.kind.bounds))
     unit = getattr(key.kind, "unit", None)
     about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
     described = key.kind.schema() | {"description": about}

@@ -21,6 +21,8 @@ _SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
 _PLAIN = str.maketrans(_SUPERSCRIPTS, "-0123456789")
 
 _NUMBER = re.compile(r"\s*([-+]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|(?:nan|inf)\b))")
+#: Number with a decimal comma.
+_COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]+")
 #: Beginning of a product of units that starts with a divisor, as ``1/m``.
 _ONE = re.compile(r"\s*1\s*(?=/)")
 _FACTOR = re.compile(
@@ -161,6 +163,8 @@ def _parsed(text: str, unit: str, expected: str) -> float:
         given = quantity(text)
     except ValueError:
         form = ": a number, then units with * / ^ between them" if unit else ""
+        if _COMMA.match(text):
+            form += "; decimals have a point, as in 0.37"
         raise ValueError(f"found {excerpt(text)}, expected {expected}{form}") from None
     metric = in_units(given, units(unit))
     try:

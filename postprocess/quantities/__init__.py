@@ -7,7 +7,7 @@ from difflib import get_close_matches
 # isort: off
 from . import runs, states  # noqa: F401
 from . import stresses, validity, yielding  # noqa: F401
-from . import over_time, layers  # noqa: F401
+from . import over_time, layers, swept  # noqa: F401
 
 # isort: on
 from galinx.solvers.contact import INTENSITIES
@@ -25,17 +25,17 @@ def column(name: str) -> str:
 
 
 def table() -> dict[str, Quantity]:
-    """Every quantity by its path, the parameters of all registered friction laws among them."""
-    of_laws = {
-        column(key): Quantity(
-            column(key), "none" if parameter.options else parameter.unit or "1", parameter.about,
-            (STATE,), symbol=parameter.symbol or key, range=parameter.range,
-        )
-        for law in LAWS.values()
-        for key, parameter in parameters(law).items()
-        if parameter.single
-    }  # fmt: skip
-    return of_laws | QUANTITIES
+    """Every quantity by its path, parameters of registered laws, solids and profiles among them."""
+    of_laws: dict[str, Quantity] = {}
+    for key, parameter in (pair for law in LAWS.values() for pair in parameters(law).items()):
+        if parameter.single:
+            known = of_laws.get(column(key))
+            of_laws[column(key)] = Quantity(
+                column(key), "none" if parameter.options else parameter.unit or "1", parameter.about,
+                (STATE,), symbol=parameter.symbol or key,
+                range=known.range | parameter.range if known else parameter.range,
+            )  # fmt: skip
+    return of_laws | swept.columns() | QUANTITIES
 
 
 def declared(path: str) -> Quantity:
@@ -54,7 +54,7 @@ def declared(path: str) -> Quantity:
 
 def of_states(path: str) -> bool:
     """True where a dataset holds values of states, or the positions of some."""
-    return path.split("/")[0] in ("states", "surface", "interior", "interfaces")
+    return path.split("/")[0] in ("states", "surface", "interior", "interfaces", "layers")
 
 
 def large(path: str) -> bool:

@@ -17,6 +17,8 @@ STATE, POINT, INSIDE, SPEED, LOOP, STEP = (
 )  # fmt: skip
 #: Of layered solids.
 INTERFACE, ALONG = "interfaces", "points along interfaces"
+#: The layers, from the top down, and the solid below.
+LAYER = "layers and solid below"
 #: Inner variables of a friction law, and strokes.
 INNER, STROKE = "inner variables", "strokes"
 

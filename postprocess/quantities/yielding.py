@@ -6,7 +6,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
-from galinx.solvers.contact.solution import FINITE, POWER, PUNCH
+from galinx.solvers.contact.solution import FINITE, LAYERED, POWER, PUNCH, STRENGTH, UNIFORM
 from galinx.solvers.contact.yielding import Peak
 from galinx.solvers.parameters import Range
 
@@ -14,7 +14,9 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    LAYER,
     QUANTITIES,
+    SIE,
     STATE,
     Quantity,
 )
@@ -32,21 +34,23 @@ def _both(
     mode: str = "",
     compared: str = "",
     range: Range = _NOT_NEGATIVE,
-    requires: tuple[str, ...] = (),
+    requires: tuple[str, ...] = (UNIFORM,),
+    methods: tuple[str, ...] = (CLOSED_FORM, FEM),
 ) -> dict[str, Quantity]:
-    """Quantity of a state by both methods."""
+    """Quantity of a state by several methods."""
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
-            nan_allowed=ANYWHERE, compared=(compared,) * (method == FEM and bool(compared)), range=range,
-            requires=requires,
+            nan_allowed=ANYWHERE, range=range, requires=requires,
+            compared=(compared, f"{compared} over layers")[: 1 + (SIE in methods)]
+            * (method == FEM and bool(compared)),
         )
-        for method in (CLOSED_FORM, FEM)
+        for method in methods
     }  # fmt: skip
 
 
 def _largest(
-    name: str, stress: str, of: Callable[[Any], Peak], direction: str = ""
+    name: str, stress: str, of: Callable[[Any], Peak], direction: str = "", **options: Any
 ) -> tuple[dict[str, Quantity], ...]:
     """Quantities of the largest stress, and of both coordinates of its place."""
     about, place = (
@@ -56,21 +60,25 @@ def _largest(
     return (
         _both(
             name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE,
-            "largest stresses",
+            "largest stresses", **options,
         ),
         _both(
             f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
-            lambda s, _: of(s).X, FINITE, range=Range(),
+            lambda s, _: of(s).X, FINITE, range=Range(), **options,
         ),
         _both(
             f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
-            lambda s, _: of(s).Y, FINITE, range=_BELOW,
+            lambda s, _: of(s).Y, FINITE, range=_BELOW, **options,
         ),
     )  # fmt: skip
 
 
 VON_MISES, VON_MISES_X, VON_MISES_Y = _largest(
-    "von_mises", "von Mises stress", lambda s: s.strength.von_mises
+    "von_mises",
+    "von Mises stress",
+    lambda s: s.strength.von_mises,
+    requires=(),
+    methods=(CLOSED_FORM, SIE, FEM),
 )
 SHEAR, SHEAR_X, SHEAR_Y = _largest(
     "max_shear", "shear stress", lambda s: s.strength.shear, direction=" in the plane"
@@ -79,7 +87,7 @@ FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
     "infinite",
-    lambda s, _: s.strength.first_load, FINITE, requires=(POWER,),
+    lambda s, _: s.strength.first_load, FINITE, requires=(POWER, STRENGTH, UNIFORM),
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",
@@ -96,7 +104,7 @@ DEPTH = _both(
     "yield_depth", "1",
     "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
     f"over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.depth, compared="depth of yield",
+    lambda s, _: s.strength.depth, compared="depth of yield", requires=(STRENGTH, UNIFORM),
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",
@@ -104,6 +112,43 @@ ESTIMATE_YIELD = Quantity(
     "and further than 0.01 a from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD, compared=("estimate of yield",),
     range=_NOT_NEGATIVE, accuracy=True,
+)  # fmt: skip
+
+
+def _of_layers(
+    name: str, unit: str, about: str, of: Callable[[Any], NDArray], range: Range = _NOT_NEGATIVE,
+    requires: tuple[str, ...] = (),
+) -> dict[str, Quantity]:  # fmt: skip
+    """Quantity of each layer and the solid below, by both methods of layered solids."""
+    return {
+        method: Quantity(
+            f"layers/{method}/{name}", unit, about, (STATE, LAYER), lambda s, _: of(s), method, FINITE,
+            YIELD, nan_allowed=ANYWHERE, range=range, requires=(LAYERED, *requires),
+            compared=("largest stresses of layers",) * (method == FEM and name == "von_mises"),
+        )
+        for method in (SIE, FEM)
+    }  # fmt: skip
+
+
+#: Largest von Mises stress of each layer and of the solid below, its place, and the stress over strength.
+OF_LAYERS = _of_layers(
+    "von_mises", "N/(2a)", "largest von Mises stress in each layer and the solid below",
+    lambda s: s.strength.peaks.value,
+)  # fmt: skip
+OF_LAYERS_X = _of_layers(
+    "von_mises_X_over_a", "1",
+    "place of the largest von Mises stress along the surface, over the half-width",
+    lambda s: s.strength.peaks.X, Range(),
+)  # fmt: skip
+OF_LAYERS_Y = _of_layers(
+    "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
+    lambda s: s.strength.peaks.Y, _BELOW,
+)  # fmt: skip
+OVER_STRENGTH = _of_layers(
+    "von_mises_over_strength", "1",
+    "largest von Mises stress over the yield strength, 1 or more where it yields; NaN where the strength "
+    "is not given",
+    lambda s: s.strength.over_strength, requires=(STRENGTH,),
 )  # fmt: skip
 
 #: Quantities over the half-width, by method.

@@ -31,6 +31,7 @@ from .method import Solver
 from .prescribed_pressure import COARSE, FINE, LinearPressure
 from .pressure import ENDS, Pressure, largest, largest_smooth
 from .solution import Places, Surface, Task, Turns, together
+from .yielding_of_layers import StrengthOfLayers
 
 #: The two frictions solved for a prescribed pressure.
 _NODES = np.array([0.0, 1.0])
@@ -58,7 +59,7 @@ def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> 
     if body.shared_ends is None:
         punch = Punch(body.profile, body.half_width, body.compression)
         # A place inside is in one layer with one friction and in another with the next.
-        every = bool(len(task.places.points))
+        every = bool(len(task.places.points) or len(task.places.around))
         speed = FreeContactsAtSpeed(task.response, stack, np.zeros_like, tolerance, punch, every)
     else:
         speed = ContactsAtSpeed(task.response, stack, body.slope, tolerance)
@@ -301,6 +302,28 @@ class LayeredSolution:
             rows = sizes == h
             σ_ZZ[rows] = self.at.task.body.σ_ZZ(self.inside[:, rows], h * self.places.points[:, 1])
         return σ_ZZ
+
+    @cached_property
+    def strength(self) -> StrengthOfLayers:
+        """Largest von Mises stresses of all layers."""
+        body = self.at.task.body
+        return StrengthOfLayers(
+            self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local, body,
+            self.half_width,
+        )  # fmt: skip
+
+    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside of one state, (3, n), all at one depth.
+
+        They are those of its node: where places inside are asked for each friction is solved.
+        """
+        node = int(self._by_nodes[state].argmax())
+        nodes, depth = self.at.nodes, -float(points[0, 1])
+        h, pressure = float(nodes.half_width[node]), nodes.each[node].pressure
+        level = self.at._level(depth * h, h * (1.0 + float(np.abs(points[:, 0]).max())))
+        t, σ = pressure.points(depth)
+        u_X, σ_YY, σ_XY = level.read(t, σ, float(nodes.g[node]), points[:, 0], h)
+        return np.array([_in_plane(level.media[0], u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
     @cached_property
     def both_on_surface(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -56,6 +56,10 @@ PUNCH, FINITE = "punch", "finite stresses"
 #: What a quantity may require of a contact: a flat punch, ends that are given, a pressure that is solved
 #: for, a height that is a power of |X|, a known stress out of the plane.
 FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
+#: The strength at which a solid yields.
+STRENGTH = "yield strength"
+#: A solid without layers, or with some.
+UNIFORM, LAYERED = "uniform solid", "layers"
 
 
 @dataclass(frozen=True)
@@ -132,7 +136,21 @@ class Contact:
         reasons = {FLAT: "the punch is not flat"} if not self.flat else {}
         if not self.solid.knows_σ_ZZ:
             reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
+        if all(strength is None for strength in self.strengths):
+            reasons[STRENGTH] = "no yield_strength is given"
+        if self.layered:
+            reasons[UNIFORM] = "the solid has layers, each with a strength of its own"
+            if not self.finite:
+                reasons[YIELD] = "over layers it is known below punches with two free ends and no tip"
+        else:
+            reasons[LAYERED] = "the solid has no layers"
         return reasons
+
+    @property
+    def strengths(self) -> tuple[float | None, ...]:
+        """Yield strengths of all layers and of the solid below [Pa]; None where one is not given."""
+        layers = self.solid.layers if self.layered else ()  # type: ignore[attr-defined]
+        return (*(layer.yield_strength for layer in layers), self.yield_strength)
 
     def response(self, c: float) -> Response:
         """Response of the half-plane at a speed over its wave speed, dimensionless.

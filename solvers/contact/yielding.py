@@ -521,7 +521,7 @@ class Strength:
 
     Args:
         field: function that gives the stresses of the states by any method.
-        body: punch or prescribed pressure, and solid with a yield strength.
+        body: punch or prescribed pressure, and solid, with a yield strength for all but stresses.
         response: response of the half-plane at this speed.
         g: σ_XY/σ_YY under the punch, (states,).
         local: exponents α at X = a and β at X = -a of a punch, (states,) each.
@@ -546,10 +546,9 @@ class Strength:
         ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
         #: True for states whose stress is infinite where the pressure ends in a jump, (states,).
         self.infinite = (response.n12 + response.m * g != 0.0) & bool(ends.any())
-        assert body.yield_strength
         unit = body.stress if half_width is None else body.load / (2.0 * half_width)
-        #: Yield strength over N/(2a), (states,).
-        self.strength = np.broadcast_to(body.yield_strength / unit, np.shape(g))
+        #: Yield strength over N/(2a), (states,); infinite where it is not given.
+        self.strength = np.broadcast_to((body.yield_strength or np.inf) / unit, np.shape(g))
 
     @cached_property
     def von_mises(self) -> Peak:

@@ -30,9 +30,10 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
+from ..approximation import lagrange
 from ..solids.solid import Response
 from . import cells, versions
-from .cells import Shapes, lagrange
+from .cells import Shapes
 from .element import Element
 from .forms import carried_density, momentum_density
 from .space import Space

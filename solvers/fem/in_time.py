@@ -37,7 +37,7 @@ from scipy.special import roots_jacobi
 
 from galinx.clock import Clock
 
-from .cells import lagrange
+from ..approximation import lagrange
 from .dynamic import Motion, Products, of_both
 from .fields import SurfaceTrace
 from .linear import ArraySolver

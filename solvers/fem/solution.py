@@ -19,6 +19,7 @@ from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Places, Surface, Task, Turns, solved_once, together
 from ..contact.yielding import Strength
+from ..contact.yielding_of_layers import StrengthOfLayers
 from .displacement import Displacement
 from .punch import ContactStates
 
@@ -213,13 +214,27 @@ class Solution:
         return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
 
     @cached_property
-    def strength(self) -> Strength:
+    def strength(self) -> Strength | StrengthOfLayers:
         """Yield of the states."""
+        if self.body.layered:
+            return StrengthOfLayers(
+                self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
+                self.body, self.half_width,
+            )  # fmt: skip
         turns = self.surface.turns if any(states.free.any() for states in self.solved) else None
         return Strength(
             self._stresses, self.body, self.task.response, self.g, self.local, self.half_width, turns,
             max(states.nearest for states in self.solved),
         )  # fmt: skip
+
+    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, (n, 2), of one state, (3, n)."""
+        row = self.rows[state]
+        for states in self.solved:
+            if row < len(states.contact.g):
+                return states.displacement.at(points[None], states.contact.weights[row : row + 1])[:, 0]
+            row -= len(states.contact.g)
+        raise IndexError(state)
 
     def _stresses(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""

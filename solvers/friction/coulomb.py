@@ -25,8 +25,9 @@ class Coulomb(FrictionLaw):
     about: ClassVar[str] = "Coulomb's law"
     depends_on_speed: ClassVar[bool] = False
     broadcasts: ClassVar[bool] = True
+    has_memory: ClassVar[bool] = False
 
-    μ_C: float = coulomb_coefficient()
+    μ_C: float = coulomb_coefficient("at_least")
 
     def __post_init__(self) -> None:
         check(self)

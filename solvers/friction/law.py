@@ -44,6 +44,7 @@ class FrictionLaw(Protocol):
         broadcasts: True if one law can stand for many. Their parameters are then (m, 1), their states
             (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
             slips by NumPy's rules of broadcasting.
+        has_memory: False where f depends on direction and speed alone, whatever the motion before.
         batched: True if :meth:`rest`, :meth:`pause`, :meth:`exact` and :meth:`friction` alone do that,
             with tables (m, 1, rows, columns): enough for a fit, which tries many laws at once.
         conventions: keys of parameters, or names of numbers in tables as ``"elements[0, 1]"``, that are
@@ -53,6 +54,7 @@ class FrictionLaw(Protocol):
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
     broadcasts: ClassVar[bool] = False
+    has_memory: ClassVar[bool] = True
     batched: ClassVar[bool] = False
     conventions: ClassVar[tuple[str, ...]] = ()
 
@@ -136,6 +138,9 @@ class Laws(Registry[type[FrictionLaw]]):
 LAWS = Laws("friction law", kind=FrictionLaw)
 
 
-def coulomb_coefficient() -> Any:
-    """Field of Coulomb's coefficient μ_C, dimensionless."""
-    return parameter("mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", above=0.0, usual=(1e-4, 10.0))
+def coulomb_coefficient(lowest: str = "above") -> Any:
+    """Field of Coulomb's coefficient μ_C, dimensionless, ``"above"`` 0 or ``"at_least"`` 0."""
+    return parameter(
+        "mu_c", "Coulomb's coefficient μ_C", symbol=r"\mu_C", usual=(1e-4, 10.0),
+        **{lowest: 0.0},  # type: ignore[arg-type]
+    )  # fmt: skip

@@ -55,6 +55,7 @@ class Stribeck(StribeckCurve):
 
     about: ClassVar[str] = "Stribeck's curve"
     broadcasts: ClassVar[bool] = True
+    has_memory: ClassVar[bool] = False
 
     σ2: float = parameter(
         "sigma2_over_load", "viscous friction σ₂/N", "s/m", symbol=r"\sigma_2/N", at_least=0.0,

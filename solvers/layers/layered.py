@@ -196,7 +196,7 @@ def _stiffness_at(
 
 
 def _zero(f: Callable[[float], NDArray], low: float, high: float, accuracy: float) -> float:
-    """Number, to a relative accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond."""
+    """Number, to an accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond."""
     from scipy.optimize import brentq  # a slow import
 
     return float(brentq(lambda x: max(f(x)[0], _BEYOND), low, high, xtol=accuracy * high))
@@ -248,6 +248,7 @@ class Layer:
         grading: ``"linear"``: constants change like the depth; ``"exponential"``: their logarithms do;
             ``"power"``: like a power of the depth.
         exponent: of ``"power"``, at least 1.
+        yield_strength: uniaxial yield strength [Pa]; None where it is not given.
 
     Raises:
         ValueError: constants cannot change so.
@@ -258,6 +259,7 @@ class Layer:
     bottom: Solid | None = None
     grading: str = "linear"
     exponent: float = 1.0
+    yield_strength: float | None = None
 
     def __post_init__(self) -> None:
         if self.bottom is None:

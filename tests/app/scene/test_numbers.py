@@ -84,5 +84,5 @@ def test_every_list_of_a_scene_may_be_a_range():
 
 
 def test_a_range_where_one_number_stands_is_refused():
-    with pytest.raises(BadInput, match=r"solid\.E .*: found {'from': 1"):
-        read(SCENE, from_words(["solid.E={from = 1, to = 2, number = 3}"]))
+    with pytest.raises(BadInput, match=r"solve\.tolerance .*: found {.from.: 1"):
+        read(SCENE, from_words(["solve.tolerance={from = 1, to = 2, number = 3}"]))

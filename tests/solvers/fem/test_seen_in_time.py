@@ -8,8 +8,8 @@ from scipy.special import roots_jacobi
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
+from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.cells import lagrange
 from galinx.solvers.fem.dynamic import BOX, Energies, Motion, Products, of_both
 from galinx.solvers.fem.in_time import Phase, SlidingInTime, SurfaceInTime
 from galinx.solvers.fem.space import Space, distribute

@@ -1,0 +1,97 @@
+"""Scenes of steady sliding: without strokes a law without memory has one state at each speed."""
+
+import numpy as np
+import pytest
+
+from galinx.app.errors import BadInput
+from galinx.app.results.result import compute
+from galinx.app.scene.read import parse
+from galinx.app.scene.scene import oddities
+from galinx.postprocess.quantities import states, validity, yielding
+
+CYLINDER = """
+[solid]
+material = "BK7"
+[punch]
+profile = "parabolic"
+radius = "5 mm"
+load = "100 N/mm"
+[friction]
+mu = 0.15
+[motion]
+speed = "1 m/s"
+"""
+
+
+MOVING = '[motion]\nc = 0.3\n[solve]\nmethods = ["closed_form"]'
+
+
+def test_mu_alone_is_coulombs_law():
+    scene = parse(CYLINDER)
+    given = parse(CYLINDER.replace("mu = 0.15", 'model = "coulomb"\nmu_c = 0.15'))
+    assert scene.friction == given.friction and scene.steady and given.steady
+
+
+def test_a_scene_without_strokes_is_one_state_at_each_speed_and_asks_for_what_the_solid_bears():
+    scene = parse(
+        CYLINDER.replace('"1 m/s"', '["1 m/s", "2 m/s"]') + '[solve]\nmethods = ["closed_form"]'
+    )
+    result = compute(scene)
+    assert len(result.data[states.SPEED.path]) == 2
+    assert not [text for text in result.attributes["warnings"] if "stroke" in text]
+    assert np.isnan(result.data[validity.CROSSINGS.path]).all()
+    assert result.data[yielding.VON_MISES["closed_form"].path].shape == (2,)
+    assert yielding.FIRST_LOAD["closed_form"].path not in result.data  # without a yield strength
+
+
+@pytest.mark.parametrize("motion", ['strokes = ["forward"]', "X_over_L = [0.5]"])
+def test_strokes_make_no_steady_scene(motion):
+    scene = parse(CYLINDER + motion)
+    assert not scene.steady and scene.output.quantities == ("friction", "sif", "surface")
+
+
+def test_a_law_with_memory_has_its_strokes():
+    scene = parse(CYLINDER.replace("mu = 0.15", "mu_c = 0.5\nsigma0_over_load = 28792"))
+    assert [leg.name for leg in scene.legs] == ["FM1", "BM1", "FM2"]
+
+
+@pytest.mark.parametrize(
+    "punch", ['profile = "flat"', 'profile = "parabolic"\nradius = "5 mm"\nload = "100 N/mm"']
+)
+def test_without_friction_a_contact_is_symmetric(punch):
+    scene = parse(f"[solid]\nmaterial = 'BK7'\n[punch]\n{punch}\n[friction]\nmu = 0\n{MOVING}")
+    data = compute(scene).data
+    σ = data["surface/closed_form/sigma_XX"][0]
+    assert np.allclose(σ, σ[::-1], rtol=1e-9, atol=1e-12)
+
+
+def test_two_names_of_a_number_are_one_too_many():
+    with pytest.raises(BadInput, match="mu and mu_c are the same number; keep one"):
+        parse(CYLINDER.replace("mu = 0.15", "mu = 0.15\nmu_c = 0.15"))
+
+
+def test_a_wrong_mu_is_one_fault_of_its_own():
+    with pytest.raises(BadInput, match=r"1 fault:\n  friction.mu \(coefficient of friction\): found -1"):
+        parse(CYLINDER.replace("0.15", "-1"))
+
+
+@pytest.mark.parametrize(
+    "old, new, message",
+    [
+        ("mu = 0.15", "mu = 0,15", "found 0,15 in line 9, expected a decimal point, as in 0.15"),
+        ('"5 mm"', "5 mm", 'found 5 mm in line 6, expected quotes around a number and unit, "5 mm"'),
+        ('"1 m/s"', "1 m/s # fast", "found 1 m/s in line 11, expected quotes"),
+        ('"5 mm"', '"5,5 mm"', "decimals have a point"),
+        ("mu = 0.15", "mu = 0.15\ndelta = 1", 'no such key of model = "coulomb"; dahl has it'),
+    ],
+)
+def test_messages_say_what_to_write(old, new, message):
+    with pytest.raises(BadInput) as raised:
+        parse(CYLINDER.replace(old, new))
+    assert message in str(raised.value)
+
+
+def test_a_steep_punch_is_warned_about():
+    steep = 'profile = "table"\nshape = [[-1, 1], [0, 0], [1, 1]]'
+    scene = parse(CYLINDER.replace('profile = "parabolic"\nradius = "5 mm"', steep))
+    assert any("slopes are up to 1," in text for text in oddities(scene))

@@ -1,8 +1,9 @@
 """Motions in time: numbers from contact forces, comparison of both methods, distance from steady motion.
 
-Nodal forces that change in time give the load, the centre of the pressure, and K_I at both ends. Rules of
-comparison for starts from rest are registered here. The same numbers give the distance of a start from
-steady motion, and the time from which on it is small.
+Nodal forces that change in time give the load, the centre of the pressure, and K_I at both ends. The same
+numbers give the distance of a start from steady motion, and the time from which on it is small. Rules of
+comparison are registered here: of these numbers, of works and energies, which have to balance, and of
+stresses along the surface, by the integral equation and by a coarser motion.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,10 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
 
+from galinx.solvers.contact.edges import from_edge
+from galinx.solvers.transient.punch import ON_SURFACE
+
 from .compare import RULES, Rule, largest_of
 from .quantities import over_time as rows
 from .quantities.over_time import SHARES
-from .quantities.quantity import FEM, SIE
+from .quantities.quantity import FEM, SIE, Quantity
 
 #: Moments of the pressure that elements give, over their degree: elements have to represent the
 #: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
@@ -144,10 +148,6 @@ def lean_of_steady(data: Mapping[str, Any]) -> NDArray[np.float64]:
     return np.asarray(np.where(changing[:, None], data[rows.CENTRES.path], 0.0))
 
 
-def _estimate(data: Mapping[str, Any], _: Any) -> float:
-    return float(data[rows.ESTIMATE.path].max())
-
-
 RULES.register(
     BOTH,
     Rule(
@@ -161,7 +161,12 @@ RULES.register(
 )  # fmt: skip
 RULES.register(
     OF_FEM,
-    Rule("estimated error over time, over the largest", (rows.ESTIMATE,), _estimate, tolerances=1.0),
+    Rule(
+        "estimated error over time, over the largest",
+        (rows.ESTIMATE,),
+        largest_of(rows.ESTIMATE),
+        tolerances=1.0,
+    ),
 )
 RULES.register(
     OF_SIE,
@@ -231,3 +236,183 @@ def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDA
         rows.WITHIN[method].path: times_near_steady(times, load, off),
     }
     return {path: np.where(np.isfinite(values), values, np.nan) for path, values in datasets.items()}
+
+
+#: Names of rules: both methods' works, and the balance with energies.
+WORKS, BALANCE = "works over time", "energy over time"
+
+#: Terms of the balance: works and energy that come in, and energies that are held or radiated.
+_DONE = rows.OF_LOAD[FEM], rows.OF_FRICTION[FEM], rows.CARRIED
+_HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
+
+
+def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Work less energy, over the largest work of a motion, (motions, times)."""
+    done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
+    return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
+
+
+def _balance(data: Mapping[str, Any], _: Any) -> float:
+    return float(np.abs(energy_imbalance(data)).max())
+
+
+def _works(data: Mapping[str, Any], _: Any) -> float | None:
+    return off_until_turn(data, (rows.OF_LOAD, rows.OF_FRICTION))
+
+
+def off_until_turn(data: Mapping[str, Any], of: tuple[dict[str, Quantity], ...]) -> float | None:
+    """Largest difference of both methods' histories up to the first turn, over a motion's largest.
+
+    Args:
+        data: datasets by path.
+        of: quantities by method whose histories are compared, (motions, times) each.
+
+    Returns:
+        Dimensionless difference; None where the integral equation has no solution.
+    """
+    fem, sie = (np.array([data[row[method].path] for row in of]) for method in (FEM, SIE))
+    solved = np.isfinite(sie).all(axis=(0, 1))
+    if not solved.any():
+        return None
+    off, size = (np.abs(values[..., solved]).max(axis=(0, 2)) for values in (fem - sie, sie))
+    return float((off / size).max())
+
+
+RULES.register(
+    WORKS,
+    Rule(
+        "works of load and friction over time against the integral equation, over the largest",
+        tuple(row[method] for row in (rows.OF_LOAD, rows.OF_FRICTION) for method in (FEM, SIE)), _works,
+        tolerances=1.0,
+    ),
+)  # fmt: skip
+RULES.register(
+    BALANCE,
+    Rule(
+        "work without its energy over time, over the largest work",
+        (*_DONE, *_HELD),
+        _balance,
+        tolerances=1.0,
+    ),
+)
+
+
+#: Distance over a from the edges, where stresses are infinite; stresses further away are compared.
+NEAR = 0.01
+#: Stresses that are compared; the shear stress is proportional to the pressure.
+SURFACE = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE
+
+
+def largest_surface_change(stresses: Any, expected: Any) -> float:
+    """Largest difference of stresses along the surface, over a motion's largest, dimensionless.
+
+    Args:
+        stresses, expected: σ_XX and σ_YY by two methods, (motions, times, places) each.
+    """
+    far = from_edge(ON_SURFACE) > NEAR
+    off, size = (
+        np.abs(of[..., far]).max(axis=(-2, -1))
+        for of in (np.subtract(stresses, expected), np.asarray(expected))
+    )
+    return float((off / size).max())
+
+
+def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict[str, NDArray]:
+    """Estimated error of a motion's stresses from two successive solutions, by path.
+
+    Args:
+        before, now: datasets by path of the coarser and of the finer solution.
+
+    Returns:
+        A dataset by path, relative to the largest stress; empty where a solution has no stresses.
+    """
+    of_both = [
+        [of[row[FEM].path] for row in SURFACE] for of in (before, now) if SURFACE[0][FEM].path in of
+    ]
+    return (
+        {rows.SURFACE_ESTIMATE.path: np.array(largest_surface_change(*of_both))}
+        if len(of_both) == 2
+        else {}
+    )
+
+
+def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
+    """Datasets by path of a method's σ_XX, σ_YY and σ_XY over N/(2a), (3, times, places)."""
+    return dict(
+        zip(
+            (
+                row[method].path
+                for row in (rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE, rows.SURFACE_SHEAR)
+            ),
+            stresses,
+        )
+    )
+
+
+def place_datasets(t: NDArray) -> dict[str, NDArray]:
+    """Datasets by path of the times t over a/c_s, (times,), and places of stresses along the surface."""
+    return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
+
+
+def _along(data: Mapping[str, Any], _: Any) -> float | None:
+    """Largest difference of both methods up to the first turn; None without output before it."""
+    solved = np.isfinite(data[SURFACE[0][SIE].path]).all(axis=(0, 2))
+    if not solved.any():
+        return None
+    return largest_surface_change(
+        *([data[row[method].path][:, solved] for row in SURFACE] for method in (FEM, SIE))
+    )
+
+
+def _beside(data: Mapping[str, Any], _: Any) -> float | None:
+    """Largest difference of both methods' σ_XX beside the ends, over the largest at either end."""
+    return off_until_turn(data, ENDS)
+
+
+#: Names of rules: for the surface by both methods, for finite elements, and for places beside both ends.
+ALONG, OF_SURFACE, AT_ENDS = "surface over time", "estimate on the surface over time", "ends over time"
+#: σ_XX beside both ends; its difference is reported, not judged: waves ahead of a fast punch are short.
+ENDS = rows.LEFT, rows.RIGHT
+
+RULES.register(
+    ALONG,
+    Rule(
+        "σ_XX and σ_YY along the surface over time against the integral equation, over the largest "
+        "further than 0.01 a from the edges",
+        tuple(row[method] for row in SURFACE for method in (FEM, SIE)), _along, tolerances=1.0,
+    ),
+)  # fmt: skip
+RULES.register(
+    OF_SURFACE,
+    Rule(
+        "estimated error of σ_XX and σ_YY along the surface over time, over the largest further than "
+        "0.01 a from the edges",
+        (rows.SURFACE_ESTIMATE,), largest_of(rows.SURFACE_ESTIMATE), tolerances=1.0,
+    ),
+)  # fmt: skip
+RULES.register(
+    AT_ENDS,
+    Rule(
+        "σ_XX 0.05 a beside both ends over time against the integral equation, over the largest",
+        tuple(row[method] for row in ENDS for method in (FEM, SIE)), _beside,
+    ),
+)  # fmt: skip
+
+
+#: Names of all rules of motions in time.
+IN_TIME = frozenset({BOTH, OF_FEM, OF_SIE, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
+
+
+def rules(both: bool, steady: bool, surface: bool, sharp: bool) -> frozenset[str]:
+    """Names of the rules that apply to finite elements in time.
+
+    Args:
+        both: True where the integral equation computes the motions, too.
+        steady: True where motions begin in steady motion.
+        surface: True where the surface is output.
+        sharp: True where waves are too sharp for cells; their estimate is output without a bound.
+    """
+    names = {OF_FEM, *(BOTH,) * both, *(WORKS, AT_ENDS) * (both and not steady)}
+    if surface:
+        names |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * (not sharp)}
+    return frozenset(names)

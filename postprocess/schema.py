@@ -19,7 +19,7 @@ import numpy as np
 
 from galinx.solvers.parameters import Range
 
-from . import over_time, surface_over_time  # noqa: F401 - each adds its rules
+from . import over_time  # noqa: F401 - it adds its rules
 from .compare import FINITE, RULES, not_finite
 from .quantities import Quantity, layers, runs, states, stresses, table
 from .quantities.quantity import ALONG, INSIDE, POINT

@@ -21,10 +21,10 @@ from galinx.postprocess.figures.motion import (
 )
 from galinx.postprocess.figures.style import looks
 from galinx.postprocess.figures.surface import Column, Curve, Stress, surface_figure
+from galinx.postprocess.over_time import energy_imbalance
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
-from galinx.postprocess.surface_over_time import energy_imbalance
 from galinx.solvers.contact.closed_form import FlatPunch
 
 from ..scene.scene import Scene, Time

@@ -2,8 +2,7 @@
 
 :class:`Load`, :class:`Way` and :class:`Drive` are the history of a punch: its load, its direction and
 σ_XY/σ_YY under it. :func:`check_in_time` refuses scenes that motions in time do not cover. :func:`starts`
-lists the motions of a scene, and :class:`Starts` plans their finite elements. :func:`rules` names the
-rules by which their results are checked.
+lists the motions of a scene, and :class:`Starts` plans their finite elements.
 """
 
 from collections.abc import Callable
@@ -17,10 +16,8 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.meshes.waves import Reached
-from galinx.postprocess.over_time import BOTH, OF_FEM, OF_SIE
+from galinx.postprocess.over_time import OF_SIE, rules
 from galinx.postprocess.quantities.quantity import FEM, SIE
-from galinx.postprocess.surface_over_time import ALONG, AT_ENDS, BALANCE, WORKS
-from galinx.postprocess.surface_over_time import OF_FEM as OF_SURFACE
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import follow
 from galinx.solvers.profiles.flat import Flat
@@ -323,25 +320,6 @@ def _of_layers(scene: Scene) -> list[str]:
     if scene.time and scene.time.steady:
         faults.append('time.start: found "steady" over layers, expected "rest"')
     return faults
-
-
-#: Names of all rules of motions in time.
-IN_TIME = frozenset({BOTH, OF_FEM, OF_SIE, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
-
-
-def rules(both: bool, steady: bool, surface: bool, sharp: bool) -> frozenset[str]:
-    """Names of the rules that apply to finite elements in time.
-
-    Args:
-        both: True where the integral equation computes the motions, too.
-        steady: True where motions begin in steady motion.
-        surface: True where the surface is output.
-        sharp: True where waves are too sharp for cells; their estimate is output without a bound.
-    """
-    names = {OF_FEM, *(BOTH,) * both, *(WORKS, AT_ENDS) * (both and not steady)}
-    if surface:
-        names |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * (not sharp)}
-    return frozenset(names)
 
 
 #: Shortest time over a/c_s of changing friction for which steps and cells are made.

@@ -24,6 +24,7 @@ from galinx.postprocess import compare
 from galinx.postprocess.compare import not_finite
 from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.hdf5.archive import Archive
+from galinx.postprocess.over_time import IN_TIME
 from galinx.postprocess.quantities import QUANTITIES, Quantity, runs, states, stresses, table, yielding
 from galinx.postprocess.quantities.quantity import (
     ALONE,
@@ -45,7 +46,6 @@ from galinx.solvers.profiles import smooth
 
 from ..console import Progress
 from ..methods import METHODS
-from ..plan.over_time import IN_TIME
 from ..plan.task import Plan
 from ..plan.variants import Variant, joined_positions, joined_states, make_variants, restricted
 from ..run.flow import Judge, scene_attributes

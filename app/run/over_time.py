@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.clock import Clock
-from galinx.postprocess import over_time, surface_over_time
+from galinx.postprocess import over_time
 from galinx.postprocess.over_time import COMPARED, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import APPROACH
@@ -145,7 +145,7 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     joined = {path: np.array([datasets[path] for datasets in every]) for path in every[0]}
     whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t)} | joined
     if starts.every:
-        whole |= surface_over_time.place_datasets(t[starts.outputs - 1])
+        whole |= over_time.place_datasets(t[starts.outputs - 1])
     if SIE in starts.methods and not starts.steady:
         whole[rows.PLACES.path] = PLACES
     for name in starts.methods:
@@ -195,7 +195,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
             if alone:
                 datasets[rows.RESIDUAL.path] = np.array(course.residual)
             if starts.every:
-                datasets |= surface_over_time.stress_datasets(
+                datasets |= over_time.stress_datasets(
                     SIE, _along_surface(course, finer, response, drive, starts)
                 )
             motions.append(datasets)
@@ -259,7 +259,7 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
             | {
                 rows.ESTIMATE.path: np.array(largest_change(before, every_other, load, lean)),
                 **probed,
-                **surface_over_time.estimated(probed_before, probed),
+                **over_time.estimated(probed_before, probed),
             }
         )  # fmt: skip
     return motions

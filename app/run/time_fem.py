@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
-from galinx.postprocess.over_time import contact_numbers
+from galinx.postprocess.over_time import contact_numbers, stress_datasets
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM
-from galinx.postprocess.surface_over_time import stress_datasets
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Energies, Motion
 from galinx.solvers.fem.in_time import Phase, SlidingInTime, Steps, SurfaceInTime, Watch

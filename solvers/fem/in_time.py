@@ -56,6 +56,33 @@ A = (
 TIMES = (0.5, 83 / 250, 31 / 50, 17 / 20, 1.0)
 
 
+#: Displacements, velocities and accelerations.
+_Rates = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+
+
+def after_step(
+    before: _Rates, h: float, t: float, stage: Callable[[NDArray, NDArray, float], NDArray]
+) -> _Rates:
+    """Displacements, velocities and accelerations after a step.
+
+    Args:
+        before: the same before it.
+        h: length of the step over a/c_s.
+        t: time at its beginning.
+        stage: velocities w of a stage, S w = M w' + γh (forces - K u'), by u' and w', the displacements
+            and velocities by earlier stages alone, and its time.
+    """
+    u, w, a = before
+    velocities, accelerations = [w], [a]
+    for weights, time in zip(A, TIMES):
+        u_explicit = u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
+        w_explicit = w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
+        now = stage(u_explicit, w_explicit, t + h * time)
+        velocities.append(now)
+        accelerations.append((now - w_explicit) / (γ * h))
+    return u_explicit + γ * h * now, now, accelerations[-1]
+
+
 class PunchConstraint:
     """Linear systems of a space under a rigid flat punch with any friction.
 
@@ -351,19 +378,18 @@ class SlidingInTime:
         g: Callable[[float], float], load: Callable[[float], float],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
         """Take a step; returns normal reactions at its end, and both works and absorbed energy in it."""
-        velocities, accelerations, powers = [state.w], [state.a], [state.powers]
-        for weights, time in zip(A, TIMES):
-            u_explicit = state.u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
-            w_explicit = state.w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
-            at = t + h * time
-            b = self._products.momentum(w_explicit) - γ * h * self._products.stiffness(u_explicit)
+        powers, reactions = [state.powers], []
+
+        def stage(u: NDArray, w: NDArray, at: float) -> NDArray[np.float64]:
+            b = self._products.momentum(w) - γ * h * self._products.stiffness(u)
             now, r = stages.solve(b, g(at), -2.0 * load(at) * γ * h)
-            velocities.append(now)
-            accelerations.append((now - w_explicit) / (γ * h))
-            powers.append(self._powers(r / (γ * h), now, g(at)))
-        state.u, state.w, state.a = u_explicit + γ * h * now, now, accelerations[-1]
+            reactions.append(r / (γ * h))
+            powers.append(self._powers(reactions[-1], now, g(at)))
+            return now
+
+        state.u, state.w, state.a = after_step((state.u, state.w, state.a), h, t, stage)
         state.powers = powers[-1]
-        return r / (γ * h), h * np.array([*A[-1], γ]) @ np.array(powers)
+        return reactions[-1], h * np.array([*A[-1], γ]) @ np.array(powers)
 
     def _powers(self, r: NDArray, w: NDArray, g: float) -> NDArray[np.float64]:
         return np.array([r @ w[self._Y], g * (r @ w[self._Y - 1]), self._products.dissipation(w)])
@@ -435,35 +461,35 @@ class LoadedInTime:
             load: share of the pressure at a time, smooth from t = 0 on, where it may jump.
             knots: positions X over a between which the pressure is smooth.
         """
-        h, M, K, free = self._h, self._motion.M, self._motion.K, self._free
-        f = self._forces(σ_YY, g, knots)
-        u, w = np.zeros(len(f)), np.zeros(len(f))
-        a = self._at_once(f * load(0.0))
+        h, f, products = self._h, self._forces(σ_YY, g, knots), Products(self._motion)
+
+        def stage(u: NDArray, w: NDArray, at: float) -> NDArray[np.float64]:
+            b = products.momentum(w) + γ * h * (load(at) * f - products.stiffness(u))
+            return self._solved(self.factor, b)
+
+        state = np.zeros(len(f)), np.zeros(len(f)), self._at_once(f * load(0.0))
         displacements = np.zeros((steps, len(self._surface), 2))
         for n in range(steps):
-            velocities, accelerations = [w], [a]
-            for weights, time in zip(A, TIMES):
-                u_explicit = u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
-                w_explicit = w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
-                b = of_both(M, w_explicit) + γ * h * (load(h * (n + time)) * f - K @ u_explicit)
-                now = np.zeros(len(f))
-                now[free] = self.factor.solve(b[free])
-                velocities.append(now)
-                accelerations.append((now - w_explicit) / (γ * h))
-            u, w, a = u_explicit + γ * h * now, now, accelerations[-1]
-            displacements[n] = u.reshape(-1, 2)[self._surface]
+            state = after_step(state, h, n * h, stage)
+            displacements[n] = state[0].reshape(-1, 2)[self._surface]
         X = self._motion.space.coordinates[self._surface, 0]
         return SurfaceMotion(np.arange(1.0, steps + 1.0) * h, X, displacements)
 
     def _at_once(self, f: NDArray) -> NDArray[np.float64]:
         """Accelerations at rest under forces that are applied suddenly."""
-        a = np.zeros(len(f))
-        if f.any():
-            M = kron(self._motion.M, identity(2)).tocsr()
-            factor = ArraySolver(M[self._free][:, self._free].tocsr(), Clock())
-            a[self._free] = factor.solve(f[self._free])
-            factor.destroy()
+        if not f.any():
+            return np.zeros(len(f))
+        M = kron(self._motion.M, identity(2)).tocsr()
+        factor = ArraySolver(M[self._free][:, self._free].tocsr(), Clock())
+        a = self._solved(factor, f)
+        factor.destroy()
         return a
+
+    def _solved(self, factor: ArraySolver, b: NDArray) -> NDArray[np.float64]:
+        """Solution for forces b, 0 far away."""
+        x = np.zeros(len(b))
+        x[self._free] = factor.solve(b[self._free])
+        return x
 
     def _forces(self, σ_YY: Traction, g: float, knots: tuple[float, ...]) -> NDArray[np.float64]:
         space = self._motion.space

@@ -14,8 +14,7 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.postprocess.compare import RULES
-from galinx.postprocess.over_time import BOTH, OF_FEM
-from galinx.postprocess.surface_over_time import WORKS
+from galinx.postprocess.over_time import BOTH, OF_FEM, WORKS
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.march import Radau
 

@@ -431,7 +431,7 @@ class Report:
     def text(self) -> str:
         """The page as HTML."""
         attributes, data, scene = self._attributes, self._data, self._scene
-        seconds, unit = data[runs.SECONDS.path], attributes["half_width"] / attributes["c_s"]
+        seconds = data[runs.SECONDS.path]
         longest = max(float(seconds.max()), 1e-9)
         content = {
             "title": attributes["title"] or "A sliding punch",
@@ -440,7 +440,7 @@ class Report:
             "warnings": json.loads(attributes["warnings"]),
             "answers": answers(data, scene, self._units),
             "reasons": json.loads(attributes["verdict_reasons"]),
-            "starts": [sheet for sheet in (starts_sheet(data, unit),) if sheet.rows],
+            "starts": [sheet for sheet in (starts_sheet(data, self._units),) if sheet.rows],
             "sheets": self._sheets,
             "states": states_table(data, self._units),
             "curves": curves(data, self._units),

@@ -170,7 +170,7 @@ ESTIMATE_INSIDE = {
 STRESSES_INSIDE = {SIE: components(SIE, "from the transform")}
 INVARIANTS_INSIDE = {SIE: invariants(SIE)}
 
-HIGHEST, LOWEST = ({SIE: row} for row in extremes(SIE))
+HIGHEST, HIGHEST_X, LOWEST, LOWEST_X = ({SIE: row} for row in extremes(SIE))
 TENSION = {SIE: tensions(SIE)}
 
 QUANTITIES.add_all(globals())

@@ -156,8 +156,8 @@ ESTIMATE_AT_INTERFACES = {
 }
 ESTIMATE_IN_PLANE = {
     SIE: _estimate(
-        SIE, "sigma_XX", "sigma_XX on the surface over the larger of itself and its largest further than "
-        "0.01 a from the edges, layered half-plane", ON_SURFACE, "estimate of sigma_XX, sie",
+        SIE, "sigma_XX", "sigma_XX on the surface over the larger of itself and its largest value "
+        "further than 0.01 a from the edges, layered half-plane", ON_SURFACE, "estimate of sigma_XX, sie",
     )
 }  # fmt: skip
 ESTIMATE_INSIDE = {

@@ -35,7 +35,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..profiles import check_reach, jumps, kinks
+from ..profiles import check_reach
 from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
@@ -77,12 +77,11 @@ def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int)
         centre, half_width: of the contact [m].
         count: number of shapes.
     """
-    s = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    slope = half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
-    T = np.cos(np.outer(np.arange(count), np.arccos(s)))
-    coefficients = 2.0 / count * (T @ slope)
-    coefficients[0] /= 2.0
-    return coefficients
+
+    def slope(s: NDArray) -> NDArray[np.float64]:
+        return half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
+
+    return np.polynomial.chebyshev.chebinterpolate(slope, count - 1)  # type: ignore[arg-type]
 
 
 def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[EndConditions]":
@@ -491,7 +490,7 @@ def extreme_in_plane(
     surface = solution.surface
     X, σ_XX = surface.places.X, surface.σ_XX
     at, limits = _limits(solution, body)
-    infinite = _infinite(solution, body, len(σ_XX))
+    infinite = _infinite(solution, body)
     values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
     limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
@@ -536,17 +535,11 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
     return ends, in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
 
 
-def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.float64], float]]:
+def _infinite(solution: Any, body: Any) -> list[tuple[NDArray[np.float64], float]]:
     """Positions of infinite stresses, (states,), NaN for none, and the excluded distance, all over a."""
-    if body.pressure:
-        sharp = np.tile(body.pressure.values[[0, -1]] != 0.0, (states, 1))
-    else:
-        sharp = np.column_stack([solution.local.β, solution.local.α]) < 0.0
-    places = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
-    if body.found and jumps(body.profile):
-        for kink in kinks(body.profile):
-            places.append(((kink - solution.centre) / solution.half_width, NEAR_TIP))
-    return places
+    sharp = body.infinite_ends(solution.local)
+    ends = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
+    return ends + [((tip - solution.centre) / solution.half_width, NEAR_TIP) for tip in body.tips]
 
 
 def _largest(
@@ -624,7 +617,7 @@ class KinkedPressure(Pressure):
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        chart: chart of the mesh, see :class:`galinx.solvers.fem.cells.Chart`.
+        chart: chart of the mesh, see :class:`galinx.meshes.charts.Chart`.
         forces: consistent nodal forces over N/2, (F p + 1,).
         kinks: rising positions of the kinks over a, (k,).
         exponents: exponents of the pressure at the left and the right end, positive.

@@ -1,7 +1,7 @@
 """Commands that compute: run, plan, paper."""
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +11,10 @@ from galinx import __version__
 from galinx.clock import Clock, age
 from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.target import Folder, Target
+from galinx.texts import counted
 
 from .. import errors, process, ranks
-from ..console import Progress, print_summary, print_times, program, say
+from ..console import Progress, print_result, print_times, print_warnings, program, say, width
 from ..errors import BadInput
 from . import options
 
@@ -24,10 +25,11 @@ from . import options
 @options.changes
 @options.overwrite
 @click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")
+@options.dimensionless
 @options.talk
 def run(
     scene: Path, output: Path | None, changes: tuple[str, ...], unset: tuple[str, ...],
-    overwrite: bool, resume: bool, progress: Progress, quiet: bool,
+    overwrite: bool, resume: bool, dimensionless: bool, progress: Progress, quiet: bool,
 ) -> int:  # fmt: skip
     """Compute SCENE and archive the results.
 
@@ -47,13 +49,20 @@ def run(
         return errors.GOOD
     from galinx.postprocess.hdf5.archive import read
     from galinx.postprocess.journal import Journal
+    from galinx.postprocess.tables import sheets_of_run
+    from galinx.postprocess.units import Units
 
     journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
     with progress:
         progress.note(f"scene: {scene}")
         verdict = _archived(checked, target, journal, progress, clock)
     data, attributes = read(path, stresses=False, just_sealed=True)
-    print_summary(data, attributes, quiet)
+    if not quiet:
+        sheets = sheets_of_run(
+            data, Units(checked.body, data, dimensionless), attributes["title"], width()
+        )
+        print_result(sheets, data, attributes, progress.verbose)
+    print_warnings(attributes)
     if not quiet:
         print_times(clock)
         print(f"archive: {path}")
@@ -82,6 +91,8 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
 
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
+            if journal.states and not progress.quiet:
+                say(f"resume: {counted(journal.states, 'state')} of an interrupted run taken over")
             with process.leaving(
                 lambda: _keep_finished(journal), "what is finished is kept, go on with --resume"
             ):
@@ -129,7 +140,7 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     if ranks.is_root():
         for text in lines_of(checked, variants):
             say(f"do    {text}", 6)
-        for text in _together(text for planned in plans for text in planned.skipped):
+        for text in _folded(text for planned in plans for text in planned.skipped):
             say(f"skip  {text}", 6)
         say(f"cost  {expense(*plans)}", 6)
         for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
@@ -137,14 +148,14 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     return errors.GOOD
 
 
-def _together(texts: Iterable[str]) -> Iterator[str]:
-    """Texts, each once, those of one reason in one line: what is skipped, then why."""
-    by_reason: dict[str, dict[str, None]] = {}
-    for text in texts:
-        what, _, why = text.partition(": ")
-        by_reason.setdefault(why, {})[what] = None
-    for why, several in by_reason.items():
-        yield f"{', '.join(several)}: {why}"
+def _folded(skipped: Iterable[str]) -> list[str]:
+    """What is skipped, one line for each reason."""
+    by_reason: dict[str, list[str]] = {}
+    for text in skipped:
+        what, _, reason = text.partition(": ")
+        name = what.rpartition("/")[2] if what.startswith("states/") else what
+        by_reason.setdefault(reason, []).append(name)
+    return [f"{', '.join(dict.fromkeys(names))}: {reason}" for reason, names in by_reason.items()]
 
 
 @click.command()

@@ -28,7 +28,7 @@ from galinx.postprocess.figures.style import number, plain, unit
 from galinx.postprocess.quantities import Quantity, column, states, validity
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
-from galinx.postprocess.tables import as_archived
+from galinx.postprocess.units import Units, as_archived, contacts_of_states
 from galinx.solvers.contact import layered as on_layers
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Contact, Places, Task
@@ -38,7 +38,6 @@ from galinx.solvers.errors import SolveError
 
 from ..errors import BadInput
 from ..plan.plan import interface_grid, surface_grid
-from ..results.si import contacts_of_states, in_si
 from ..scene.scene import Scene
 from .choice import Choice, Drawing, by_method, require_one_of, short_name
 from .state_labels import PLACE, C, N, StateLabels, not_shown, spread
@@ -53,13 +52,12 @@ _SAME = 1e-5
 _LIMITS = {
     row.path.rpartition("/")[2]
     for row in (
-        VELOCITY, validity.CROSSINGS, *validity.STRAINED,
+        VELOCITY, validity.CROSSINGS, *validity.SLIP_REVERSED, *validity.STRAIN,
         *(row for rows in validity.TENSION.values() for row in rows),
     )
 }  # fmt: skip
 
 #: What axes have instead of SI's units: by what numbers are multiplied, and the unit.
-_LARGER = {"Pa": (1e-6, "MPa"), "m": (1e3, "mm")}
 
 #: Another name of the speed, in m/s.
 _SPEED = "speed"
@@ -200,19 +198,16 @@ def _columns(data: dict[str, Any], scene: Scene, choice: Choice) -> dict[str, Co
     """
     columns = {}
     in_units = choice.in_si or contacts_of_states(data) is not None
+    units = Units(scene.body, data, not in_units)
     for name, rows in by_method(data, (STATE,), choice.method).items():
         first = next(iter(rows.values()))
         if all(row.accuracy for row in rows.values()) or not first.path.startswith(column("")):
             continue
         by = next((of for of in rows if of != FEM), "")
-        scaled = in_si(first, name, scene, data) if in_units else None
-        if scaled is None or scaled.unit not in _LARGER:
-            scaled = as_archived(first, name)
-        other = scaled.unit != first.unit
-        factor, shown = _LARGER[scaled.unit] if other else (1.0, scaled.unit)
-        exact, fem = (factor * scaled.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
-        label = _label(first).removesuffix(" over $a$" if other else "")
-        columns[name] = Column(label, unit(shown).removeprefix(r"\,"), exact, fem, by)
+        scaled = units(first, name) or as_archived(first, name)
+        exact, fem = (scaled.of(data[rows[of].path]) if of in rows else None for of in (by, FEM))
+        label = _label(first).removesuffix(" over $a$" if scaled.unit != first.unit else "")
+        columns[name] = Column(label, unit(scaled.unit).removeprefix(r"\,"), exact, fem, by)
     return columns
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from galinx.postprocess.figures.canvas import TooSmall
 from galinx.postprocess.figures.maps import FORMATS as OF_FILMS
 from galinx.postprocess.quantities.quantity import METHODS
+from galinx.postprocess.units import Units, contacts_of_states
 
 from ..errors import BadInput
 from ..pictures import film, friction, motion, numerics, surface, sweep
@@ -83,6 +84,15 @@ _FIGURES = {
         _no_figure,
     ),
 }  # fmt: skip
+
+
+def in_units(choice: Choice, units: Units) -> Choice:
+    """A choice whose figures have the units of a result: MPa, and mm where contacts differ."""
+    if units.dimensionless:
+        return choice
+    own = contacts_of_states(units.data)
+    unit = units.load / (2e6 * units.half_width)
+    return replace(choice, unit=unit, ends=(1e3 * own[0], 1e3 * own[1]) if own else None)
 
 
 def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[Drawing]:

@@ -11,9 +11,11 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from galinx.postprocess.compare import checked, failed
 from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.tables import states_sheet
+from galinx.postprocess.tables import Column, state_columns, states_sheet
 from galinx.postprocess.target import FIELDS, PAGE, Target
+from galinx.postprocess.units import Units
 
 from ..console import Progress
 from ..run.flow import Memory
@@ -24,16 +26,16 @@ from ..scene.scene import Scene
 _COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
 
 
-def html(data: dict[str, Any], attributes: dict[str, Any]) -> str:
+def html(data: dict[str, Any], attributes: dict[str, Any], units: Units) -> str:
     """A result as HTML: a few lines and a table, without scripts or styles of its own.
 
     Args:
         data, attributes: datasets by path, and attributes of the root, of an archive.
+        units: of the table.
     """
     verdict = attributes["verdict"]
     colour = _COLOURS.get(verdict, "inherit")
-    sheet = states_sheet(data, attributes["title"])
-    reasons = json.loads(attributes["verdict_reasons"])
+    sheet = states_sheet(data, units, attributes["title"])
     warnings = [f"warning: {text}" for text in json.loads(attributes["warnings"])]
     heads = "".join(f"<th>{escape(column)}</th>" for column in sheet.columns)
     rows = "".join(f"<tr>{_cells(row)}</tr>" for row in sheet.rows)
@@ -41,7 +43,7 @@ def html(data: dict[str, Any], attributes: dict[str, Any]) -> str:
         f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
         f'<b style="color: {colour}">{escape(verdict)}</b></p>'
         f"{_lines(warnings)}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-        f"{_lines([*sheet.notes, *reasons])}"
+        f"{_lines([*sheet.notes, *failed(data, attributes), checked(attributes)])}"
     )
 
 
@@ -76,7 +78,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Verdict and states as HTML, for notebooks."""
-        return html(self.data, self.attributes)
+        return html(self.data, self.attributes, self.units())
 
     @cached_property
     def scene(self) -> Scene:
@@ -107,19 +109,32 @@ class Result:
 
         return over_parameters(self.dataset)
 
-    def drawings(self, **options: Any) -> Iterator[Any]:
+    def units(self, dimensionless: bool = False) -> Units:
+        """Units of all quantities: SI with prefixes, or as archived over N/(2a), a and c_s."""
+        return Units(self.scene.body, self.data, dimensionless)
+
+    def table(self, dimensionless: bool = False) -> list[Column]:
+        """One row a state: columns with head, unit and values.
+
+        They are those that ``run``, ``show``, ``csv`` and the page show.
+        """
+        return state_columns(self.data, self.units(dimensionless))
+
+    def drawings(self, dimensionless: bool = False, **options: Any) -> Iterator[Any]:
         """Figures of the result, as :class:`galinx.app.pictures.choice.Drawing`.
 
         Args:
+            dimensionless: stresses over N/(2a), positions over a.
             options: attributes of :class:`galinx.app.pictures.choice.Choice`.
 
         Raises:
             BadInput: the result lacks a chosen figure or quantity.
         """
         from ..pictures.choice import Choice
-        from .drawings import of_archive
+        from .drawings import in_units, of_archive
 
-        return of_archive(self.data, self.scene, Choice(**options))
+        choice = in_units(Choice(**options), self.units(dimensionless))
+        return of_archive(self.data, self.scene, choice)
 
     def figure(self, name: str = "", **options: Any) -> Any:
         """One of the figures, as a matplotlib figure, which notebooks show.
@@ -142,7 +157,7 @@ class Result:
 
     def plot(
         self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,
-        formats: tuple[str, ...] = (), dpi: int = 0, **options: Any,
+        formats: tuple[str, ...] = (), dpi: int = 0, dimensionless: bool = False, **options: Any,
     ) -> Any:  # fmt: skip
         """Write figures into a folder, which is made, or one into a file; their paths.
 
@@ -154,6 +169,7 @@ class Result:
             overwrite: files that are no figures of galinx are replaced, too.
             formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
             dpi: dots per inch of what is made of pixels.
+            dimensionless: stresses over N/(2a), positions over a.
             options: as in :meth:`drawings`.
 
         Raises:
@@ -162,15 +178,16 @@ class Result:
             UnwritableArchive: the file system refused.
         """
         if to is None:
-            return self.figure(**options)
+            return self.figure(dimensionless=dimensionless, **options)
         from ..pictures.choice import Choice, Files
-        from .drawings import write
+        from .drawings import in_units, write
 
+        choice = in_units(Choice(**options), self.units(dimensionless))
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
-        return [file.path for file in write(self.data, self.scene, Choice(**options), files)]
+        return [file.path for file in write(self.data, self.scene, choice, files)]
 
-    def report(self, path: Path | str, overwrite: bool = False, si: bool = False) -> None:
-        """Write a self-contained HTML page, its table of states and its curves in SI on request.
+    def report(self, path: Path | str, overwrite: bool = False, dimensionless: bool = False) -> None:
+        """Write a self-contained HTML page, in SI or dimensionless.
 
         Raises:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
@@ -179,8 +196,8 @@ class Result:
         from .report import Report
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
-        report = Report(self.data, self.attributes, self.scene, si=si)
-        for drawing in self.drawings():
+        report = Report(self.data, self.attributes, self.scene, dimensionless=dimensionless)
+        for drawing in self.drawings(dimensionless):
             report.add(drawing)
         target.write(report.text().encode())
 

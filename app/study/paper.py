@@ -200,7 +200,7 @@ def _draw(
         drawings.append(drawing)
     drawings += [draw_inside(inside.data, inside.scene, plain), mesh(study.data, study.scene, plain)]
     pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
-    report = Report(study.data, study.attributes, study.scene, list(sheets))
+    report = Report(study.data, study.attributes, study.scene, list(sheets), dimensionless=True)
     for drawing in drawings:
         report.add(drawing, pixels[drawing.name])
     return report.text()

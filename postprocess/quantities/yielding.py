@@ -15,9 +15,11 @@ from .quantity import (
     CLOSED_FORM,
     FEM,
     LAYER,
+    OVER_A,
     QUANTITIES,
     SIE,
     STATE,
+    X_OVER_A,
     Quantity,
 )
 
@@ -36,12 +38,13 @@ def _both(
     range: Range = _NOT_NEGATIVE,
     requires: tuple[str, ...] = (UNIFORM,),
     methods: tuple[str, ...] = (CLOSED_FORM, FEM),
+    scale: str = "",
 ) -> dict[str, Quantity]:
     """Quantity of a state by several methods."""
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
-            nan_allowed=ANYWHERE, range=range, requires=requires,
+            nan_allowed=ANYWHERE, range=range, requires=requires, scale=scale,
             compared=(compared, f"{compared} over layers")[: 1 + (SIE in methods)]
             * (method == FEM and bool(compared)),
         )
@@ -64,11 +67,11 @@ def _largest(
         ),
         _both(
             f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
-            lambda s, _: of(s).X, FINITE, range=Range(), **options,
+            lambda s, _: of(s).X, FINITE, range=Range(), scale=X_OVER_A, **options,
         ),
         _both(
             f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
-            lambda s, _: of(s).Y, FINITE, range=_BELOW, **options,
+            lambda s, _: of(s).Y, FINITE, range=_BELOW, scale=OVER_A, **options,
         ),
     )  # fmt: skip
 
@@ -93,18 +96,19 @@ REACH_LEFT = _both(
     "yield_reach_left", "1",
     "reach of yield from X = -a, the largest distance on its side of the middle at which the von Mises "
     f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone",
+    lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 REACH_RIGHT = _both(
     "yield_reach_right", "1",
     f"reach of yield from X = a, the same there, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone",
+    lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
     "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
     f"over the half-width; {_BEYOND}",
     lambda s, _: s.strength.depth, compared="depth of yield", requires=(STRENGTH, UNIFORM),
+    scale=OVER_A,
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",
@@ -117,13 +121,13 @@ ESTIMATE_YIELD = Quantity(
 
 def _of_layers(
     name: str, unit: str, about: str, of: Callable[[Any], NDArray], range: Range = _NOT_NEGATIVE,
-    requires: tuple[str, ...] = (),
+    requires: tuple[str, ...] = (), scale: str = "",
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity of each layer and the solid below, by both methods of layered solids."""
     return {
         method: Quantity(
             f"layers/{method}/{name}", unit, about, (STATE, LAYER), lambda s, _: of(s), method, FINITE,
-            YIELD, nan_allowed=ANYWHERE, range=range, requires=(LAYERED, *requires),
+            YIELD, nan_allowed=ANYWHERE, range=range, requires=(LAYERED, *requires), scale=scale,
             compared=("largest stresses of layers",) * (method == FEM and name == "von_mises"),
         )
         for method in (SIE, FEM)
@@ -138,22 +142,17 @@ OF_LAYERS = _of_layers(
 OF_LAYERS_X = _of_layers(
     "von_mises_X_over_a", "1",
     "place of the largest von Mises stress along the surface, over the half-width",
-    lambda s: s.strength.peaks.X, Range(),
+    lambda s: s.strength.peaks.X, Range(), scale=X_OVER_A,
 )  # fmt: skip
 OF_LAYERS_Y = _of_layers(
     "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
-    lambda s: s.strength.peaks.Y, _BELOW,
+    lambda s: s.strength.peaks.Y, _BELOW, scale=OVER_A,
 )  # fmt: skip
 OVER_STRENGTH = _of_layers(
     "von_mises_over_strength", "1",
     "largest von Mises stress over the yield strength, 1 or more where it yields; NaN where the strength "
     "is not given",
     lambda s: s.strength.over_strength, requires=(STRENGTH,),
-)  # fmt: skip
-
-#: Quantities over the half-width, by method.
-OVER_HALF_WIDTH = (
-    VON_MISES_X, VON_MISES_Y, SHEAR_X, SHEAR_Y, REACH_LEFT, REACH_RIGHT, DEPTH,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .figures.style import plain
+from galinx.texts import plain
 from .quantities import (
     Quantity,
     layers,

@@ -8,7 +8,7 @@ from unicodedata import normalize
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from ..figures.style import plain
+from galinx.texts import plain
 
 #: Names of stresses, factors and coefficients, as archives, verdicts and figures write them.
 _INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")

@@ -7,10 +7,9 @@ parameters: speed, load, the law's constants, motion and position.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from galinx.texts import plain
 from .quantities import (
@@ -25,6 +24,7 @@ from .quantities import (
 from .quantities import states as of
 from .quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
 from .quantities.states import LOAD, MOTION, POSITION, SPEED
+from .units import Scaled, Scaling, as_archived
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -37,58 +37,6 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
     first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
     own = [path for path in rows if path not in (*first, *last)]
     return {path: rows[path] for path in (*first, *own, *last)}
-
-
-class Scaled(NamedTuple):
-    """Name, unit and scale with which a quantity is written.
-
-    Numbers are multiplied by the factor, then the offset is added. Both are numbers, or arrays (states,)
-    where contacts of states differ in size.
-    """
-
-    name: str
-    unit: str
-    factor: Any
-    offset: Any = 0.0
-
-    @property
-    def head(self) -> str:
-        """Head of a column: name and unit."""
-        return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
-
-    def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
-        """Values in this scale, (states, …).
-
-        Args:
-            values: values as archived, (states, …).
-            states: numbers of the states that have values; all by default.
-        """
-        if np.ndim(self.factor):
-            factor, offset = (
-                np.broadcast_to(scale, self.factor.shape)[states].reshape(-1, *(1,) * (values.ndim - 1))
-                for scale in (self.factor, self.offset)
-            )
-            return values * factor + offset
-        return values if self.factor == 1.0 else self.factor * values
-
-
-#: Function of a quantity and its name that gives its scale; None where the quantity is omitted, since
-#: another has equal values in the same unit.
-Scaling = Callable[[Quantity, str], Scaled | None]
-
-
-def as_archived(row: Quantity, name: str) -> Scaled:
-    """Scale of a quantity in its own unit."""
-    return Scaled(name, row.unit, 1.0)
-
-
-#: Quantities of states that are lengths over the half-width a.
-LENGTHS = (
-    *validity.STRAINED,
-    *of.LARGEST_X.values(),
-    *(where for _, where in validity.TENSION.values()),
-    *(row for rows in yielding.OVER_HALF_WIDTH for row in rows.values()),
-)
 
 
 #: Most states in a table, and most inner variables of a law.
@@ -248,7 +196,7 @@ def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
             scaled = scaling(row, "")
             if row.path in data and scaled and np.isfinite(values := data[row.path]).any():
                 ends = (f"{end(scaled.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
-                unit = "a" if scaled.unit == row.unit and row in LENGTHS else scaled.unit
+                unit = row.scale.lower() if scaled.unit == "1" and row.scale else scaled.unit
                 rows.append([label, _METHODS[method], unit, *ends])
     notes = ["left, right: how far from X = -a and X = a; waves: how often one crosses the contact"]
     used = {row[1] for row in rows}

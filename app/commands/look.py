@@ -5,7 +5,6 @@ programs, csv.
 """
 
 import json
-from dataclasses import replace
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -22,11 +21,11 @@ from . import options
 @click.command()
 @options.archive
 @click.option("--json", "as_json", is_flag=True, help="One JSON object instead of tables.")
-@options.si
-def show(archive: Path, as_json: bool, si: bool) -> int:
+@options.dimensionless
+def show(archive: Path, as_json: bool, dimensionless: bool) -> int:
     """Show states, friction loops and verdict of ARCHIVE, where it yields, and where its answers hold.
 
-    Example: ./run.sh show tables.h5 --si
+    Example: ./run.sh show tables.h5 --dimensionless
     """
     from galinx.postprocess.tables import (
         inner_sheet,
@@ -37,12 +36,10 @@ def show(archive: Path, as_json: bool, si: bool) -> int:
         states_sheet,
     )
 
-    from ..results.si import scaling
-
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
     if ranks.is_root():
-        scaled = scaling(result.scene if si else None, data)
+        scaled = result.units(dimensionless)
         if as_json:
             print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
         else:
@@ -76,16 +73,16 @@ def check(archive: Path) -> int:
 @click.command()
 @options.archive
 @click.option("-o", "output", type=options.FILE, help="Page; default: the archive's name with .html.")
-@options.si
+@options.dimensionless
 @options.overwrite
-def report(archive: Path, output: Path | None, si: bool, overwrite: bool) -> int:
+def report(archive: Path, output: Path | None, dimensionless: bool, overwrite: bool) -> int:
     """Write a page that shows all of ARCHIVE: one HTML file that needs no network.
 
     Example: ./run.sh report tables.h5
     """
     target, result = output or Path(f"{archive.stem}.html"), _loaded(archive)
     if ranks.is_root():
-        result.report(target, overwrite, si)
+        result.report(target, overwrite, dimensionless)
         print(f"report: {target}")
         print(f"next: open it in a browser, or {program()} plot {archive} for PDF figures")
     return errors.GOOD
@@ -190,11 +187,11 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     metavar="NAMES",
     help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
 )
-@click.option("--si", is_flag=True, help="Stresses in MPa; positions in mm for contacts with free ends.")
+@options.dimensionless
 @options.overwrite
 def plot(
     archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
-    by: str, size: str, dpi: int, formats: str, si: bool, overwrite: bool,
+    by: str, size: str, dpi: int, formats: str, dimensionless: bool, overwrite: bool,
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
@@ -205,9 +202,8 @@ def plot(
     """
     from ..pictures import choice
     from ..pictures.choice import Files
-    from ..results.drawings import write
+    from ..results.drawings import in_units, write
     from ..results.result import load
-    from ..results.si import drawn_in_si
 
     selection = choice.Choice(
         figures=choice.words(figure), quantities=choice.words(quantity),
@@ -217,8 +213,7 @@ def plot(
     files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
     result = load(archive)
     if ranks.is_root():
-        if si:
-            selection = replace(selection, **drawn_in_si(result.data, result.scene))
+        selection = in_units(selection, result.units(dimensionless))
         written = write(result.data, result.scene, selection, files)
         for file, following in zip(written, [*written[1:], None]):
             print(f"{file.noun}: {file.path}")
@@ -327,16 +322,16 @@ def response(
 @click.option("--states", is_flag=True, help="A row a state; this is the default.")
 @click.option("--surface", is_flag=True, help="A row for each state and point on the surface.")
 @click.option("--inside", is_flag=True, help="A row for each state and point inside.")
-@options.si
+@options.dimensionless
 @click.option("-o", "output", type=options.FILE, help="File; default: standard output.")
 @options.overwrite
-def csv(archive: Path, si: bool, output: Path | None, overwrite: bool, **tables: bool) -> int:
+def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool, **tables: bool) -> int:
     """Write what ARCHIVE holds as one table of comma-separated values.
 
     Units stand in the head of each column, 1 for dimensionless. Numbers have all their digits; a cell is
     empty where there is no value, as that of the contact stress beside the punch.
 
-    Example: ./run.sh csv tables.h5 --surface --si -o surface.csv
+    Example: ./run.sh csv tables.h5 --surface -o surface.csv
     """
     from ..results.csv import pieces
 
@@ -348,11 +343,11 @@ def csv(archive: Path, si: bool, output: Path | None, overwrite: bool, **tables:
     if not ranks.is_root():
         return errors.GOOD
     if output is None:
-        for piece in pieces(archive, chosen[0], si):
+        for piece in pieces(archive, chosen[0], dimensionless):
             print(piece, end="")
         return errors.GOOD
     target = Target(output, TABLE, overwrite, options.inputs(archive))
-    target.write(piece.encode() for piece in pieces(archive, chosen[0], si))
+    target.write(piece.encode() for piece in pieces(archive, chosen[0], dimensionless))
     print(f"table: {output}")
     return errors.GOOD
 

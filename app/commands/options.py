@@ -70,7 +70,10 @@ def changes(command: Any) -> Any:
     )(with_unset)  # fmt: skip
 
 
-si = click.option("--si", is_flag=True, help="Stresses in Pa, lengths in m, speeds in m/s.")
+dimensionless = click.option(
+    "--dimensionless", is_flag=True,
+    help="Stresses over N/(2a), lengths over a, speeds over c_s; default: MPa, mm, m/s.",
+)  # fmt: skip
 
 figures_to = click.option(
     "-o",

@@ -12,12 +12,12 @@ from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.quantities import Quantity, of_states, runs, table
 from galinx.postprocess.quantities.quantity import INSIDE, POINT, STATE
 from galinx.postprocess.quantities.states import LOAD, SPEED
-from galinx.postprocess.tables import Scaled, parameters
+from galinx.postprocess.tables import parameters
+from galinx.postprocess.units import Scaled, Units
 from galinx.solvers.contact import BELOW, ON_SURFACE
 
 from ..errors import BadInput
 from ..scene import read as scenes
-from .si import scaling
 
 #: Dimension of the values of states, and the word of output.quantities that asks for them, by table.
 TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE, BELOW)}
@@ -26,13 +26,13 @@ TABLES = {"states": ("", ""), "surface": (POINT, ON_SURFACE), "inside": (INSIDE,
 _TOGETHER = 20_000
 
 
-def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]:
+def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> Iterator[str]:
     """Text of a table, piece by piece, its heads with units first; NaN is an empty cell.
 
     Args:
         path: of an archive.
         which: of ``TABLES``: a row a state, or a row for each point of each state.
-        si: stresses in Pa, positions in m and speeds in m/s.
+        dimensionless: stresses over N/(2a), positions over a and speeds over c_s, as archived.
 
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
@@ -40,13 +40,13 @@ def pieces(path: Path, which: str = "states", si: bool = False) -> Iterator[str]
     """
     where, word = TABLES[which]
     with reader.opened(path) as archive:
-        rows = _rows(archive, where, si)
+        rows = _rows(archive, where, not dimensionless)
         if where and not any(where in row.over for row in rows):
             raise BadInput(
                 f"{path} holds no stresses for --{which}; a scene asks for them by "
                 f'output.quantities = ["{word}"]'
             )
-        rows, columns = _columns(archive, rows, si)
+        rows, columns = _columns(archive, rows, dimensionless)
         yield _text([["state", *(column.head for column in columns)]])
         for numbers, data in _blocks(archive, rows, where):
             cells = (_cells(column.of(data[row.path], numbers)) for row, column in zip(rows, columns))
@@ -65,12 +65,12 @@ def _rows(archive: reader.Archive, where: str, load: bool) -> list[Quantity]:
 
 
 def _columns(
-    archive: reader.Archive, rows: list[Quantity], si: bool
+    archive: reader.Archive, rows: list[Quantity], dimensionless: bool
 ) -> tuple[list[Quantity], list[Scaled]]:
     """Quantities that have a column in the units of the table, and their columns."""
-    scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive") if si else None
-    scaled = scaling(scene, archive.data)
-    scaled_rows = ((row, scaled(row, row.path.partition("/")[2].replace("/", "_"))) for row in rows)
+    scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
+    units = Units(scene.body, archive.data, dimensionless)
+    scaled_rows = ((row, units(row)) for row in rows)
     kept = [(row, column) for row, column in scaled_rows if column]
     return [row for row, _ in kept], [column for _, column in kept]
 

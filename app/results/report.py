@@ -8,7 +8,6 @@ import json
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import floor, log10
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,8 @@ from galinx.postprocess.quantities import (
     yielding,
 )
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE, TEXT
-from galinx.postprocess.tables import Scaling, Sheet, as_archived, parameters, solved_speeds, starts_sheet
+from galinx.postprocess.tables import Sheet, parameters, solved_speeds, starts_sheet
+from galinx.postprocess.units import Scaled, Scaling, Units, as_archived, engineering
 from galinx.texts import counted
 
 from ..console import program
@@ -42,11 +42,6 @@ from ..study.published import (
     limit_of_steady_motion,
 )
 from .drawings import Drawing
-from .si import in_si, scaling, stress_of_states
-
-#: Prefixes of units, and the position of the empty one.
-_PREFIXES, _MIDDLE = "pnµm kMGT", 4
-
 
 #: By method.
 _LOWEST = stresses.LOWEST | layers.LOWEST
@@ -68,14 +63,14 @@ class Answer:
     where: str = ""
 
 
-def answers(data: dict[str, Any], scene: Scene) -> list[Answer]:
+def answers(data: dict[str, Any], scene: Scene, units: Units) -> list[Answer]:
     """The results that an archive has, finite elements first where there are both methods."""
     return [
         *_of_states(data),
-        *_of_contact(data, scene),
-        *_of_surface(data, scene),
-        *_of_interfaces(data, scene),
-        *_of_limits(data, scene),
+        *_of_contact(data, units),
+        *_of_surface(data, scene, units),
+        *_of_interfaces(data, scene, units),
+        *_of_limits(data, units),
     ]
 
 
@@ -96,42 +91,41 @@ def _of_states(data: dict[str, Any]) -> Iterator[Answer]:
         yield Answer(name, *_span(data[states.INDENTATION.path], "m"))
 
 
-def _of_contact(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+def _of_contact(data: dict[str, Any], units: Units) -> Iterator[Answer]:
     """Half-widths, middles and largest pressures of contacts with free ends."""
     for row in _either(data, states.HALF_WIDTH):
         yield Answer("Half-width of the contact", *_span(data[row.path], "m"))
     for row in _either(data, states.CENTRE):
         yield Answer("Middle of the contact, from the punch's axis", *_span(data[row.path], "m"))
     for row in _either(data, states.LARGEST):
-        pressure = stress_of_states(data, scene)[:, 0] * data[row.path]
-        if np.isfinite(pressure).any():
-            yield Answer("Largest contact pressure", *_span(pressure, "Pa"))
+        if np.isfinite(data[row.path]).any():
+            yield Answer("Largest contact pressure", *_scaled_span(data[row.path], units.stress))
 
 
-def _of_surface(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+def _of_surface(data: dict[str, Any], scene: Scene, units: Units) -> Iterator[Answer]:
     if stresses.SURFACE_X.path not in data:
         return
-    stress, X = stress_of_states(data, scene), data[stresses.SURFACE_X.path]
+    stress, X = units.stress, data[stresses.SURFACE_X.path]
     for row in _either(data, stresses.PRESSURE | layers.PRESSURE):
         middle = int(np.abs(X).argmin())
-        pressure = -stress[:, 0] * data[row.path][:, middle]
-        yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_span(pressure, "Pa"))
+        pressure = -data[row.path][:, middle]
+        yield Answer(f"Contact pressure at X/a = {X[middle]:.2g}", *_scaled_span(pressure, stress))
     beyond = "" if scene.body.finite else ", further than 0.01 a from sharp edges and 0.02 a from tips"
     ends = (("tension", 1.0, stresses.HIGHEST | layers.HIGHEST), ("compression", -1.0, _LOWEST))
     for name, sign, rows in ends:
         for row in _either(data, rows):
-            σ = sign * stress[:, 0] * data[row.path]
+            σ = sign * stress.of(data[row.path])
             if (largest := float(σ.max())) > 0.0:
                 what = f"Largest in-plane {name} σ_XX on the surface{beyond}"
-                yield Answer(what, _engineering(largest, "Pa"), f"state {int(σ.argmax())}")
+                yield Answer(what, _text(largest, stress.unit), f"state {int(σ.argmax())}")
 
 
-def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+def _of_interfaces(data: dict[str, Any], scene: Scene, units: Units) -> Iterator[Answer]:
     """Largest stresses that may part a layer from what it lies on: shear and tension."""
     method = next((name for name in (FEM, SIE) if layers.INTERFACES[name][0].path in data), None)
     if method is None:
         return
-    stress, rows = stress_of_states(data, scene), layers.INTERFACE_EXTREMES[method]
+    stress, rows = units.stress, layers.INTERFACE_EXTREMES[method]
     # Of σ_YY, σ_XY and σ_XX above and below: the largest value, its place, the smallest and its place.
     normal, shear, above, below = (rows[first : first + 4] for first in range(0, 16, 4))
     parts = (
@@ -142,16 +136,18 @@ def _of_interfaces(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
     )
     depths = np.cumsum([layer.thickness for layer in scene.layers])
     for i, depth in enumerate(depths.tolist()):
-        where = f"the interface {_engineering(depth, 'm')} deep"
+        where = f"the interface {engineering(depth, 'm')} deep"
         for name, ends in parts:
-            σ = np.array([sign * stress[:, 0] * data[row.path][:, i] for sign, row, _ in ends])
+            σ = np.array([sign * stress.of(data[row.path][:, i]) for sign, row, _ in ends])
             end, state = np.unravel_index(int(σ.argmax()), σ.shape)
             if (largest := float(σ[end, state])) > 0.0:
-                X = data[ends[end][2].path][state, i]
+                place = data[ends[end][2].path]
+                at = units(ends[end][2], "X") or as_archived(ends[end][2], "X")
+                X = float(at.of(place)[state, i])
                 yield Answer(
                     f"Largest {name} {where}",
-                    _engineering(largest, "Pa"),
-                    f"state {state}, X/a = {X:.4g}",
+                    _text(largest, stress.unit),
+                    f"state {state}, X = {at.text(X)}",
                 )
 
 
@@ -175,13 +171,12 @@ _LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
 )
 
 
-def _of_limits(data: dict[str, Any], scene: Scene) -> Iterator[Answer]:
+def _of_limits(data: dict[str, Any], units: Units) -> Iterator[Answer]:
     for name, rows in _LIMITS:
         for row in _either(data, rows):
-            scaled = in_si(row, "", scene, data)
+            scaled = units(row, "")
             if scaled and np.nanmax(np.abs(data[row.path]), initial=0.0) > 0.0:
-                form = "{:.4g}" if scaled.unit == "1" else ""
-                yield Answer(name, *_span(scaled.of(data[row.path]), scaled.unit, form))
+                yield Answer(name, *_scaled_span(data[row.path], scaled))
 
 
 def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
@@ -189,6 +184,14 @@ def _either(data: dict[str, Any], rows: dict[str, Quantity]) -> list[Quantity]:
     return [
         rows[method] for method in (FEM, CLOSED_FORM, SIE) if method in rows and rows[method].path in data
     ][:1]
+
+
+def _scaled_span(values: NDArray, scaled: Scaled) -> tuple[str, str]:
+    return _span(scaled.of(values), "", "{:.4g}" + f" {scaled.unit}" * (scaled.unit != "1"))
+
+
+def _text(value: float, unit: str) -> str:
+    return f"{value:.4g}" + f" {unit}" * (unit != "1")
 
 
 def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:
@@ -200,20 +203,10 @@ def _span(values: NDArray, unit: str, form: str = "") -> tuple[str, str]:
 
 
 def _words(least: float, most: float, low: int, high: int, unit: str, form: str) -> tuple[str, str]:
-    texts = [form.format(value) if form else _engineering(value, unit) for value in (least, most)]
+    texts = [form.format(value) if form else engineering(value, unit) for value in (least, most)]
     if texts[0] == texts[1]:
         return texts[0], ""
     return " to ".join(texts), f"states {low} and {high}"
-
-
-def _engineering(value: float, unit: str) -> str:
-    """Number with four digits and a prefix: 113.8 GPa."""
-    if value == 0.0:
-        return f"0 {unit}"
-    size = floor(log10(abs(float(f"{value:.3e}"))))
-    thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
-    digits = f"{value / 1000.0**thousands:.{max(3 + 3 * thousands - size, 0)}f}"
-    return f"{digits} {_PREFIXES[thousands + _MIDDLE].strip()}{unit}".replace("-", "−")
 
 
 def summary(data: dict[str, Any], scene: Scene) -> str:
@@ -223,7 +216,7 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     moving = " to ".join(f"{v:.4g}" for v in sorted({c[0], c[-1]}))
     speed = " to ".join(f"{v * c_s:.4g}" for v in sorted({c[0], c[-1]}))
     ends = sorted({min(scene.punch.loads), max(scene.punch.loads)})
-    load = " to ".join(_engineering(N, "N/m") for N in ends)
+    load = " to ".join(engineering(N, "N/m") for N in ends)
     text = (
         f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
         f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
@@ -305,8 +298,8 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
     most = max(_NUMBERS // (len(X) * len(methods) * len(quantities)), 1)
     shown = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
     scaled = scaling(quantities["σ_XX"][methods[0]], "")
-    in_units = scaled is not None and scaled.unit == "Pa"
-    factors = 1e-6 * scaled.factor * np.ones(count) if scaled and in_units else np.ones(count)
+    in_units = scaled is not None and scaled.unit != "N/(2a)"
+    factors = scaled.factor * np.ones(count) if scaled else np.ones(count)
     values = [
         [
             [_plain(factors[i] * data[rows[method].path][i][order], 5) for i in shown.tolist()]
@@ -318,12 +311,12 @@ def curves(data: dict[str, Any], scaling: Scaling = as_archived) -> dict[str, An
     names = [
         ", ".join([str(i), *(_value(row, data[row.path][i]) for row in varied)]) for i in shown.tolist()
     ]
-    note = "In MPa." if in_units else "Over N/(2a)."
+    note = f"In {scaled.unit}." if scaled and in_units else "Over N/(2a)."
     note += f" {len(shown)} of {count} states." * (len(shown) < count)
     return {
         "note": note,
         "data": {
-            "unit": "[MPa]" if in_units else "/ (N/2a)",
+            "unit": f"[{scaled.unit}]" if scaled and in_units else "/ (N/2a)",
             "X": _plain(X[order], 9), "states": names, "quantities": list(quantities),
             "methods": [METHODS[method] for method in methods], "values": values,
         },
@@ -404,7 +397,7 @@ class Report:
         data, attributes: datasets by path, and attributes of the root, of an archive.
         scene: of the archive.
         sheets: tables before that of the states; the published ones where the archive has their states.
-        si: True for the table of states and the curves in SI.
+        dimensionless: stresses over N/(2a), lengths over a and speeds over c_s.
     """
 
     def __init__(
@@ -413,11 +406,11 @@ class Report:
         attributes: dict[str, Any],
         scene: Scene,
         sheets: list[Sheet] | None = None,
-        si: bool = False,
+        dimensionless: bool = False,
     ) -> None:
         self._data, self._attributes, self._scene = data, attributes, scene
         self._sheets = _published(data, scene) if sheets is None else sheets
-        self._scaling = scaling(scene if si else None, data)
+        self._units = Units(scene.body, data, dimensionless)
         self._pictures: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing, png: bytes | None = None) -> None:
@@ -445,12 +438,12 @@ class Report:
             "verdict": attributes["verdict"],
             "summary": summary(data, scene),
             "warnings": json.loads(attributes["warnings"]),
-            "answers": answers(data, scene),
+            "answers": answers(data, scene, self._units),
             "reasons": json.loads(attributes["verdict_reasons"]),
             "starts": [sheet for sheet in (starts_sheet(data, unit),) if sheet.rows],
             "sheets": self._sheets,
-            "states": states_table(data, self._scaling),
-            "curves": curves(data, self._scaling),
+            "states": states_table(data, self._units),
+            "curves": curves(data, self._units),
             "pictures": self._pictures,
             "times": [
                 (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")

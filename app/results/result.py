@@ -14,6 +14,7 @@ from typing import Any
 from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.tables import states_sheet
 from galinx.postprocess.target import FIELDS, PAGE, Target
+from galinx.postprocess.units import Units
 
 from ..console import Progress
 from ..run.flow import Memory
@@ -107,19 +108,25 @@ class Result:
 
         return over_parameters(self.dataset)
 
-    def drawings(self, **options: Any) -> Iterator[Any]:
+    def units(self, dimensionless: bool = False) -> Units:
+        """Units of all quantities: SI with prefixes, or as archived over N/(2a), a and c_s."""
+        return Units(self.scene.body, self.data, dimensionless)
+
+    def drawings(self, dimensionless: bool = False, **options: Any) -> Iterator[Any]:
         """Figures of the result, as :class:`galinx.app.pictures.choice.Drawing`.
 
         Args:
+            dimensionless: stresses over N/(2a), positions over a.
             options: attributes of :class:`galinx.app.pictures.choice.Choice`.
 
         Raises:
             BadInput: the result lacks a chosen figure or quantity.
         """
         from ..pictures.choice import Choice
-        from .drawings import of_archive
+        from .drawings import in_units, of_archive
 
-        return of_archive(self.data, self.scene, Choice(**options))
+        choice = in_units(Choice(**options), self.units(dimensionless))
+        return of_archive(self.data, self.scene, choice)
 
     def figure(self, name: str = "", **options: Any) -> Any:
         """One of the figures, as a matplotlib figure, which notebooks show.
@@ -142,7 +149,7 @@ class Result:
 
     def plot(
         self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,
-        formats: tuple[str, ...] = (), dpi: int = 0, **options: Any,
+        formats: tuple[str, ...] = (), dpi: int = 0, dimensionless: bool = False, **options: Any,
     ) -> Any:  # fmt: skip
         """Write figures into a folder, which is made, or one into a file; their paths.
 
@@ -154,6 +161,7 @@ class Result:
             overwrite: files that are no figures of galinx are replaced, too.
             formats: ``"pdf"``, ``"png"``, ``"svg"``; of films ``"mp4"``, ``"gif"``.
             dpi: dots per inch of what is made of pixels.
+            dimensionless: stresses over N/(2a), positions over a.
             options: as in :meth:`drawings`.
 
         Raises:
@@ -162,15 +170,16 @@ class Result:
             UnwritableArchive: the file system refused.
         """
         if to is None:
-            return self.figure(**options)
+            return self.figure(dimensionless=dimensionless, **options)
         from ..pictures.choice import Choice, Files
-        from .drawings import write
+        from .drawings import in_units, write
 
+        choice = in_units(Choice(**options), self.units(dimensionless))
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
-        return [file.path for file in write(self.data, self.scene, Choice(**options), files)]
+        return [file.path for file in write(self.data, self.scene, choice, files)]
 
-    def report(self, path: Path | str, overwrite: bool = False, si: bool = False) -> None:
-        """Write a self-contained HTML page, its table of states and its curves in SI on request.
+    def report(self, path: Path | str, overwrite: bool = False, dimensionless: bool = False) -> None:
+        """Write a self-contained HTML page, in SI or dimensionless.
 
         Raises:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
@@ -179,8 +188,8 @@ class Result:
         from .report import Report
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
-        report = Report(self.data, self.attributes, self.scene, si=si)
-        for drawing in self.drawings():
+        report = Report(self.data, self.attributes, self.scene, dimensionless=dimensionless)
+        for drawing in self.drawings(dimensionless):
             report.add(drawing)
         target.write(report.text().encode())
 

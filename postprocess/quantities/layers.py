@@ -10,7 +10,21 @@ from galinx.solvers.contact.solution import SOLVED
 from galinx.solvers.contact.stresses import extreme
 from galinx.solvers.parameters import Range
 
-from .quantity import ALONG, BESIDE, FEM, INTERFACE, POINT, QUANTITIES, SIE, STATE, Quantity
+from .quantity import (
+    ALONG,
+    BESIDE,
+    CONTACT,
+    EDGE,
+    FEM,
+    INTERFACE,
+    OVER_A,
+    POINT,
+    QUANTITIES,
+    SIE,
+    STATE,
+    X_OVER_A,
+    Quantity,
+)
 from .stresses import components, extremes, invariants
 from .validity import tensions
 
@@ -19,7 +33,7 @@ def _intensity(side: str, at: str, i: int) -> Quantity:
     return Quantity(
         f"states/sie/K_I_{side}", "1",
         f"normalised stress intensity factor at {at}, layered half-plane", (STATE,),
-        lambda s, _: s.K_I[:, i], SIE, compared=("K_I of layers",), requires=(SOLVED,),
+        lambda s, _: s.K_I[:, i], SIE, compared=("K_I of layers",), requires=(SOLVED,), scale=EDGE,
     )  # fmt: skip
 
 
@@ -53,18 +67,18 @@ IN_PLANE = {
 
 INTERFACE_DEPTH = Quantity(
     "interfaces/depth_over_a", "1", "depths of the interfaces over the half-width", (INTERFACE,),
-    asked_by=AT_INTERFACES, range=Range(above=0.0),
+    asked_by=AT_INTERFACES, range=Range(above=0.0), scale=OVER_A,
 )  # fmt: skip
 #: With free ends every state has its own half-width.
 INTERFACE_DEPTH_IN_M = Quantity(
     "interfaces/depth", "m", "depths of the interfaces, where contacts have free ends", (INTERFACE,),
-    asked_by=AT_INTERFACES, range=Range(above=0.0),
+    asked_by=AT_INTERFACES, range=Range(above=0.0), scale=CONTACT,
 )  # fmt: skip
 #: Depths of interfaces by their unit.
 DEPTHS = {row.unit: row for row in (INTERFACE_DEPTH, INTERFACE_DEPTH_IN_M)}
 ALONG_X = Quantity(
     "interfaces/X_over_a", "1", "positions along interfaces over the half-width", (ALONG,),
-    asked_by=AT_INTERFACES,
+    asked_by=AT_INTERFACES, scale=X_OVER_A,
 )  # fmt: skip
 
 _PARTS = {
@@ -94,7 +108,9 @@ def _extremes(method: str, i: int, name: str, what: str) -> tuple[Quantity, ...]
         path, over = f"interfaces/{method}/{name}_{end}", (STATE, INTERFACE)
         if place:
             about = f"place of the {word} {what} each interface, over the half-width"
-            return Quantity(f"{path}_X_over_a", "1", about, over, read, method, asked_by=AT_INTERFACES)
+            return Quantity(
+                f"{path}_X_over_a", "1", about, over, read, method, asked_by=AT_INTERFACES, scale=X_OVER_A
+            )
         about = f"{word} {what} each interface"
         return Quantity(path, "N/(2a)", about, over, read, method, asked_by=AT_INTERFACES)
 

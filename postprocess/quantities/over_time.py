@@ -6,7 +6,17 @@ and energies; and stresses on the surface, over time and at chosen times.
 
 from galinx.solvers.parameters import Range
 
-from .quantity import ANYWHERE, FEM, NEVER, QUANTITIES, SIE, Quantity
+from .quantity import (
+    ANYWHERE,
+    FEM,
+    NEVER,
+    OVER_C_S,
+    OVER_N,
+    QUANTITIES,
+    SIE,
+    X_OVER_A,
+    Quantity,
+)
 
 #: Word of output.quantities.
 TIME = "time"
@@ -23,22 +33,26 @@ def _row(
     return Quantity(f"time/{name}", unit, about, over, asked_by=TIME, range=range, **others)  # type: ignore[arg-type]
 
 
-SPEED = _row("c", "1", "speed of the start over shear wave speed", (START,), _NOT_NEGATIVE)
+SPEED = _row(
+    "c", "1", "speed of the start over shear wave speed", (START,), _NOT_NEGATIVE, scale=OVER_C_S
+)
 RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
 RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
 DIRECTION = _row("direction", "1", "direction of motion along X over time, 1 or -1", (START, INSTANT))
 TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEGATIVE)
-LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE)
+LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE, scale=OVER_N)
 STEADY_CENTRE = _row(
     "steady_centre", "1",
     "centre of the pressure in steady motion over the half-width, closed form, over layers by their "
     "integral equation",
     (START,),
+    scale=X_OVER_A,
 )  # fmt: skip
 CENTRES = _row(
     "steady_centres", "1",
     "centre of the pressure over the half-width if it were at once that of steady motion",
     (START, INSTANT),
+    scale=X_OVER_A,
 )  # fmt: skip
 STEADY_K_I = _row(
     "steady_K_I",
@@ -49,7 +63,9 @@ STEADY_K_I = _row(
 )
 
 
-def _by_method(name: str, unit: str, about: str, nan_allowed: str | None = None) -> dict[str, Quantity]:
+def _by_method(
+    name: str, unit: str, about: str, nan_allowed: str | None = None, scale: str = ""
+) -> dict[str, Quantity]:
     """Quantities of both methods; the integral equation has none from where the punch turns round."""
     methods = {FEM: "finite elements", SIE: "integral equation"}
     nan = {FEM: NEVER, SIE: ANYWHERE}
@@ -61,13 +77,16 @@ def _by_method(name: str, unit: str, about: str, nan_allowed: str | None = None)
             (START, INSTANT),
             method=method,
             nan_allowed=nan_allowed or nan[method],
+            scale=scale,
         )
         for method, words in methods.items()
     }
 
 
 V0 = _by_method("v0", "N/(2mu)", "indentation since the punch touched")
-CENTRE = _by_method("centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X")
+CENTRE = _by_method(
+    "centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X", scale=X_OVER_A
+)
 K_I_LEFT = _by_method(
     "K_I_left", "1", "stress intensity factor over time at X = -a by the final load", nan_allowed=ANYWHERE
 )
@@ -156,7 +175,7 @@ RIGHT = _work_by_method("sigma_XX_right", "N/(2a)", "in-plane stress on the free
 PLACE = "places"
 PLACES = Quantity(
     "time/X_over_a", "1", "positions under the punch over the half-width", (PLACE,), asked_by=TIME,
-    method=SIE,
+    method=SIE, scale=X_OVER_A,
 )  # fmt: skip
 PRESSURE = Quantity(
     "time/sie/sigma_YY", "N/(2a)", "contact stress, integral equation", (START, INSTANT, PLACE),
@@ -204,7 +223,7 @@ SURFACE_TIMES = Quantity(
 )  # fmt: skip
 SURFACE_PLACES = Quantity(
     "time/surface/X_over_a", "1", "positions along the surface over the half-width", (SURFACE_PLACE,),
-    asked_by=TIME,
+    asked_by=TIME, scale=X_OVER_A,
 )  # fmt: skip
 
 

@@ -41,6 +41,13 @@ SWEPT = "fitted speeds"
 FRICTION_ALONE = "friction"
 
 
+#: What a dimensionless quantity is over: the half-width; the half-width, along X from the contact's
+#: middle; the wave speed; the load; load and half-width to the power of an edge's exponent.
+#: ``CONTACT`` is a length of the contact in m.
+OVER_A, X_OVER_A, OVER_C_S, OVER_N, EDGE = "a", "X", "c_s", "N", "edge"
+CONTACT = "contact"
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Archived quantity: what it is, when it is computed, how it is read off a solution and judged.
@@ -64,6 +71,8 @@ class Quantity:
         whole: its numbers are integers. None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
         accuracy: it says how good other numbers are, and nothing of the contact.
+        scale: what it is over where its unit does not say so: ``OVER_A``, ``X_OVER_A``, ``OVER_C_S``,
+            ``OVER_N``, ``EDGE``, or ``CONTACT`` in m; see :mod:`galinx.postprocess.units`.
         requires: what a contact may lack, see :attr:`galinx.solvers.contact.solution.Contact.lacks`.
     """
 
@@ -83,6 +92,7 @@ class Quantity:
     whole: bool = False
     range: Range = Range()
     accuracy: bool = False
+    scale: str = ""
     requires: tuple[str, ...] = ()
 
     @property

@@ -9,6 +9,7 @@ from .quantity import (
     ANYWHERE,
     FEM,
     LOOP,
+    OVER_C_S,
     QUANTITIES,
     SPEED,
     STATE,
@@ -62,7 +63,14 @@ _COUNTS = ("cells", "unknowns", "degree", "factorisations", "back_substitutions"
 #: One value a speed that finite elements solved, by the name in a method's record.
 RECORD = {
     name: Quantity(
-        f"run/fem/{name}", "1", about, (SPEED,), method=FEM, whole=name in _COUNTS, range=_NOT_NEGATIVE
+        f"run/fem/{name}",
+        "1",
+        about,
+        (SPEED,),
+        method=FEM,
+        whole=name in _COUNTS,
+        range=_NOT_NEGATIVE,
+        scale=OVER_C_S if name == "c" else "",
     )
     for name, about in {
         "c": "speeds with finite elements, over shear wave speed",

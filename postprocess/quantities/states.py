@@ -15,13 +15,17 @@ from .quantity import (
     ALONE,
     ANYWHERE,
     CLOSED_FORM,
+    CONTACT,
+    EDGE,
     FEM,
     INNER,
     LOCAL,
+    OVER_C_S,
     QUANTITIES,
     SIE,
     STATE,
     SWEPT,
+    X_OVER_A,
     Quantity,
 )
 
@@ -37,7 +41,7 @@ POSITION = Quantity(
 )  # fmt: skip
 SPEED = Quantity(
     "states/c", "1", "speed over shear wave speed", (STATE,),
-    symbol="c", range=Range(at_least=0.0, below=1.0),
+    symbol="c", range=Range(at_least=0.0, below=1.0), scale=OVER_C_S,
 )  # fmt: skip
 LOAD = Quantity(
     "states/load", "N/m", "normal load per depth N, where states differ in it", (STATE,), symbol="N",
@@ -66,26 +70,26 @@ BETA = Quantity(
 K_I_BOTH = Quantity(
     "states/closed_form/K_I", "1",
     "normalised stress intensity factor, both ends of a flat punch (Eq 58)",
-    (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, PUNCH),
+    (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, PUNCH), scale=EDGE,
 )  # fmt: skip
 K_I_LEFT = {
     CLOSED_FORM: Quantity(
         "states/closed_form/K_I_left", "1", "normalised stress intensity factor at X = -a", (STATE,),
-        lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED,),
+        lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED,), scale=EDGE,
     ),
     FEM: Quantity(
         "states/fem/K_I_left", "1", "normalised stress intensity factor at X = -a, Jacobi moments",
-        (STATE,), lambda s, _: s.K_I[:, 0], FEM, _CONTACT, compared=("K_I",),
+        (STATE,), lambda s, _: s.K_I[:, 0], FEM, _CONTACT, compared=("K_I",), scale=EDGE,
     ),
 }  # fmt: skip
 K_I_RIGHT = {
     CLOSED_FORM: Quantity(
         "states/closed_form/K_I_right", "1", "normalised stress intensity factor at X = a", (STATE,),
-        lambda s, _: s.K_I[:, 1], CLOSED_FORM, requires=(SOLVED,),
+        lambda s, _: s.K_I[:, 1], CLOSED_FORM, requires=(SOLVED,), scale=EDGE,
     ),
     FEM: Quantity(
         "states/fem/K_I_right", "1", "normalised stress intensity factor at X = a, Jacobi moments",
-        (STATE,), lambda s, _: s.K_I[:, 1], FEM, _CONTACT, compared=("K_I",),
+        (STATE,), lambda s, _: s.K_I[:, 1], FEM, _CONTACT, compared=("K_I",), scale=EDGE,
     ),
 }  # fmt: skip
 
@@ -140,11 +144,11 @@ def _of_free_contact(
 
 HALF_WIDTH = _of_free_contact(
     "half_width", "m", "half-width of the contact, over which the state's lengths are",
-    lambda s: s.half_width, "ends", range=Range(above=0.0),
+    lambda s: s.half_width, "ends", range=Range(above=0.0), scale=CONTACT,
 )  # fmt: skip
 CENTRE = _of_free_contact(
     "centre", "m", "middle of the contact, from the punch's axis; the state's positions are from there",
-    lambda s: s.centre, "ends",
+    lambda s: s.centre, "ends", scale=CONTACT,
 )  # fmt: skip
 LARGEST = _of_free_contact(
     "largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
@@ -153,7 +157,7 @@ LARGEST = _of_free_contact(
 LARGEST_X = _of_free_contact(
     "largest_pressure_position", "1",
     "place of the largest contact pressure, over the half-width; NaN where it is infinite",
-    lambda s: s.largest[1], nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0),
+    lambda s: s.largest[1], nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
 )  # fmt: skip
 
 #: Resultants of a prescribed pressure, by method.

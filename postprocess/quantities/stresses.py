@@ -17,14 +17,21 @@ from .quantity import (
     CLOSED_FORM,
     FEM,
     INSIDE,
+    OVER_A,
     POINT,
     QUANTITIES,
     STATE,
+    X_OVER_A,
     Quantity,
 )
 
 SURFACE_X = Quantity(
-    "surface/X_over_a", "1", "position on the surface over the half-width", (POINT,), asked_by=ON_SURFACE
+    "surface/X_over_a",
+    "1",
+    "position on the surface over the half-width",
+    (POINT,),
+    asked_by=ON_SURFACE,
+    scale=X_OVER_A,
 )
 PRESSURE = {
     CLOSED_FORM: Quantity(
@@ -99,11 +106,11 @@ RESIDUAL_INSIDE = Quantity(
 
 INSIDE_X = Quantity(
     "interior/X_over_a", "1", "positions inside, along the surface, over the half-width", (INSIDE,),
-    asked_by=BELOW,
+    asked_by=BELOW, scale=X_OVER_A,
 )  # fmt: skip
 INSIDE_Y = Quantity(
     "interior/Y_over_a", "1", "positions inside, outwards, over the half-width; negative", (INSIDE,),
-    asked_by=BELOW, range=Range(at_most=0.0),
+    asked_by=BELOW, range=Range(at_most=0.0), scale=OVER_A,
 )  # fmt: skip
 MAP = Quantity(
     "interior/map", "1", "rows and columns of the grid that the first points inside form, by rows",

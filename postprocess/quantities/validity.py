@@ -14,8 +14,10 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    OVER_A,
     QUANTITIES,
     STATE,
+    X_OVER_A,
     Quantity,
 )
 
@@ -58,7 +60,7 @@ def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, 
             f"states/closed_form/{name}_{side}", "1",
             f"{reach} from {at}, the distance under the punch within which {what}, over the half-width",
             (STATE,), lambda s, _: s.strained_within(strain)[:, i], CLOSED_FORM, PUNCH,
-            range=_NOT_NEGATIVE,
+            range=_NOT_NEGATIVE, scale=OVER_A,
         )  # fmt: skip
 
     return end("left", "X = -a", 0), end("right", "X = a", 1)
@@ -73,7 +75,6 @@ STRAIN = _within(
     "large_strain", "reach of large strain", LARGE_STRAIN,
     "the strain u,X on the surface is beyond 5 % at the load",
 )  # fmt: skip
-STRAINED = (*SLIP_REVERSED, *STRAIN)
 
 
 def tensions(method: str) -> tuple[Quantity, Quantity]:
@@ -94,7 +95,7 @@ def tensions(method: str) -> tuple[Quantity, Quantity]:
             f"states/{method}/tension_X_over_a", "1",
             "place of the largest tension, over the half-width; NaN for none",
             (STATE,), of(1), method, asked_by=ON_SURFACE, nan_allowed=ANYWHERE,
-            range=Range(at_least=-1.0, at_most=1.0),
+            range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
         ),
     )  # fmt: skip
 

@@ -14,8 +14,10 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    OVER_A,
     QUANTITIES,
     STATE,
+    X_OVER_A,
     Quantity,
 )
 
@@ -33,13 +35,14 @@ def _both(
     compared: str = "",
     range: Range = _NOT_NEGATIVE,
     requires: tuple[str, ...] = (),
+    scale: str = "",
 ) -> dict[str, Quantity]:
     """Quantity of a state by both methods."""
     return {
         method: Quantity(
             f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
             nan_allowed=ANYWHERE, compared=(compared,) * (method == FEM and bool(compared)), range=range,
-            requires=requires,
+            requires=requires, scale=scale,
         )
         for method in (CLOSED_FORM, FEM)
     }  # fmt: skip
@@ -60,11 +63,11 @@ def _largest(
         ),
         _both(
             f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
-            lambda s, _: of(s).X, FINITE, range=Range(),
+            lambda s, _: of(s).X, FINITE, range=Range(), scale=X_OVER_A,
         ),
         _both(
             f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
-            lambda s, _: of(s).Y, FINITE, range=_BELOW,
+            lambda s, _: of(s).Y, FINITE, range=_BELOW, scale=OVER_A,
         ),
     )  # fmt: skip
 
@@ -85,18 +88,18 @@ REACH_LEFT = _both(
     "yield_reach_left", "1",
     "reach of yield from X = -a, the largest distance on its side of the middle at which the von Mises "
     f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone",
+    lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 REACH_RIGHT = _both(
     "yield_reach_right", "1",
     f"reach of yield from X = a, the same there, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone",
+    lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
     "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
     f"over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.depth, compared="depth of yield",
+    lambda s, _: s.strength.depth, compared="depth of yield", scale=OVER_A,
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",
@@ -104,11 +107,6 @@ ESTIMATE_YIELD = Quantity(
     "and further than 0.01 a from the edges, no closed form used",
     (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD, compared=("estimate of yield",),
     range=_NOT_NEGATIVE, accuracy=True,
-)  # fmt: skip
-
-#: Quantities over the half-width, by method.
-OVER_HALF_WIDTH = (
-    VON_MISES_X, VON_MISES_Y, SHEAR_X, SHEAR_Y, REACH_LEFT, REACH_RIGHT, DEPTH,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

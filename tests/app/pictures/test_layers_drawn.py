@@ -12,7 +12,6 @@ from galinx.app.errors import BadInput
 from galinx.app.pictures import sweep
 from galinx.app.pictures.choice import Choice, size
 from galinx.app.results.drawings import names, of_archive
-from galinx.app.results.si import drawn_in_si
 from galinx.app.scene.read import parse
 from galinx.solvers.errors import SolveError
 
@@ -184,7 +183,7 @@ def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():
     result = computed("coating", {"solve.methods": ["sie"]} | changes)
     data, load = result.data, np.array([2e4, 8e4])
     h, m = (data[f"states/sie/{name}"] for name in ("half_width", "centre"))
-    axes = drawn(result, "interfaces", **drawn_in_si(data, result.scene)).figure.axes
+    axes = next(result.drawings(figures=("interfaces",))).figure.axes
     axis = axes[0]
     X = data["interfaces/X_over_a"]
     assert "[mm]" in axes[-1].get_xlabel()

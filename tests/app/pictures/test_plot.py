@@ -286,7 +286,7 @@ def test_plot_in_si_takes_the_unit_from_the_scene(fast, tmp_path, monkeypatch):
     monkeypatch.setattr(
         drawings, "write", lambda data, scene, choice, files: units.append(choice.unit) or []
     )
-    for options in ([], ["--si"]):
+    for options in (["--dimensionless"], []):
         plot.main([str(tmp_path / "a.h5"), *options], standalone_mode=False)
     assert units == [0.0, pytest.approx(27.65)]
 

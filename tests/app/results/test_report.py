@@ -15,7 +15,6 @@ from support import computed
 from galinx import compute, template
 from galinx.app.results import report
 from galinx.app.results.report import curves, states_table
-from galinx.app.results.si import scaling
 from galinx.app.scene.read import parse
 from galinx.postprocess.page import markup
 
@@ -207,7 +206,7 @@ PAGES = {
 @pytest.mark.parametrize("name, si", [*((name, False) for name in PAGES), ("cylinder", True)])
 def test_everything_on_a_page_does_what_it_says(name, si, tmp_path):
     result = computed(*PAGES[name])
-    result.report(tmp_path / "report.html", si=si)
+    result.report(tmp_path / "report.html", dimensionless=not si)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     (faults, told), console = browsed(page, tmp_path, EVERYTHING)
     assert not faults and not console and told["saved"] == "states.csv"
@@ -228,12 +227,12 @@ def test_everything_on_a_page_does_what_it_says(name, si, tmp_path):
     ],
 )  # fmt: skip
 def test_numbers_have_prefixes(value, shown):
-    assert report._engineering(value, "Pa") == shown
+    assert report.engineering(value, "Pa") == shown
 
 
 def test_in_si_the_table_and_the_curves_have_units(map_run):
-    scene, data = map_run.scene, map_run.data
-    table = states_table(data, scaling(scene, data))
+    data = map_run.data
+    table = states_table(data, map_run.units())
     columns = {column["csv"]: i for i, column in enumerate(table["data"]["columns"])}
     speed = columns["speed [m/s]"]
     assert [row[speed] for row in table["data"]["rows"]] == pytest.approx(data["states/speed"], rel=1e-11)
@@ -254,7 +253,9 @@ def test_a_report_tells_where_the_solid_yields_and_where_answers_hold():
             "output.quantities": ["sif", "yield"],
         },
     )
-    found = {answer.name: answer.value for answer in report.answers(result.data, result.scene)}
+    found = {
+        answer.name: answer.value for answer in report.answers(result.data, result.scene, result.units())
+    }
     depth = result.data["states/closed_form/yield_depth"]
     assert (
         found["Depth of the yielded zone"]
@@ -265,7 +266,7 @@ def test_a_report_tells_where_the_solid_yields_and_where_answers_hold():
 
 def test_in_si_curves_are_in_megapascals(surface_run):
     data = surface_run.data
-    plain, si = curves(data), curves(data, scaling(surface_run.scene, data))
+    plain, si = curves(data), curves(data, surface_run.units())
     assert plain["data"]["unit"] == "/ (N/2a)" and si["data"]["unit"] == "[MPa]"
     one, other = (np.array(found["data"]["values"][0][0], dtype=float) for found in (plain, si))
     np.testing.assert_allclose(other, 27.65 * one, rtol=1e-4)  # of five digits
@@ -291,7 +292,7 @@ def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
     )
     scene = parse(text)
     result = compute(scene)
-    shown = {answer.name: answer for answer in report.answers(result.data, scene)}
+    shown = {answer.name: answer for answer in report.answers(result.data, scene, result.units())}
     tension = in_pascals(shown["Largest in-plane tension σ_XX on the surface"].value)
     p0 = in_pascals(shown["Largest contact pressure"].value)
     # The surface's own stress next to the end, where it is largest.
@@ -305,7 +306,7 @@ def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
 def test_the_largest_shear_at_an_interface_is_that_of_either_sign():
     scene = template("coating", {"solve.methods": ["sie"], "output.quantities": ["interfaces"]})
     result = compute(scene)
-    shown = {answer.name: answer for answer in report.answers(result.data, scene)}
+    shown = {answer.name: answer for answer in report.answers(result.data, scene, result.units())}
     for name, path in (("shear |σ_XY| at", "sigma_XY"), ("tension σ_YY at", "sigma_YY")):
         σ = np.nan_to_num(result.data[f"interfaces/sie/{path}"][:, 0])
         largest = np.abs(σ).max() if "shear" in name else σ.max()

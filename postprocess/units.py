@@ -1,0 +1,266 @@
+"""Units of a result: every quantity in SI with prefixes chosen once, or dimensionless as archived.
+
+Archives keep stresses over N/(2a), lengths over a and speeds over c_s, each state over its own contact.
+This is the only place where they become MPa, µm and m/s: tables, figures, pages and CSV ask
+:class:`Units`. In a result all stresses have one unit, all lengths of the contact have one, and so on.
+"""
+
+from collections.abc import Callable, Mapping
+from math import floor, log10
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.solvers.contact.solution import Contact
+
+from .quantities import Quantity, of_states, states, table
+from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
+
+
+class Scaled(NamedTuple):
+    """Name, unit and scale with which a quantity is written.
+
+    Numbers are multiplied by the factor, then the offset is added. Both are numbers, or arrays (states,)
+    where contacts of states differ.
+    """
+
+    name: str
+    unit: str
+    factor: Any = 1.0
+    offset: Any = 0.0
+
+    @property
+    def head(self) -> str:
+        """Head of a column: name and unit, which is 1 for dimensionless."""
+        return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
+
+    @property
+    def label(self) -> str:
+        """Name and unit for people; nothing stands for dimensionless."""
+        return self.name if self.unit in ("1", "none") else f"{self.name} [{self.unit}]"
+
+    def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
+        """Values in this scale, (states, …).
+
+        Args:
+            values: values as archived, (states, …); (…) for all states where the scale is a number.
+            states: numbers of the states that have values; all by default.
+        """
+        if np.ndim(self.factor) or np.ndim(self.offset):
+            shape = np.broadcast_shapes(np.shape(self.factor), np.shape(self.offset))
+            factor, offset = (
+                np.broadcast_to(scale, shape)[states].reshape(-1, *(1,) * (np.ndim(values) - 1))
+                for scale in (self.factor, self.offset)
+            )
+            return values * factor + offset
+        if self.unit == "none" or (self.factor == 1.0 and not self.offset):
+            return values
+        return self.factor * values + self.offset
+
+    def text(self, value: float, digits: int = 4) -> str:
+        """A value in this scale with its unit: ``1206 MPa``."""
+        return f"{number(value, digits)}{'' if self.unit in ('1', 'none') else f' {self.unit}'}"
+
+
+#: Function of a quantity and its name that gives its scale; None where the quantity is omitted, since
+#: another has equal values in the same unit. :class:`Units` is one.
+Scaling = Callable[[Quantity, str], Scaled | None]
+
+
+def as_archived(row: Quantity, name: str) -> Scaled:
+    """Scale of a quantity in its own unit."""
+    return Scaled(name, row.unit)
+
+
+#: Units with prefixes by that of SI, with their size, and the least number that one is used from.
+_PREFIXED: dict[str, tuple[tuple[str, float, float], ...]] = {
+    "Pa": (("Pa", 1.0, 0.0), ("kPa", 1e3, 0.5), ("MPa", 1e6, 0.1), ("GPa", 1e9, 20.0)),
+    "m": (("nm", 1e-9, 0.0), ("µm", 1e-6, 0.1), ("mm", 1e-3, 0.5), ("m", 1.0, 1.0)),
+    "N/m": (("N/m", 1.0, 0.0), ("N/mm", 1e3, 0.1), ("kN/mm", 1e6, 10.0)),
+    "m/s": (("nm/s", 1e-9, 0.0), ("µm/s", 1e-6, 0.5), ("mm/s", 1e-3, 0.5), ("m/s", 1.0, 0.5)),
+    "s": (("ns", 1e-9, 0.0), ("µs", 1e-6, 0.5), ("ms", 1e-3, 0.5), ("s", 1.0, 0.5)),
+    "J/m": (
+        ("nJ/m", 1e-9, 0.0), ("µJ/m", 1e-6, 0.5), ("mJ/m", 1e-3, 0.5), ("J/m", 1.0, 0.5),
+        ("kJ/m", 1e3, 1.0),
+    ),
+    "N/m^2": (("N/m²", 1.0, 0.0), ("kN/m²", 1e3, 0.5), ("N/mm²", 1e6, 0.1), ("kN/mm²", 1e9, 1.0)),
+}  # fmt: skip
+
+
+def prefixed(unit: str, size: float) -> tuple[str, float]:
+    """Unit with a prefix that suits numbers of a size in an SI unit, and how much of SI it is.
+
+    Units without prefixes of engineers stay.
+    """
+    best = unit, 1.0
+    for name, factor, least in _PREFIXED.get(unit, ()):
+        if size >= least * factor:
+            best = name, factor
+    return best
+
+
+class Units:
+    """Units of a result, the same for every quantity of a kind.
+
+    Args:
+        contact: punch and half-plane of the scene, under its first load.
+        data: datasets by path; those of one value a state, with the contacts of states where they differ.
+        dimensionless: quantities as archived, over N/(2a), a and c_s.
+
+    Attributes:
+        data, dimensionless: as given.
+        half_width, middle: of contacts [m], numbers, or (states,) where contacts of states differ.
+        load: per depth [N/m], a number, or (states,) where states differ in it.
+    """
+
+    def __init__(self, contact: Contact, data: Mapping[str, Any], dimensionless: bool = False) -> None:
+        self.dimensionless = dimensionless
+        self._contact, self.data = contact, data
+        ends: tuple[Any, Any] = contacts_of_states(data) or (contact.half_width, 0.0)
+        self.half_width, self.middle = ends
+        self.load: Any = data.get(states.LOAD.path, contact.load)
+
+    @property
+    def alike(self) -> bool:
+        """True where all states have the same contact and load, and so the same scale."""
+        return not (np.ndim(self.half_width) or np.ndim(self.load))
+
+    def __call__(self, row: Quantity, name: str | None = None) -> Scaled | None:
+        """Name, unit and scale of a quantity; None for one that equals another one in these units.
+
+        Args:
+            row: in the table of quantities.
+            name: its name as archived; that in its path by default.
+        """
+        name = row.path.partition("/")[2].replace("/", "_") if name is None else name
+        if row is states.VELOCITY:  # c in m/s
+            return None
+        if self.dimensionless or row.unit == "none":
+            return Scaled(name, row.unit)
+        if row.scale == EDGE:
+            return self._intensity(row, name)
+        scaled = self.scale(row.scale or row.unit, row)
+        if row.scale == OVER_C_S:
+            name = "speed" if name == "c" else name
+        return scaled._replace(name=name.removesuffix("_over_a"))
+
+    def scale(self, kind: str, row: Quantity | None = None) -> Scaled:
+        """Unit and scale of a kind of quantities, without a name.
+
+        Args:
+            kind: a unit of the table of quantities, as ``"N/(2a)"``, or a scale, as
+                :data:`galinx.postprocess.quantities.quantity.X_OVER_A`.
+            row: quantity whose unit this is; None for one of states.
+        """
+        if self.dimensionless:
+            return Scaled("", "1" if kind in (OVER_A, X_OVER_A, OVER_C_S, OVER_N) else kind)
+        contact, of_states_ = self._contact, row is None or of_states(row.path)
+        a, N = (self.half_width, self.load) if of_states_ else (contact.half_width, contact.load)
+        offset: Any = 0.0
+        if kind == "N/(2a)":
+            unit, factor, size = "Pa", N / (2.0 * a), np.median(self.load / (2.0 * self.half_width))
+        elif kind in (OVER_A, X_OVER_A, CONTACT):
+            unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(self.half_width)
+            offset = self.middle if kind == X_OVER_A and of_states_ else 0.0
+        elif kind == OVER_C_S:
+            unit, factor = "m/s", contact.solid.c_s
+            size = factor * np.max(self.data.get(states.SPEED.path, 1.0))
+        elif kind in ("N/m", OVER_N):
+            unit, factor, size = "N/m", (N if kind == OVER_N else 1.0), np.median(self.load)
+        elif kind == "a/c_s":
+            unit, factor = "s", contact.half_width / contact.solid.c_s
+            size = factor
+        elif kind == "N/(2mu)":
+            unit, factor, size = "m", contact.displacement, contact.displacement
+        elif kind in ("N^2/(4mu)", "N*a"):
+            unit, size = "J/m", contact.load * contact.displacement / 2.0
+            factor = size if kind != "N*a" else contact.load * contact.half_width
+        else:
+            unit, factor, size = kind, 1.0, self._largest(kind, row)
+        name, of_si = prefixed(unit, float(size))
+        return Scaled("", name, factor / of_si, offset / of_si)
+
+    @property
+    def stress(self) -> Scaled:
+        """Scale of stresses of states: MPa for N/(2a)."""
+        return self.scale("N/(2a)")
+
+    @property
+    def position(self) -> Scaled:
+        """Scale of positions along X over a, from the contact's middle: µm from the punch's axis."""
+        return self.scale(X_OVER_A)
+
+    @property
+    def length(self) -> Scaled:
+        """Scale of lengths over a, as depths."""
+        return self.scale(OVER_A)
+
+    def _largest(self, kind: str, row: Quantity | None) -> float:
+        """Largest number of the archive's quantities of a unit that stand in one section with a row."""
+        if row is None:
+            return 1.0
+        section = row.path.partition("/")[0]
+        if section == "run":  # seconds of work
+            return 1.0
+        values = [
+            self.data[path]
+            for path, other in table().items()
+            if other.unit == kind and not other.scale and path.startswith(f"{section}/")
+            and not other.symbol and path in self.data
+        ]  # fmt: skip
+        if row.symbol:
+            values = [self.data[row.path]] if row.path in self.data else []
+        finite = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in map(np.asarray, values)]
+        return float(max(finite, default=0.0)) or 1.0
+
+    def _intensity(self, row: Quantity, name: str) -> Scaled | None:
+        """K_I: the limit of the pressure times (2π distance)^-exponent, whose unit has that power.
+
+        The dimensionless one is the limit of the pressure over N/a and the weight (1 - r)^α (1 + r)^β of
+        a flat punch.
+        """
+        if row is states.K_I_BOTH:  # the ends differ, each by its own exponent
+            return None
+        side = states.BETA if row.path.endswith("left") else states.ALPHA
+        if side.path not in self.data:
+            return Scaled(name, "1")
+        exponent, a = self.data[side.path], self.half_width
+        stress = self.scale("N/(2a)")
+        symbol = {states.ALPHA.path: "α", states.BETA.path: "β"}[side.path]
+        root = np.allclose(exponent, -0.5, rtol=0.0, atol=1e-9)
+        unit = f"{stress.unit}√m" if root else f"{stress.unit}·m^(-{symbol})"
+        return Scaled(name, unit, stress.factor * (4.0 * np.pi * a) ** -exponent)
+
+
+def contacts_of_states(data: Mapping[str, Any]) -> tuple[NDArray, NDArray] | None:
+    """Half-width and middle [m] of every state's contact, (states,), where they are archived."""
+    for h, m in zip(states.HALF_WIDTH.values(), states.CENTRE.values()):
+        if h.path in data and m.path in data:
+            return data[h.path], data[m.path]
+    return None
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number with so many significant digits: 1206, 0.03125, 1.2e-07; "" for NaN."""
+    if value != value:
+        return ""
+    rounded = float(f"{value:.{digits - 1}e}")
+    return f"{rounded:.0f}" if 10.0**digits <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
+
+
+#: Prefixes of units, and the position of the empty one.
+_PREFIXES, _MIDDLE = "pnµm kMGT", 4
+
+
+def engineering(value: float, unit: str, digits: int = 4) -> str:
+    """Number with four digits and a prefix of its own: 113.8 GPa; N/mm for loads."""
+    if unit == "N/m":
+        name, of_si = prefixed(unit, abs(value))
+        return f"{number(value / of_si, digits)} {name}"
+    if value == 0.0:
+        return f"0 {unit}"
+    size = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
+    thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
+    prefix = _PREFIXES[thousands + _MIDDLE].strip()
+    return f"{number(value / 1000.0**thousands, digits)} {prefix}{unit}".replace("-", "−")

@@ -82,8 +82,8 @@ def _called(name: str, figure: str) -> str:
 def main(*names: str) -> None:
     """Compute the scenes and draw what is shown, of some scenes alone where they are named."""
     from galinx import compute, template
+    from galinx.app.figures.files import content
     from galinx.app.study.drawings import of_study
-    from galinx.postprocess.figures.canvas import content
 
     folder = DOCS / "figures" / "gallery"
     folder.mkdir(parents=True, exist_ok=True)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from galinx.texts import plain
+
 from .quantities import (
     Quantity,
     layers,

@@ -101,8 +101,7 @@ def fit(
 
     Example: ./run.sh fit dahl scenes/slip.csv -o fit
     """
-    from galinx.postprocess.figures.canvas import save
-
+    from ..figures.files import save
     from ..results.fitted import figure, fitted, section
 
     if not ranks.is_root():

@@ -200,9 +200,9 @@ def plot(
 
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
-    from ..pictures import choice
-    from ..pictures.choice import Files
-    from ..results.drawings import in_units, write
+    from ..figures import choice
+    from ..figures.archive import in_units, write
+    from ..figures.files import Files
     from ..results.result import load
 
     selection = choice.Choice(
@@ -236,8 +236,8 @@ def dispersion(
 
     Example: ./run.sh dispersion scenes/coating.toml -o figures
     """
-    from ..pictures import waves
-    from ..pictures.choice import Files
+    from ..figures import waves
+    from ..figures.files import Files
     from ..scene.changes import from_words
     from ..scene.read import read
 
@@ -299,8 +299,8 @@ def response(
 
     Example: ./run.sh response scenes/start_from_rest.toml -o figures
     """
-    from ..pictures import waves as punch
-    from ..pictures.choice import Files
+    from ..figures import waves as punch
+    from ..figures.files import Files
     from ..scene.changes import from_words
     from ..scene.read import read
 

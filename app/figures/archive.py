@@ -39,7 +39,7 @@ def _no_figure(of: Archive) -> Drawing:
     raise AssertionError("a film is no figure")
 
 
-#: By name, in the order they are drawn; the first four, and what a motion does, answer what is asked most.
+#: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
     "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES, True),
     "inside": _Figure(stresses.inside, stresses.has_inside, _STRESSES, True),

@@ -222,7 +222,7 @@ def _mp4(film: Film, dpi: int) -> bytes:
 
 
 #: Dots per inch that a file may have.
-_DPI = range(30, 2401)
+_RESOLUTIONS = range(30, 2401)
 
 
 class Written(NamedTuple):
@@ -274,8 +274,8 @@ class Files:
         Raises:
             BadInput: a format, or a file for several figures; the message says what to do.
         """
-        if self.dpi and self.dpi not in _DPI:
-            raise BadInput(f"--dpi: found {self.dpi}, expected {_DPI[0]} to {_DPI[-1]}")
+        if self.dpi and self.dpi not in _RESOLUTIONS:
+            raise BadInput(f"--dpi: found {self.dpi}, expected {_RESOLUTIONS[0]} to {_RESOLUTIONS[-1]}")
         for name in names:
             valid, option = _formats(name), f"-o {self.to}" if self.ending else "--format"
             for ending in (self.ending,) if self.ending else self.formats:

@@ -115,6 +115,8 @@ def _in_order(labels: StateLabels, states: NDArray) -> NDArray[np.int64]:
     strokes = list(dict.fromkeys(labels.values(STROKE).tolist()))
     order = [
         (strokes.index(stroke), X if stroke.startswith("F") else -X)
-        for stroke, X in zip(labels.values(STROKE)[states].tolist(), labels.values(PLACE)[states].tolist())
+        for stroke, X in zip(
+            labels.values(STROKE)[states].tolist(), labels.values(PLACE)[states].tolist()
+        )
     ]
     return states[sorted(range(len(states)), key=order.__getitem__)]

@@ -1,4 +1,4 @@
-"""Friction of an archive: loops of its states, stick-slip of its sliders; and measured friction with a law."""
+"""Friction of an archive: loops of its states, stick-slip of its sliders; and fits to measurements."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -159,7 +159,8 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
                 _point(axis, X, values, place, colour, name)
 
     return Panel(
-        X_LABEL, F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03), ylim=(low - margin, high + margin),
+        X_LABEL, F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
+        ylim=(low - margin, high + margin),
         at_y=(0.0,), after=after,
     )  # fmt: skip
 
@@ -292,8 +293,12 @@ def slider(of: Archive) -> Drawing:
         "friction over velocity in the last cycle, in the direction of the arrows."
     )
     if len(cycles) < len(laws):
-        caption += " Where no loop is drawn the mass has no cycle in the end: it slides steadily or sticks."
-    missing = f"{count - len(laws)} of {count} laws{several * ' and loads'} not shown." * (len(laws) < count)
+        caption += (
+            " Where no loop is drawn the mass has no cycle in the end: it slides steadily or sticks."
+        )
+    missing = f"{count - len(laws)} of {count} laws{several * ' and loads'} not shown." * (
+        len(laws) < count
+    )
     return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
 
 
@@ -322,9 +327,11 @@ def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool)
     return render([
         Panel(
             f"position ({unit})" if timed else f"slip ({unit})", "friction coefficient $f$",
-            curves=[Curve(X / of_si, f, measured, "measured", DOTS), Curve(X / of_si, law, fitted, "fitted")],
+            curves=[
+                Curve(X / of_si, f, measured, "measured", DOTS), Curve(X / of_si, law, fitted, "fitted"),
+            ],
         ),
-        Panel(label, "measured less fitted $f$", curves=[Curve(over, f - law, measured, "", DOTS)], at_y=(0.0,)),
+        Panel(
+            label, "measured less fitted $f$", at_y=(0.0,), curves=[Curve(over, f - law, measured, "", DOTS)]
+        ),
     ], high=0.66)  # fmt: skip
-
-

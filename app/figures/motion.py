@@ -33,7 +33,8 @@ _LEAST_FRAMES = 4
 _TOP = 2.5
 #: What is drawn over time, and what it is called.
 _OVER_TIME = (
-    (rows.CENTRE, "centre of pressure"), (rows.V0, "indentation $v_0$"), (rows.K_I_LEFT, "$K_I$ at $X = -a$"),
+    (rows.CENTRE, "centre of pressure"), (rows.V0, "indentation $v_0$"),
+    (rows.K_I_LEFT, "$K_I$ at $X = -a$"),
     (rows.K_I_RIGHT, "$K_I$ at $X = a$"),
 )  # fmt: skip
 
@@ -98,7 +99,9 @@ def time(of: Archive) -> Drawing:
         caption += f" At {drive_text(c[0], g[0], way[0])}."
     missing = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
     columns = 2 if not of.size or of.size.width > 3.0 else 1
-    return Drawing("time", caption, render(panels, of.size, columns, explained(methods)), left_out=missing)
+    return Drawing(
+        "time", caption, render(panels, of.size, columns, explained(methods)), left_out=missing
+    )
 
 
 def drive_text(c: float, g: float, way: float) -> str:
@@ -150,7 +153,9 @@ def energies(of: Archive) -> Drawing:
         f"are within {off:.1e} of the largest work. Friction took {heat:.3g} {unit.replace('*', ' ')} "
         "meanwhile, of first order in the load, where all of these are of second."
     )
-    return Drawing("energies", caption, render(panels, of.size, 0, notes, high=0.68), left_out=_left_out(of))
+    return Drawing(
+        "energies", caption, render(panels, of.size, 0, notes, high=0.68), left_out=_left_out(of)
+    )
 
 
 def has_pressures(of: Archive) -> bool:
@@ -168,7 +173,10 @@ def _pressures(of: Archive, start: int) -> tuple[NDArray, NDArray, NDArray, Pane
         steady = -scale.factor * FlatPunch(of.scene.solid.response(c), g).σ_YY(of.data[rows.PLACES.path])
     name = named(r"contact pressure $-\sigma_{YY}$", scale.unit)
     panel = Panel(
-        position_name(of, "position "), name, xlim=_ends(of), ylim=(0.0, _TOP * float(np.max(scale.factor)))
+        position_name(of, "position "),
+        name,
+        xlim=_ends(of),
+        ylim=(0.0, _TOP * float(np.max(scale.factor))),
     )
     return X, p, steady, panel
 
@@ -190,7 +198,9 @@ def pressures(of: Archive) -> Drawing:
     c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
     at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)])
     X, p, steady, panel = _pressures(of, start)
-    curves = [Curve(X, p[i], look, _at_time(of, t[i])) for i, look in zip(at, looks(len(at), ordered=True))]
+    curves = [
+        Curve(X, p[i], look, _at_time(of, t[i])) for i, look in zip(at, looks(len(at), ordered=True))
+    ]
     curves.append(Curve(X, steady, _STEADY, "steady", width=0.8))
     caption = (
         f"Contact pressure under the punch at c = {c:.4g}, σ_XY/σ_YY = {g:.4g}, by the integral "
@@ -301,10 +311,12 @@ def _beside(
                 curve
                 for k, look in enumerate(styles)
                 for curve in surface_curves(
-                    X, {method: y[k] for method, y in values.items()}, look, labels[k], k / len(styles), place
+                    X, {method: y[k] for method, y in values.items()}, look, labels[k], k / len(styles),
+                    place,
                 )
             ],
-            xlim=(place[1] - half * place[0], place[1] + half * place[0]), ylim=limits(X, every), at_y=(0.0,),
+            xlim=(place[1] - half * place[0], place[1] + half * place[0]), ylim=limits(X, every),
+            at_y=(0.0,),
             bands=[_ends(of)] if half == _BESIDE else (),
         )
         for n, (title, values) in enumerate(columns)
@@ -323,7 +335,7 @@ def film_of_surface(of: Archive) -> tuple[Film, str]:
                            looks(1) * len(t), True)[0] for name in _LABELS}  # fmt: skip
 
     def panels(frame: int) -> list[Panel]:
-        shown = []
+        shown: list[Panel] = []
         for name, panel in empty.items():
             steady = replace(panel.curves[0], y=panel.curves[0].y * np.nan)
             if np.isfinite(last[name]).any():
@@ -331,7 +343,10 @@ def film_of_surface(of: Archive) -> tuple[Film, str]:
                 place = float(np.max(scale.factor)), float(np.max(scale.offset))
                 steady = surface_curves(X, {SIE: last[name][0]}, _STEADY, "", 0.0, place)[0]
             per = len(panel.curves) // len(t)
-            now = [replace(curve, form="line", width=1.0) for curve in panel.curves[per * frame : per * frame + 1]]
+            now = [
+                replace(curve, form="line", width=1.0)
+                for curve in panel.curves[per * frame : per * frame + 1]
+            ]
             title = _at_time(of, t[frame]) if not shown else ""
             shown.append(replace(panel, curves=[*now, steady], title=title))
         i = nearest[frame]
@@ -365,5 +380,3 @@ def _steady(of: Archive, t: NDArray) -> dict[str, NDArray[np.float64]]:
         at["sigma_YY"].append(-load * punch.σ_YY(X))
     factor = float(np.max(of.scaled(rows.SURFACE_PRESSURE[_methods(of)[0]]).factor))
     return {name: factor * np.array(values) for name, values in at.items()}
-
-

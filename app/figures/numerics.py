@@ -40,7 +40,9 @@ def mesh(of: Archive) -> Drawing:
     )
     if fem.mode == FREE_ON_LAYERS:
         most = int(data[runs.RECORD["cells"].path].max())
-        caption += f" Here that of the contact at rest; meshes that follow contacts have up to {most} cells."
+        caption += (
+            f" Here that of the contact at rest; meshes that follow contacts have up to {most} cells."
+        )
     return Drawing("mesh", caption, figure, pixels=True)
 
 
@@ -64,7 +66,9 @@ def degrees(of: Archive) -> Drawing:
         curves.append(Curve(computed, change[i][computed], look, label, JOINED))
         at = np.array([data[runs.RECORD["degree"].path][i] + off])
         for row, marker in errors:
-            curves.append(Curve(at, np.array([largest(row, c[i])]), look._replace(marker=marker), "", MARKERS))
+            curves.append(
+                Curve(at, np.array([largest(row, c[i])]), look._replace(marker=marker), "", MARKERS)
+            )
     notes: list[Any] = [marked("estimated error", "_"), *[marked("true error", "x")] * (len(errors) - 1)]
     panel = Panel(
         "polynomial degree", "relative change or error of $K_I$", curves=curves, log="y", whole=True
@@ -88,5 +92,3 @@ def lines_figure(
         for (label, y), look in zip(lines.items(), looks(len(lines)))
     ]
     return render([Panel(x_label, y_label, curves=curves, title=title, log="y" + "x" * log_x)], Size(5.0))
-
-

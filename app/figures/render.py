@@ -27,13 +27,13 @@ from galinx.texts import folded, plain
 from .style import GREY, PAGE, SMALL, TALLEST, Look, styled
 
 #: Least side of a legible panel, free space around a figure and between panels [in].
-_LEAST, _EDGE, _BETWEEN = 0.35, 0.04, 0.1
-#: A line of type [in], and markers along a curve.
-_LINE, _MARKERS = 0.14, 16
+_LEAST, _EDGE, _BETWEEN = 0.35, 0.04, 0.14
+#: Height that panels have at least where a page has room [in], and markers along a curve.
+_LOW, _MARKERS = 0.95, 16
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
 #: Times that a layout is measured: texts that are folded need other room.
-_ROUNDS = 3
+_ROUNDS = 4
 
 #: Forms of curves: solutions are lines, finite elements markers; both joined where they are alone.
 LINE, MARKERS, JOINED, DOTS = "line", "markers", "joined", "dots"
@@ -58,8 +58,8 @@ class Curve:
         x, y: the numbers.
         look: colour, line and marker.
         label: name in the legend, "" for none.
-        form: LINE, MARKERS (as many as can be told apart, between those of other curves), JOINED (both) or
-            DOTS (every number).
+        form: LINE, MARKERS (as many as can be told apart, between those of others), JOINED (both) or DOTS
+            (every number).
         width: of the line [pt].
         turn: place of its markers between those of others, 0 to 1.
     """
@@ -117,7 +117,6 @@ class Panel:
         bands: parts of x that are shaded.
         at_x, at_y: thin grey lines.
         beside: a second axis on top: its name, and what x is multiplied by.
-        polar: x is an angle [rad].
         own_legend: names of its curves stand below it.
         after: draws more once the panel has its place.
         tall: height over that of other rows.
@@ -139,7 +138,6 @@ class Panel:
     at_x: Sequence[float] = ()
     at_y: Sequence[float] = ()
     beside: tuple[str, float] | None = None
-    polar: bool = False
     own_legend: bool = False
     after: Callable[[Axes], None] | None = None
     tall: float = 1.0
@@ -162,7 +160,9 @@ def of_methods(exact: bool, fem: bool, lines: str = "closed form") -> list[Line2
 
 def marked(label: str, marker: str = "o") -> Line2D:
     """Marker of a legend, of no curve in particular."""
-    return Line2D([], [], color=GREY, linestyle="none", marker=marker, markerfacecolor="none", label=label)
+    return Line2D(
+        [], [], color=GREY, linestyle="none", marker=marker, markerfacecolor="none", label=label
+    )
 
 
 @styled
@@ -192,8 +192,7 @@ def render(
     FigureCanvasAgg(figure)
     made = []
     for n, panel in enumerate(panels):
-        kind = {"projection": "polar"} if panel.polar else {}
-        axis = figure.add_subplot(rows, columns, n + 1, **kind)
+        axis = figure.add_subplot(rows, columns, n + 1)
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
         made.append(_Drawn(axis, panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
@@ -207,7 +206,7 @@ def render(
 
 def across(width: float, count: int, least: float = 1.55) -> int:
     """Panels in a row of a figure so wide [in], as evenly as rows can be filled."""
-    most = max(1, min(4, int(width / least)))
+    most = max(1, min(3, int(width / least)))
     if count == 4 and most == 3:
         return 2
     return ceil(count / ceil(count / most))
@@ -267,11 +266,6 @@ class _Drawn:
             axis.tick_params(labelbottom=False)
         if panel.y is None:
             axis.tick_params(labelleft=False)
-        if panel.polar:
-            axis.set_thetagrids(range(0, 360, 45))
-            axis.tick_params(labelsize=SMALL, pad=0.5)
-            axis.set_rlabel_position(22.5)
-            axis.yaxis.set_major_locator(MaxNLocator(3, prune="both"))
         if panel.own_legend:
             entries = [_entry(curve) for curve in panel.curves if curve.label]
             if entries:
@@ -293,18 +287,27 @@ class _Drawn:
 
     def _curve(self, curve: Curve) -> Line2D:
         y = np.asarray(curve.y) / 10.0**self.power
-        style: dict[str, Any] = {"gid": "curve", "color": curve.look.colour, "linewidth": curve.width, "markerfacecolor": "none"}
+        style: dict[str, Any] = {
+            "gid": "curve",
+            "color": curve.look.colour,
+            "linewidth": curve.width,
+            "markerfacecolor": "none",
+        }
         if curve.form == LINE:
             return self.axis.plot(curve.x, y, linestyle=curve.look.line, **style)[0]
         if curve.form == DOTS:
             return self.axis.plot(curve.x, y, curve.look.marker, markersize=2.0, **style)[0]
         at = spaced(np.asarray(curve.x, dtype=float), curve.turn)
         if curve.form == JOINED:
-            style |= {"linewidth": 0.6 * curve.width, "linestyle": curve.look.line, "markevery": at.tolist()}
+            style |= {
+                "linewidth": 0.6 * curve.width,
+                "linestyle": curve.look.line,
+                "markevery": at.tolist(),
+            }
             return self.axis.plot(curve.x, y, marker=curve.look.marker, **style)[0]
-        return self.axis.plot(
-            np.asarray(curve.x)[at], y[at], curve.look.marker, **style, markersize=2.8
-        )[0]
+        return self.axis.plot(np.asarray(curve.x)[at], y[at], curve.look.marker, **style, markersize=2.8)[
+            0
+        ]
 
     def fit(self, wide: float, tall: float) -> None:
         """Fold texts, and thin out ticks, to a panel so wide and so tall [in]."""
@@ -321,11 +324,15 @@ class _Drawn:
         ):
             if words.strip():
                 fit_text(text, words, room * dpi)
-        if panel.polar:
-            return
         for one, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
             if one.get_scale() == "linear":
-                one.set_major_locator(MaxNLocator(max(2, min(8, int(side / apart))), integer=panel.whole and one is axis.xaxis, steps=[1, 2, 2.5, 5, 10]))
+                one.set_major_locator(
+                    MaxNLocator(
+                        max(2, min(8, int(side / apart))),
+                        integer=panel.whole and one is axis.xaxis,
+                        steps=[1, 2, 2.5, 5, 10],
+                    )
+                )
         for other in axis.child_axes:
             if hasattr(other, "_functions") and panel.beside:
                 other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
@@ -335,6 +342,7 @@ class _Drawn:
     def _place_legend(self, wide: float, tall: float) -> None:
         """Put the panel's own legend under what is below it."""
         axis = self.axis
+        assert self.legend is not None
         below = axis.bbox.y0 - min(box.y0 for box in _boxes(axis, of_legend=False))
         self.legend.set_bbox_to_anchor((0.5, -(below / axis.figure.dpi + 0.03) / tall), axis.transAxes)
 
@@ -397,7 +405,9 @@ class _Layout:
         self.figure, self.drawn, self.columns, self.size, self.high = figure, drawn, columns, size, high
         self.rows = ceil(len(drawn) / columns)
         self.foot = self._legend(handles)
-        self.bars = {n: self._bar(one) for n, one in enumerate(drawn) if one.panel.map and one.panel.map.label}
+        self.bars = {
+            n: self._bar(one) for n, one in enumerate(drawn) if one.panel.map and one.panel.map.label
+        }
         tall = [1.0] * self.rows
         for n, one in enumerate(drawn):
             tall[n // columns] = one.panel.tall
@@ -445,6 +455,7 @@ class _Layout:
         Raises:
             TooSmall: panels would not be legible.
         """
+        self._align()
         wide, tall = self.size.width / self.columns - 0.6, 1.0
         rooms = np.tile([0.45, 0.1, 0.35, 0.2], (len(self.drawn), 1))
         for _ in range(_ROUNDS):
@@ -458,7 +469,6 @@ class _Layout:
         for one in self.drawn:
             if one.legend is not None:
                 one._place_legend(wide, tall)
-        self._align()
 
     def _fit_bar(self, bar: Any, one: _Drawn, tall: float) -> None:
         label = one.panel.map.label if one.panel.map else ""
@@ -482,9 +492,9 @@ class _Layout:
     def _place(self, rooms: NDArray) -> tuple[float, float]:
         """Place panels with so much space around each, (panels, 4); width and height of one [in]."""
         rows, columns, figure = self.rows, self.columns, self.figure
-        around = np.zeros((rows * columns, 4))
-        around[: len(rooms)] = rooms
-        around = around.reshape(rows, columns, 4)
+        every = np.zeros((rows * columns, 4))
+        every[: len(rooms)] = rooms
+        around = every.reshape(rows, columns, 4)
         left, right = around[..., 0].max(axis=0), around[..., 1].max(axis=0)
         below, above = around[..., 2].max(axis=1), around[..., 3].max(axis=1)
         foot = self.foot[1]
@@ -495,14 +505,14 @@ class _Layout:
         ratio = self._ratio()
         tall = wide * ratio if self.size.height is None else (self.size.height - between) / share
         if self.size.height is None:
-            tall = min(tall, (TALLEST - between) / share)
+            tall = min(max(tall, _LOW * (not self._maps)), (TALLEST - between) / share)
         if min(wide, tall * self.tall.max()) < _LEAST:
             needed = f"{beside + columns * _LEAST / min(ratio, 1.0):.1f} in"
             if self.size.height is not None:
                 needed = f"{beside + columns * _LEAST:.1f} in x {between + share * _LEAST:.1f} in"
             raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
         spare = 0.0
-        if any(one.panel.map and one.panel.map.equal for one in self.drawn) and tall < wide * ratio:
+        if self._maps and tall < wide * ratio:
             spare, wide = (wide - tall / ratio) * columns, tall / ratio
         height = self.size.height or between + share * tall
         figure.set_size_inches(self.size.width, height)
@@ -515,11 +525,21 @@ class _Layout:
                 n = row * columns + column
                 if n < len(self.drawn):
                     self.drawn[n].axis.set_position(
-                        [x / self.size.width, y / height, wide / self.size.width, tall * self.tall[row] / height]
+                        [
+                            x / self.size.width,
+                            y / height,
+                            wide / self.size.width,
+                            tall * self.tall[row] / height,
+                        ]
                     )
                 x += wide + right[column] + _BETWEEN
             y -= below[row] + _BETWEEN
         return wide, tall
+
+    @property
+    def _maps(self) -> bool:
+        """True for maps whose axes have one scale."""
+        return any(one.panel.map and one.panel.map.equal for one in self.drawn)
 
     def _ratio(self) -> float:
         """Height of a panel over its width."""
@@ -527,10 +547,10 @@ class _Layout:
             if one.panel.map and one.panel.map.equal:
                 axis = one.axis
                 return float(np.ptp(axis.get_ylim()) / np.ptp(axis.get_xlim()))
-        return 1.0 if any(one.panel.polar for one in self.drawn) else self.high
+        return self.high
 
     def _align(self) -> None:
-        self.figure.align_ylabels([one.axis for one in self.drawn if not one.panel.polar])
+        self.figure.align_ylabels([one.axis for one in self.drawn])
 
 
 class Film:
@@ -542,7 +562,9 @@ class Film:
         size: of the figure.
     """
 
-    def __init__(self, panels: Callable[[int], Sequence[Panel]], frames: int, size: Size | None = None) -> None:
+    def __init__(
+        self, panels: Callable[[int], Sequence[Panel]], frames: int, size: Size | None = None
+    ) -> None:
         self._panels, self.frames = panels, frames
         first = panels(0)
         self.figure = render(first, size, columns=len(first), high=0.85)

@@ -107,7 +107,11 @@ class StateLabels:
         scaled = self._units(row, name)
         if scaled is None or np.ndim(scaled.factor) or scaled.offset:
             return str(row.symbol), 1.0, row.unit
-        return "V" if name == C and scaled.unit != "1" else str(row.symbol), float(scaled.factor), scaled.unit
+        return (
+            "V" if name == C and scaled.unit != "1" else str(row.symbol),
+            float(scaled.factor),
+            scaled.unit,
+        )
 
     def fixed(self, names: Sequence[str], states: NDArray) -> dict[str, Any]:
         """Values of the named parameters at which the others are varied.

@@ -14,7 +14,6 @@ from galinx.postprocess.quantities.layers import ALONG_X, INTERFACE_DEPTH, INTER
 from galinx.postprocess.quantities.quantity import (
     ALONG,
     CONTACT,
-    FEM,
     INSIDE,
     INTERFACE,
     METHODS,
@@ -59,7 +58,7 @@ def along(X: NDArray, values: NDArray) -> float:
 
 
 def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
-    """Positions and values of a line that is broken at the edges of the punch: across one it would lie."""
+    """Positions and values of a line broken at the edges of the punch: across one it would lie."""
     beside, gap = ~under_punch(X), [np.nan]
     parts = (beside & (X < 0.0), ~beside, beside & (X > 0.0))
     pieces = [(X[part], values[part]) for part in parts if not np.isnan(values[part]).all()]
@@ -96,7 +95,9 @@ def surface_curves(
         elif curve.form == "joined":
             at = np.zeros(len(X), dtype=bool)
             at[spaced(np.where(inside, X, np.nan), turn)] = True
-            curves.append(replace(curve, form="markers", label="", x=offset + factor * X[at], y=curve.y[at]))
+            curves.append(
+                replace(curve, form="markers", label="", x=offset + factor * X[at], y=curve.y[at])
+            )
             (x, y), curve = broken(X, np.asarray(curve.y)), replace(curve, form=LINE, width=0.6)
         else:
             x, y = X[inside], np.asarray(curve.y)[inside]
@@ -150,7 +151,9 @@ def position_name(of: Archive, words: str = "position on the surface ") -> str:
 
 def contacts_of(of: Archive, states: Sequence[int]) -> list[tuple[float, float]]:
     """Ends of some states' contacts in the figure's units, each once."""
-    ends = {tuple(round(b + s * a, 12) for s in (-1.0, 1.0)) for a, b in (place_of(of, i) for i in states)}
+    ends = {
+        tuple(round(b + s * a, 12) for s in (-1.0, 1.0)) for a, b in (place_of(of, i) for i in states)
+    }
     return sorted(ends)  # type: ignore[arg-type]
 
 
@@ -195,7 +198,8 @@ def surface(of: Archive) -> Drawing:
         panels[1 : len(groups)] = [replace(panel, after=None) for panel in panels[1 : len(groups)]]
     if len([1 for _, numbers, _ in groups for _ in numbers]) == len(groups) == 1:
         panels = [
-            replace(panel, curves=[replace(curve, label="") for curve in panel.curves]) for panel in panels
+            replace(panel, curves=[replace(curve, label="") for curve in panel.curves])
+            for panel in panels
         ]
     methods = {method for values in shown.values() for method in values}
     columns, size = len(groups), choice.size
@@ -326,8 +330,12 @@ def interfaces(of: Archive) -> Drawing:
     depths, reach, unit = _depths(of)
     shown = spread(range(len(depths)), max(1, int(width / _LEAST_INTERFACE)))
     available = of.by_method(STATE, INTERFACE, ALONG)
-    chosen = [require_one_of("quantity", name, available) for name in choice.quantities] or list(available)
-    X, panels, methods, both_sides = of.data[ALONG_X.path], [], set(), False
+    chosen = [require_one_of("quantity", name, available) for name in choice.quantities] or list(
+        available
+    )
+    X, both_sides = of.data[ALONG_X.path], False
+    panels: list[Panel] = []
+    methods: set[str] = set()
     for sides, words in _AT_INTERFACES.items():
         rows = [available[name] for name in sides if name in chosen]
         both_sides |= len(rows) > 1
@@ -527,14 +535,18 @@ def inside(of: Archive) -> Drawing:
     fixed = [name for name in labels.parameters if name not in labels.varied(states)]
     caption = (
         f"Stresses inside below the punch (black bar), {METHODS[method]}, at "
-        f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a bar "
-        "its colours are clipped."
+        f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
+        "bar its colours are clipped."
     )
     caption += " Dashed lines are the interfaces." * bool(lines)
-    if any(panel.map and panel.map.level and panel.map.values.max() > panel.map.level for panel in panels):
+    if any(
+        panel.map and panel.map.level and panel.map.values.max() > panel.map.level for panel in panels
+    ):
         caption += " Within the white line the solid would yield."
     if off:
-        caption += f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."
+        caption += (
+            f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."
+        )
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
     return Drawing("inside", caption, figure, True, not_shown(labels, states, how, choice.states))
 

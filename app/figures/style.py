@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-#: Widths of a column and of a page of most journals, 85 and 170 mm, and the height of a page, 230 mm [in].
+#: Widths of a column and of a page of most journals, and the height of a page [in].
 COLUMN, PAGE, TALLEST = 85.0 / 25.4, 170.0 / 25.4, 230.0 / 25.4
 
 #: Sizes of type [pt]; nothing is smaller than the last when printed.

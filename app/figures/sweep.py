@@ -1,8 +1,8 @@
-"""Numbers of an archive's states over what its scene sweeps, over the angle of its solid, and over the
-thickness of its uppermost layer.
+"""Numbers of an archive's states over what is swept, over the angle of the solid, and over the
+thickness of the uppermost layer.
 
-Numbers over a sweep are those of the archive; two swept numbers make maps. Over the angle of the solid the
-closed form gives the speed limit, and the exponents and K_I of sharp edges, or contacts with free ends.
+Numbers over a sweep are those of the archive; two swept numbers make maps. Over the angle of the solid
+the closed form gives the speed limit, and the exponents and K_I of sharp edges, or contacts with free ends.
 Over the thickness of the uppermost layer the integral equation gives K_I, and the largest stresses along
 the layer's lower face.
 """
@@ -76,7 +76,7 @@ class Column:
     @property
     def best(self) -> NDArray:
         """Numbers of the states, not by finite elements where there are others."""
-        return next((values for method, values in self.values.items() if method != FEM), self.values.get(FEM))  # type: ignore[return-value]
+        return self.values[next((method for method in self.values if method != FEM), FEM)]
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,11 @@ def _grid(of: Archive, sweep: Sweep) -> tuple[list[Any], list[Any], NDArray] | N
     free = [name for name in labels.varied(of.selected()) if name not in (sweep.name, sweep.by)]
     every = labels.where(of.selected(), **labels.fixed(free, of.selected()))
     across, up = (labels.distinct(name, every) for name in (sweep.name, sweep.by))
-    if min(len(across), len(up)) < _OF_MAP or len(every) != len(across) * len(up) or PLACE in (sweep.name, sweep.by):
+    if (
+        min(len(across), len(up)) < _OF_MAP
+        or len(every) != len(across) * len(up)
+        or PLACE in (sweep.name, sweep.by)
+    ):
         return None
     numbers = np.zeros((len(up), len(across)), dtype=int)
     for state in every.tolist():
@@ -188,7 +192,9 @@ def _grid(of: Archive, sweep: Sweep) -> tuple[list[Any], list[Any], NDArray] | N
     return across, up, numbers
 
 
-def _maps(of: Archive, sweep: Sweep, columns: dict[str, Column], across: Any, up: Any, numbers: Any) -> list[Panel]:
+def _maps(
+    of: Archive, sweep: Sweep, columns: dict[str, Column], across: Any, up: Any, numbers: Any
+) -> list[Panel]:
     x, y = sweep.x[numbers[0]], _axis(of, sweep.by)[1][numbers[:, 0]]
     panels = []
     for name in sweep.drawn:
@@ -202,7 +208,9 @@ def _maps(of: Archive, sweep: Sweep, columns: dict[str, Column], across: Any, up
         signed = bool(np.nanmin(fine) < -1e-9 * limit)
         panels.append(Panel(
             sweep.label, _axis(of, sweep.by)[0], xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]),
-            map=Map(X, Y, fine, named(shown.about, shown.unit), limit, signed=signed, lines=True, equal=False),
+            map=Map(
+                X, Y, fine, named(shown.about, shown.unit), limit, signed=signed, lines=True, equal=False
+            ),
         ))  # fmt: skip
     return panels
 
@@ -247,7 +255,9 @@ def columns_of(of: Archive, method: str | None = None) -> dict[str, Column]:
             continue
         scaled = of.scaled(first)
         values = {m: np.asarray(scaled.of(of.data[row.path]), dtype=float) for m, row in rows.items()}
-        label = _label(first) + " over $a$" * ("over the half-width" in first.about and of.units.dimensionless)
+        label = _label(first) + " over $a$" * (
+            "over the half-width" in first.about and of.units.dimensionless
+        )
         columns[name] = Column(label, "" if scaled.unit in ("1", "none") else scaled.unit, values)
     shear = {m: rows[4:8] for m, rows in layers.INTERFACE_EXTREMES.items() if of.has(rows[4], rows[6])}
     if shear:
@@ -288,7 +298,9 @@ def _axis(of: Archive, name: str) -> tuple[str, NDArray]:
     return named(about, unit), factor * labels.values(name)
 
 
-def _over(of: Archive, requested: str, selected: NDArray) -> tuple[str, str, tuple[str, float] | None, NDArray]:
+def _over(
+    of: Archive, requested: str, selected: NDArray
+) -> tuple[str, str, tuple[str, float] | None, NDArray]:
     """Parameter or quantity that curves are drawn over: its name, that of its axis, a second axis, and
     numbers, (states,)."""
     labels, columns = of.labels, columns_of(of, method="")
@@ -296,7 +308,9 @@ def _over(of: Archive, requested: str, selected: NDArray) -> tuple[str, str, tup
     if requested:
         require_one_of("x", requested, [*numeric, _SPEED, *columns])
     swept = _swept(labels, selected) or labels.varied(selected)
-    name = C if requested == _SPEED else requested or next((name for name in swept if name in numeric), "")
+    name = (
+        C if requested == _SPEED else requested or next((name for name in swept if name in numeric), "")
+    )
     if not name:
         raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
     if name not in labels.parameters:
@@ -427,7 +441,9 @@ def _of_contacts(
     """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end; and what
     they show. Tensions are no nearer to an end than a distance over a."""
     length, unit = replace_unit(of)
-    of_pa, stress_unit = (1e-6, "MPa") if of.units.dimensionless else (_of_pascal(of), of.units.stress.unit)
+    of_pa, stress_unit = (
+        (1e-6, "MPa") if of.units.dimensionless else (_of_pascal(of), of.units.stress.unit)
+    )
 
     def numbers(response: Any, body: Contact) -> list[float]:
         contact = contacts(response, np.array([g]), body.profile, body.compression)
@@ -445,7 +461,9 @@ def _of_contacts(
         f"half-width ({unit})": h, f"largest pressure ({stress_unit})": pressure,
         f"largest tension ({stress_unit})": tension,
     }  # fmt: skip
-    panels: _Panels = [(title, {"": values}) for title, values in titles.items() if np.isfinite(values).any()]
+    panels: _Panels = [
+        (title, {"": values}) for title, values in titles.items() if np.isfinite(values).any()
+    ]
     if np.nan_to_num([K_left, K_right]).any():
         ends = {"at $X = a$": K_right, "at $X = -a$": K_left}
         panels.append(("$K_I$", {label: values for label, values in ends.items() if values.any()}))

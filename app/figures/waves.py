@@ -84,7 +84,9 @@ def dispersion_drawing(slowest: Dispersion) -> Drawing:
     limit = np.full(2, slowest.limit)
     curves = [
         Curve(slowest.kH, slowest.speed, look, "slowest wave"),
-        Curve(places, limit, look._replace(colour=GREY, line="--"), "highest speed of a punch", width=0.7),
+        Curve(
+            places, limit, look._replace(colour=GREY, line="--"), "highest speed of a punch", width=0.7
+        ),
         Curve(places, ends, look, "along either end's solid alone", MARKERS),
     ]
     panel = Panel(

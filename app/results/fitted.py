@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx import files
-from galinx.postprocess.figures.friction import fitted_figure
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.fit import FittedLaw, fit, moves
 from galinx.solvers.parameters import parameters
 
 from ..errors import BadInput, excerpt, nearest, short
+from ..figures.friction import fitted_figure
 from ..scene.units import to_si
 from ..scene.values import Choice, Number, Rows
 

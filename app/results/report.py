@@ -13,8 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.canvas import embedded, in_a_page
-from galinx.postprocess.figures.style import plain
 from galinx.postprocess.page import render
 from galinx.postprocess.quantities import (
     Quantity,
@@ -30,9 +28,11 @@ from galinx.postprocess.quantities import (
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, METHODS, SIE, STATE, TEXT
 from galinx.postprocess.tables import Sheet, parameters, solved_speeds, starts_sheet
 from galinx.postprocess.units import Scaled, Scaling, Units, as_archived, engineering
-from galinx.texts import counted
+from galinx.texts import counted, plain
 
 from ..console import program
+from ..figures.choice import Drawing
+from ..figures.files import embedded, in_a_page
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
@@ -41,7 +41,6 @@ from ..study.published import (
     intensity_rows,
     limit_of_steady_motion,
 )
-from .drawings import Drawing
 
 #: By method.
 _LOWEST = stresses.LOWEST | layers.LOWEST

@@ -5,6 +5,7 @@ import socket
 
 import numpy as np
 import pytest
+from galinx.postprocess.figures import maps
 from matplotlib.figure import Figure
 from support import at_once, full_disk
 
@@ -13,7 +14,6 @@ from galinx.app.console import Progress, new_console, print_sheet
 from galinx.app.results.csv import pieces
 from galinx.app.results.fields import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
-from galinx.postprocess.figures import maps
 from galinx.postprocess.hdf5 import vtkhdf
 from galinx.postprocess.tables import Sheet
 from galinx.postprocess.target import (

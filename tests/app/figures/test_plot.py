@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from galinx.app.figures.choice import Choice, Files, size
+from galinx.app.figures.archive import of_archive, write
+from galinx.postprocess.figures import maps
 from matplotlib.text import Text
 from support import computed, here
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures.choice import Choice, Files, size
-from galinx.app.results.drawings import of_archive, write
 from galinx.postprocess.errors import Occupied
-from galinx.postprocess.figures import maps
 from galinx.postprocess.target import GIF, MP4, SVG
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}

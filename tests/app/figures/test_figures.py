@@ -2,17 +2,17 @@
 
 import numpy as np
 import pytest
+from galinx.app.figures.choice import size
+from galinx.postprocess.figures.canvas import Room, Size, TooSmall, content, panels
+from galinx.postprocess.figures.style import DPI
+from galinx.postprocess.figures.surface import limits
 from legible import LEAST, faults
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from support import computed
 
-from galinx.app.pictures.choice import size
 from galinx.app.study.drawings import of_study
-from galinx.postprocess.figures.canvas import Room, Size, TooSmall, content, panels
-from galinx.postprocess.figures.style import DPI
-from galinx.postprocess.figures.surface import limits
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
@@ -199,7 +199,6 @@ def test_files_have_the_resolution_and_the_size_that_are_asked_for(drawings):
 
 def test_style_is_left_as_it_was():
     import matplotlib
-
     from galinx.postprocess.figures.friction import Loop, Panel, loops_figure
 
     before = dict(matplotlib.rcParams)
@@ -210,7 +209,6 @@ def test_style_is_left_as_it_was():
 def test_what_somebody_has_set_for_other_figures_is_not_for_these(monkeypatch):
     """Texts by LaTeX, which may not be there, among it."""
     import matplotlib
-
     from galinx.postprocess.figures.canvas import content
     from galinx.postprocess.figures.friction import Loop, Panel, loops_figure
 

@@ -1,8 +1,7 @@
 """Numbers, symbols and units as formulas write them."""
 
 import pytest
-
-from galinx.postprocess.figures.style import folded, number, plain, unit
+from galinx.texts import folded, number, plain, unit
 
 
 @pytest.mark.parametrize(

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from galinx.app.figures import sweep
+from galinx.app.figures.choice import Choice, size
+from galinx.app.figures.archive import names, of_archive
 from support import HOME, computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.pictures import sweep
-from galinx.app.pictures.choice import Choice, size
-from galinx.app.results.drawings import names, of_archive
 from galinx.app.scene.read import parse
 from galinx.solvers.errors import SolveError
 

@@ -1,6 +1,7 @@
 """Numbers, symbols and units as formulas write them."""
 
 import pytest
+
 from galinx.texts import folded, number, plain, unit
 
 

@@ -332,6 +332,7 @@ def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool)
             ],
         ),
         Panel(
-            label, "measured less fitted $f$", at_y=(0.0,), curves=[Curve(over, f - law, measured, "", DOTS)]
+            label, "measured less fitted $f$", at_y=(0.0,),
+            curves=[Curve(over, f - law, measured, "", DOTS)],
         ),
     ], high=0.66)  # fmt: skip

@@ -2,9 +2,9 @@
 thickness of the uppermost layer.
 
 Numbers over a sweep are those of the archive; two swept numbers make maps. Over the angle of the solid
-the closed form gives the speed limit, and the exponents and K_I of sharp edges, or contacts with free ends.
-Over the thickness of the uppermost layer the integral equation gives K_I, and the largest stresses along
-the layer's lower face.
+the closed form gives the speed limit, and the exponents and K_I of sharp edges, or contacts with free
+ends. Over the thickness of the uppermost layer the integral equation gives K_I, and the largest stresses
+along the layer's lower face.
 """
 
 from collections.abc import Callable, Sequence
@@ -368,7 +368,7 @@ def _proportional(first: NDArray, second: NDArray) -> bool:
 
 def _spans(values: NDArray, more_than: float) -> bool:
     finite = values[np.isfinite(values)]
-    return len(finite) > 0 and finite.min() > 0.0 and finite.max() > more_than * finite.min()
+    return bool(len(finite) and finite.min() > 0.0 and finite.max() > more_than * finite.min())
 
 
 def _by_ratios(x: NDArray) -> bool:
@@ -400,6 +400,7 @@ def angles(of: Archive) -> Drawing:
     panels = [
         Panel(
             "angle of the first axis from $X$ (°)", title, xlim=(0.0, 180.0), own_legend=len(curves) > 1,
+            ylim=(0.0, 1.08 * max(np.nanmax(values, initial=1e-9) for values in curves.values())),
             curves=[
                 Curve(_ANGLES, values, look, label)
                 for (label, values), look in zip(curves.items(), looks(len(curves)))

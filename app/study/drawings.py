@@ -307,7 +307,8 @@ def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, name
             curves.append(Curve(X[at], curve.markers[column][at], curve.look, label, MARKERS))
     return Panel(
         "position on the surface $X/a$", _AXES[column], curves=curves, title=row.title,
-        xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,), bands=[(-1.0, 1.0)] if half == _BESIDE else (),
+        xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,),
+        bands=[(-1.0, 1.0)] if half == _BESIDE else (),
     )  # fmt: skip
 
 

@@ -201,6 +201,7 @@ def render(
     for drawn in made:
         if drawn.panel.after:
             drawn.panel.after(drawn.axis)
+    figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
 
 

@@ -135,7 +135,7 @@ class Progress:
     """
 
     def __init__(self, quiet: bool = False, verbose: bool = False, log: Path | None = None) -> None:
-        self._quiet, self._verbose, self._log = quiet, verbose, log
+        self._quiet, self.verbose, self._log = quiet, verbose, log
         self._bar: Any = None
         self._task: Any = None
         self._last = ""
@@ -144,7 +144,7 @@ class Progress:
     def __enter__(self) -> "Progress":
         if not ranks.is_root():
             return self
-        if self._verbose:
+        if self.verbose:
             self._add(logging.StreamHandler(sys.stderr), "%(message)s")
         elif not self._quiet and sys.stderr.isatty():
             self._bar, self._task = _start_bar()
@@ -175,7 +175,7 @@ class Progress:
         line = f"warning: {plain(text)}"
         if self._bar:
             self._bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
-        elif not self._verbose:
+        elif not self.verbose:
             print(line, file=sys.stderr, flush=True)
         self.note(line)
 
@@ -272,8 +272,9 @@ def print_sheet(console: Any, sheet: Any) -> None:
 
     for number, columns in enumerate(_parts(sheet, console.width)):
         table = Table(
-            title=None if number else sheet.title, box=box.SIMPLE_HEAD, title_justify="left",
-            title_style="", header_style="bold", pad_edge=False, padding=(0, 1, 0, 0),
+            title=None if number else sheet.title, box=box.SIMPLE_HEAD if any(sheet.columns) else None,
+            title_justify="left", title_style="", header_style="bold", pad_edge=False,
+            padding=(0, 1, 0, 0), show_header=any(sheet.columns),
         )  # fmt: skip
         for i in columns:
             words = sheet.words or not i
@@ -282,8 +283,7 @@ def print_sheet(console: Any, sheet: Any) -> None:
             table.add_row(*(row[i] for i in columns))
         console.print(table)
     for note in sheet.notes:
-        text = textwrap.fill(plain(note), console.width, subsequent_indent="  ", break_on_hyphens=False)
-        console.print(text)
+        _print_folded(console, note)
 
 
 def _parts(sheet: Any, width: int) -> list[list[int]]:
@@ -292,7 +292,10 @@ def _parts(sheet: Any, width: int) -> list[list[int]]:
 
     if sheet.words:
         return [list(range(len(sheet.columns)))]
-    wide = [max(map(cell_len, column)) + 2 for column in zip(sheet.columns, *sheet.rows)]
+    wide = [
+        max(cell_len(line) for cell in column for line in cell.split("\n")) + 2
+        for column in zip(sheet.columns, *sheet.rows)
+    ]
     wide[0] = min(wide[0], max(width // 2, 12))  # labels may take several lines
     parts = [[0]]
     for i in range(1, len(wide)):
@@ -302,14 +305,24 @@ def _parts(sheet: Any, width: int) -> list[list[int]]:
     return parts
 
 
-def print_verdict(console: Any, attributes: dict[str, Any]) -> None:
-    """Print the comparisons and the verdict of an archive."""
-    for text, value in json.loads(attributes["comparisons"]).items():
-        console.print(f"  {text}: {value:.1e}")
+def print_verdict(console: Any, attributes: dict[str, Any], verbose: bool = False) -> None:
+    """Print how well numbers were checked, and the verdict of an archive; verbose, all comparisons."""
+    from galinx.postprocess.compare import checked
+
+    if verbose:
+        for text, value in json.loads(attributes["comparisons"]).items():
+            console.print(f"  {text}: {value:.1e}")
+    _print_folded(console, checked(attributes))
     styles = {"PASS": "bold green", "FAIL": "bold red"}
     console.print(f"verdict: {attributes['verdict']}", style=styles.get(attributes["verdict"]))
-    for reason in json.loads(attributes["verdict_reasons"]):
-        console.print(f"  {reason}")
+    if verbose:
+        for reason in json.loads(attributes["verdict_reasons"]):
+            console.print(f"  {reason}")
+
+
+def _print_folded(console: Any, text: str, **style: Any) -> None:
+    text = textwrap.fill(plain(text), console.width, subsequent_indent="  ", break_on_hyphens=False)
+    console.print(text, **style)
 
 
 def say(text: str, hang: int = 2) -> None:
@@ -323,21 +336,22 @@ def colours() -> bool:
     return own and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
-def print_summary(data: dict[str, Any], attributes: dict[str, Any], quiet: bool = False) -> None:
-    """Print states, comparisons and verdict unless quiet; warnings go to the error stream."""
-    if not quiet:
-        from galinx.postprocess.tables import states_sheet
+def print_result(
+    sheets: Iterable[Any], data: dict[str, Any], attributes: dict[str, Any], verbose: bool = False
+) -> None:
+    """Print what failed, tables of a result, how well numbers were checked, and the verdict."""
+    from galinx.postprocess.compare import failed
 
-        print_sheets([states_sheet(data, attributes["title"])], attributes)
-    print_warnings(attributes)
-
-
-def print_sheets(sheets: Iterable[Any], attributes: dict[str, Any]) -> None:
-    """Print tables of an archive, its comparisons and its verdict."""
     console = new_console(colours=colours())
-    for sheet in sheets:
+    for i, line in enumerate(failed(data, attributes)):
+        _print_folded(
+            console, f"FAIL: {line}" if i == 0 else f"  {line}", style="bold red" if i == 0 else ""
+        )
+    for i, sheet in enumerate(sheets):
+        if i:
+            console.print()
         print_sheet(console, sheet)
-    print_verdict(console, attributes)
+    print_verdict(console, attributes, verbose)
 
 
 def print_warnings(attributes: dict[str, Any]) -> None:

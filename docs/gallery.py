@@ -45,9 +45,9 @@ SHOWN = {
 _HEAD = """\
 # Gallery
 
-Written by `docs/make.py` from the scenes in `scenes/`; every picture is one of the figures that `plot`
-makes of the scene's archive, or one of the study's that `./run.sh` writes into `results/`. To have one of
-your own, copy its scene and change it:
+Written by `docs/make.py` from the scenes in `scenes/`, which the headings name. Every picture is a
+figure that `plot` makes of the scene's archive, or one that `./run.sh` writes into `results/`; its
+name follows it. Copy a scene and change it:
 
 ```console
 ./run.sh init fig8 -o mine.toml
@@ -65,9 +65,9 @@ def page() -> str:
     parts = [_HEAD]
     for name, (figure, seen) in SHOWN.items():
         parts.append(
-            f"## {name}\n\n{known[name].about}\n\n"
+            f"## `{name}`\n\n{known[name].about}\n\n"
             f"[![{figure} of {name}](figures/gallery/{name}.png)](figures/gallery/{name}.png)\n\n"
-            f"*{seen}* Scene: `scenes/{name}.toml`; figure: `{_called(name, figure)}`.\n"
+            f"*{seen}* `{_called(name, figure)}`\n"
         )
     others = "\n".join(f"- `{name}`: {known[name].about}" for name in known if name not in SHOWN)
     parts.append(f"## Other scenes\n\n{others}\n")

@@ -7,6 +7,7 @@ mkdocs loads it as a hook, so the program is imported only where pages are made.
 import json
 import os
 import runpy
+from collections import Counter
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -65,7 +66,7 @@ _SCENE = """\
 
 Written by `docs/make.py` from the keys that check scenes.
 
-A scene is a TOML file that says what is to be computed. The shortest one:
+A scene is a TOML file that says what to compute. The shortest one:
 
 ```toml
 [solid]
@@ -77,16 +78,15 @@ sigma0_over_load = "25000 1/m"
 c = 0.3                          # over the shear wave speed
 ```
 
-- A number is in the unit of its row. A text carries its own unit: `"193 GPa"`, `"1 mm"`, `"1.5 mm/s"`: a
-  number, then units with `*`, `/` and whole powers `^` between them, as in `"7.86 g/mm^3"` and
-  `"25000 1/m"`. A unit of another dimension is an error; degrees, counts and bits are no numbers, and
-  `"5 %"` is 0.05.
-- `c` or `speed`, and the parameters of the friction law, may be lists or ranges. All their combinations
-  are computed, each on all `strokes` at all `X_over_L`. Every combination is a state. States are numbered
-  from 0; `c` changes most slowly, then the law's parameters in the order of their rows, stroke, position.
-- Tables `[[friction.vary]]` stand for a sum of such products: the lists of each are combined with each
-  other and with what [friction] says of the other parameters, and not with those of the next. Here μ_C is
-  varied, then σ₀l/N, in 4 laws, since that of 0.5 and 25 000 /m is in both:
+- A number is in the unit of its row, dimensionless where there is none. A text carries its own unit:
+  `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, `"25000 1/m"`, with `*`, `/` and whole powers `^`. `"5 %"`
+  is 0.05. A unit of another dimension is an error; so are degrees, counts and bits for numbers.
+- `c` or `speed`, `load`, `X_over_L` and the numbers and words of a friction law may be lists or ranges.
+  All combinations are computed, each on all `strokes`. Each combination is a state, numbered from 0.
+  `c` changes most slowly, then the load, the law's parameters in the order of their rows, stroke,
+  position.
+- Each table `[[friction.vary]]` is such a product of its own; it takes what it leaves out from
+  [friction]. These are 4 laws, since 0.5 with 25 000 /m is in both tables:
 
 ```toml
 [friction]
@@ -98,18 +98,20 @@ mu_c = [0.1, 0.5, 0.7]
 sigma0_over_load = ["12500 1/m", "25000 1/m"]
 ```
 
-- A range stands where a list may: `c = {from = 0, to = 0.9, number = 10}` is 0, 0.1, … 0.9. Both ends
-  belong to it and may carry units. `spacing = "log"` makes ratios equal instead of differences: `mu_c =
-  {from = 0.01, to = 1, number = 3, spacing = "log"}` is 0.01, 0.1, 1.
+- A range includes both ends, which may carry units: `c = {from = 0, to = 0.9, number = 10}` is 0, 0.1,
+  … 0.9. With `spacing = "log"` the ratios are equal: `{from = 0.01, to = 1, number = 3, spacing =
+  "log"}` is 0.01, 0.1, 1.
 - `kind`, `profile` and `model` name a solid, a punch and a friction law, each with keys of its own.
   [Extend galinx](howto_extend.md) adds others.
-- A key that the program does not know is an error, with the nearest known key in the message.
-- Strokes are called FM1, FM2, … (forward) and BM1, BM2, … (backward) in results.
+- Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a file
+  of them, `"rows.csv"`.
+- An unknown key is an error; the message names the nearest known key.
+- Results call strokes FM1, FM2, … (forward) and BM1, BM2, … (backward).
 
-Editors that read JSON schemas for TOML complete and check scenes by `scenes/scene.schema.json`, the
-output of `./run.sh schema`. The first line of the scenes in `scenes/` names it.
+Editors complete and check scenes by `scenes/scene.schema.json`, the output of `./run.sh schema`, which
+the first line of the scenes in `scenes/` names.
 
-`title` stands before the sections: free text, shown above tables and figures.
+`title`, free text before the sections, is shown above tables and figures.
 """
 
 _ARCHIVE = """\
@@ -117,9 +119,8 @@ _ARCHIVE = """\
 
 Written by `docs/make.py` from the table of quantities, `postprocess/quantities/`.
 
-One HDF5 file a run. It appears under its name only when it is whole: it is written beside it, read back,
-compared, sealed and renamed. Every numerical dataset carries a checksum, every dataset `units` ("1" for
-dimensionless) and `long_name`. An archive, and how to read it in Python:
+A run writes one HDF5 file, which appears under its name only when it is whole. Every numerical dataset
+carries a checksum, every dataset `units` ("1" for dimensionless) and `long_name`:
 
     ./run.sh run scenes/tables4_5.toml -o out.h5
 
@@ -131,41 +132,41 @@ with h5py.File("out.h5") as file:
     motion = file["states/motion"].asstr()[()]
 ```
 
-Other ways are in [Read archives](howto_read_archive.md).
+[Read archives](howto_read_archive.md) shows other ways.
 
-Datasets that nothing asks for are absent; the column "there with" says what does: a name of
-`solve.methods`, `solve.mode` or `friction.model`, or a word of `output.quantities`. The column "compared"
-names rows of [Comparisons](#comparisons). Quantities of your own come beside these, see
-[Extend galinx](howto_extend.md).
+METHOD in a path stands for the methods of the column "with": `closed_form`, `sie` (integral equation)
+or `fem` (finite elements). Its other words are those of `solve.mode` or `output.quantities`; where it
+is empty, the run, or the method in the path, writes the dataset in any case. Words with a slash between
+them follow the order of the names in their row. Values without a unit are dimensionless; NaN means that
+there may be no answer. Each parameter of a friction law is a dataset `/states/KEY` in the SI unit of
+[its row](scene.md#friction). [Your own quantities](howto_extend.md) come beside these.
 """
 
 _WHOLE = """\
 ## What is read
 
-Every command reads archives through one door, `postprocess/hdf5/archive.py`. What does not come through
-is not shown: one message names the fault, exit status 2.
+Every command reads archives through `postprocess/hdf5/archive.py`. A fault ends it with one message and
+status 2.
 
-1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow: numbers,
-   texts, names, units, attributes. It is verified before HDF5 opens the file. By hand: `head -n 3
-   out.h5` shows it, `tail -c +513 out.h5 | sha256sum` gives it.
-2. Names, types, shapes, units and ranges are held against the tables of this page, texts and JSON of
-   attributes against theirs. Sizes that go by the same word are the same everywhere, and no number is
-   NaN or infinite but where this page allows it, or where `run/failures` or `comparisons` tell of it.
+1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow. It is
+   verified before HDF5 opens the file. `head -n 3 out.h5` shows it, `tail -c +513 out.h5 | sha256sum`
+   computes it.
+2. Names, types, shapes, units, ranges and attributes must be those of this page. Numbers are finite
+   unless this page, `run/failures` or `comparisons` says otherwise.
 
-`check` goes on: friction is followed once more, what was compared is compared again, the verdict judged
-again; of its own version it also knows which datasets the scene asks for, and computes again what is
-cheap: closed forms of all states under flat punches, of 24 under other smooth ones and of 6 under those
-with kinks (of 3 where stresses are largest), integral equations of 4 states over layers, indentations,
-sizes of linear systems, warnings. Finite elements are held against closed forms to 1 %, whether or not
-the scene asks for both. Not covered are `run/seconds` and what `run/fem` says of solves, `sigma_YY_raw`,
-places of largest stresses by finite elements, stresses over layers by these alone, motions in time and of
-sliders. What contradicts that is a fault, exit status 1. Who changes numbers so that they fit each other
-and the schema, and makes the
-digest again, has made another archive.
+`check` also repeats the friction, the comparisons and the verdict. For archives of its own version it
+knows which datasets the scene asks for, and computes some again: closed forms of all states under flat
+punches, of 24 under other smooth ones, of 6 under those with kinks (of 3 where stresses are largest);
+integral equations of 4 states over layers; indentations; sizes of linear systems; warnings. It compares
+finite elements with closed forms to 1 %, even if the scene does not ask for both. It does not cover
+`run/seconds`, the record of solves in `run/fem`, `sigma_YY_raw`, places of largest stresses by finite
+elements, stresses over layers by these alone, motions in time and of sliders. A contradiction is a
+fault, status 1. Whoever changes numbers consistently and computes the digest again has made another
+archive.
 
-Archives of schema version 1 have no digest and no attribute `datasets`. They are read, by another
-process first since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema is
-not found in them. Those before version 3 do not tell of their solid and its speeds.
+Archives of schema version 1 have no digest and no attribute `datasets`. Another process reads them
+first, since HDF5 crashes over some damaged files; a flipped bit in a text that fits the schema goes
+unnoticed. Archives before version 3 have no attributes of their solid and its speeds.
 """
 
 _ATTRIBUTES = """\
@@ -176,8 +177,8 @@ _ATTRIBUTES = """\
 _COMPARISONS = """\
 ## Comparisons
 
-What is held against what, a number each: the attribute `comparisons` has the largest over all states by
-its text; the verdict is FAIL where one exceeds its limit. T is `solve.tolerance`.
+The attribute `comparisons` has the largest value over all states by these texts. The verdict is FAIL
+where one exceeds its limit. T is `solve.tolerance`.
 
 """
 
@@ -219,14 +220,13 @@ def scene_page() -> str:
             f"`{n}`",
             m.about,
             f"`{m.kind}`",
-            m.told,
+            m.told.replace(" (dimensionless)", ""),
             m.source,
-            m.yield_strength or "–",
-            m.yield_source or "–",
+            f"{m.yield_strength}, {m.yield_source}" if m.yield_strength else "–",
         )
         for n, m in LIBRARY.items()
     ]
-    heads = ("name", "solid", "kind", "constants", "source", "yield strength", "its source")
+    heads = ("name", "solid", "kind", "constants", "source", "yield strength")
     parts.append(_table(heads, rows))
     return "\n".join(parts)
 
@@ -240,14 +240,15 @@ def archive_page() -> str:
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
     parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
-        rows = [_dataset(path, row) for path, row in known.items() if path.startswith(f"{group}/")]
-        heads = ("dataset", "what", "shape", "unit", "values", "there with", "compared")
-        parts += [f"## /{group}\n", _table(heads, rows)]
-    rules = [
-        (name, rule.text, ", ".join(f"`{row.path}`" for row in rule.needs), _limit(rule))
-        for name, rule in RULES.items()
-    ]
-    parts.append(_COMPARISONS + _table(("name", "text", "datasets", "at most"), rules))
+        rows = [row for path, row in known.items() if path.startswith(f"{group}/") and not _laws(row)]
+        (word, *others) = {row.asked_by for row in rows}
+        (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
+        told = [f"With `{word}` among `output.quantities`."] * bool(word and not others)
+        told += [f"Shape, if no other is given: {over}."] * (count > 1)
+        table = _table(("dataset", "what", "values", "with"), _datasets(rows, bool(others), over))
+        parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
+    rules = [(rule.text, _limit(rule)) for rule in RULES.values()]
+    parts.append(_COMPARISONS + _table(("comparison", "at most"), rules))
     return "\n".join(parts)
 
 
@@ -278,11 +279,12 @@ def on_files(files: Any, **_: Any) -> Any:
 
 
 def _section(section: Any) -> list[str]:
-    """The keys of a section; where it describes a model, then those of each model."""
+    """The keys of a section; where it describes a model, then those of the models."""
+    from galinx.app.scene.sections import SECTIONS
     from galinx.registry import Registry
     from galinx.solvers.parameters import parameters
 
-    heads = ("key", "value", "default", "allowed", "meaning")
+    heads = ("key", "value", "default", "meaning")
 
     def rows(keys: dict[str, Any]) -> list[tuple[str, ...]]:
         return [_row(key, known, section.or_else) for key, known in keys.items()]
@@ -300,16 +302,32 @@ def _section(section: Any) -> list[str]:
     first = own[next(iter(own))]
     common = {k: known for k, known in keys.items() if k not in first and not known.stands_for}
     parts = [_table(heads, rows(common))]
+    if section is SECTIONS["layer"]:
+        return [
+            *parts,
+            "The constants are those of [[solid]](#solid): required, or material, or properties.\n",
+        ]
+    merged: dict[tuple[str, ...], list[str]] = {}
     for model, keys in alternatives.items():
-        of_model = {k: known for k, known in keys.items() if k in own[model] or known.stands_for}
-        about = models[model].about
-        what = f", {about}" * (about != model)
-        parts += [f'With `{chosen} = "{model}"`{what}:\n', _table(heads, rows(of_model))]
-    return parts
+        for row in rows({k: v for k, v in keys.items() if k in own[model] or v.stands_for}):
+            merged.setdefault(row, []).append(f"`{model}`")
+    shared = [
+        (row[0], "all" if len(of) == len(alternatives) else ", ".join(of), *row[1:])
+        for row, of in merged.items()
+    ]
+    named = [
+        f"`{model}`: {models[model].about}" for model in alternatives if models[model].about != model
+    ]
+    return [
+        *parts,
+        f"Keys of each `{chosen}`" + f" ({'; '.join(named)})" * bool(named) + ":\n",
+        _table((heads[0], chosen, *heads[1:]), shared),
+    ]
 
 
 def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
     """A key's row; ``or_else`` is what else would do where it is missing."""
+    from galinx.app.scene.library import LIBRARY
     from galinx.app.scene.sections import REQUIRED, entry
 
     described = entry(known)
@@ -320,37 +338,102 @@ def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
         default = known.without if empty else f"`{json.dumps(described['default'], ensure_ascii=False)}`"
     else:
         default = known.without
+    of_library = getattr(known.kind, "options", None) is LIBRARY
+    allowed = "[materials](#materials)" if of_library else _allowed(described)
     meaning = "; ".join(filter(None, (known.about, known.note)))
-    return f"`{key}`", _value(known.kind), default, _allowed(described), meaning
+    value = _value(known.kind)
+    values = ", ".join(filter(None, ("" if value == "a text" else value, allowed)))
+    return f"`{key}`", values, default, meaning
 
 
-def _dataset(path: str, row: Any) -> tuple[str, ...]:
-    """A dataset's row."""
-    from galinx.postprocess.quantities.quantity import ANYWHERE, NUMBER, TEXT, WHOLE
-    from galinx.postprocess.schema import RULES
-
-    what = row.about + "; tells states apart" * bool(row.symbol)
-    what += "; NaN where it cannot be told" * (row.nan_allowed == ANYWHERE)
-    compared = ", ".join(name for name, rule in RULES.items() if row in rule.needs)
-    shape, unit = " × ".join(row.over), row.unit.replace("none", "")
-    kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
-    values = " ".join(filter(None, (kinds[row.type], str(row.range))))
-    return f"`/{path}`", what, shape, unit, values, _there(row), compared
-
-
-def _there(row: Any) -> str:
-    """What a dataset is there with; nothing where it always is."""
-    from galinx.app.methods import METHODS
-    from galinx.postprocess.quantities.quantity import LOCAL
+def _laws(row: Any) -> list[str]:
+    """Friction laws of which a dataset is a parameter."""
     from galinx.solvers.friction import LAWS
     from galinx.solvers.parameters import parameters
 
     name = row.path.rpartition("/")[2]
-    laws = [law for law, model in LAWS.items() if row.symbol and name in parameters(model)]
-    method = row.method or next((part for part in row.path.split("/") if part in METHODS), "")
-    method = "any method" if method == LOCAL else method and f"`{method}`"
-    words = [method, *(f"`{word}`" for word in (row.mode, row.asked_by, *laws) if word)]
-    return ", ".join(filter(None, words)) or "every run"
+    return [law for law, model in LAWS.items() if row.symbol and name in parameters(model)]
+
+
+def _method(row: Any) -> str:
+    """Method that gives a dataset; "" where the run does."""
+    from galinx.app.methods import METHODS
+
+    return row.method or next((part for part in row.path.split("/") if part in METHODS), "")
+
+
+def _names(paths: list[str]) -> list[str]:
+    """Paths, without the folder where the one before has the same."""
+    pairs = zip([None, *(path.rpartition("/")[0] for path in paths)], paths, strict=False)
+    return [path.rpartition("/")[2] if path.rpartition("/")[0] == last else path for last, path in pairs]
+
+
+def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]:
+    """Rows of datasets: one for all methods, and for those whose meanings differ in a word.
+
+    ``asked``: with the word of output.quantities that asks for them; ``usual``: shape that is left out.
+    """
+    from galinx.postprocess.quantities.quantity import ANYWHERE, LOCAL, METHODS, NUMBER, TEXT, WHOLE
+
+    kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
+    of_methods: dict[str, list[Any]] = {}
+    for row in rows:
+        path = row.path.replace(f"/{_method(row)}/", "/METHOD/")
+        of_methods.setdefault(path, []).append(row)
+    table: list[tuple[list[str], str, tuple[str, ...]]] = []
+    for path, same in of_methods.items():
+        row, methods = same[0], [_method(r) for r in same]
+        if len(same) == 1:
+            path, methods = row.path, ["any method"] * (methods == [LOCAL])
+        nan = any(r.nan_allowed == ANYWHERE for r in same)
+        over, unit = " × ".join(row.over), row.unit if row.unit not in ("none", "1") else ""
+        values = (over if over != usual else "", kinds[row.type], unit, str(row.range), "NaN" * nan)
+        words = (
+            ["any method"]
+            if len(same) == len(METHODS)
+            else methods
+            if len(same) == 1
+            else [f"`{m}`" for m in methods]
+        )
+        words += [f"`{word}`" for word in (row.mode, row.asked_by * asked) if word]
+        rest = ", ".join(filter(None, values)), ", ".join(filter(None, words))
+        abouts = [r.about for r in same]
+        for said in METHODS.values():
+            abouts = [about.removesuffix(f", {said}") for about in abouts]
+        table.append(([f"/{path}"], _common(abouts), rest))
+    return [
+        (", ".join(f"`{name}`" for name in _names(p)), about, *rest) for p, about, rest in _merged(table)
+    ]
+
+
+def _common(abouts: list[str]) -> str:
+    """What the meanings of a dataset by several methods have in common; all of them where they differ."""
+    first, *others = ([part.partition(" (Eq")[0] for part in about.split(", ")] for about in abouts)
+    shared = [part for part in first if all(part in other for other in others)]
+    return ", ".join(shared) if shared[:1] == first[:1] and others else "; ".join(dict.fromkeys(abouts))
+
+
+def _merged(table: list[Any]) -> list[Any]:
+    """Rows with those that differ in a word of their meaning made one, as long as there are any."""
+    for i, (paths, about, rest) in enumerate(table):
+        for k in range(i + 1, len(table)):
+            more, other, same = table[k]
+            if same == rest and (both := _joined(about, other)):
+                return _merged(
+                    [*table[:i], (paths + more, both, rest), *table[i + 1 : k], *table[k + 1 :]]
+                )
+    return table
+
+
+def _joined(one: str, other: str) -> str:
+    """Two texts that differ in one word, written once with both words; "" for others."""
+    words, others = one.split(), other.split()
+    differ = [i for i, pair in enumerate(zip(words, others, strict=False)) if pair[0] != pair[1]]
+    if len(words) != len(others) or len(differ) != 1:
+        return ""
+    (i,) = differ
+    words[i] = f"{words[i].rstrip(',')}/{others[i]}"
+    return " ".join(words)
 
 
 def _limit(rule: Any) -> str:
@@ -358,7 +441,7 @@ def _limit(rule: Any) -> str:
     if rule.tolerances is not None:
         limit = "T" if rule.tolerances == 1.0 else f"{rule.tolerances:g} T"
     else:
-        limit = "told only" if rule.limit is None else f"{rule.limit:g}"
+        limit = "shown only" if rule.limit is None else f"{rule.limit:g}"
     return limit + f", mode `{rule.mode}`" * bool(rule.mode)
 
 
@@ -367,9 +450,9 @@ def _value(kind: Any) -> str:
     kind = getattr(kind, "kind", kind)  # of a value that all laws share
     text = _plain(type(kind).__doc__ or "").replace("``", "`").rstrip(".")
     unit = getattr(kind, "unit", None)
+    text = text.partition(", as [[")[0]  # of rows, which the page describes once
     if unit is not None:
-        several = ", a list or a range" if type(kind).__name__ == "Numbers" else ""
-        return f"number [{unit or 'dimensionless'}]{several}"
+        return f"number{f' [{unit}]' * bool(unit)}"
     return text[0].lower() + text[1:] if text[:2] != "`{" else text
 
 

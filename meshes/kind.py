@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from galinx.registry import Registry
 
-from .charts import Confocal, Physical
+from .charts import Chart
 from .rings import QuadMesh, Refinement, corner, cut, joined, rectangle
 
 #: Least distance of the far boundary over a, and over that of the farthest point of stresses.
@@ -210,7 +210,7 @@ class MeshKind:
     """
 
     about: str
-    chart: Confocal | Physical
+    chart: Chart
     ratio: float
     column: float
     alone: float = 0.0

@@ -9,6 +9,7 @@ Nothing is compared next to a tip of a punch, where stresses are infinite. A NaN
 wherever the table of quantities does not allow it.
 """
 
+import json
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -32,6 +33,7 @@ from .quantities.quantity import (
     FEM,
     NEVER,
     SIE,
+    STATE,
     Quantity,
 )
 from .quantities.states import LARGEST
@@ -544,3 +546,82 @@ RULES: Registry[Rule] = Registry(
     },
     Rule,
 )  # fmt: skip
+
+
+_AT_MOST = ", at most "
+
+
+def judged(attributes: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Figure and its limit for a PASS, by the comparison's text, of an archive's verdict."""
+    worst, reasons = json.loads(attributes["comparisons"]), json.loads(attributes["verdict_reasons"])
+    limits = {text: reason for reason in reasons for text in worst if reason.startswith(f"{text}: ")}
+    return {
+        text: (worst[text], float(reason.rpartition(_AT_MOST)[2]))
+        for text, reason in limits.items()
+        if _AT_MOST in reason
+    }
+
+
+def checked(attributes: Mapping[str, Any]) -> str:
+    """How well numbers were checked, in one line: the worst of all figures of a kind."""
+    figures = judged(attributes)
+    kinds: dict[str, list[float]] = {"two methods agree to": [], "estimated error": [], "residual": []}
+    for text, (value, _) in figures.items():
+        if "nodal forces" not in text and "not finite" not in text:
+            words = ("estimated error", "residual")
+            kinds[next((word for word in words if text.startswith(word)), "two methods agree to")].append(
+                value
+            )
+    limits = [limit for text, (_, limit) in figures.items() if "nodal forces" not in text]
+    parts = [f"{kind} {max(values):.0e}" for kind, values in kinds.items() if values]
+    if not parts:
+        return "numbers not checked: one method alone, and nothing to compare it with"
+    wanted = max(set(limits), key=limits.count)
+    return f"numbers checked: {', '.join(parts)}, wanted {wanted:.0e} (dimensionless)"
+
+
+def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
+    """What failed, by how much, where, and what to do; none for another verdict than FAIL.
+
+    Args:
+        data: datasets by path; where stresses along the surface are not among them, no state is named.
+        attributes: attributes of the archive's root.
+    """
+    if attributes["verdict"] != "FAIL":
+        return []
+    lines, figures = [], judged(attributes)
+    over = {text: pair for text, pair in figures.items() if not pair[0] <= pair[1]}
+    for text, (value, limit) in sorted(over.items(), key=lambda item: -item[1][0] / (item[1][1] or 1.0)):
+        times = f", {value / limit:.2g} times what is wanted, {limit:g}" if limit else ""
+        lines.append(f"{text}: {value:.1e}{times}{_worst_state(text, data, attributes)}")
+    lines += [r for r in json.loads(attributes["verdict_reasons"]) if r.startswith("not solved")]
+    if over:
+        value, limit = max(over.values(), key=lambda pair: pair[0] / (pair[1] or 1.0))
+        limits = [limit for _, limit in figures.values()]
+        wanted = max(limits, key=limits.count)
+        enough = 10.0 ** np.ceil(np.log10(wanted * max(value / (limit or 1.0), 1.0)))
+        lines.append(
+            f"what to do: --set solve.tolerance={wanted / 10.0:.0e} computes finer and may pass; "
+            "another solve.degree or solve.mesh shows which method is off; "
+            f"--set solve.tolerance={enough:.0e} accepts it"
+        )
+    return lines
+
+
+def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
+    """State in which a comparison has its largest figure, in words; "" where that is not known."""
+    rule = next((rule for rule in RULES.values() if rule.text == text), None)
+    count, load = len(data[of.SPEED.path]), data.get(of.LOAD.path, attributes["load"])
+    if rule is None or count < 2 or any(row.path not in data for row in rule.needs):
+        return ""
+    rows = table()
+    figures = []
+    for i in range(count):
+        one = {
+            path: values[i : i + 1] if path in rows and STATE in rows[path].over else values
+            for path, values in data.items()
+        }
+        figures.append(rule.measure(one, load[i : i + 1] if np.ndim(load) else load) or 0.0)
+    i = int(np.nanargmax(figures))
+    c, f = data[of.SPEED.path][i], data[of.FRICTION.path][i]
+    return f", in state {i} (c = {c:.4g}, f = {f:.4g})"

@@ -4,7 +4,8 @@ Quantities are written as archived, or scaled to other units. States of an archi
 parameters: speed, load, the law's constants, motion and position.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import textwrap
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
 from typing import Any
@@ -18,14 +19,15 @@ from .quantities import (
     layers,
     over_time,
     runs,
+    stresses,
     table,
     validity,
     yielding,
 )
 from .quantities import states as of
-from .quantities.quantity import CLOSED_FORM, FEM, SIE, TEXT
+from .quantities.quantity import CLOSED_FORM, CONTACT, FEM, SIE, TEXT, X_OVER_A
 from .quantities.states import LOAD, MOTION, POSITION, SPEED
-from .units import Scaled, Scaling, as_archived
+from .units import Scaled, Units, as_archived, engineering, number
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -40,8 +42,10 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
     return {path: rows[path] for path in (*first, *own, *last)}
 
 
-#: Most states in a table, and most inner variables of a law.
-LIMIT, _VARIABLES = 24, 6
+#: Most states in a table, most of them side by side, and most inner variables of a law.
+LIMIT, _BESIDE, _VARIABLES = 24, 8, 6
+#: Characters of a narrow column.
+_NARROW = 11
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,7 @@ class Sheet:
 
     Attributes:
         title: title of the table.
-        columns: heads of the columns, with units.
+        columns: heads of the columns, with units; all empty for lines without a head.
         rows: cells of each row as text.
         notes: lines below the table.
         words: True where cells are words, which may take several lines.
@@ -63,78 +67,338 @@ class Sheet:
     words: bool = False
 
 
-#: Columns of the table of states after the parameters: (head, quantity, format).
-_EITHER = [("K_I", of.K_I_BOTH, "{:.6f}"), ("error", of.TRUE_ERROR, "{:.1e}")]
-_ALONE = [
-    (head, row, "{:.6f}")
-    for head, rows in (
-        ("K(-a)", of.K_I_LEFT | layers.K_I_LEFT), ("K(a)", of.K_I_RIGHT | layers.K_I_RIGHT)
+@dataclass(frozen=True)
+class Column:
+    """Column of a table in its units: a number, or a word, for each state.
+
+    Attributes:
+        head: what it is, in words.
+        values: (states,), or as many texts.
+        unit: "1" for dimensionless, "none" for words.
+        name: in tables for programs; that of the archive where one dataset has the numbers.
+        path: of that dataset, "" for none.
+        digits: that are shown.
+        place: True where it is a place of what the column before it has.
+        step: to which numbers are rounded where they are shown, 0 for none.
+    """
+
+    head: str
+    values: Any
+    unit: str = "1"
+    name: str = ""
+    path: str = ""
+    digits: int = 4
+    place: bool = False
+    step: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """What it is, with its unit."""
+        return self.head + ("" if self.unit in ("1", "none") else f" [{self.unit}]")
+
+    @property
+    def constant(self) -> bool:
+        """True where all states have the same."""
+        return len(set(self.texts())) == 1
+
+    def texts(self, count: int | None = None) -> list[str]:
+        """The first cells as text."""
+        cells = [*self.values[:count]]
+        if self.step:
+            cells = [round(cell / self.step) * self.step if cell == cell else cell for cell in cells]
+        return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
+
+    def words(self, i: int) -> str:
+        """What state ``i`` has, with its unit."""
+        text = self.texts()[i]
+        return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
+
+
+#: Step over a to which places are rounded where they are shown.
+_STEP = 1e-5
+
+#: Methods in the order in which their numbers are preferred.
+_PREFERRED = (FEM, CLOSED_FORM, SIE)
+
+
+def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity | None:
+    """Quantity by the first of the methods that an archive has; None where it has none."""
+    there = (rows[method] for method in (*_PREFERRED, "") if method in rows)
+    return next((row for row in there if row.path in data), None)
+
+
+_Spec = tuple[str, Mapping[str, Quantity]]
+
+#: What a state's row has after its parameters: heads, and quantities by method. Heads that begin with
+#: "at" are places of what stands before.
+_OF_CONTACT: tuple[_Spec, ...] = (
+    ("half-width", of.HALF_WIDTH),
+    ("centre", of.CENTRE),
+    ("peak pressure", of.LARGEST), ("at X", of.LARGEST_X),
+    ("largest tension σ_XX", stresses.HIGHEST | layers.HIGHEST),
+    ("at X", stresses.HIGHEST_X | layers.HIGHEST_X),
+)  # fmt: skip
+_OF_STRENGTH: tuple[_Spec, ...] = (
+    ("largest von Mises", yielding.VON_MISES), ("at X", yielding.VON_MISES_X),
+    ("at Y", yielding.VON_MISES_Y),
+)  # fmt: skip
+_OF_EDGES: tuple[_Spec, ...] = (
+    ("K_I, left", of.K_I_LEFT | layers.K_I_LEFT),
+    ("K_I, right", of.K_I_RIGHT | layers.K_I_RIGHT),
+    ("exponent β, left", {"": of.BETA}), ("exponent α, right", {"": of.ALPHA}),
+)  # fmt: skip
+_INDENTATION: _Spec = ("indentation v₀", {FEM: of.INDENTATION})
+#: Pull under the punch, which no punch exerts.
+_PULL: tuple[_Spec, ...] = (
+    ("pull under the punch", {m: rows[0] for m, rows in (validity.TENSION | layers.TENSION).items()}),
+    ("at X", {m: rows[1] for m, rows in (validity.TENSION | layers.TENSION).items()}),
+)
+#: What says where answers hold, and more of yield, in a table of its own.
+_LIMITS: tuple[_Spec, ...] = (
+    ("largest shear in the plane", yielding.SHEAR), ("at X", yielding.SHEAR_X),
+    ("at Y", yielding.SHEAR_Y),
+    ("yields within, from X = -a", yielding.REACH_LEFT),
+    ("yields within, from X = a", yielding.REACH_RIGHT),
+    ("slip reversed within, from X = -a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
+    ("slip reversed within, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
+    ("strain above 5 % within, from X = -a", {CLOSED_FORM: validity.STRAIN[0]}),
+    ("strain above 5 % within, from X = a", {CLOSED_FORM: validity.STRAIN[1]}),
+    ("waves that cross the contact in a stroke", {"": validity.CROSSINGS}),
+    ("flutter from σ_XY/σ_YY > 0 of", {"": validity.FLUTTER["positive"]}),
+    ("flutter from σ_XY/σ_YY < 0 of", {"": validity.FLUTTER["negative"]}),
+)  # fmt: skip
+
+
+def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Columns of the table of states, one row a state: its parameters, and its results.
+
+    Every result stands once, by the preferred method. What an archive does not have is left out. The
+    screen, CSV, notebooks and pages all show these columns.
+
+    Args:
+        data: datasets of the archive by path; stresses along the surface and inside are not needed.
+        units: of the result.
+    """
+    contact, count = units.contact, len(data[of.FRICTION.path])
+    results = [*_columns(data, units, _OF_CONTACT)]
+    solved = bool(results) or any(preferred(data, rows) for _, rows in (*_OF_EDGES[:2], _INDENTATION))
+    if solved and units.half_width is contact.half_width:
+        length = units.scale(CONTACT)
+        width = np.full(count, contact.half_width) * length.factor
+        results.insert(0, Column("half-width", width, length.unit, "half_width"))
+    if pull := [column for column in _columns(data, units, _PULL)]:
+        results += pull if np.nanmax(pull[0].values) > 0.0 else []
+    results += _shear_at_interfaces(data, units)
+    results += _columns(data, units, _OF_STRENGTH)
+    results += _yields(data, units)
+    results += [
+        c for c in _columns(data, units, (("depth of yield", yielding.DEPTH),)) if np.nanmax(c.values)
+    ]
+    edges = _columns(data, units, _OF_EDGES)
+    if any(column.head.startswith("K_I") and np.any(column.values) for column in edges):
+        results += edges
+    results += _columns(data, units, (_INDENTATION,))
+    return [*_parameter_columns(data, units), *results]
+
+
+def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Columns of what is given: friction, speed, load, and what else tells states apart."""
+    f, count = data[of.FRICTION.path], len(data[of.FRICTION.path])
+    apart = parameters(dict(data))
+    motion, speed = apart.pop(of.MOTION.path), apart.pop(of.SPEED.path)
+    apart.pop(of.LOAD.path, None)
+    columns = [
+        Column("stroke", [*map(str, data[motion.path])], "none", "motion", motion.path),
+        Column("friction f", f, "1", "f", of.FRICTION.path),
+    ]
+    scaled = units(speed)
+    assert scaled
+    head = "speed c over the wave speed" if units.dimensionless else "speed"
+    columns.append(
+        Column(head, scaled.of(data[speed.path]), scaled.unit, scaled.name, speed.path, digits=6)
     )
-    for row in (rows[FEM], rows[SIE])
-]  # fmt: skip
-_ENDS = [
-    (head, row, "{:.4e}")
-    for head, rows in (("a (m)", of.HALF_WIDTH), ("centre (m)", of.CENTRE))
-    for row in (rows[FEM], rows[CLOSED_FORM], rows[SIE])
-]
-_BOTH = [
-    ("estimate", of.ESTIMATE, "{:.1e}"),
-    ("estimate", layers.ESTIMATE, "{:.1e}"), ("v₀ (m)", of.INDENTATION, "{:.4e}"),
-    ("α", of.ALPHA, "{:.4f}"), ("β", of.BETA, "{:.4f}"),
-]  # fmt: skip
+    load = units.scale(of.LOAD.unit)
+    columns.append(
+        Column("load", load.of(np.full(count, units.load)), load.unit, "load", of.LOAD.path, digits=6)
+    )
+    for path, row in apart.items():
+        values = data[path]
+        if row.type != TEXT and np.allclose(values, np.abs(f), rtol=1e-12):
+            continue  # Coulomb's coefficient is the friction
+        scaled = units(row)
+        assert scaled
+        in_units = [*map(str, values)] if row.type == TEXT else scaled.of(values)
+        columns.append(Column(plain(f"${row.symbol}$"), in_units, scaled.unit, scaled.name, path))
+    return columns
 
 
-def states_sheet(data: dict[str, Any], title: str, scaling: Scaling = as_archived) -> Sheet:
-    """Table of the first states of an archive: their parameters, and the main results.
+def _columns(data: Mapping[str, Any], units: Units, specs: Sequence[_Spec]) -> list[Column]:
+    """Columns of the quantities that an archive has; without finite numbers there is none."""
+    columns = []
+    for head, rows in specs:
+        row = preferred(data, rows)
+        scaled = row and units(row)
+        if row and scaled and np.isfinite(data[row.path]).any():
+            place = head.startswith("at ")
+            head = f"{head}/a" if place and units.dimensionless else head
+            values = scaled.of(data[row.path])
+            along = row.scale in (X_OVER_A, CONTACT)
+            step = _STEP * float(np.max(units.length.factor))
+            columns.append(
+                Column(
+                    head, values, scaled.unit, scaled.name, row.path, place=place,
+                    step=step if along and not units.dimensionless else 0.0,
+                )
+            )  # fmt: skip
+    return columns
+
+
+def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Columns of the largest |σ_XY| at each interface, and of its place."""
+    rows = preferred(data, {method: of_all[4] for method, of_all in layers.INTERFACE_EXTREMES.items()})
+    if rows is None:
+        return []
+    highest, at_highest, lowest, at_lowest = layers.INTERFACE_EXTREMES[rows.method][4:8]
+    stress, X = units.stress, units(at_highest, "")
+    assert X
+    down = np.abs(data[lowest.path]) > np.abs(data[highest.path])
+    shear = stress.of(np.where(down, np.abs(data[lowest.path]), np.abs(data[highest.path])))
+    places = X.of(np.where(down, data[at_lowest.path], data[at_highest.path]))
+    depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
+    for i, depth in enumerate(depths):
+        head = f"shear {engineering(depth, 'm')} deep" if several else "interface shear"
+        name = f"interface_shear{f'_{i + 1}' * several}"
+        columns += [
+            Column(head, shear[:, i], stress.unit, name),
+            Column(f"at X{'/a' * units.dimensionless}", places[:, i], X.unit, f"{name}_X", place=True),
+        ]
+    return columns
+
+
+def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Columns of whether every state yields, and from which load on; none where that was not computed."""
+    count, contact = len(data[of.FRICTION.path]), units.contact
+    first, stress = preferred(data, yielding.FIRST_LOAD), preferred(data, yielding.VON_MISES)
+    if first is not None:
+        shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
+    elif stress is not None and contact.yield_strength:
+        strength = contact.yield_strength * 2.0 * units.half_width / units.load
+        shares, unit = data[stress.path] / strength, "of the yield strength"
+    elif preferred(data, yielding.REACH_LEFT) is not None:
+        return [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
+    else:
+        return []
+    words = [
+        "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
+        for share in shares
+    ]
+    loads = _columns(data, units, (("load at first yield", yielding.FIRST_LOAD),))
+    return [Column("yields", words, unit, "yields"), *loads]
+
+
+def layout(title: str, labels: Sequence[str], columns: Sequence[Column], width: int = 0) -> Sheet:
+    """Table of columns that suits a width: lines for one row, few rows side by side, else as they are.
+
+    Args:
+        title: of the table.
+        labels: of the rows.
+        columns: of the table.
+        width: characters of a line; 0 for rows below each other in any case.
+    """
+    shown = columns
+    if width and len(labels) == 1:
+        lines: list[list[str]] = []
+        for column in shown:
+            if column.place and lines:
+                lines[-1][1] += f"{' ' if ' at ' not in lines[-1][1] else ', '}{_at(column)}"
+            elif column.texts()[0]:
+                lines.append([column.head, column.words(0)])
+        return Sheet(title, ["", ""], lines)
+    texts = [column.texts(len(labels)) for column in shown]
+    heads = [f"  {column.label}" if column.place else column.label for column in shown]
+    if width and len(labels) <= _BESIDE:
+        return Sheet(title, ["state", *labels], [[head, *row] for head, row in zip(heads, texts)])
+    heads = [_folded(column) if width else column.label for column in shown]
+    return Sheet(title, ["state", *heads], [[label, *row] for label, *row in zip(labels, *texts)])
+
+
+def _folded(column: Column) -> str:
+    """Head over a narrow column, in several lines."""
+    wide = max(_NARROW, *map(len, column.texts()), *map(len, column.label.split()))
+    return textwrap.fill(column.label, wide, break_on_hyphens=False)
+
+
+def _at(column: Column) -> str:
+    """Place in words: ``at X = -52.5 µm``, and further coordinates without at."""
+    head = column.head.removeprefix("at ")
+    return f"{'at ' * head.startswith('X')}{head} = {column.words(0)}"
+
+
+def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int = 0) -> Sheet:
+    """Table of the first states of an archive, with :func:`state_columns`.
+
+    What is the same in all states of several stands in a note.
 
     Args:
         data: datasets of the archive by path.
+        units: of the result.
         title: title of the table; "" for "States".
-        scaling: scales of the quantities.
+        width: as for :func:`layout`.
     """
-    apart = {path: row for path, row in parameters(data).items() if path != of.MOTION.path}
-    varied = {path: row for path, row in apart.items() if len(np.unique(data[path])) > 1}
-    shown = {_head(row, scaling): (row, _form(row)) for row in varied.values()}
-    results = _EITHER if of.K_I_BOTH.path in data else _ALONE
-    shown["f"] = of.FRICTION, "{:+.4f}"
-    for head, row, form in (*results, *_ENDS, *_BOTH):
-        # Intensities at free ends are zeros.
-        if row.path in data and head not in shown and data[row.path].any():
-            shown[head] = row, form
-    factors = {path: _scaled(row, scaling).factor for path, row in apart.items() if row.type != TEXT}
-    series = [
-        [value if row.type == TEXT else factors.get(row.path, 1.0) * value for value in values]
-        for row, _ in shown.values()
-        if (values := data[row.path][:LIMIT].tolist())
-    ]
-    forms = [form for _, form in shown.values()]
-    labels = [f"{n} {motion}" for n, motion in enumerate(data[of.MOTION.path][:LIMIT].tolist())]
-    rows = [
-        [label, *(form.format(value) for form, value in zip(forms, row))]
-        for label, row in zip(labels, zip(*series))
-    ]
-    notes = []
-    hidden = len(data[of.FRICTION.path]) - LIMIT
-    if hidden > 0:
-        notes.append(f"and {hidden} more states; csv and show --json list all")
-    same = [
-        f"{_head(row, scaling)} = " + _form(row).format(factors.get(path, 1) * data[path][0])
-        for path, row in apart.items()
-        if path not in varied
-    ]
-    if same:
-        notes.append(f"the same in all: {', '.join(same)}")
-    of_speed = "; c is the speed over the shear wave speed" * (_scaled(of.SPEED, scaling).unit == "1")
-    notes.append(f"dimensionless where no unit stands{of_speed}")
-    if "error" in shown:
-        notes.append("K_I: closed form, at both edges; error and estimate: of finite elements, relative")
+    columns, count = state_columns(data, units), len(data[of.FRICTION.path])
+    known = {*parameters(data), of.LOAD.path, of.FRICTION.path, ""}
+    given = [column for column in columns if column.path in known and column.name != "yields"]
+    same = [c for c in given if c.constant and (count > 1 or c.name in ("motion", "X_over_L"))]
+    shown = [column for column in columns if column not in same]
+    notes = [f"and {count - LIMIT} more states; csv and show --json list all"] if count > LIMIT else []
+    told = [c for c in same if not (c.name in ("motion", "X_over_L") and count == 1)]
+    told = [c for c in told if c.name != "motion" or not c.values[0].startswith("FM")]
+    if told:
+        notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in told)}")
+    notes += _notes(data, units, shown)
+    return Sheet(
+        **{
+            **vars(layout(title or "States", [*map(str, range(min(count, LIMIT)))], shown, width)),
+            "notes": notes,
+        }
+    )
+
+
+def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
+    """What has to be known of some columns, and how to ask for those that are not there."""
+    heads = {column.head for column in columns}
+    if "K_I, right" in heads:
+        if "largest tension σ_XX" in heads:
+            yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
+        if not units.dimensionless:
+            yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
     if speeds := solved_speeds(data):
-        notes.append(speeds)
-    if "a (m)" in shown:
-        notes.append("a, centre: half-width of the contact, and its middle from the punch's axis")
-    if "α" in shown:
-        notes.append("α, β: exponents of the pressure at X = a and X = -a")
-    return Sheet(title or "States", ["state", *shown], rows, notes)
+        yield speeds
+    lacking = []
+    if "half-width" in heads or "K_I, right" in heads:
+        if "largest tension σ_XX" not in heads:
+            lacking.append('"surface" (σ_XX)')
+        if len(units.contact.solid.depths) and not any("shear" in head for head in heads):
+            lacking.append('"interfaces" (their shear)')
+        if "yields" not in heads and "largest von Mises" not in heads:
+            lacking.append('"yield" (von Mises, yields or not)')
+    if lacking:
+        yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"
+
+
+def sheets_of_run(data: dict[str, Any], units: Units, title: str, width: int) -> list[Sheet]:
+    """Tables of what was computed: states, sliders and motions in time, those that there are."""
+    states = states_sheet(data, units, title, width)
+    sheets = states, sliders_sheet(data, units, width), starts_sheet(data, units, width)
+    return [sheet for sheet in sheets if sheet.rows]
+
+
+def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
+    """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
+    columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]
+    kept = [c for c, before in zip(columns, [None, *columns]) if not c.place or before in columns]
+    labels = [*map(str, range(min(len(data[of.FRICTION.path]), LIMIT)))]
+    return layout("Where answers hold", labels, kept, width) if kept else Sheet("", [], [])
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
@@ -146,92 +410,34 @@ def solved_speeds(data: Mapping[str, Any]) -> str:
     return f"finite elements: {solved} of {len(np.unique(c))} speeds solved, the others by a fit"
 
 
-def _form(row: Quantity) -> str:
-    return "{}" if row.type == TEXT else "{:.4g}"
-
-
-def _scaled(row: Quantity, scaling: Scaling) -> Scaled:
-    symbol = plain(f"${row.symbol}$")
-    return scaling(row, symbol) or as_archived(row, symbol)
-
-
-def _head(row: Quantity, scaling: Scaling) -> str:
-    scaled = _scaled(row, scaling)
-    return scaled.name + ("" if scaled.unit in ("1", "none") else f" ({scaled.unit})")
-
-
-#: Largest tension and its place, by method.
-_TENSION = validity.TENSION | layers.TENSION
-
-#: Quantities of yield and of where answers do not hold, by their labels in a table.
-_LIMITS: tuple[tuple[str, dict[str, Quantity]], ...] = (
-    ("largest von Mises", yielding.VON_MISES),
-    ("  at X", yielding.VON_MISES_X),
-    ("  at Y", yielding.VON_MISES_Y),
-    ("largest shear", yielding.SHEAR),
-    ("  at X", yielding.SHEAR_X),
-    ("  at Y", yielding.SHEAR_Y),
-    ("load at first yield", yielding.FIRST_LOAD),
-    ("yield within, left", yielding.REACH_LEFT),
-    ("yield within, right", yielding.REACH_RIGHT),
-    ("depth of yield", yielding.DEPTH),
-    ("waves in a stroke", {"": validity.CROSSINGS}),
-    ("flutter from, g > 0", {"": validity.FLUTTER["positive"]}),
-    ("flutter from, g < 0", {"": validity.FLUTTER["negative"]}),
-    ("slip turned, left", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
-    ("slip turned, right", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
-    ("strain > 5 %, left", {CLOSED_FORM: validity.STRAIN[0]}),
-    ("strain > 5 %, right", {CLOSED_FORM: validity.STRAIN[1]}),
-    ("tension", {method: rows[0] for method, rows in _TENSION.items()}),
-    ("  at X", {method: rows[1] for method, rows in _TENSION.items()}),
+#: Labels and quantities of loops in their table, and functions that combine values of all strokes.
+_OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
+    ("work", runs.LOOP_WORK, lambda values: values.sum(axis=1)),
+    ("work of the closed loop", runs.LOOP_CYCLE, lambda values: values),
+    ("breakaway force", runs.LOOP_BREAKAWAY, lambda values: values.max(axis=1)),
+    ("stiffness", runs.LOOP_STIFFNESS, lambda values: values[:, 0]),
 )
-_METHODS = {CLOSED_FORM: "exact", SIE: "SIE", FEM: "FE", "": ""}
-_CALLED = {"exact": "closed form", "SIE": "singular integral equation", "FE": "finite elements"}
 
 
-def limits_sheet(data: dict[str, Any], scaling: Scaling = as_archived) -> Sheet:
-    """Table of yield, and of limits of the answers: smallest and largest values of all states."""
-    rows = []
-    for label, by_method in _LIMITS:
-        for method, row in by_method.items():
-            scaled = scaling(row, "")
-            if row.path in data and scaled and np.isfinite(values := data[row.path]).any():
-                ends = (f"{end(scaled.of(values)):.4g}" for end in (np.nanmin, np.nanmax))
-                unit = row.scale.lower() if scaled.unit == "1" and row.scale else scaled.unit
-                rows.append([label, _METHODS[method], unit, *ends])
-    notes = ["left, right: how far from X = -a and X = a; waves: how often one crosses the contact"]
-    used = {row[1] for row in rows}
-    if called := ", ".join(f"{short}: {long}" for short, long in _CALLED.items() if short in used):
-        notes.append(called)
-    return Sheet("Yield, and where answers hold", ["", "by", "unit", "least", "most"], rows, notes)
-
-
-def loops_sheet(data: dict[str, Any]) -> Sheet:
+def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the first friction loops: work, breakaway force and stiffness."""
-    varied = [
-        row
-        for path, row in parameters(data).items()
-        if row not in (of.MOTION, of.POSITION) and len(np.unique(data[path])) > 1
-    ]
-    of_state, count = data[runs.LOOP_OF_STATE.path], min(len(data[runs.LOOP_F.path]), LIMIT)
+    of_state, count = data[runs.LOOP_OF_STATE.path], len(data[runs.LOOP_F.path])
     states = [int(np.argmax(of_state == n)) for n in range(count)]
-    heads = ["loop", *(_head(row, as_archived) for row in varied)]
-    rows = [
-        [str(n), *(_form(row).format(data[row.path].tolist()[state]) for row in varied)]
-        for n, state in enumerate(states)
+    columns = [
+        Column(c.head, [c.values[i] for i in states], c.unit, c.name, c.path, c.digits)
+        for c in _parameter_columns(data, units)
+        if c.name not in ("motion", "X_over_L", "f") and not c.constant
     ]
     for head, row, reduced in _OF_LOOPS:
-        if row.path in data:
-            heads.append(head)
-            for cells, values in zip(rows, data[row.path]):
-                cells.append(f"{reduced(values):.5g}")
-    note = (
-        "work: dissipated in all strokes, and in a closed loop where there is one; breakaway: largest of "
-        "all strokes; stiffness: where the first stroke begins; all per depth"
-    )
+        scaled = units(row)
+        if row.path in data and scaled and np.nan_to_num(values := reduced(data[row.path])).any():
+            columns.append(Column(head, scaled.of(values), scaled.unit, scaled.name, row.path, digits=5))
+    note = "all per depth, in all strokes; stiffness: where the first stroke begins"
     if of.LOAD.path in data:
-        note += f"; under the first load, N = {data[of.LOAD.path][0]:.4g} N/m"
-    return Sheet("Friction loops", heads, rows, [note])
+        load = units.scale(of.LOAD.unit)
+        note += f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
+    sheet = layout("Friction loops", [*map(str, range(min(count, LIMIT)))], columns, width)
+    return Sheet(sheet.title, ["loop" if c == "state" else c for c in sheet.columns], sheet.rows, [note])
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
@@ -251,92 +457,81 @@ def inner_sheet(data: dict[str, Any]) -> Sheet:
     return Sheet("Inner state of the friction law", heads, rows, notes)
 
 
-#: Labels and quantities of loops in their table, and functions that combine values of all strokes.
-_OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
-    ("work (J/m)", runs.LOOP_WORK, np.sum),
-    ("closed loop (J/m)", runs.LOOP_CYCLE, float),
-    ("breakaway (N/m)", runs.LOOP_BREAKAWAY, np.max),
-    ("stiffness (N/m²)", runs.LOOP_STIFFNESS, lambda values: values[0]),
-)
 _OF_SLIDERS = (
-    ("period (s)", runs.PERIOD), ("slip per cycle (m)", runs.SLIP),
-    ("peak (m/s)", runs.PEAK), ("least (m/s)", runs.LEAST),
+    ("period", runs.PERIOD), ("slip per cycle", runs.SLIP), ("peak velocity", runs.PEAK),
+    ("least velocity", runs.LEAST),
 )  # fmt: skip
 
 
-def sliders_sheet(data: dict[str, Any]) -> Sheet:
+def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the motion of the slider for the first laws, with its stick-slip."""
-    columns = [data[row.path][:LIMIT].tolist() for _, row in _OF_SLIDERS if row.path in data]
-    outcomes = map(str, data[runs.OUTCOME.path]) if columns else []
-    rows = [
-        [str(n), outcome, *("" if isnan(value) else f"{value:.6g}" for value in values)]
-        for n, (outcome, values) in enumerate(zip(outcomes, zip(*columns)))
-    ]
-    heads = ["law", "motion", *(head for head, _ in _OF_SLIDERS)]
-    return Sheet("Motion of the slider", heads, rows, ["peak, least: of the velocity in the last cycle"])
+    if runs.OUTCOME.path not in data:
+        return Sheet("", [], [])
+    outcomes = [*map(str, data[runs.OUTCOME.path])]
+    columns = [Column("motion", outcomes, "none", "outcome", runs.OUTCOME.path)]
+    for head, row in _OF_SLIDERS:
+        scaled = units(row)
+        if scaled and np.isfinite(data[row.path]).any():
+            columns.append(
+                Column(head, scaled.of(data[row.path]), scaled.unit, scaled.name, row.path, digits=6)
+            )
+    sheet = layout("Motion of the slider", [*map(str, range(min(len(outcomes), LIMIT)))], columns, width)
+    return Sheet(sheet.title, ["law" if c == "state" else c for c in sheet.columns], sheet.rows)
 
 
-def starts_sheet(data: dict[str, Any], unit: float) -> Sheet:
-    """Table of the first starts at the end of the motion, by finite elements if the archive has them.
-
-    Args:
-        data: datasets of the archive by path.
-        unit: a/c_s [s].
-    """
+def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
+    """Table of the first starts at the end of the motion, by finite elements if the archive has them."""
     title = "In time, at the end"
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
-        return Sheet(title, [], [], [])
-    c, g, steady = (
-        data[row.path][:LIMIT] for row in (over_time.SPEED, over_time.RATIO, over_time.STEADY_CENTRE)
-    )
-    ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:LIMIT, -1]]
-    by_method = over_time.V0, over_time.CENTRE, over_time.K_I_LEFT, over_time.K_I_RIGHT
-    last = [data[row[method].path][:LIMIT, -1] for row in by_method]
-    off, near = data[over_time.OFF[method].path], data[over_time.WITHIN[method].path][:, 1]
-    columns = [values[:LIMIT].tolist() for values in (c, g, *last, steady, 100.0 * off)]
-    end = data[over_time.TIMES.path][-1]
-    rows = [
-        [
-            way,
-            *(_number(value, 5) for value in row),
-            _number(far, 3),
-            _when(within, end, unit),
-            _rounded(by_formula, unit),
-        ]
-        for way, *row, far, within, by_formula in zip(ways, *columns, near, data[over_time.APPROACH.path])
+        return Sheet(title, [], [])
+
+    def scaled(row: Quantity) -> Scaled:
+        return units(row) or as_archived(row, "")
+
+    def column(head: str, row: Quantity, digits: int = 5) -> Column:
+        values = data[row.path]
+        last = values[:, -1] if values.ndim == 2 else values
+        return Column(head, scaled(row).of(last), scaled(row).unit, digits=digits)
+
+    time = scaled(over_time.TIMES)
+    end, when = float(data[over_time.TIMES.path][-1]), data[over_time.WITHIN[method].path][:, 1]
+    columns = [
+        Column(
+            "way", ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]], "none"
+        ),
+        column("c" if units.dimensionless else "speed", over_time.SPEED, 6),
+        column("σ_XY/σ_YY", over_time.RATIO),
+        column("v₀", over_time.V0[method]),
+        column("centre", over_time.CENTRE[method]),
+        column("K_I left", over_time.K_I_LEFT[method]),
+        column("K_I right", over_time.K_I_RIGHT[method]),
+        column("centre in steady motion", over_time.STEADY_CENTRE),
+        Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3),
+        Column("within 1 % from", [_when(t, end, time) for t in when], "none"),
     ]
-    heads = ["way", "c", "g", "v0 (N/2mu)", "centre/a", "K_I left", "K_I right", "steady"]
-    heads += ["off (%)", "within 1 % from", "by formula"]
+    by_formula = data[over_time.APPROACH.path]
+    if np.isfinite(by_formula).any():
+        columns.append(Column("by formula", [_rounded(t, time) for t in by_formula], "none"))
+    labels = [*map(str, range(min(len(when), LIMIT)))]
+    sheet = layout(title, labels, columns, width)
     notes = [
-        f"at t = {end:g} a/c_s = {_seconds(end * unit)}; centre: of the pressure, towards +X",
-        "steady: centre in steady motion",
-        "off: largest relative difference of K_I, or of centre/a, from steady motion",
-        "within 1 %: of both, over a/c_s; ~ by 1/t after the end",
-        "by formula: for late times, of uniform solids, over a/c_s",
+        f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X",
+        "off: largest relative difference of K_I, or of the centre over a, from steady motion",
+        "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
+        "K_I: dimensionless, by the final load",
     ]
-    return Sheet(title, heads, rows, notes)
+    heads = ["start" if c == "state" else c for c in sheet.columns]
+    return Sheet(title, heads, sheet.rows, notes)
 
 
-def _number(value: float, digits: int) -> str:
-    return "" if isnan(value) else f"{value:.{digits}g}"
-
-
-def _when(time: float, end: float, unit: float) -> str:
-    """Time over a/c_s in words; with ~ where it is extrapolated beyond the end."""
+def _when(time: float, end: float, scaled: Scaled) -> str:
+    """Time in words; with ~ where it is extrapolated beyond the end."""
     if isnan(time):
-        return "too short to tell"
-    return f"{time:.3g} ({_seconds(time * unit)})" if time <= end else f"~ {_rounded(time, unit)}"
+        return "later than can be told"
+    return scaled.text(scaled.factor * time, 3) if time <= end else f"~ {_rounded(time, scaled)}"
 
 
-def _rounded(time: float, unit: float) -> str:
-    """Time over a/c_s in words, with two digits."""
-    return "" if isnan(time) else f"{float(f'{time:.1e}'):g} ({_seconds(time * unit, 2)})"
-
-
-def _seconds(seconds: float, digits: int = 3) -> str:
-    """Time in words, with a unit from s to ns."""
-    for size, name in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
-        if seconds >= size:
-            return f"{float(f'{seconds / size:.{digits - 1}e}'):g} {name}"
-    return f"{float(f'{seconds / 1e-9:.{digits - 1}e}'):g} ns"
+def _rounded(time: float, scaled: Scaled) -> str:
+    """Time in words, with two digits."""
+    return "" if isnan(time) else scaled.text(scaled.factor * time, 2)

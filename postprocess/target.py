@@ -57,10 +57,15 @@ PAGE = _kind(
 )
 PDF = _kind("a figure of galinx", rb"%PDF-.*galinx")
 PNG = _kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
+#: How heads of tables begin: of states and their points, of loops, starts and sliders.
+_OF_TABLES = (
+    rb"state,(motion|interface,speed|interface,c|c \[1\]|speed \[.{1,3}/s\]),|loop,X_over_L|start,t \["
+    rb"|law,time \["
+)
 SVG = _kind("a figure of galinx", rb"<\?xml .{,1500}<dc:title>galinx</dc:title>")
 GIF = _kind("a film of galinx", rb"GIF8.*galinx")
 MP4 = _kind("a film of galinx", rb".{4}ftyp.*galinx")
-TABLE = _kind("a table of galinx", rb"state,(c \[1\]|speed \[m/s\]),", ".csv", ".txt")
+TABLE = _kind("a table of galinx", _OF_TABLES, ".csv", ".txt")
 SECTION = _kind("a section fitted by galinx", rb"# Fitted by galinx", ".toml")
 TABLES = _kind("tables of galinx", rb"\s*(Table 1\. Dahl|Statements of the study)")
 LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)

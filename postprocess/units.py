@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.contact.solution import Contact
 
-from .quantities import Quantity, of_states, states, table
+from .quantities import Quantity, of_states, over_time, states, table
 from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
 
 
@@ -79,7 +79,7 @@ _PREFIXED: dict[str, tuple[tuple[str, float, float], ...]] = {
     "m": (("nm", 1e-9, 0.0), ("µm", 1e-6, 0.1), ("mm", 1e-3, 0.5), ("m", 1.0, 1.0)),
     "N/m": (("N/m", 1.0, 0.0), ("N/mm", 1e3, 0.1), ("kN/mm", 1e6, 10.0)),
     "m/s": (("nm/s", 1e-9, 0.0), ("µm/s", 1e-6, 0.5), ("mm/s", 1e-3, 0.5), ("m/s", 1.0, 0.5)),
-    "s": (("ns", 1e-9, 0.0), ("µs", 1e-6, 0.5), ("ms", 1e-3, 0.5), ("s", 1.0, 0.5)),
+    "s": (("ns", 1e-9, 0.0), ("µs", 1e-6, 0.1), ("ms", 1e-3, 0.1), ("s", 1.0, 0.1)),
     "J/m": (
         ("nJ/m", 1e-9, 0.0), ("µJ/m", 1e-6, 0.5), ("mJ/m", 1e-3, 0.5), ("J/m", 1.0, 0.5),
         ("kJ/m", 1e3, 1.0),
@@ -109,14 +109,14 @@ class Units:
         dimensionless: quantities as archived, over N/(2a), a and c_s.
 
     Attributes:
-        data, dimensionless: as given.
+        contact, data, dimensionless: as given.
         half_width, middle: of contacts [m], numbers, or (states,) where contacts of states differ.
         load: per depth [N/m], a number, or (states,) where states differ in it.
     """
 
     def __init__(self, contact: Contact, data: Mapping[str, Any], dimensionless: bool = False) -> None:
         self.dimensionless = dimensionless
-        self._contact, self.data = contact, data
+        self.contact, self.data = contact, data
         ends: tuple[Any, Any] = contacts_of_states(data) or (contact.half_width, 0.0)
         self.half_width, self.middle = ends
         self.load: Any = data.get(states.LOAD.path, contact.load)
@@ -155,7 +155,7 @@ class Units:
         """
         if self.dimensionless:
             return Scaled("", "1" if kind in (OVER_A, X_OVER_A, OVER_C_S, OVER_N) else kind)
-        contact, of_states_ = self._contact, row is None or of_states(row.path)
+        contact, of_states_ = self.contact, row is None or of_states(row.path)
         a, N = (self.half_width, self.load) if of_states_ else (contact.half_width, contact.load)
         offset: Any = 0.0
         if kind == "N/(2a)":
@@ -170,7 +170,7 @@ class Units:
             unit, factor, size = "N/m", (N if kind == OVER_N else 1.0), np.median(self.load)
         elif kind == "a/c_s":
             unit, factor = "s", contact.half_width / contact.solid.c_s
-            size = factor
+            size = factor * np.max(self.data.get(over_time.TIMES.path, 1.0))
         elif kind == "N/(2mu)":
             unit, factor, size = "m", contact.displacement, contact.displacement
         elif kind in ("N^2/(4mu)", "N*a"):

@@ -184,5 +184,9 @@ def _check_rows(key: str, expected: Parameter, value: Any) -> None:
     if expected.optional and not len(value):
         return
     wide = len(expected.columns)
-    if not len(value) or any(len(row) != wide for row in value) or not np.isfinite(value).all():
+    if isinstance(value, np.ndarray):  # of many models at once
+        wrong = value.shape[-1] != wide
+    else:
+        wrong = not len(value) or any(len(row) != wide for row in value)
+    if wrong or not np.isfinite(value).all():
         raise ValueError(f"{key} = {value!r}: expected rows of {wide} finite numbers")

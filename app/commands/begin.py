@@ -9,7 +9,7 @@ import click
 from galinx.postprocess.target import SECTION, Folder, Target
 
 from .. import errors, ranks
-from ..console import program, say
+from ..console import Progress, colours, new_console, print_sheet, program, say
 from ..errors import BadInput
 from . import options
 
@@ -74,48 +74,90 @@ def schema() -> int:
 
 
 @click.command()
-@click.argument("law")
-@click.argument("data", type=options.FILE)
+@click.argument("words", nargs=-1, required=True, metavar="[LAW] DATA...")
+@click.option("--model", metavar="LAW", help="Law to fit; all: each, best first.  [default: all]")
 @click.option(
     "--fix", multiple=True, metavar="KEY=VALUE", help="A parameter that is known; may be repeated."
 )
 @click.option(
     "--start", multiple=True, metavar="KEY=VALUE", help="What the search begins with; may be repeated."
 )
-@click.option("--speed", default="", metavar="SPEED", help="Of a table of slips, as '1 mm/s'.")
+@click.option(
+    "--speed", multiple=True, metavar="SPEED",
+    help="Of a table of slips, as '1 mm/s'; may be repeated, for each.",
+)  # fmt: skip
 @click.option(
     "--rows", type=click.IntRange(1, 20), default=3, show_default=True,
     help="Of a law's table, as the springs of Maxwell slip.",
 )  # fmt: skip
-@options.folder("fit")
+@click.option("--into", type=options.FILE, metavar="SCENE", help="Scene whose friction law is replaced.")
+@click.option(
+    "-o", "to", type=options.PATH, default=Path("fit"), show_default=True,
+    help="Folder; it is made. With --into, NEW.toml: the scene with the law, SCENE stays.",
+)  # fmt: skip
 @options.overwrite
+@options.talk
 def fit(
-    law: str, data: Path, fix: tuple[str, ...], start: tuple[str, ...], speed: str, rows: int,
-    folder: Path, overwrite: bool,
+    words: tuple[str, ...], model: str | None, fix: tuple[str, ...], start: tuple[str, ...],
+    speed: tuple[str, ...], rows: int, into: Path | None, to: Path, overwrite: bool, progress: Progress,
+    quiet: bool,
 ) -> int:  # fmt: skip
-    """Find the parameters of the friction law LAW from measured friction DATA.
+    """Find friction laws and their parameters from measured friction DATA.
 
-    DATA is a table of comma-separated values. Its first line names the columns, units in brackets: "slip
-    [mm],f" for one stroke from rest, or "time [s],position [mm],f" for any motion. f is friction over
-    load. The section [friction] of a scene and a figure with the residuals are written into a folder.
+    DATA are tables, measured on one contact. The first line names the columns, units in brackets: "slip
+    [mm],f" for one stroke from rest, or "time [s],position [mm],f" for any motion; instead of f, friction
+    over load, also "force [N],load [N]". Commas, semicolons with decimal commas, or tabs separate them.
+    All laws are compared unless one is named. The section [friction] of the best, and figures with the
+    residuals, are written into a folder.
 
-    Example: ./run.sh fit dahl scenes/slip.csv -o fit
+    Example: ./run.sh fit scenes/slip.csv --model dahl -o fit
     """
     from ..figures.files import save
-    from ..results.fitted import figure, fitted, section
+    from ..figures.friction import fitted_figure
+    from ..results.fitted import ALL, split
+    from ..results.fitted import fit as fit_laws
+    from ..scene.read import read as read_scene
 
     if not ranks.is_root():
         return errors.GOOD
-    to = Folder(folder, overwrite, options.inputs(data))
-    target = to.target("friction.toml", SECTION)
-    measured, result = fitted(law, data, list(fix), list(start), speed, rows)
-    text = section(law, data, measured, result)
-    target.write(text.encode())
-    save([("fit", figure(measured, result))], to)
-    print(text, end="")
-    print(f"section: {folder / 'friction.toml'}")
-    print(f"figure: {folder / 'fit.pdf'}")
-    print(f"next: put the section into a scene, then {program()} run SCENE.toml")
+    named = [words[0]] if not model and "." not in words[0] and not Path(words[0]).exists() else []
+    data = [Path(word) for word in words[len(named) :]]
+    if not data:
+        raise BadInput(f"found no table, expected as in {program()} fit scenes/slip.csv")
+    new = to if into and to.suffix == ".toml" else into
+    folder = Path("fit") if into and new == to else to
+    inputs = options.inputs(*data, *([into] if into and new != into else []))
+    scene_to = Target(new, None, overwrite or new == into, inputs) if new else None
+    if into:
+        read_scene(into)  # its faults are reported before the work
+    law = model or (named[0] if named else ALL)
+    with progress:
+        best = fit_laws(
+            data, law, fix=split(fix), start=split(start), speed=speed, rows=rows, progress=progress
+        )
+    to_folder = Folder(folder, overwrite, inputs)
+    target = to_folder.target("friction.toml", SECTION)
+    section = best.scene()
+    if scene_to:
+        scene_to.write(best.scene(into).encode())
+    target.write(section.encode())
+    drawn = [
+        fitted_figure(one.measured.t, one.measured.X, one.measured.f, f, one.timed)
+        for one, f in zip(best.tables, best.result.f)
+    ]
+    names = ["fit", *(f"fit_{n}" for n in range(2, len(drawn) + 1))]
+    save(list(zip(names, drawn)), to_folder)
+    if not quiet:
+        if law == ALL:
+            print_sheet(new_console(colours=colours()), best.sheet())
+        print(section, end="")
+        for note in best.notes:
+            say(f"note: {note}")
+        print(f"scene: {new}" if new else f"section: {folder / 'friction.toml'}")
+        print(f"figure: {', '.join(str(folder / f'{name}.pdf') for name in names)}")
+        scene_name = new or "SCENE.toml"
+        hint = f"{program()} run {scene_name}"
+        print(f"next: {hint if new else f'put the section into a scene, with --into, then {hint}'}")
     return errors.GOOD
 
 

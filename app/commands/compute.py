@@ -12,7 +12,7 @@ from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.target import Folder, Target
 
 from .. import errors, process, ranks
-from ..console import Progress, print_summary, print_times, program, say
+from ..console import Progress, print_result, print_times, print_warnings, program, say, width
 from ..errors import BadInput
 from . import options
 
@@ -23,10 +23,11 @@ from . import options
 @options.changes
 @options.overwrite
 @click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")
+@options.dimensionless
 @options.talk
 def run(
     scene: Path, output: Path | None, changes: tuple[str, ...], unset: tuple[str, ...],
-    overwrite: bool, resume: bool, progress: Progress, quiet: bool,
+    overwrite: bool, resume: bool, dimensionless: bool, progress: Progress, quiet: bool,
 ) -> int:  # fmt: skip
     """Compute SCENE and archive the results.
 
@@ -46,13 +47,20 @@ def run(
         return errors.GOOD
     from galinx.postprocess.hdf5.archive import read
     from galinx.postprocess.journal import Journal
+    from galinx.postprocess.tables import sheets_of_run
+    from galinx.postprocess.units import Units
 
     journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
     with progress:
         progress.note(f"scene: {scene}")
         verdict = _archived(checked, target, journal, progress, clock)
     data, attributes = read(path, stresses=False, just_sealed=True)
-    print_summary(data, attributes, quiet)
+    if not quiet:
+        sheets = sheets_of_run(
+            data, Units(checked.body, data, dimensionless), attributes["title"], width()
+        )
+        print_result(sheets, data, attributes, progress.verbose)
+    print_warnings(attributes)
     if not quiet:
         print_times(clock)
         print(f"archive: {path}")

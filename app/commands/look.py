@@ -5,7 +5,6 @@ programs, csv.
 """
 
 import json
-from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ import click
 from galinx.postprocess.target import TABLE, Target
 
 from .. import errors, ranks
-from ..console import print_sheets, print_warnings, program, say
+from ..console import print_result, print_warnings, program, say, width
 from . import options
 
 
@@ -22,33 +21,28 @@ from . import options
 @options.archive
 @click.option("--json", "as_json", is_flag=True, help="One JSON object instead of tables.")
 @options.dimensionless
-def show(archive: Path, as_json: bool, dimensionless: bool) -> int:
+@click.option("-v", "--verbose", is_flag=True, help="All comparisons, and their limits.")
+def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> int:
     """Show states, friction loops and verdict of ARCHIVE, where it yields, and where its answers hold.
 
     Example: ./run.sh show tables.h5 --dimensionless
     """
-    from galinx.postprocess.tables import (
-        inner_sheet,
-        limits_sheet,
-        loops_sheet,
-        sliders_sheet,
-        starts_sheet,
-        states_sheet,
-    )
+    from galinx.postprocess.tables import inner_sheet, limits_sheet, loops_sheet, sheets_of_run
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
     if ranks.is_root():
-        scaled = result.units(dimensionless)
+        units = result.units(dimensionless)
         if as_json:
-            print(json.dumps(_as_json(data, attributes, scaled), ensure_ascii=False, indent=1))
+            print(json.dumps(_as_json(data, attributes, units), ensure_ascii=False, indent=1))
         else:
-            states = states_sheet(data, attributes["title"], scaled)
-            # Archives of friction alone, and of other programs, need not have them.
-            unit = attributes.get("half_width", nan) / attributes.get("c_s", nan)
-            friction = inner_sheet(data), loops_sheet(data), sliders_sheet(data)
-            sheets = states, *friction, starts_sheet(data, unit), limits_sheet(data, scaled)
-            print_sheets([sheet for sheet in sheets if sheet.rows], attributes)
+            further = (
+                loops_sheet(data, units, width()),
+                inner_sheet(data),
+                limits_sheet(data, units, width()),
+            )
+            sheets = *sheets_of_run(data, units, attributes["title"], width()), *further
+            print_result([sheet for sheet in sheets if sheet.rows], data, attributes, verbose)
             print_warnings(attributes)
     return errors.GOOD
 
@@ -321,7 +315,11 @@ def response(
 @options.archive
 @click.option("--states", is_flag=True, help="A row a state; this is the default.")
 @click.option("--surface", is_flag=True, help="A row for each state and point on the surface.")
+@click.option("--interfaces", is_flag=True, help="A row for each state, interface and point.")
 @click.option("--inside", is_flag=True, help="A row for each state and point inside.")
+@click.option("--histories", is_flag=True, help="Friction along the strokes of every law.")
+@click.option("--time", is_flag=True, help="Motions in time, a row for each time.")
+@click.option("--slider", is_flag=True, help="Motions of sliders, a row for each time.")
 @options.dimensionless
 @click.option("-o", "output", type=options.FILE, help="File; default: standard output.")
 @options.overwrite

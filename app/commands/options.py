@@ -52,7 +52,7 @@ class _Folder(_Path):
         return path
 
 
-FILE, FOLDER = _File(path_type=Path), _Folder(path_type=Path)
+FILE, FOLDER, PATH = _File(path_type=Path), _Folder(path_type=Path), _Path(path_type=Path)
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)

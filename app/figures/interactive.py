@@ -4,7 +4,6 @@ What is drawn on paper is drawn on a page by the same panels: hover, zoom and le
 """
 
 from collections.abc import Sequence
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -24,8 +23,8 @@ from .stresses import SHOWN, Fields, has_map, limits, place_of, position_name, s
 #: Most numbers of all states along the surface, and in maps: pages stay below 6 MB.
 _NUMBERS = 130_000
 _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "markers"}
-_SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open", "x": "x",
-            "_": "line-ew-open", ".": "circle"}  # fmt: skip
+_SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open",
+            "x": "x", "_": "line-ew-open", ".": "circle"}  # fmt: skip
 _DASHES = {"-": "solid", "--": "dash", ":": "dot", "none": "solid"}
 
 
@@ -54,7 +53,8 @@ def _trace(curve: Curve) -> dict[str, Any]:
         "x": numbers(curve.x), "y": numbers(curve.y), "mode": _MODES[curve.form],
         "name": plain(curve.label) or METHODS[FEM] * (curve.form == MARKERS),
         "showlegend": bool(curve.label),
-        "line": {"color": to_hex(curve.look.colour), "width": 1.6 * curve.width, "dash": _DASHES.get(dash, dash)},
+        "line": {"color": to_hex(curve.look.colour), "width": 1.6 * curve.width,
+                 "dash": _DASHES.get(dash, dash)},
         "marker": {"color": to_hex(curve.look.colour), "size": 3 if curve.form == DOTS else 6,
                    "symbol": _SYMBOLS.get(curve.look.marker, "circle-open")},
     }  # fmt: skip
@@ -90,8 +90,8 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     """Stresses of states behind a slider, along the surface and below it; None where there are none.
 
     Returns:
-        ``states``: their labels; ``surface``: a chart for each stress with its curves by state and method,
-        whose positions are ``place`` over ``X``; ``maps``: the grid and the values by stress and state.
+        ``states``: their labels; ``surface``: a chart for each stress with its curves by state and
+        method, whose positions are ``place`` over ``X``; ``maps``: the grid and the values by stress and state.
     """
     on_surface, below = bool(of.by_method(STATE, POINT)), has_map(of)
     if not on_surface and not below:
@@ -139,6 +139,7 @@ def _map(fields: Fields, name: str, method: str, shown: Sequence[int]) -> dict[s
     values: list[NDArray] = [fields.values(name, method, i) for i in shown]
     limit = float(np.quantile(np.abs(values), 0.985)) or 1.0
     return {
-        "label": plain(fields.label(name)), "limit": float(f"{limit:.3g}"), "signed": name.startswith("sigma"),
+        "label": plain(fields.label(name)), "limit": float(f"{limit:.3g}"),
+        "signed": name.startswith("sigma"),
         "values": [[numbers(row, 4) for row in of_state] for of_state in values],
     }  # fmt: skip

@@ -1,245 +1,311 @@
-"""Measured friction, and the law that is fitted to it.
+"""Friction laws fitted to measured friction: parameters, a comparison of laws, a section of a scene."""
 
-Friction is read from a table of comma-separated values with units in its head. A fitted law is written as
-a section of a scene, and drawn beside the measured friction.
-"""
-
-import csv
 import json
-import re
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from math import isfinite
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from galinx import files
-from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.fit import FittedLaw, fit, moves
-from galinx.solvers.parameters import parameters
+from galinx.postprocess.tables import Sheet
+from galinx.solvers.friction import LAWS, FrictionLaw
+from galinx.solvers.friction import fit as solver
+from galinx.solvers.friction.fit import FittedLaw, Measured
+from galinx.solvers.parameters import Parameter, parameters
 
-from ..errors import BadInput, excerpt, nearest, short
-from ..figures.friction import fitted_figure
+from ..console import Progress
+from ..errors import BadInput, listed, nearest, short
+from ..scene import read as scenes
 from ..scene.units import to_si
 from ..scene.values import Choice, Number, Rows
+from .measured import Table, read
 
-#: Bytes of a table.
-_LARGEST = 100 * 10**6
-#: A column's head: its name, and its unit in brackets.
-_HEAD = re.compile(r"\s*([^\s\[\]()]+)\s*(?:[\[(]\s*([^\])]*)\s*[\])])?\s*")
-#: SI units of the columns, by name, and the two kinds of tables.
-_UNITS = {"slip": "m", "time": "s", "position": "m", "f": ""}
-_TABLES = (("slip", "f"), ("time", "position", "f"))
-_FORM = '"slip [m],f" or "time [s],position [m],f"'
+#: Name that stands for every law.
+ALL = "all"
 
 
 @dataclass(frozen=True)
-class Measured:
-    """Friction as it was measured, (samples,) each.
+class Fit:
+    """A friction law fitted to measured friction.
 
     Attributes:
-        t: time [s]; that of a slip at 1 m/s where slip was measured alone.
-        X: position [m].
-        f: friction coefficient.
-        timed: True where time was measured.
+        model: name of the law.
+        law: the law, for :mod:`galinx.solvers.friction`.
+        parameters: its parameters by key, in SI; what the data do not determine and may be 0 is 0.
+        deviations: standard deviation by the name of each fitted number, as ``"mu_c"`` or ``"elements[2,
+            1]"``, in SI; NaN or larger than the number where the data do not determine it.
+        not_determined: names of these.
+        rms: root mean square of measured less fitted f, dimensionless.
+        aic: Akaike's criterion; laws with a smaller one describe the same data better.
+        seconds: wall time.
+        tables: the measurements.
+        result: friction along them, and the covariance.
+        others: other laws fitted to the same data, best first.
+        failed: reasons why further laws were not, by name.
     """
 
-    t: NDArray[np.float64]
-    X: NDArray[np.float64]
-    f: NDArray[np.float64]
-    timed: bool
+    model: str
+    law: FrictionLaw
+    parameters: dict[str, Any]
+    deviations: dict[str, float]
+    not_determined: tuple[str, ...]
+    rms: float
+    aic: float
+    seconds: float
+    tables: tuple[Table, ...]
+    result: FittedLaw = field(repr=False)
+    others: tuple["Fit", ...] = field(default=(), repr=False)
+    failed: Mapping[str, str] = field(default_factory=dict, repr=False)
 
+    def scene(self, path: str | Path | None = None) -> str:
+        """Section ``[friction]`` with the law, each number with its deviation as a comment.
 
-def read(path: Path) -> Measured:
-    """Read a table of measured friction.
+        Args:
+            path: a scene; its text is returned with the law in place of its own. ``pre_sliding``,
+                ``integrator``, ``sign`` and everything else stay as written.
 
-    Args:
-        path: a file whose first line names the columns, ``slip`` and ``f``, or ``time``, ``position`` and
-            ``f``, in any order and with any others beside them; a unit stands in brackets.
+        Raises:
+            BadInput: the file is no scene, or no scene with this law.
+        """
+        return _section(self) if path is None else _with_law(Path(path), _section(self))
 
-    Raises:
-        BadInput: it is none; the message names the line.
-    """
-    try:
-        text = files.read(path, _LARGEST).decode("utf-8-sig")
-    except OSError as error:
-        raise BadInput(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
-    rows = [
-        (line, row) for line, row in enumerate(csv.reader(text.splitlines()), 1) if row and any(row)
-    ]  # fmt: skip
-    if not rows:
-        raise BadInput(f"{path} is empty, expected a first line as {_FORM}")
-    factors = _columns(path, rows[0][1])
-    numbers = np.array([_row(path, line, row, factors) for line, row in rows[1:]]).reshape(
-        -1, len(factors)
-    )
-    columns = dict(zip(factors, numbers.T))
-    clock = columns.get("time", columns.get("slip", np.zeros(0)))
-    if len(clock) < 3 or (np.diff(clock) <= 0.0).any():
-        name = "time" if "time" in columns else "slip"
-        wrong = int(np.argmax(np.diff(clock) <= 0.0)) + 1 if len(clock) >= 3 else len(clock) - 1
-        line = rows[min(wrong + 1, len(rows) - 1)][0]
-        raise BadInput(f"{path}, line {line}: expected three or more rows in which the {name} grows")
-    if "slip" in columns:
-        return _from_rest(columns["slip"], columns["f"])
-    if not np.ptp(columns["position"]):
-        raise BadInput(f"{path}: found one position in all rows, expected a motion")
-    return Measured(columns["time"], columns["position"], columns["f"], True)
-
-
-def _from_rest(slip: NDArray, f: NDArray) -> Measured:
-    """Friction over a slip that is counted from rest, whether the table has a row of rest or not."""
-    if slip[0] < 0.0:
-        raise BadInput(f"found the slip {slip[0]:g} m, expected slips from 0 on")
-    if slip[0] > 0.0:
-        slip, f = np.append(0.0, slip), np.append(np.nan, f)
-    return Measured(slip, slip, f, False)
-
-
-def _columns(path: Path, heads: list[str]) -> dict[str, tuple[int, float]]:
-    """Number of the column, and its unit in SI, by name."""
-    columns: dict[str, tuple[int, float]] = {}
-    for n, head in enumerate(heads):
-        match = _HEAD.fullmatch(head)
-        name = match[1].lower() if match else ""
-        if match is None or name not in _UNITS:
-            continue
-        unit = (match[2] or "").strip()
-        try:
-            factor = 1.0 if unit in ("", "1") else to_si(f"1 {unit}", _UNITS[name])
-        except ValueError as error:
-            raise BadInput(f"{path}, line 1, {name}: {error}") from None
-        columns[name] = n, factor
-    for table in _TABLES:
-        if set(table) <= columns.keys():
-            return {name: columns[name] for name in table}
-    raise BadInput(f"{path}, line 1: found the columns {excerpt(heads)}, expected {_FORM}")
-
-
-def _row(path: Path, line: int, row: list[str], factors: dict[str, tuple[int, float]]) -> list[float]:
-    numbers = []
-    for name, (n, factor) in factors.items():
-        cell = row[n] if n < len(row) else ""
-        try:
-            number = float(cell)
-        except ValueError:
-            number = np.nan
-        if not np.isfinite(number):
-            raise BadInput(
-                f"{path}, line {line}, {name}: found {excerpt(cell)}, expected a finite number"
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was assumed and left out, in sentences."""
+        samples = sum(len(table.measured.t) for table in self.tables)
+        said = [note for table in self.tables for note in table.notes]
+        if self.result.every > 1:
+            said.append(f"every {self.result.every}th sample is fitted, and those where the motion turns")
+        elif self.result.samples < samples:
+            said.append(
+                f"{samples - self.result.samples} of {samples} samples are not fitted: the first of each "
+                "file, before the motion, and those at rest"
             )
-        numbers.append(factor * number)
-    return numbers
+        return tuple(said)
+
+    def sheet(self) -> Sheet:
+        """Table of all laws, best first."""
+        rows = [
+            (
+                one.model, f"{one.rms:.3g}", f"{one.aic:.1f}",
+                str(len(one.deviations)), str(len(one.not_determined)), f"{one.seconds:.1f}",
+            )
+            for one in (self, *self.others)
+        ]  # fmt: skip
+        columns = (
+            "law", "RMS of f [1]", "AIC", "parameters", "not determined", "time [s]",
+        )  # fmt: skip
+        notes = [f"{name}: {reason}" for name, reason in self.failed.items()]
+        return Sheet("", columns, rows, ["AIC: the less the better; by 10, clearly", *notes])
 
 
-def fitted(
-    name: str, data: Path, fixed: list[str], started: list[str], speed: str, rows: int
-) -> tuple[Measured, FittedLaw]:
-    """Measured friction of a table, and a law fitted to it.
+def fit(
+    data: str | Path | Measured | Sequence[str | Path | Measured],
+    model: str = ALL,
+    *,
+    fix: Mapping[str, Any] | None = None,
+    start: Mapping[str, Any] | None = None,
+    speed: Any = (),
+    rows: int = 3,
+    progress: Progress | None = None,
+) -> Fit:
+    """Friction law nearest to measured friction, of all laws that of the least Akaike's criterion.
 
     Args:
-        name: of the law.
-        data: the table.
-        fixed, started: ``KEY=VALUE`` of parameters that are held, and of starting values.
-        speed: of a table of slips, with its unit.
-        rows: of a law's table.
+        data: table of measured friction, by its file's name, or as arrays; or several, with the same
+            parameters, each of which begins at rest.
+        model: name of a law, or ``"all"``.
+        fix: parameters by key that are known, as numbers in SI, texts with units, or rows.
+        start: parameters by key with which the search begins.
+        speed: of tables of slips, in m/s or a text with a unit; one for all, or one for each.
+        rows: number of rows of a law's table, as the springs of Maxwell slip.
+        progress: shows the work.
 
     Raises:
-        BadInput: there is no such law, the table is none, or the law cannot be fitted to it.
+        BadInput: there is no such law, a table is none, or no law can be fitted to it.
     """
-    if name not in LAWS:
-        raise BadInput(f"friction law {short(name)!r}: there is none{nearest(name, LAWS)}")
-    kind, measured = LAWS[name], read(data)
-    if measured.timed and speed:
-        raise BadInput("--speed: found one, but the table tells the time; leave it away")
-    if not measured.timed and kind.depends_on_speed and not speed:
-        raise BadInput(f"{kind.about} depends on the speed: give --speed, as in --speed '1 mm/s'")
-    try:
-        if speed:
-            V = Number("m/s")(speed)
-            if V <= 0.0:
-                raise ValueError(f"--speed: found {V:g} m/s, expected > 0")
-            measured = replace(measured, t=measured.t / V)
-        way = moves(measured.t, measured.X, kind.depends_on_speed)
-        result = fit(kind, way, measured.f, _values(name, fixed), _values(name, started), rows)
-    except ValueError as error:
-        raise BadInput(f"{data}, {name}: {error}") from None
-    return measured, result
+    sources = [data] if isinstance(data, (str, Path, Measured)) else list(data)
+    if model != ALL and model not in LAWS:
+        raise BadInput(f"friction law {short(model)!r}: there is none{nearest(model, [*LAWS, ALL])}")
+    names = [*LAWS] if model == ALL else [model]
+    fixed, started = (_values(names, given or {}) for given in (fix, start))
+    tables, speedless = _at_speeds([_table(source) for source in sources], speed)
+    fits: list[Fit] = []
+    failed: dict[str, str] = {}
+    progress = progress or Progress(quiet=True)
+    for n, name in enumerate(names):
+        progress.say(LAWS[name].about)
 
+        def step(done: int, of: int, before: int = n) -> None:
+            progress.done(before + done / of, len(names), "laws")
 
-def _values(name: str, words: list[str]) -> dict[str, Any]:
-    """Parameters by key from ``KEY=VALUE``.
-
-    Raises:
-        ValueError: one of them is none.
-    """
-    declared = parameters(LAWS[name])
-    values: dict[str, Any] = {}
-    for word in words:
-        key, equals, text = word.partition("=")
-        key = key.strip()
-        if not equals or key not in declared:
-            raise ValueError(f"found {short(word)!r}, expected KEY=VALUE with {', '.join(declared)}")
-        parameter = declared[key]
         try:
-            if parameter.options:
-                values[key] = Choice(parameter.options)(text.strip())
-            elif parameter.columns:
-                values[key] = Rows(parameter.columns)(json.loads(text))
-            else:
-                values[key] = to_si(_number(text), parameter.unit)
-                if values[key] not in parameter.range:
-                    raise ValueError(f"found {values[key]:g}, expected {parameter.range}")
+            if speedless and LAWS[name].depends_on_speed:
+                raise ValueError("depends on the speed: give --speed, as in --speed '1 mm/s'")
+            fits.append(_fit(name, tables, fixed, started, rows, step))
         except ValueError as error:
-            raise ValueError(f"{key}: {error}") from None
+            failed[name] = str(error)
+    if not fits:
+        where = listed([table.name for table in tables], 3)
+        raise BadInput("\n".join(f"{where}, {name}: {reason}" for name, reason in failed.items()))
+    progress.done(len(names), len(names), "laws")
+    best, *others = sorted(fits, key=lambda one: one.aic)
+    return replace(best, others=tuple(others), failed=failed)
+
+
+def _table(source: str | Path | Measured) -> Table:
+    return Table("arrays", source, True) if isinstance(source, Measured) else read(Path(source))
+
+
+def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool]:
+    """Tables of slips at their speeds, others as they are; and True where a slip has no speed.
+
+    Raises:
+        BadInput: there are other numbers of speeds than of tables of slips, or one is no speed.
+    """
+    texts = [given] if isinstance(given, (str, int, float)) else list(given)
+    slips = sum(not table.timed for table in tables)
+    if texts and not slips:
+        raise BadInput("--speed: found one, but the table tells the time; leave it away")
+    if len(texts) not in (0, 1, slips):
+        raise BadInput(
+            f"--speed: found {len(texts)} for {slips} tables of slips, expected one, or as many"
+        )
+    speeds = []
+    for text in texts:
+        try:
+            speeds.append(Number("m/s")(text))
+            if speeds[-1] <= 0.0:
+                raise ValueError(f"found {speeds[-1]:g} m/s, expected > 0")
+        except ValueError as error:
+            raise BadInput(f"--speed: {error}") from None
+    left = iter(speeds * slips if len(speeds) == 1 else speeds)
+    moving = tuple(
+        table.at_speed(next(left)) if not table.timed and speeds else table for table in tables
+    )
+    return moving, bool(slips and not speeds)
+
+
+def _fit(
+    name: str, tables: tuple[Table, ...], fixed: dict[str, Any], started: dict[str, Any], rows: int,
+    step: Any,
+) -> Fit:  # fmt: skip
+    """A law fitted to tables; values of other laws' keys are left alone.
+
+    Raises:
+        ValueError: it cannot be.
+    """
+    begun, kind = perf_counter(), LAWS[name]
+    declared = parameters(kind)
+    fixed, started = ({key: given[key] for key in declared if key in given} for given in (fixed, started))
+    result = solver.fit(kind, [table.measured for table in tables], fixed, started, rows, step)
+    errors = dict(zip(result.names, result.deviations.tolist()))
+    lost = tuple(key for key, known in zip(result.names, result.determined) if not known)
+    values = {
+        key: 0.0 if key in lost and 0.0 in declared[key].range and value < 1e-3 * errors[key] else value
+        for key, value in result.values.items()
+    }
+    return Fit(
+        name, result.law, values, errors, lost, result.rms, result.aic, perf_counter() - begun, tables,
+        result,
+    )  # fmt: skip
+
+
+def split(words: Iterable[str]) -> dict[str, str]:
+    """Texts by key from ``KEY=VALUE``.
+
+    Raises:
+        BadInput: one of them is none.
+    """
+    pairs = [word.partition("=") for word in words]
+    for word, (_, equals, _) in zip(words, pairs):
+        if not equals:
+            raise BadInput(f"found {short(word)!r}, expected KEY=VALUE")
+    return {key.strip(): text.strip() for key, _, text in pairs}
+
+
+def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters by key, of one or the other law, from numbers or texts.
+
+    Raises:
+        BadInput: a key is of no law, or a value none of that parameter.
+    """
+    declared = {key: one for name in names for key, one in parameters(LAWS[name]).items()}
+    values = {}
+    for key, value in given.items():
+        if key not in declared:
+            raise BadInput(f"found {short(key)!r}, expected KEY=VALUE with {', '.join(declared)}")
+        try:
+            values[key] = _value(declared[key], value)
+        except ValueError as error:
+            raise BadInput(f"{key}: {error}") from None
     return values
 
 
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text.strip()
+def _value(parameter: Parameter, value: Any) -> Any:
+    if parameter.options:
+        return Choice(parameter.options)(value)
+    if parameter.columns:
+        table = json.loads(value) if isinstance(value, str) else value
+        return Rows(parameter.columns)([list(row) for row in table])
+    with suppress(TypeError, ValueError):  # a text with a unit
+        value = float(value)
+    number = to_si(value, parameter.unit)
+    if number not in parameter.range:
+        raise ValueError(f"found {number:g}, expected {parameter.range}")
+    return number
 
 
-def section(name: str, data: Path, measured: Measured, result: FittedLaw) -> str:
-    """Section of a scene with the fitted law, and the deviation of each number as a comment."""
-    declared, residual = parameters(type(result.law)), result.f - measured.f
-    rms = float(np.sqrt(np.nanmean(residual**2)))
-    errors = dict(zip(result.names, result.deviations.tolist()))
+def _with_law(path: Path, section: str) -> str:
+    """Text of a scene with the law of a section; the file's line ends stay.
+
+    Raises:
+        BadInput: the file is no scene, or no scene with this law.
+    """
+    from ..scene.changes import with_law  # a slow import
+
+    scenes.read(path)
+    text = with_law(files.read(path).decode("utf-8-sig"), section, str(path))
+    scenes.parse(scenes.filled(text, scenes.SECTIONS, path.parent, str(path)), f"{path} with this law")
+    return text
+
+
+def _section(one: Fit) -> str:
+    declared = parameters(type(one.law))
+    files = ", ".join(table.name for table in one.tables)
     lines = [
-        f"# Fitted by galinx: {type(result.law).about} to {np.isfinite(residual).sum()} samples",
-        f"# of {data.name}; root mean square of the residuals of f: {rms:.3g} (dimensionless);",
+        f"# Fitted by galinx: {type(one.law).about} to {one.result.samples} samples",
+        f"# of {files}; root mean square of the residuals of f: {one.rms:.3g} (dimensionless);",
         "# ± is one standard deviation",
         "[friction]",
-        f"model = {json.dumps(name)}",
+        f"model = {json.dumps(one.model)}",
     ]
-    for key, value in result.values.items():
-        unit = declared[key].unit
-        text = f"{value:.9g} {unit}" if unit else value
-        if declared[key].columns:
+    for key, value in one.parameters.items():
+        parameter = declared[key]
+        digits = 3 if key in one.not_determined else 9
+        text: Any = value
+        if parameter.columns:
             text = [[float(f"{number:.9g}") for number in row] for row in value]
-        elif not unit and not isinstance(value, str):
-            text = float(f"{value:.9g}")
-        said = _deviation(key, errors, unit or "dimensionless" * (not declared[key].options))
-        lines.append(f"{key} = {json.dumps(text)}{said}")
+        elif not isinstance(value, str):
+            number = f"{value:.{digits}g}"
+            text = f"{number} {parameter.unit}" if parameter.unit else float(number)
+        lines.append(f"{key} = {json.dumps(text)}  # {_comment(one, parameter)}")
     return "\n".join(lines) + "\n"
 
 
-def _deviation(key: str, errors: dict[str, float], unit: str) -> str:
-    """Comment on a number: its unit, and its standard deviation or that it was given."""
-    mine = {name: value for name, value in errors.items() if name.partition("[")[0] == key}
-    if not mine:
-        return f"  # {unit + ', ' if unit else ''}given"
-    texts = ", ".join(
-        "not determined" if np.isnan(value) else f"± {value:.2g}" for value in mine.values()
+def _comment(one: Fit, parameter: Parameter) -> str:
+    """Comment on a parameter: its unit, and the deviation of each number or that it was given."""
+    mine = {
+        name: error for name, error in one.deviations.items() if name.partition("[")[0] == parameter.key
+    }
+    unit = "in SI" if parameter.columns else parameter.unit or "dimensionless" * (not parameter.options)
+    said = ", ".join(
+        ("not determined" + f" (± {error:.2g})" * isfinite(error))
+        if name in one.not_determined
+        else f"± {error:.2g}"
+        for name, error in mine.items()
     )
-    return f"  # {unit if key in mine else 'in SI'}, {texts}"
-
-
-def figure(measured: Measured, result: FittedLaw) -> Any:
-    """Figure of measured and fitted friction, and their difference."""
-    return fitted_figure(measured.t, measured.X, measured.f, result.f, measured.timed)
+    return ", ".join(text for text in (unit, said or "given") if text)

@@ -101,8 +101,8 @@ TERMS = (
     ("indentation", "relative to the surface 100 a away, or 100 times the length over which layers "
      "are seen: in the plane it grows with that distance like a logarithm"),
     ("estimate", "error of finite elements measured on other degrees, the closed form not used"),
-    ("verdict", "PASS where every comparison is within what is allowed; not judged where one method alone "
-     "was asked for"),
+    ("verdict", "PASS where every comparison is within what is allowed; not judged where one method "
+     "alone was asked for"),
     ("σ_XX, σ_YY, σ_XY", "in-plane, normal and shear stress: X along the motion, Y out of the solid; "
      "tension is positive"),
 )  # fmt: skip
@@ -130,7 +130,7 @@ class Report:
         self._sheets = _published(data, scene) if sheets is None else sheets
         self._units = Units(scene.body, data, dimensionless)
         self._pictures: list[dict[str, Any]] = []
-        self._charts: list[list[dict[str, Any]]] = []
+        self._charts: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing, png: bytes | None = None) -> None:
         """Add a figure; it can be saved elsewhere afterwards.
@@ -140,15 +140,21 @@ class Report:
             png: its file's bytes; without it curves are charts, and all else is drawn for the page.
         """
         made = [] if png is not None else charts(getattr(drawing.figure, "panels", ()))
-        picture = {"caption": drawing.full_caption, "pixels": drawing.pixels, "width": None, "name": drawing.name}
+        picture: dict[str, Any] = {
+            "caption": drawing.full_caption,
+            "charts": (),
+            "source": "",
+            "width": None,
+        }
+        picture |= {"pixels": drawing.pixels, "name": drawing.name}
         if made:
-            picture |= {"charts": range(len(self._charts), len(self._charts) + len(made)), "source": ""}
-            self._charts += made  # type: ignore[arg-type]
+            picture["charts"] = range(len(self._charts), len(self._charts) + len(made))
+            self._charts += made
         elif png is None or drawing.pixels:
-            picture |= {"charts": (), "source": in_a_page(drawing.figure, drawing.pixels)}
+            picture |= {"source": in_a_page(drawing.figure, drawing.pixels)}
         else:  # as wide as it would be if it were drawn for the page
             width = round(96.0 * drawing.figure.get_figwidth())
-            picture |= {"charts": (), "source": embedded(png), "width": width}
+            picture |= {"source": embedded(png), "width": width}
         self._pictures.append(picture)
 
     def text(self) -> str:
@@ -160,7 +166,7 @@ class Report:
         # The large chart shows these.
         covered = {"surface"} if large and large["surface"] else set()
         covered |= {"inside"} if large and large["maps"] else set()
-        pictures = [p for p in self._pictures if p["name"] not in covered or p["source"] and not p["pixels"]]
+        pictures = [p for p in self._pictures if p["name"] not in covered]
         tables = [starts_sheet(data, self._units), limits_sheet(data, self._units)]
         content = {
             "title": attributes["title"] or "A sliding punch",
@@ -185,7 +191,7 @@ class Report:
             "program": program(),
         }
         shown = [picture["caption"] for picture in pictures]
-        words = str(content | {"pictures": shown, "charts": [], "explorer": large and large["surface"][:0]})
+        words = str(content | {"pictures": shown, "charts": [], "explorer": large and "σ_XX, a, c, X/L"})
         terms = [(t, meaning) for t, meaning in TERMS if any(word in words for word in t.split(", "))]
         return render(content | {"terms": terms})
 

@@ -11,8 +11,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from galinx.postprocess.compare import checked, failed
 from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.tables import states_sheet
+from galinx.postprocess.tables import Column, state_columns, states_sheet
 from galinx.postprocess.target import FIELDS, PAGE, Target
 from galinx.postprocess.units import Units
 
@@ -25,16 +26,16 @@ from ..scene.scene import Scene
 _COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
 
 
-def html(data: dict[str, Any], attributes: dict[str, Any]) -> str:
+def html(data: dict[str, Any], attributes: dict[str, Any], units: Units) -> str:
     """A result as HTML: a few lines and a table, without scripts or styles of its own.
 
     Args:
         data, attributes: datasets by path, and attributes of the root, of an archive.
+        units: of the table.
     """
     verdict = attributes["verdict"]
     colour = _COLOURS.get(verdict, "inherit")
-    sheet = states_sheet(data, attributes["title"])
-    reasons = json.loads(attributes["verdict_reasons"])
+    sheet = states_sheet(data, units, attributes["title"])
     warnings = [f"warning: {text}" for text in json.loads(attributes["warnings"])]
     heads = "".join(f"<th>{escape(column)}</th>" for column in sheet.columns)
     rows = "".join(f"<tr>{_cells(row)}</tr>" for row in sheet.rows)
@@ -42,7 +43,7 @@ def html(data: dict[str, Any], attributes: dict[str, Any]) -> str:
         f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
         f'<b style="color: {colour}">{escape(verdict)}</b></p>'
         f"{_lines(warnings)}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-        f"{_lines([*sheet.notes, *reasons])}"
+        f"{_lines([*sheet.notes, *failed(data, attributes), checked(attributes)])}"
     )
 
 
@@ -77,7 +78,7 @@ class Result:
 
     def _repr_html_(self) -> str:
         """Verdict and states as HTML, for notebooks."""
-        return html(self.data, self.attributes)
+        return html(self.data, self.attributes, self.units())
 
     @cached_property
     def scene(self) -> Scene:
@@ -111,6 +112,13 @@ class Result:
     def units(self, dimensionless: bool = False) -> Units:
         """Units of all quantities: SI with prefixes, or as archived over N/(2a), a and c_s."""
         return Units(self.scene.body, self.data, dimensionless)
+
+    def table(self, dimensionless: bool = False) -> list[Column]:
+        """One row a state: columns with head, unit and values.
+
+        They are those that ``run``, ``show``, ``csv`` and the page show.
+        """
+        return state_columns(self.data, self.units(dimensionless))
 
     def drawings(self, dimensionless: bool = False, **options: Any) -> Iterator[Any]:
         """Figures of the result, as :class:`galinx.app.figures.choice.Drawing`.

@@ -178,3 +178,19 @@ def _item(value: Any) -> Any:
     if any(isinstance(entry, dict) for entry in items):
         return list(value)
     return tomlkit.value(f"[{', '.join(entry.as_string() for entry in items)}]")
+
+
+def with_law(text: str, section: str, name: str = "scene") -> str:
+    """A scene's text with the friction law of another section ``[friction]``, and that one's comments.
+
+    Raises:
+        BadInput: the text is not TOML.
+    """
+    try:
+        own = tomlkit.parse(text).get("friction", {})
+    except TOMLKitError as error:
+        raise BadInput(f"{name} cannot be changed: {error}") from None
+    every = {"model", "vary", *(key for law in LAWS.values() for key in parameters(law))}
+    stale = [key for key in own if _parameter(key) in every] if isinstance(own, dict) else []
+    law = {f"friction.{key}": item for key, item in tomlkit.parse(section)["friction"].items()}
+    return changed(text, {f"friction.{key}": None for key in stale} | law, name)

@@ -15,7 +15,7 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.fem.fields import SurfaceSlopes
+from galinx.solvers.fem.fields import surface_slopes
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
@@ -67,7 +67,7 @@ def _slope_error(κ: float, c: float, degree: int, g: float = -0.5) -> float:
     punch = SlidingPunch(space, MovingFrame(κ, c))
     weights = punch.states(g).weights
     X = np.concatenate([-np.linspace(1.1, 5.0, 40), np.linspace(1.1, 5.0, 40)])
-    found = SurfaceSlopes(space, punch.fields, X).of(weights)[1][0]
+    found = surface_slopes(space, punch.fields, X).of(weights)[1][0]
     punch.destroy()
     frame = MovingFrame(κ, c)
     exact = frame.n * FlatPunch(frame, g).hilbert(X)  # no stress acts there

@@ -156,8 +156,8 @@ ESTIMATE_AT_INTERFACES = {
 }
 ESTIMATE_IN_PLANE = {
     SIE: _estimate(
-        SIE, "sigma_XX", "sigma_XX on the surface over the larger of itself and its largest further than "
-        "0.01 a from the edges, layered half-plane", ON_SURFACE, "estimate of sigma_XX, sie",
+        SIE, "sigma_XX", "sigma_XX on the surface over the larger of itself and its largest value "
+        "further than 0.01 a from the edges, layered half-plane", ON_SURFACE, "estimate of sigma_XX, sie",
     )
 }  # fmt: skip
 ESTIMATE_INSIDE = {
@@ -170,7 +170,7 @@ ESTIMATE_INSIDE = {
 STRESSES_INSIDE = {SIE: components(SIE, "from the transform")}
 INVARIANTS_INSIDE = {SIE: invariants(SIE)}
 
-HIGHEST, LOWEST = ({SIE: row} for row in extremes(SIE))
+HIGHEST, HIGHEST_X, LOWEST, LOWEST_X = ({SIE: row} for row in extremes(SIE))
 TENSION = {SIE: tensions(SIE)}
 
 QUANTITIES.add_all(globals())

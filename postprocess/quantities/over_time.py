@@ -43,14 +43,13 @@ TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEG
 LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE, scale=OVER_N)
 STEADY_CENTRE = _row(
     "steady_centre", "1",
-    "centre of the pressure in steady motion over the half-width, closed form, over layers by their "
-    "integral equation",
+    "centre of the pressure in steady motion over the half-width",
     (START,),
     scale=X_OVER_A,
 )  # fmt: skip
 CENTRES = _row(
     "steady_centres", "1",
-    "centre of the pressure over the half-width if it were at once that of steady motion",
+    "centre of the pressure over the half-width in steady motion at each moment's friction",
     (START, INSTANT),
     scale=X_OVER_A,
 )  # fmt: skip
@@ -99,11 +98,11 @@ WORK = _row(
 )  # fmt: skip
 ENERGY = _row(
     "fem/energy", "N^2/(4mu)",
-    "energy of the motion seen from the punch, kinetic and strain less that of being carried along",
+    "energy of the motion seen from the punch, strain and kinetic less that of transport",
     (START, INSTANT), method=FEM,
 )  # fmt: skip
 ABSORBED = _row(
-    "fem/absorbed", "N^2/(4mu)", "energy of waves that cells far away are too large for",
+    "fem/absorbed", "N^2/(4mu)", "energy of short waves damped in far cells",
     (START, INSTANT), method=FEM,
 )  # fmt: skip
 ESTIMATE = _row(
@@ -113,8 +112,8 @@ ESTIMATE = _row(
 )  # fmt: skip
 RESIDUAL = _row(
     "sie/residual", "1",
-    "residual of the integral equation over time where it is the only method, by steps and tests of its "
-    "own, over the largest indentation, or of the pressure's resultant, over the largest load",
+    "residual of the integral equation over time where it is the only method, over the largest "
+    "indentation, or of the pressure's resultant, over the largest load",
     (START,), _NOT_NEGATIVE, method=SIE, accuracy=True,
 )  # fmt: skip
 
@@ -129,8 +128,8 @@ _HOW = {FEM: "finite elements", SIE: "integral equation"}
 OFF = {
     method: Quantity(
         f"time/{method}/off_steady", "1",
-        "distance from steady motion at the end, the largest of the differences of K_I at both ends, "
-        f"over that of steady motion, and of the centre of the pressure, over the half-width, {words}",
+        "distance from steady motion at the end, the largest difference of K_I, relative, and of the "
+        f"centre, over the half-width, {words}",
         (START,), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
     for method, words in _HOW.items()
@@ -138,17 +137,16 @@ OFF = {
 WITHIN = {
     method: Quantity(
         f"time/{method}/steady_within", "a/c_s",
-        "time from which on that is at most 0.1, 0.01 and 0.001; where it is later than the last of "
-        "/time/t what is left is taken to fall like 1/t if it does so in the second half of the motion, "
-        f"NaN where that is too short to tell, {words}",
+        "time from which on off_steady is at most 0.1, 0.01 and 0.001; beyond /time/t by a decay like "
+        f"1/t, NaN where the second half of the motion does not show it, {words}",
         (START, SHARE), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
     )
     for method, words in _HOW.items()
 }  # fmt: skip
 APPROACH = Quantity(
     "time/steady_within_1_percent", "a/c_s",
-    "time from which on a start is within 1 % of steady motion, the formula for late times, under a load "
-    "that came on at once; none over layers",
+    "time from which on a start under a sudden load is within 1 % of steady motion, by the formula for "
+    "late times; none over layers",
     (START,), asked_by=TIME, range=_NOT_NEGATIVE, nan_allowed=ANYWHERE,
 )  # fmt: skip
 
@@ -166,7 +164,7 @@ def _work_by_method(name: str, unit: str, about: str) -> dict[str, Quantity]:
 OF_LOAD = _work_by_method("work_of_load", "N^2/(4mu)", "work of the load")
 OF_FRICTION = _work_by_method(
     "work_of_friction", "N^2/(4mu)",
-    "work of friction on the surface, by velocities seen from the punch besides being carried past it",
+    "work of friction on the surface, by velocities seen from the punch",
 )  # fmt: skip
 LEFT = _work_by_method("sigma_XX_left", "N/(2a)", "in-plane stress on the free surface at X = -1.05 a")
 RIGHT = _work_by_method("sigma_XX_right", "N/(2a)", "in-plane stress on the free surface at X = 1.05 a")
@@ -198,18 +196,18 @@ def _energy_row(name: str, about: str) -> Quantity:
 
 
 DISSIPATED = Quantity(
-    "time/dissipated", "N*a", "work that friction takes to first order since t = 0, f V load over time",
+    "time/dissipated", "N*a", "work that friction takes to first order, f V load over time",
     (START, INSTANT), asked_by=TIME,
 )  # fmt: skip
 CARRIED = _energy_row(
     "work_of_carrying",
-    "work on the solid by being carried past the punch, V times the change of its momentum in the field",
+    "work of carrying the solid past the punch, V times the change of its momentum",
 )
 STRAIN = _energy_row("strain_near", f"strain energy of the solid near the punch, {_NEAR}")
 KINETIC = _energy_row("kinetic_near", f"kinetic energy of the solid near the punch, {_NEAR}")
 RADIATED = _energy_row(
     "radiated",
-    "strain and kinetic energy of the solid farther from the punch, and what was absorbed there",
+    "strain and kinetic energy of the solid farther from the punch, damped waves included",
 )
 
 

@@ -62,24 +62,32 @@ IN_PLANE = {
 }  # fmt: skip
 
 
-def _extreme(method: str, end: str, sign: float, what: str) -> Quantity:
-    return Quantity(
+def _extreme(method: str, end: str, sign: float, what: str) -> tuple[Quantity, Quantity]:
+    """Quantities of the highest or the lowest in-plane stress by a method, and of its place."""
+    value = Quantity(
         f"states/{method}/sigma_XX_{end}", "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, body: extreme_in_plane(s, body, sign), method, asked_by=ON_SURFACE,
+        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], method, asked_by=ON_SURFACE,
         compared=("extremes of sigma_XX", "extremes of sigma_XX over layers") * (method == FEM),
     )  # fmt: skip
+    place = Quantity(
+        f"{value.path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width",
+        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[1], method, asked_by=ON_SURFACE,
+        scale=X_OVER_A,
+    )  # fmt: skip
+    return value, place
 
 
-def extremes(method: str) -> tuple[Quantity, Quantity]:
-    """Quantities of the highest and the lowest in-plane stress by a method."""
-    return _extreme(method, "max", 1.0, "highest"), _extreme(method, "min", -1.0, "lowest")
+def extremes(method: str) -> tuple[Quantity, ...]:
+    """Quantities of the highest in-plane stress by a method, its place, the lowest and its place."""
+    return *_extreme(method, "max", 1.0, "highest"), *_extreme(method, "min", -1.0, "lowest")
 
 
 _METHODS = (CLOSED_FORM, FEM)
-HIGHEST = {method: extremes(method)[0] for method in _METHODS}
-LOWEST = {method: extremes(method)[1] for method in _METHODS}
+HIGHEST, HIGHEST_X, LOWEST, LOWEST_X = (
+    {method: extremes(method)[i] for method in _METHODS} for i in range(4)
+)
 
 ESTIMATE_IN_PLANE = Quantity(
     "states/fem/estimate_sigma_XX", "1",

@@ -199,6 +199,8 @@ class Weighted(Pressure):
         return np.where(np.abs(r) > _FAR, self._far(np.where(np.abs(r) > _FAR, r, np.inf)), near)
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        if not self.finite:
+            return super().largest()
         place = np.ravel((self.β - self.α) / (self.β + self.α))  # of a parabola: B vanishes
         return -self.σ_YY(place[:, None])[:, 0], place
 

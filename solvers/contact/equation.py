@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
+from ..approximation import barycentric
 from ..errors import SolveError
 from ..layers.kernel import Kernel, Scaled
 from ..layers.layered import LayersAtSpeed
@@ -474,15 +475,9 @@ class Contacts:
 
     def at(self, g: NDArray) -> NDArray[np.float64]:
         """Weights that interpolate values of every pressure to other frictions, (states, nodes)."""
-        difference = g[:, None] - self.g
-        same = difference == 0.0
-        if same.any(axis=1).all():
-            return same / same.sum(axis=1, keepdims=True)
         weights = (-1.0) ** np.arange(len(self.g))
         weights[[0, -1]] /= 2.0
-        terms = weights / np.where(same, 1.0, difference)
-        terms = np.where(same.any(axis=1, keepdims=True), same, terms)
-        return np.asarray(terms / terms.sum(axis=1, keepdims=True))
+        return barycentric(self.g, weights, g)
 
     @property
     def change(self) -> float:

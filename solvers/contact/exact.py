@@ -151,9 +151,8 @@ class ExactSolution:
         places = self.task.places
         σ_XX, σ_YY = self.contacts.on_surface(places.X)
         turns = self._turns
-        for group in self.contacts.groups:
-            if len(group.pressure.breaks):  # a prescribed pressure is that of all states
-                turns = turns_at_knots(group.pressure, self._g, self.contacts.σ_XX)
+        if self._body.knots:  # a prescribed pressure is that of all states
+            turns = turns_at_knots(self.contacts.groups[0].pressure, self._g, self.contacts.σ_XX)
         return Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX, turns=turns).of(self._rows)
 
     @cached_property
@@ -169,7 +168,7 @@ class ExactSolution:
         """Stresses between ends and kinks of contacts that have kinks; None where none has."""
         each: list[Between | None] = [None] * len(self._g)
         for group in self.contacts.groups:
-            kinks = () if group.pressure.tips else group.pressure.kinks
+            kinks = group.pressure.bends
             if len(kinks):
                 _, between = at_and_between(
                     np.array([-1.0, *sorted(kinks), 1.0]), len(group.rows),

@@ -35,7 +35,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..profiles import check_reach, jumps, kinks
+from ..profiles import check_reach
 from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
@@ -77,12 +77,11 @@ def slopes_of_shapes(profile: Any, centre: float, half_width: float, count: int)
         centre, half_width: of the contact [m].
         count: number of shapes.
     """
-    s = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    slope = half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
-    T = np.cos(np.outer(np.arange(count), np.arccos(s)))
-    coefficients = 2.0 / count * (T @ slope)
-    coefficients[0] /= 2.0
-    return coefficients
+
+    def slope(s: NDArray) -> NDArray[np.float64]:
+        return half_width * np.asarray(profile.slope(centre + half_width * s), dtype=float)
+
+    return np.polynomial.chebyshev.chebinterpolate(slope, count - 1)  # type: ignore[arg-type]
 
 
 def free_ends(local: Any, K: NDArray[np.float64], N: NDArray[np.float64]) -> "list[EndConditions]":
@@ -476,8 +475,12 @@ def slopes_towards_ends(
 _TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
 
 
-def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float64]:
-    """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), (states,).
+def extreme_in_plane(
+    solution: Any, body: Any, sign: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), and its place over a, (states,).
+
+    At a free end the place is that end, exactly.
 
     Args:
         solution: states solved by any method, see :class:`galinx.solvers.contact.solution.Solution`.
@@ -487,22 +490,33 @@ def extreme_in_plane(solution: Any, body: Any, sign: float) -> NDArray[np.float6
     surface = solution.surface
     X, σ_XX = surface.places.X, surface.σ_XX
     at, limits = _limits(solution, body)
-    infinite = _infinite(solution, body, len(σ_XX))
+    infinite = _infinite(solution, body)
     values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
     limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
-    best = np.maximum(values.max(axis=1), limits.max(axis=1, initial=-np.inf))
+    i, j = values.argmax(axis=1)[:, None], limits.argmax(axis=1)[:, None]
+    tops = [
+        (np.take_along_axis(values, i, 1)[:, 0], X[i[:, 0]]),
+        (np.take_along_axis(limits, j, 1)[:, 0], np.take_along_axis(at, j, 1)[:, 0]),
+    ]
     u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
     u = u + np.arcsin(np.clip(X, -1.0, 1.0))
     between = surface.turns and surface.turns.between
-    if not between:
-        return sign * np.maximum(best, _largest(u, values, pieces))
-    graded = np.isfinite(between.X).any(axis=(1, 2))[:, None]
-    best = np.maximum(best, _largest(u, np.where(graded & (np.abs(X) < 1.0), -np.inf, values), pieces))
-    for X, σ in zip(np.moveaxis(between.X, 1, 0), np.moveaxis(between.σ_XX, 1, 0)):
+    if between:
+        graded = np.isfinite(between.X).any(axis=(1, 2))[:, None]
+        values = np.where(graded & (np.abs(X) < 1.0), -np.inf, values)
+    top, at_u = _largest(u, values, pieces)
+    beyond = np.maximum(np.abs(at_u) - np.pi / 2.0, 0.0)
+    tops.append((top, np.where(beyond > 0.0, np.sign(at_u) * np.cosh(beyond), np.sin(at_u))))
+    intervals = () if not between else zip(np.moveaxis(between.X, 1, 0), np.moveaxis(between.σ_XX, 1, 0))
+    for X, σ in intervals:
         values = np.where(np.isfinite(σ) & _finite(X, infinite), sign * σ, -np.inf)
-        best = np.maximum(best, _largest(between.x, values, np.zeros(values.shape)))
-    return sign * best
+        top, at_x = _largest(between.x, values, np.zeros(values.shape))
+        tops.append((top, np.array([np.interp(x, between.x, row) for x, row in zip(at_x, X)])))
+    largest_, places = (np.array(column) for column in zip(*tops))
+    best = largest_.argmax(axis=0)[None]
+    value, place = (np.take_along_axis(of, best, 0)[0] for of in (largest_, places))
+    return sign * value, place
 
 
 def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
@@ -521,21 +535,17 @@ def _limits(solution: Any, body: Any) -> tuple[NDArray[np.float64], NDArray[np.f
     return ends, in_plane_at_ends(surface.places.X, surface.σ_XX, exponents)
 
 
-def _infinite(solution: Any, body: Any, states: int) -> list[tuple[NDArray[np.float64], float]]:
+def _infinite(solution: Any, body: Any) -> list[tuple[NDArray[np.float64], float]]:
     """Positions of infinite stresses, (states,), NaN for none, and the excluded distance, all over a."""
-    if body.pressure:
-        sharp = np.tile(body.pressure.values[[0, -1]] != 0.0, (states, 1))
-    else:
-        sharp = np.column_stack([solution.local.β, solution.local.α]) < 0.0
-    places = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
-    if body.found and jumps(body.profile):
-        for kink in kinks(body.profile):
-            places.append(((kink - solution.centre) / solution.half_width, NEAR_TIP))
-    return places
+    sharp = body.infinite_ends(solution.local)
+    ends = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
+    return ends + [((tip - solution.centre) / solution.half_width, NEAR_TIP) for tip in body.tips]
 
 
-def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64]:
-    """Largest of curves, by polynomials through the samples around their highest tops, (states,).
+def _largest(
+    u: NDArray, values: NDArray, pieces: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest of curves and its place, (states,), by polynomials through samples around their tops.
 
     Args:
         u: rising coordinate in which the curves are smooth, (n,).
@@ -543,6 +553,7 @@ def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64
         pieces: number of the smooth piece of its curve to which a sample belongs, (states, n).
     """
     rows, best = np.arange(len(values))[:, None], values.max(axis=1)
+    place = u[values.argmax(axis=1)]
     inner = values[:, 1:-1]
     top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
     order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS_BETWEEN]
@@ -558,15 +569,18 @@ def _largest(u: NDArray, values: NDArray, pieces: NDArray) -> NDArray[np.float64
         usable &= top[rows[:, 0], column]
         if usable.any():
             rows_of_top = usable.nonzero()[0]
-            refined = _vertex(
+            refined, at = _vertex(
                 u, values[rows_of_top[:, None], window[rows_of_top]], window[rows_of_top], i[rows_of_top]
             )
+            place[rows_of_top] = np.where(refined > best[rows_of_top], at, place[rows_of_top])
             best[rows_of_top] = np.maximum(best[rows_of_top], refined)
-    return best
+    return best, place
 
 
-def _vertex(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArray[np.float64]:
-    """Largest value of polynomials between the neighbours of the samples ``i``, (m,)."""
+def _vertex(
+    u: NDArray, values: NDArray, window: NDArray, i: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest value of polynomials between the neighbours of the samples ``i``, and its place, (m,)."""
     nodes = u[window]
     low, high = (np.clip(u[np.clip(i + k, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for k in (-1, 1))
     at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _BETWEEN)
@@ -580,8 +594,11 @@ def _vertex(u: NDArray, values: NDArray, window: NDArray, i: NDArray) -> NDArray
     bend = y_left - 2.0 * y + y_right
     with np.errstate(divide="ignore", invalid="ignore"):
         vertex = y - (y_right - y_left) ** 2 / (8.0 * bend)
+        step = (y_left - y_right) / (2.0 * bend) * (at[:, 1] - at[:, 0])
     inside = (bend < 0.0) & (np.abs(y_right - y_left) <= -2.0 * bend)
-    return np.where(inside, vertex, curve.max(axis=1))
+    sampled = np.take_along_axis(at, curve.argmax(axis=1)[:, None], 1)[:, 0]
+    place = np.where(inside, np.take_along_axis(at, k, 1)[:, 0] + step, sampled)
+    return np.where(inside, vertex, curve.max(axis=1)), place
 
 
 #: Most tops of a pressure that are refined; places evaluated at a time; distance between them over a at
@@ -600,7 +617,7 @@ class KinkedPressure(Pressure):
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        chart: chart of the mesh, see :class:`galinx.solvers.fem.cells.Chart`.
+        chart: chart of the mesh, see :class:`galinx.meshes.charts.Chart`.
         forces: consistent nodal forces over N/2, (F p + 1,).
         kinks: rising positions of the kinks over a, (k,).
         exponents: exponents of the pressure at the left and the right end, positive.

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ from .equation import Contacts, ContactsAtSpeed, SolvedContact
 from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
-from .prescribed_pressure import COARSE, FINE
+from .prescribed_pressure import COARSE, FINE, LinearPressure
 from .pressure import ENDS, Pressure, largest, largest_smooth
 from .solution import Places, Surface, Task, Turns, together
 
@@ -46,16 +46,16 @@ def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> 
         g: all values of σ_XY/σ_YY that will be solved, sorted.
     """
     body = task.body
-    if body.pressure:
+    if body.knots:
         speed = ContactsAtSpeed(task.response, stack, np.zeros_like, tolerance)
-        H = float(stack.layers[0].H)
+        H, prescribed = float(stack.layers[0].H), cast(LinearPressure, body.pressure)
         fine, coarse = (
-            replace(body.pressure, nodes=nodes, length=H, rough=speed.kernel.rough)
+            replace(prescribed, nodes=nodes, length=H, rough=speed.kernel.rough)
             for nodes in (FINE, COARSE)
         )
         nodes = Contacts(_NODES, [SolvedContact(fine, coarse, 0.0)] * len(_NODES))
         return AtSpeed(task, speed, nodes, np.zeros(1))
-    if body.found:
+    if body.shared_ends is None:
         punch = Punch(body.profile, body.half_width, body.compression)
         # A place inside is in one layer with one friction and in another with the next.
         every = bool(len(task.places.points))

@@ -75,8 +75,20 @@ class Pressure:
         K = -0.5 * self.series(ENDS) * 2.0 ** (self.α + self.β + 1.0)
         return np.where(exponents < 0.0, K, 0.0)
 
+    @property
+    def bends(self) -> Sequence[float] | NDArray:
+        """Kinks at which the pressure is finite."""
+        return () if len(self.tips) else self.kinks
+
+    @property
+    def finite(self) -> bool:
+        """True if the pressure vanishes at both ends and has no tip, in all states."""
+        return bool(np.all(np.minimum(self.α, self.β) > 0.0)) and not len(self.tips)
+
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place, (states,) each; of a finite pressure."""
+        """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
+        if not self.finite:
+            return np.full(1, np.nan), np.full(1, np.nan)
         top, at = largest(lambda r: -self.σ_YY(r), self.kinks, self.cusp)
         return np.array([top]), np.array([at])
 

@@ -195,7 +195,7 @@ def contact_recovery(
     Args:
         s: surface coordinates of the contact nodes in order of X, (F p + 1,).
         degree: polynomial degree p.
-        chart: chart of the mesh, see :class:`galinx.solvers.fem.cells.Chart`.
+        chart: chart of the mesh, see :class:`galinx.meshes.charts.Chart`.
         r: positions X/a of the raw pressure, (points,).
         farthest: distance from an edge over a of the facets to which an exponent is fitted. The fit uses
             the outer half of them, two at least: the innermost cannot follow the singularity and disturb

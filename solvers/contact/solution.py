@@ -13,12 +13,13 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..profiles import Profile, exponent, half_width, has_free_end, jumps
+from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
 from ..solids.solid import Response
 from . import FREE_ENDS, OWN_PRESSURE, YIELD
 from .edges import under_punch
 from .prescribed_pressure import LinearPressure
+from .pressure import Pressure
 
 
 @dataclass(frozen=True)
@@ -187,6 +188,28 @@ class Contact:
         return "1", self.solid.depths / self.half_width
 
     @property
+    def tips(self) -> tuple[float, ...]:
+        """Positions from the punch's axis [m] at which stresses inside the contact are infinite."""
+        return ()
+
+    def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
+        """True where stresses at the left and the right end are infinite, (states, 2).
+
+        Args:
+            local: exponents α at X = a and β at X = -a, (states,).
+        """
+        return np.column_stack([local.β, local.α]) < 0.0
+
+    def known_pressure(self, response: Response, g: NDArray) -> Pressure | None:
+        """Pressure without an equation to solve, over a uniform half-plane; None where there is one.
+
+        Args:
+            response: of the half-plane at a speed.
+            g: σ_XY/σ_YY, a column that broadcasts against positions, (states, 1).
+        """
+        return None
+
+    @property
     def _length(self) -> Any:
         """Unit of length of the half-plane [m]: a where it has layers, and any where it has no length."""
         return self.half_width if self.layered else 1.0
@@ -256,6 +279,11 @@ class SharpContact(Contact):
     def growth_exponent(self) -> float | None:
         return 0.0 if self.flat else None
 
+    def known_pressure(self, response: Response, g: NDArray) -> Pressure | None:
+        from .closed_form import FlatPunch  # SciPy's special functions, a slow import
+
+        return FlatPunch(response, g) if self.flat else None
+
 
 class PrescribedContact(SharpContact):
     """Prescribed pressure between two given ends."""
@@ -270,6 +298,12 @@ class PrescribedContact(SharpContact):
     @property
     def lacks(self) -> dict[str, str]:
         return super().lacks | {SOLVED: "the pressure is prescribed"}
+
+    def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
+        return np.tile(self.pressure.values[[0, -1]] != 0.0, (len(local.α), 1))
+
+    def known_pressure(self, response: Response, g: NDArray) -> Pressure:
+        return self.pressure
 
 
 class FreeEndContact(Contact):
@@ -337,7 +371,11 @@ class FreeContact(FreeEndContact):
 
     @property
     def finite(self) -> bool:
-        return not jumps(self.profile)
+        return not self.tips
+
+    @property
+    def tips(self) -> tuple[float, ...]:
+        return tuple(kinks(self.profile)) if jumps(self.profile) else ()
 
     @property
     def growth_exponent(self) -> float | None:

@@ -169,7 +169,7 @@ class Contacts:
         """
         each: list[list[float]] = [[] for _ in self.g]
         for group in self.groups:
-            kinks = [] if len(group.pressure.tips) else list(group.pressure.kinks)
+            kinks = list(group.pressure.bends)
             for row, α, β in zip(group.rows.tolist(), group.α, group.β):
                 each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
         positions = np.full((len(each), max(map(len, each))), np.nan)
@@ -179,10 +179,9 @@ class Contacts:
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest contact pressure over N/(2a), and its place; NaN if infinite: (states,) each."""
-        value, place = np.full((2, len(self.g)), np.nan)
+        value, place = np.empty((2, len(self.g)))
         for group in self.groups:
-            if np.all(group.α > 0.0) and np.all(group.β > 0.0) and not group.pressure.tips:
-                value[group.rows], place[group.rows] = group.pressure.largest()
+            value[group.rows], place[group.rows] = group.pressure.largest()
         return value, place
 
 
@@ -222,10 +221,9 @@ def contacts_of(body: Any, response: Response, g: NDArray) -> Contacts:
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY, (states,).
     """
-    if body.found and not body.pressure:
+    if body.shared_ends is None:
         return contacts(response, g, body.profile, body.compression)
-    if body.pressure or body.flat:
-        pressure = body.pressure or FlatPunch(response, g[:, None])
+    if pressure := body.known_pressure(response, g[:, None]):
         return Contacts(response, g, (_fixed(np.arange(len(g)), pressure, body.half_width),))
     from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 

@@ -3,8 +3,7 @@
 A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11. Its
 shape functions are products of Lagrange polynomials (:func:`lagrange`, :class:`Shapes`).
 
-:class:`Chart` is the interface of the coordinates in which a mesh is drawn, and :class:`Contracted` is
-the chart as speed contracts it.
+:class:`Contracted` is the chart in which a mesh is drawn, as speed contracts it.
 
 Cells that are another cell, moved and scaled, have the same matrix in a plane: the energy of a
 displacement does not change where lengths are scaled, nor does that of pressures over a cell's size.
@@ -16,11 +15,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
+
+from galinx.meshes.charts import Chart
 
 from ..solids.solid import Response
 
@@ -48,64 +49,6 @@ def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
 def _in_legendre(nodes: tuple[float, ...]) -> NDArray[np.float64]:
     """Legendre coefficients of the polynomials of :func:`lagrange`, (p+1, p+1)."""
     return np.asarray(np.linalg.inv(legvander(2.0 * np.array(nodes) - 1.0, len(nodes) - 1)), np.float64)
-
-
-class Chart(Protocol):
-    """Coordinates in which a mesh is drawn, as forms and postprocessing need them."""
-
-    @property
-    def name(self) -> str:
-        """Name of the chart in archives."""
-
-    @property
-    def contracts(self) -> bool:
-        """True where a mesh is drawn in the plane as the solid contracts it, see :class:`Contracted`."""
-
-    @property
-    def similar(self) -> bool:
-        """True where cells that are congruent in the chart, but for their size, have the same matrix."""
-
-    def rotation(self, x: Any, of: Any = np) -> tuple[Any, Any]:
-        """cos and sin of the rotation R = [[cos, -sin], [sin, cos]] at points x (2, n).
-
-        Args:
-            x: points, or UFL's coordinates.
-            of: module of cos and the like for x, NumPy or UFL.
-        """
-
-    def stretch(self, x: NDArray) -> NDArray:
-        """Length of a step in physical coordinates over that in the chart, at points (n, 2)."""
-
-    def to_physical(self, x: NDArray) -> NDArray:
-        """Physical coordinates over a of points (..., 2) of the chart."""
-
-    def from_physical(self, X: NDArray) -> NDArray:
-        """Points of the chart, (..., 2), of physical coordinates over a with Y <= 0."""
-
-    def along_surface(self, x: NDArray) -> NDArray:
-        """Surface coordinate s of points (..., 2) of the chart on Y = 0; it grows with X."""
-
-    def surface_coordinate(self, X: NDArray) -> NDArray:
-        """Surface coordinate s at positions X over a."""
-
-    def surface_position(self, s: NDArray) -> NDArray:
-        """Positions X over a at surface coordinates s."""
-
-    def surface_stretch(self, s: NDArray) -> NDArray:
-        """dX/ds along the surface."""
-
-    def from_edges(self, x: Any) -> tuple[Any, Any]:
-        """Distances in s of points of the contact, (2, n) or UFL's coordinates, from both punch edges."""
-
-    def under_punch(self, from_left: Any, from_right: Any, of: Any = np) -> tuple[Any, Any, Any]:
-        """1 + X/a, 1 - X/a and dX/ds at given distances in s from the two punch edges.
-
-        Next to an edge the distance has lost its digits in X/a itself.
-
-        Args:
-            from_left, from_right: numbers, or UFL's expressions.
-            of: module of their functions, NumPy or UFL.
-        """
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from galinx.meshes.layered import OnLayers
 
+from ..contact import INTENSITIES
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import FemPlan
 from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
@@ -41,10 +42,9 @@ from ..contact.solution import Contact, Surface, Task, Turns
 from ..errors import SolveError
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
-from . import ladder
 from .discretisation import Discretisation
 from .displacement import Displacement
-from .ladder import Gauge, StressGauges, solved_to_tolerance
+from .ladder import Gauge, Level, of_pressure, solved_to_tolerance
 from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
 from .solution import Solution, SolvedStates, solution_of
 from .space import Space
@@ -150,7 +150,7 @@ class SharpEnds(Ends):
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
-        return ladder.of_pressure(states.pressure, moments, level.moved_edges)
+        return of_pressure(states.pressure, moments, level.moved_edges)
 
 
 class FreeEnds(Ends):
@@ -183,7 +183,7 @@ class FreeEnds(Ends):
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
-        gauge = ladder.of_pressure(level.over_flat(states.contact, states.contact.g), moments)
+        gauge = of_pressure(level.over_flat(states.contact, states.contact.g), moments)
         lengths = np.column_stack([states.half_width, states.centre])
         return replace(
             gauge,
@@ -260,30 +260,24 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
 _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 
-def ends_of(body: Contact, plan: FemPlan) -> Ends:
+def ends_of(plan: FemPlan) -> Ends:
     """Ends of contacts on the mesh of all of them."""
-    return FreeEnds(plan.shapes) if body.found else SharpEnds()
+    return FreeEnds(plan.shapes) if plan.shapes else SharpEnds()
 
 
-class PunchLevel:
+class PunchLevel(Level):
     """Punch at one degree, and the maps from its contact forces to its pressure.
 
     Args:
-        work: has the plan and the words of the requested stresses.
-        task: the speed.
-        space: space of the degree.
-        g: all values of σ_XY/σ_YY that will be solved.
+        work, task, space, g: as of :class:`galinx.solvers.fem.ladder.Level`.
         fitted: punch fitted through other speeds; it is solved if None.
         recovery: maps from contact forces to pressure on this space; computed if None.
         ends: ends of the contacts; by the plan if None.
 
     Attributes:
         plan: plan of the finite elements.
-        stresses: words of output.quantities that request stresses.
         ends: ends of the contacts.
         only: the single state on a mesh of its own; None on a mesh of all contacts.
-        g: values of σ_XY/σ_YY, as given.
-        factor: of the linear system, with numbers of its work.
     """
 
     def __init__(
@@ -291,12 +285,13 @@ class PunchLevel:
         fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
         ends: Ends | None = None,
     ) -> None:  # fmt: skip
-        self.task, self.space, self.plan, self.stresses = task, space, work.plan, work.stresses
-        self.ends = ends or ends_of(task.body, work.plan)
+        super().__init__(work, task, space, g)
+        self.plan = work.plan
+        self.ends = ends or ends_of(work.plan)
         self._fitted = fitted
         self.only: SolvedEnds | None = None
         self._field: Any = None
-        self.g, self._tests = g, tests_of(self.plan, space.degree - self.plan.degrees[task.number])
+        self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
         if fitted is not None and recovery is not None:
             self.punch: Punch = fitted
             self.recovery, self.moments = recovery, recovery.moments
@@ -316,7 +311,7 @@ class PunchLevel:
         finally:
             if single:
                 solved.destroy()
-        self._gauges  # noqa: B018 - cached
+        self.stress_gauges  # noqa: B018 - cached
 
     def _summed(self, ends: SolvedEnds) -> SolvedEnds:
         """The only state, by its own displacement and nodal forces."""
@@ -348,27 +343,20 @@ class PunchLevel:
         space, X = self.space, self.task.places.X
         return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
 
-    @cached_property
-    def _gauges(self) -> StressGauges:
-        return StressGauges(self, self.ends.task(self.task), self.displacement_at)
+    def measured_task(self, task: Task) -> Task:
+        return self.ends.task(task)
 
     @property
     def slopes(self) -> Any:
         """Slopes of the fields on the surface, None where no stress is requested."""
-        return self._gauges.slopes
+        return self.stress_gauges.slopes
 
     def displacement_at(self, task: Task) -> Displacement:
-        """Displacement, for stresses at the places of a task."""
         slopes = self._fitted.slopes if self._fitted else None
         return Displacement(task, self.space, self.fields, slopes, self.ends.continuation(self))
 
-    @cached_property
-    def displacement(self) -> Displacement:
-        """Displacement, for stresses at all places."""
-        return self._gauges.displacement(self.task) or self.displacement_at(self.task)
-
     @property
-    def mirrored(self) -> bool:
+    def mirrored(self) -> bool:  # type: ignore[override]
         """True where there is a mirror image on the same mesh."""
         return self.task.response.mirrored and not self.ends.single
 
@@ -384,11 +372,6 @@ class PunchLevel:
         return np.stack([self.over_flat(part, g).K_I for part in parts], axis=2)
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m].
-
-        Raises:
-            SolveError: no contact carries the load.
-        """
         body = self.task.body.loaded(load)
         ends = self.only or self.ends.solved(self, g, body)
         states = SolvedStates(
@@ -399,19 +382,9 @@ class PunchLevel:
         nearest = self.ends.nearest(states.pressure)
         return replace(states, turns=self.ends.turns(states), nearest=nearest)
 
-    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        return self.gauges(self.states(g, load))
-
     def gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""
-        gauges, contact = [self.ends.gauge(self, states)], states.contact
-        if self.stresses:
-            gauges += self._gauges.of(contact.g, contact.weights, self._on_surface(states.pressure))
-        return gauges
-
-    def _on_surface(self, pressure: Any) -> NDArray[np.float64]:
-        """σ_YY over N/(2a) at the places where stresses are measured, (states, n)."""
-        return pressure.σ_YY(self.ends.task(self.task).places.X)
+        return [self.ends.gauge(self, states), *super().gauges(states)]
 
     @property
     def moved_edges(self) -> float:
@@ -430,21 +403,21 @@ class PunchLevel:
         those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
         they are not, and their rounding is as large.
         """
-        states = self.states(g, load)
-        own = states.contact.g, states.contact.weights, self._on_surface(states.pressure)
+        own = self.fields_of(self.states(g, load))
         if not self.mirrored:
             of_edges = self.factor.largest_residual
             if not (self.ends.single or self.task.body.layered):
                 K_left, K_right = self.over_flat(self.punch.states(g, flat=True), g).K_I.T
                 of_edges = float(np.abs(K_left / K_right - 1.0).max())
-            return [of_edges, *self._gauges.rounding(*own)]
-        both, size = [], self._gauges.size(*own)
+            return [of_edges, *self.stress_gauges.rounding(*own)]
+        both, size = [], self.stress_gauges.size(*own)
         for sign in (1.0, -1.0):
             flat = self.punch.states(sign * g, flat=True)
             pressure = self.over_flat(flat, sign * g)
-            σ_YY = self._on_surface(pressure)
-            gauges = self._gauges.mirrored(sign, sign * g, flat.weights, σ_YY, size)
-            both.append([ladder.of_intensities(pressure.K_I[:, :: int(sign)]), *gauges])
+            σ_YY = pressure.σ_YY(self.measured_task(self.task).places.X)
+            gauges = self.stress_gauges.mirrored(sign, sign * g, flat.weights, σ_YY, size)
+            K_I = pressure.K_I[:, :: int(sign)]
+            both.append([Gauge(INTENSITIES, K_I, np.abs(K_I)), *gauges])
         return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
 
     def release(self) -> None:
@@ -453,7 +426,6 @@ class PunchLevel:
             self.punch.release()
 
     def destroy(self) -> None:
-        """Free everything."""
         if self.only:
             self._field.destroy()
         else:

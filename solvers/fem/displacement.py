@@ -5,7 +5,6 @@ little farther away, where finite elements have more digits.
 """
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,9 +13,11 @@ from numpy.typing import NDArray
 
 from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.solution import Surface, Task
-from .fields import InteriorGradients, KeptValues, SurfaceSlopes
-from .punch import FittedSlopes
+from .fields import Gradients, InteriorGradients, KeptValues, Slopes, surface_slopes
 from .space import Space
+
+#: Derivatives that a word of output.quantities requests besides the slopes on the surface.
+_DERIVATIVES = {BELOW: "_gradients", YIELD: "_around", AT_INTERFACES: "_interfaces"}
 
 
 class Displacement:
@@ -32,48 +33,39 @@ class Displacement:
     """
 
     def __init__(
-        self, task: Task, space: Space, fields: Sequence[Any], slopes: FittedSlopes | None = None,
+        self, task: Task, space: Space, fields: Sequence[Any], slopes: Slopes | None = None,
         continuation: Callable[[NDArray], tuple[NDArray, NDArray]] | None = None,
     ) -> None:  # fmt: skip
-        self._task, self._space, self._fields = task, space, fields
-        self._fitted_slopes, self._continuation = slopes, continuation
+        self._task, self._space, self._fields, self._continuation = task, space, fields, continuation
+        if slopes is not None:
+            self.slopes = slopes
 
     def prepare(self, words: Collection[str]) -> None:
         """Take the derivatives that words of output.quantities request, before the fields are freed."""
         if words:
-            self._slopes  # noqa: B018 - cached
-        if BELOW in words:
-            self._gradients  # noqa: B018
-        if YIELD in words:
-            self._around  # noqa: B018
-        if AT_INTERFACES in words:
-            self._interfaces  # noqa: B018
-
-    @property
-    def slopes(self) -> Any:
-        """Slopes of the fields along X at the places on the surface, as of :class:`SurfaceSlopes`."""
-        return self._slopes
+            self.slopes  # noqa: B018 - cached
+        for word in words:
+            getattr(self, _DERIVATIVES.get(word, "slopes"))
 
     @cached_property
-    def _slopes(self) -> Any:
-        if self._fitted_slopes is not None:
-            return self._fitted_slopes
+    def slopes(self) -> Slopes:
+        """Slopes of the fields along X at the places on the surface."""
         X = self._task.places.X
         if self._continuation is None:
-            return SurfaceSlopes(self._space, self._fields, X)
+            return surface_slopes(self._space, self._fields, X)
         samples, of_samples = self._continuation(X)
-        return ContinuedSlopes(SurfaceSlopes(self._space, self._fields, samples), of_samples)
+        return surface_slopes(self._space, self._fields, samples).continued(of_samples)
 
     def strain(self, X: NDArray) -> NDArray[np.float64]:
         """Strain μ u,X of the first field over N/(2a) at positions on the surface, (n,)."""
-        return SurfaceSlopes(self._space, self._fields[:1], X).of(np.ones((1, 1)))[0][0]
+        return surface_slopes(self._space, self._fields[:1], X).of(np.ones((1, 1)))[0][0]
 
     @cached_property
-    def _gradients(self) -> InteriorGradients:
+    def _gradients(self) -> Gradients:
         return self._at(self._task.places.points)
 
     @cached_property
-    def _around(self) -> InteriorGradients:
+    def _around(self) -> Gradients:
         return self._at(self._task.places.around)
 
     @cached_property
@@ -81,7 +73,7 @@ class Displacement:
         return KeptValues(self._space, self._task.response, self._fields)
 
     @cached_property
-    def _interfaces(self) -> list[tuple[NDArray, InteriorGradients, InteriorGradients]]:
+    def _interfaces(self) -> list[tuple[NDArray, Gradients, Gradients]]:
         """Points of each interface, (n, 2), and gradients above and below it."""
         places, gradients = self._task.places, []
         for depth in places.interfaces.tolist():
@@ -89,7 +81,7 @@ class Displacement:
             gradients.append((points, self._at(points), self._at(points, -1)))
         return gradients
 
-    def _at(self, points: NDArray, side: int = 1) -> InteriorGradients:
+    def _at(self, points: NDArray, side: int = 1) -> Gradients:
         """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
         response = self._task.response
         return InteriorGradients(self._space, response, self._values, points, side)
@@ -100,7 +92,7 @@ class Displacement:
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
         """Stresses on the surface, by weights (states, fields) and σ_YY, (states, n) or (n,)."""
-        u_X, v_X = self._slopes.of(weights)
+        u_X, v_X = self.slopes.of(weights)
         places = self._task.places
         σ = np.where(places.under, σ_YY, 0.0)
         σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
@@ -139,7 +131,7 @@ class Displacement:
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
         """Effect of rounding of the fields on σ_XX on the surface, (states, n)."""
-        noise = self._slopes.rounding(weights)
+        noise = self.slopes.rounding(weights)
         return np.abs(self._task.response.σ_XX(noise, 0.0 * noise, 0.0 * noise))
 
     def inside(self, weights: NDArray) -> NDArray[np.float64]:
@@ -148,23 +140,3 @@ class Displacement:
         for batch, gradients in self._gradients.by_batches(weights):
             σ[:, :, batch] = self._stresses(self._task.places.points[batch], gradients)
         return σ
-
-
-@dataclass(frozen=True)
-class ContinuedSlopes:
-    """Slopes continued from samples a little farther away; see :class:`SurfaceSlopes`.
-
-    Attributes:
-        slopes: slopes of the fields at the samples.
-        of_samples: matrix from slopes there to slopes at the requested places, (requested, samples).
-    """
-
-    slopes: SurfaceSlopes
-    of_samples: NDArray[np.float64]
-
-    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        u_X, v_X = self.slopes.of(weights)
-        return u_X @ self.of_samples.T, v_X @ self.of_samples.T
-
-    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
-        return self.slopes.rounding(weights) @ np.abs(self.of_samples).T

@@ -71,32 +71,39 @@ class SurfaceTrace:
         return (s - s[0]) / (s[-1] - s[0])
 
 
-class SurfaceSlopes:
+@dataclass(frozen=True)
+class Slopes:
     """Derivatives along X, on the surface, of combinations of displacement fields.
 
-    Args:
-        space: the finite element space.
-        fields: displacements over N/(2μ).
-        X: positions over a.
+    Attributes:
+        basis: μ u,X and μ v,X of every field over N/(2a), (2, n, fields).
+        noise: error of the former by rounding, (n, fields).
     """
 
-    def __init__(self, space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> None:
-        s = space.chart.surface_coordinate(X)
-        stretch = space.chart.surface_stretch(s)[:, None, None]
-        trace = gather(space, fields)
-        self._basis, self._rounding = (
-            trace.derivative(s) / stretch,
-            trace.rounding(s)[:, 0] / stretch[:, 0],
-        )
+    basis: NDArray[np.float64]
+    noise: NDArray[np.float64]
 
     def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
-        u_X, v_X = (weights @ self._basis[:, i, : weights.shape[1]].T for i in (0, 1))
+        u_X, v_X = (weights @ slopes[:, : weights.shape[1]].T for slopes in self.basis)
         return u_X, v_X
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
         """Error by rounding of μ u,X of combinations with weights (states, fields): (states, n)."""
-        return np.abs(weights) @ self._rounding[:, : weights.shape[1]].T
+        return np.abs(weights) @ self.noise[:, : weights.shape[1]].T
+
+    def continued(self, of_samples: NDArray) -> "Slopes":
+        """Slopes at other places, (m,), by a matrix that continues those at these, (m, n)."""
+        return Slopes(of_samples @ self.basis, np.abs(of_samples) @ self.noise)
+
+
+def surface_slopes(space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> Slopes:
+    """Slopes of displacement fields over N/(2μ) at positions X over a. Collective."""
+    s = space.chart.surface_coordinate(X)
+    stretch = space.chart.surface_stretch(s)[:, None]
+    trace = gather(space, fields)
+    basis = np.moveaxis(trace.derivative(s), 1, 0) / stretch
+    return Slopes(basis, trace.rounding(s)[:, 0] / stretch)
 
 
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
@@ -144,7 +151,51 @@ class KeptValues:
         return u
 
 
-class InteriorGradients:
+class Gradients:
+    """Displacement gradients along X and Y at given points, by those of the fields.
+
+    Args:
+        basis: μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields).
+    """
+
+    def __init__(self, basis: NDArray) -> None:
+        self._basis = basis
+
+    def of_fields(self) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields), the same on every rank."""
+        return self._basis
+
+    def of(self, weights: NDArray) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
+        return np.concatenate([gradients for _, gradients in self.by_batches(weights)], axis=1)
+
+    def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
+        """Slices of m points in turn, and gradients there as of :meth:`of`, (states, m, 2, 2).
+
+        Collective.
+        """
+        yield slice(None), _combined(self._basis, weights)
+
+    def of_each(self, weights: NDArray) -> NDArray[np.float64]:
+        """μ ∂u_i/∂X_j over N/(2a), where each combination has points of its own.
+
+        Args:
+            weights: of the fields, (states, fields); the first n/states points are those of the first
+                combination, the next ones of the second, and so on.
+
+        Returns:
+            Array (states, n/states, 2, 2).
+        """
+        states, fields = weights.shape
+        each = self.of_fields()[..., :fields].reshape(states, -1, 2, 2, fields)
+        return np.einsum("snijf,sf->snij", each, weights)
+
+
+def _combined(basis: NDArray, weights: NDArray) -> NDArray[np.float64]:
+    return np.einsum("nijf,sf->snij", basis[..., : weights.shape[1]], weights)
+
+
+class InteriorGradients(Gradients):
     """Displacement gradients along X and Y at given points, in batches of points.
 
     Where points are many, the fields' values at nodes are kept instead, of which there are fewer.
@@ -172,50 +223,27 @@ class InteriorGradients:
         grid, self._nodes = tensor_order(space.reference_nodes)
         #: At the nodes of these cells, (cells, p+1, p+1, 2, fields).
         self._values = values(self._cells)[:, grid]
-        #: Gradients of all fields, where one batch has all points.
-        self._basis: NDArray[np.float64] | None = None
         if len(self._batches) == 1:
-            self._basis = self._gradients(self._batches[0], self._values)
+            super().__init__(self._gradients(self._batches[0], self._values))
             self._values = self._values[:0].copy()  # no longer needed
 
     def of_fields(self) -> NDArray[np.float64]:
-        """μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields), the same on every rank."""
-        if self._basis is not None:
-            return self._basis
+        if len(self._batches) == 1:
+            return super().of_fields()
         return np.concatenate([self._gradients(batch, self._values) for batch in self._batches])
 
-    def of(self, weights: NDArray) -> NDArray[np.float64]:
-        """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
-        return np.concatenate([gradients for _, gradients in self.by_batches(weights)], axis=1)
-
     def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
-        """Slices of m points in turn, and gradients there as of :meth:`of`, (states, m, 2, 2).
-
-        Collective.
-        """
+        if len(self._batches) == 1:
+            yield from super().by_batches(weights)
+            return
         states, fields = weights.shape
         for i, batch in enumerate(self._batches):
-            batch_points = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
-            if self._basis is None and states < self._values.shape[-1]:
+            points = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
+            if states < self._values.shape[-1]:
                 combined = self._gradients(batch, self._values[..., :fields] @ weights.T)
-                yield batch_points, np.moveaxis(combined, -1, 0)
+                yield points, np.moveaxis(combined, -1, 0)
             else:
-                basis = self._gradients(batch, self._values) if self._basis is None else self._basis
-                yield batch_points, np.einsum("nijf,sf->snij", basis[..., :fields], weights)
-
-    def of_each(self, weights: NDArray) -> NDArray[np.float64]:
-        """μ ∂u_i/∂X_j over N/(2a), where each combination has points of its own.
-
-        Args:
-            weights: of the fields, (states, fields); the first n/states points are those of the first
-                combination, the next ones of the second, and so on.
-
-        Returns:
-            Array (states, n/states, 2, 2).
-        """
-        states, fields = weights.shape
-        each = self.of_fields()[..., :fields].reshape(states, -1, 2, 2, fields)
-        return np.einsum("snijf,sf->snij", each, weights)
+                yield points, _combined(self._gradients(batch, self._values), weights)
 
     def _gradients(self, batch: "_Batch", values: NDArray) -> NDArray[np.float64]:
         """Gradients of fields at a batch's points, from their values at the nodes of all cells."""

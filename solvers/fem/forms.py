@@ -30,12 +30,12 @@ class Form:
         energy: the integrand of two gradients, or of two pairs of gradient and pressure, and of
             constants; bilinear and symmetric.
         constants: names of these in a solid's response.
-        pressure: True where each cell has an unknown pressure besides the displacement.
+        mixed: True where each cell has an unknown pressure besides the displacement.
     """
 
     energy: Callable[..., Any]
     constants: tuple[str, ...]
-    pressure: bool = False
+    mixed: bool = False
 
     def density(self, response: Any) -> NDArray[np.float64]:
         """The integrand at unit gradients, u,X u,Y v,X v,Y, and at unit pressure: (4, 4) or (5, 5)."""
@@ -50,7 +50,7 @@ class Form:
 @lru_cache(maxsize=1024)
 def _density(form: Form, constants: tuple[float, ...]) -> NDArray[np.float64]:
     units: list[Any] = [ufl.as_matrix(unit) for unit in _UNITS]
-    if form.pressure:
+    if form.mixed:
         zero = ufl.as_matrix([[0.0, 0.0], [0.0, 0.0]])
         units = [(G, 0.0) for G in units] + [(zero, 1.0)]
     H = np.zeros((len(units), len(units)))
@@ -105,7 +105,7 @@ def gradient(u: Any, x: Any, chart: Any, plane: tuple[Any, Any]) -> Any:
     Args:
         u: displacement.
         x: coordinates of the mesh.
-        chart: see :class:`.chart.Chart`.
+        chart: see :class:`galinx.meshes.charts.Chart`.
         plane: Re p and Im p.
     """
     cos, sin = chart.rotation(x, ufl)
@@ -132,7 +132,7 @@ def weak_form(
     dx = ufl.dx(metadata={"quadrature_degree": degree})
     x = ufl.SpatialCoordinate(spaces[0].mesh)
     trials, tests = ([of(space) for space in spaces] for of in (ufl.TrialFunction, ufl.TestFunction))
-    if not form.pressure:
+    if not form.mixed:
         Gu, Gw = (gradient(of[0], x, chart, plane) for of in (trials, tests))
         return [[form.energy(Gu, Gw, constants) * dx]]
 
@@ -196,7 +196,7 @@ FORMS: Registry[Form] = Registry(
     {
         "isotropic": Form(moving, ("κ", "c")),
         "anisotropic": Form(anisotropic, ("c11", "c12", "c16", "c22", "c26", "c66", "c")),
-        "nearly incompressible": Form(mixed, ("κ", "c"), pressure=True),
+        "nearly incompressible": Form(mixed, ("κ", "c"), mixed=True),
     },
     Form,
 )

@@ -8,8 +8,9 @@ their changes from level to level (:class:`MeasuredError`).
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +20,12 @@ from galinx.meshes.kind import DEGREES
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD, stresses
 from ..contact.edges import from_edge
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
-from ..contact.fem_plan import FemPlan, levels
+from ..contact.fem_plan import levels
 from ..contact.pressure import Expansion
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
+from .solution import SolvedStates
 from .space import Space
 
 #: Most points inside on which the error is measured; of more points so many are picked.
@@ -75,16 +77,6 @@ def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Ga
     )
 
 
-def of_intensities(K_I: NDArray) -> Gauge:
-    """Gauge of K_I at both ends, (states, 2)."""
-    return Gauge(INTENSITIES, K_I, np.abs(K_I))
-
-
-def of_in_plane(σ_XX: NDArray, X: NDArray) -> Gauge:
-    """Gauge of σ_XX on the surface, (states, n)."""
-    return Gauge(ON_SURFACE, σ_XX, stresses.of_in_plane(σ_XX, X))
-
-
 def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
     """Gauge of stresses inside, (3, states, m), for the word that requests them."""
     size = stresses.of_inside(σ, *points.T)
@@ -130,8 +122,8 @@ class StressGauges:
         """Gauges of states, by weights (states, fields) and σ_YY on the surface, NaN beside the punch."""
         gauges, places = [], self._task.places
         if ON_SURFACE in self._words:
-            surface = self._displacement.surface(g, weights, σ_YY)
-            gauges.append(of_in_plane(surface.σ_XX, places.X))
+            σ_XX = self._displacement.surface(g, weights, σ_YY).σ_XX
+            gauges.append(Gauge(ON_SURFACE, σ_XX, stresses.of_in_plane(σ_XX, places.X)))
         if BELOW in self._words:
             gauges.append(of_inside(self._displacement.inside(weights), places.points))
         if YIELD in self._words:
@@ -212,30 +204,51 @@ def _picked(points: NDArray) -> NDArray[np.float64]:
 _HELD = 3
 
 
-class Spaces(Protocol):
-    """Source of the spaces of a ladder."""
+class Level:
+    """Solution at one degree; its gauges can be evaluated after its release.
 
-    @property
-    def plan(self) -> FemPlan: ...
+    Args:
+        work: has the plan and the words of the requested stresses.
+        task: the speed.
+        space: space of the degree.
+        g: all values of σ_XY/σ_YY that will be solved.
 
-    def space(self, degree: int, cuts: int = 1) -> Space: ...
+    Attributes:
+        factor: of the linear system, with numbers of its work.
+        mirrored: True where :meth:`rounding` is that of mirror images, not only a bound on rounding.
+    """
 
-    def warn(self, text: str) -> None:
-        """Warn the user."""
+    factor: Any
+    mirrored: bool
 
+    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
+        self.work, self.task, self.space, self.g = work, task, space, g
 
-class Level(Protocol):
-    """Solution at one degree; its gauges can be evaluated after its release."""
+    def displacement_at(self, task: Task) -> Displacement:
+        """Displacement, for stresses at the places of a task."""
+        raise NotImplementedError
 
-    @property
-    def space(self) -> Space: ...
-    @property
-    def factor(self) -> Any:
-        """Factor of the linear system, with numbers of its work."""
+    def measured_task(self, task: Task) -> Task:
+        """Task with the places at which stresses are measured."""
+        return task
 
-    @property
-    def mirrored(self) -> bool:
-        """True where ``rounding`` is that of mirror images, not only a bound on rounding."""
+    @cached_property
+    def stress_gauges(self) -> StressGauges:
+        """Gauges of the requested stresses; derivatives are taken when they are made."""
+        return StressGauges(self.work, self.measured_task(self.task), self.displacement_at)
+
+    @cached_property
+    def displacement(self) -> Displacement:
+        """Displacement, for stresses at all places."""
+        return self.stress_gauges.displacement(self.task) or self.displacement_at(self.task)
+
+    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
+        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m].
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        raise NotImplementedError
 
     def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Gauges of states with values g of σ_XY/σ_YY.
@@ -244,15 +257,28 @@ class Level(Protocol):
             g: σ_XY/σ_YY, (states,).
             load: load of each state [N/m], (states,); the task's if None.
         """
+        return self.gauges(self.states(g, load))
+
+    def gauges(self, states: SolvedStates) -> list[Gauge]:
+        """Gauges of the requested stresses of states."""
+        return self.stress_gauges.of(*self.fields_of(states)) if self.work.stresses else []
+
+    def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
+        """Frictions, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
+        X = self.measured_task(self.task).places.X
+        return states.contact.g, states.contact.weights, states.pressure.σ_YY(X)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding alone on each gauge, relative; arguments as of :meth:`measured`."""
+        raise NotImplementedError
 
     def release(self) -> None:
         """Free factor and fields."""
+        raise NotImplementedError
 
     def destroy(self) -> None:
         """Free everything."""
+        self.release()
 
 
 class Ladder:
@@ -272,7 +298,7 @@ class Ladder:
     """
 
     def __init__(
-        self, work: Spaces, task: Task, solved: Callable[[Space, NDArray], Any],
+        self, work: Discretisation, task: Task, solved: Callable[[Space, NDArray], Any],
         degree: int | None = None,
     ) -> None:  # fmt: skip
         self.work, self.task = work, task

@@ -184,7 +184,7 @@ class LinearSolver:
     def _solved(self, b: NDArray) -> NDArray[np.float64]:
         self.solves += b.shape[1]
         with self._clock("back-substitutions" if self.direct else "multigrid solves"):
-            if b.shape[1] == 1 or not self.direct:
+            if not self.direct:
                 return np.column_stack([self._solve_one(column) for column in b.T])
             x = np.empty_like(b)
             count = max(_AT_ONCE // self.A.getSize()[0], 1)
@@ -198,24 +198,18 @@ class LinearSolver:
             return x
 
     def _solve_one(self, load: NDArray) -> NDArray[np.float64]:
+        """Solution by conjugate gradients, (rows,)."""
         b, x = vector(self.A, load), self.A.createVecRight()
         self._ksp.solve(b, x)
-        reason, steps = self._ksp.getConvergedReason(), self._ksp.getIterationNumber()
-        if not self.direct:
-            residual = self._ksp.getResidualNorm() / b.norm()
-            if reason <= 0:
-                raise SolveError(
-                    f"conjugate gradients left |b - Ax|/|b| = {residual:.3g} after {steps} steps, "
-                    f"expected {TOLERANCE:g}; near the Rayleigh speed the matrix is nearly singular: use "
-                    'solver = "direct"'
-                )
-            self.iterations = max(self.iterations, steps)
-            self.largest_residual = max(self.largest_residual, residual)
-        elif reason <= 0:
+        steps, residual = self._ksp.getIterationNumber(), self._ksp.getResidualNorm() / b.norm()
+        if self._ksp.getConvergedReason() <= 0:
             raise SolveError(
-                f"the linear solve failed, PETSc's converged reason {reason}: the right-hand side or the "
-                "matrix is not finite, or memory ran out"
+                f"conjugate gradients left |b - Ax|/|b| = {residual:.3g} after {steps} steps, "
+                f"expected {TOLERANCE:g}; near the Rayleigh speed the matrix is nearly singular: use "
+                'solver = "direct"'
             )
+        self.iterations = max(self.iterations, steps)
+        self.largest_residual = max(self.largest_residual, residual)
         solution = np.array(x.array_r)
         b.destroy(), x.destroy()
         return solution

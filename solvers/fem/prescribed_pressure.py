@@ -5,7 +5,7 @@ The pressure is the user's own, σ_XY = g σ_YY: over a uniform half-plane piece
 mode ``traction`` it is that of a flat punch by its closed form (:class:`FormulaLevel`).
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -21,49 +21,36 @@ from ..contact.solution import Places, Surface, Task, Turns
 from ..rays import NEAR, rays
 from .discretisation import Discretisation
 from .displacement import Displacement
-from .fields import TOGETHER
-from .ladder import Gauge, StressGauges
+from .fields import TOGETHER, Gradients, Slopes
+from .ladder import Level
 from .punch import ContactStates
 from .solution import SolvedStates
 from .space import Space
 from .traction import LinearLoads, LoadedHalfPlane, Pieces
 
 
-class LoadsLevel:
-    """Half-plane under a prescribed pressure at one degree; see :class:`galinx.solvers.fem.ladder.Level`.
+class LoadsLevel(Level):
+    """Half-plane under a prescribed pressure at one degree.
 
     Args:
-        work: has the words of the requested stresses.
-        task: the speed.
-        space: space of the degree.
-        g: all values of σ_XY/σ_YY that will be solved.
+        work, task, space, g: as of :class:`galinx.solvers.fem.ladder.Level`.
 
     Attributes:
-        factor: of the linear system, with numbers of its work.
         resultants: ∫ σ_YY d(X/a) over N/(2a) of the discrete loads; each load has two fields, of σ_YY
             alone and of an equal σ_XY.
     """
 
-    factor: Any
     resultants: NDArray[np.float64]
+    mirrored = True
 
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
-        self.task, self.space, self.g = task, space, g
+        super().__init__(work, task, space, g)
         self._solve()
-        self._gauges = StressGauges(work, task, self.displacement_at)
+        self.stress_gauges  # noqa: B018 - cached
 
     def _solve(self) -> None:
         """Solve for the fields of all loads."""
         raise NotImplementedError
-
-    def displacement_at(self, task: Task) -> Displacement:
-        """Displacement, for stresses at the places of a task."""
-        raise NotImplementedError
-
-    @cached_property
-    def displacement(self) -> Displacement:
-        """Displacement, for stresses at all places."""
-        return self._gauges.displacement(self.task) or self.displacement_at(self.task)
 
     @property
     def prescribed(self) -> LinearPressure:
@@ -87,7 +74,6 @@ class LoadsLevel:
         return weights
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m]."""
         weights = self.weights(g)
         # The first field of a load has a normal resultant, the second an equal tangential one.
         units = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
@@ -108,26 +94,9 @@ class LoadsLevel:
 
         return lambda surface: turns_at_knots(self.prescribed, g, σ_XX)
 
-    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        return self._gauges.of(g, self.weights(g), self.pressure(g).σ_YY(self.task.places.X))
-
-    def gauges(self, states: SolvedStates) -> list[Gauge]:
-        """Gauges of requested stresses."""
-        return self.measured(states.contact.g)
-
-    @property
-    def mirrored(self) -> bool:
-        return True
-
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Zeros: the mirror image of a load is no load, so rounding is not measured."""
         return [0.0] * len(self.measured(g[:1]))
-
-    def release(self) -> None:
-        raise NotImplementedError
-
-    def destroy(self) -> None:
-        self.release()
 
 
 class FieldsLevel(LoadsLevel):
@@ -175,8 +144,11 @@ class FormulaLevel(FieldsLevel):
 class WholeLevel(FieldsLevel):
     """Pressure of the user's own as a whole, on cells that end at its knots or are cut there.
 
-    The corrections of the two fields are two fields more, a load without a resultant.
+    The corrections of the two fields are two fields more, a load without a resultant. The mirror image of
+    the knots has another mesh.
     """
+
+    mirrored = False
 
     def _load(self) -> None:
         pressure = self.prescribed
@@ -202,14 +174,9 @@ class WholeLevel(FieldsLevel):
         samples = continuation.origins + continuation.offsets[:, 0]
         return samples, continuation.continued(np.eye(len(continuation.owner)))
 
-    @property
-    def mirrored(self) -> bool:
-        """False: the mirror image of the knots has another mesh."""
-        return False
-
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding of the fields on each gauge of stresses, relative."""
-        return self._gauges.rounding(g, self.weights(g), self.pressure(g).σ_YY(self.task.places.X))
+        return self.stress_gauges.rounding(*self.fields_of(self.states(g)))
 
 
 class PiecesLevel(LoadsLevel):
@@ -243,49 +210,13 @@ class PiecesDisplacement(Displacement):
         super().__init__(task, space, ())
         self._pieces, self._loads = pieces, loads
 
-    def _at(self, points: NDArray, side: int = 1) -> Any:
-        return PieceGradients(self._pieces, self._loads, points)
+    def _at(self, points: NDArray, side: int = 1) -> Gradients:
+        firsts = range(0, max(len(points), 1), TOGETHER)
+        each = [self._pieces.gradients(self._loads, points[first : first + TOGETHER]) for first in firsts]
+        return Gradients(np.concatenate(each))
 
     @cached_property
-    def _slopes(self) -> "PieceSlopes":
+    def slopes(self) -> Slopes:
         X = self._task.places.X
-        return PieceSlopes(self._pieces, self._loads, np.column_stack([X, np.zeros(len(X))]))
-
-
-class PieceGradients:
-    """Gradients at points under pieces of a pressure, and slopes of points on the surface.
-
-    See :class:`galinx.solvers.fem.fields.InteriorGradients`, and :class:`SurfaceSlopes` there.
-
-    Args:
-        pieces: pieces of the pressure.
-        loads: linear loads that make up the pieces.
-        points: positions over a with Y <= 0, (n, 2).
-    """
-
-    def __init__(self, pieces: Pieces, loads: LinearLoads, points: NDArray) -> None:
-        firsts = range(0, max(len(points), 1), TOGETHER)
-        each = [pieces.gradients(loads, points[first : first + TOGETHER]) for first in firsts]
-        self._basis = np.concatenate(each)
-
-    def of(self, weights: NDArray) -> Any:
-        """μ ∂u_i/∂X_j over N/(2a), (states, n, 2, 2), with weights (states, 2)."""
-        return np.einsum("nijd,sd->snij", self._basis, weights)
-
-    def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
-        """Slice of all points, and gradients there."""
-        yield slice(None), self.of(weights)
-
-    def of_each(self, weights: NDArray) -> NDArray[np.float64]:
-        """μ ∂u_i/∂X_j over N/(2a), where each combination has points of its own, (states, m, 2, 2)."""
-        each = self._basis.reshape(len(weights), -1, 2, 2, 2)
-        return np.einsum("snijd,sd->snij", each, weights)
-
-
-class PieceSlopes(PieceGradients):
-    """Derivatives along X, on the surface, under pieces of a pressure."""
-
-    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """μ u,X and μ v,X over N/(2a) with weights (states, 2): (states, n) each."""
-        u_X, v_X = np.moveaxis(super().of(weights)[..., 0], -1, 0)
-        return u_X, v_X
+        basis = self._at(np.column_stack([X, np.zeros(len(X))])).of_fields()[:, :, 0]
+        return Slopes(np.moveaxis(basis, 1, 0), np.zeros((len(X), basis.shape[-1])))

@@ -35,6 +35,7 @@ from ..approximation import barycentric
 from ..errors import SolveError
 from ..solids.solid import Response
 from .boundary import FarBoundary, held_forces
+from .fields import Slopes
 from .linear import LinearSolver, times, vector
 from .space import Space
 
@@ -565,19 +566,6 @@ class Frictions:
 
 
 @dataclass(frozen=True)
-class EdgeFactors:
-    """Singular factors of the edges at each friction: numbers are a smooth factor times these.
-
-    Attributes:
-        forces: factors of nodal forces, (frictions, nodes).
-        slopes: factors of slopes at places on the surface, (frictions, places).
-    """
-
-    forces: NDArray[np.float64]
-    slopes: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
 class Sampled:
     """Parts of a punch at a speed, or at several, at some frictions.
 
@@ -595,15 +583,9 @@ class Sampled:
     rounding: NDArray[np.float64]
     fields: NDArray[np.float64]
 
-    def smooth(self, singular: EdgeFactors) -> "Sampled":
-        """Smooth numbers: these over the singular factors of the edges."""
-        slopes, forces = self.slopes / singular.slopes, self.forces / singular.forces
-        return Sampled(forces, slopes, self.rounding / singular.slopes, self.fields)
-
-    def singular(self, singular: EdgeFactors) -> "Sampled":
-        """Smooth numbers times the singular factors of the edges."""
-        slopes, forces = self.slopes * singular.slopes, self.forces * singular.forces
-        return Sampled(forces, slopes, self.rounding * singular.slopes, self.fields)
+    def scaled(self, forces: NDArray, slopes: NDArray) -> "Sampled":
+        """Numbers times factors of nodal forces, (frictions, nodes), and slopes, (frictions, places)."""
+        return Sampled(self.forces * forces, self.slopes * slopes, self.rounding * slopes, self.fields)
 
     def numbers(self) -> Iterator[NDArray[np.float64]]:
         """All numbers that a fit needs, part by part, (..., n); the rounding is not among them."""
@@ -626,13 +608,15 @@ def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
     return Sampled(total("forces", shares), total("slopes", shares), rounding, total("fields", shares))
 
 
-def sampled(punch: Punch, at: Frictions, slopes: Any = None, with_fields: bool = False) -> Sampled:
+def sampled(
+    punch: Punch, at: Frictions, slopes: Slopes | None = None, with_fields: bool = False
+) -> Sampled:
     """A punch's parts at some frictions.
 
     Args:
         punch: the punch, solved for these frictions.
         at: the frictions.
-        slopes: of its fields, a :class:`.fields.SurfaceSlopes`; None where they are not needed.
+        slopes: of its fields, a :class:`.fields.Slopes`; None where they are not needed.
         with_fields: keep the displacements.
     """
     parts, first, count = punch.parts(at.g), 0, len(at.g)
@@ -679,9 +663,11 @@ class FittedPunch(Punch):
         return self._fields
 
     @property
-    def slopes(self) -> "FittedSlopes":
+    def slopes(self) -> Slopes:
         """Slopes of the fields at the places on the surface."""
-        return FittedSlopes(self._samples.slopes, self._samples.rounding)
+        slopes, rounding = self._samples.slopes, self._samples.rounding
+        basis = slopes.reshape(2, -1, slopes.shape[-1])
+        return Slopes(basis.swapaxes(1, 2), rounding.reshape(-1, rounding.shape[-1]).T)
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         shares = self._at.shares(g)
@@ -694,27 +680,6 @@ class FittedPunch(Punch):
         self._fields.destroy()
 
     destroy = release
-
-
-class FittedSlopes:
-    """Derivatives along X, on the surface, of combinations of fitted fields.
-
-    Args:
-        slopes, rounding: see :class:`Sampled`.
-    """
-
-    def __init__(self, slopes: NDArray, rounding: NDArray) -> None:
-        self._basis = [np.concatenate(list(of_one)) for of_one in slopes]
-        self._rounding = np.concatenate(list(rounding))
-
-    def of(self, weights: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """μ u,X and μ v,X over N/(2a) of combinations with weights (states, fields): (states, n)."""
-        u_X, v_X = (weights @ basis[: weights.shape[1]] for basis in self._basis)
-        return u_X, v_X
-
-    def rounding(self, weights: NDArray) -> NDArray[np.float64]:
-        """Error by rounding of μ u,X of combinations with weights (states, fields): (states, n)."""
-        return np.abs(weights) @ self._rounding[: weights.shape[1]]
 
 
 class _Fields(Sequence[PETSc.Vec]):

@@ -4,11 +4,11 @@ A :class:`Space` assembles the condensed matrix, in a parallel matrix with room 
 it. It numbers nodes and facets on parts of the surface, and makes the nodal forces of tractions on them.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from dolfinx import fem, la
@@ -17,12 +17,14 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from galinx.clock import Clock
+from galinx.meshes.charts import Chart
+from galinx.meshes.rings import QuadMesh
 
 from ..approximation import interpolation
 from ..errors import MeshError
 from ..solids.solid import Response
 from . import versions
-from .cells import Chart, Contracted, lagrange, model_cells
+from .cells import Contracted, lagrange, model_cells
 from .element import CellMatrices
 from .forms import FORMS
 from .versions import create_mesh, tag_facets
@@ -31,18 +33,7 @@ from .versions import create_mesh, tag_facets
 _ORDER = [0, 1, 3, 2]
 
 
-class Quadrilaterals(Protocol):
-    """``points`` (n, 2), ``cells`` (m, 4) going round, and ``edges`` (k, 2) by their tag."""
-
-    @property
-    def points(self) -> NDArray: ...
-    @property
-    def cells(self) -> NDArray: ...
-    @property
-    def edges(self) -> Mapping[int, NDArray]: ...
-
-
-def distribute(mesh: Quadrilaterals | None, comm: MPI.Comm) -> tuple[Any, Any]:
+def distribute(mesh: QuadMesh | None, comm: MPI.Comm) -> tuple[Any, Any]:
     """Share a mesh out over the ranks of ``comm``.
 
     Args:
@@ -229,7 +220,7 @@ class Space:
     ) -> None:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
         self.terms = terms
-        self.mixed = self.form.pressure
+        self.mixed = self.form.mixed
         self.clock, self._say = Clock() if clock is None else clock, say
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)

@@ -26,7 +26,7 @@ from ..errors import SolveError
 from .contact import AtSpeed, PunchLevel
 from .discretisation import Discretisation
 from .ladder import PROBES, Gauge, WorkDone, climbed
-from .punch import EdgeFactors, FittedPunch, Frictions, Sampled, sampled, together
+from .punch import FittedPunch, Frictions, Sampled, sampled, together
 from .space import Space
 
 #: Sum of absolute shares from which a fit is rejected: a pole is near.
@@ -64,8 +64,12 @@ class Fit:
     records: dict[int, dict[str, Any]] = field(default_factory=dict)
     rational: Rational | None = None
 
-    def singular(self, task: Task) -> EdgeFactors:
-        """Singular factors of the edges: powers of the distance with exponents of the local analysis."""
+    def singular(self, task: Task) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Singular factors of the edges: powers of the distance with exponents of the local analysis.
+
+        Returns:
+            Factors of nodal forces, (frictions, nodes), and of slopes, (frictions, places).
+        """
         s, places = self.space.contact.s, task.places.X
         d_left, d_right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
         # At the edge itself the force is that of a piece of half the innermost distance or so.
@@ -77,13 +81,14 @@ class Fit:
             return np.asarray(np.exp(logs))
 
         slopes = power(np.abs(1.0 + places), np.abs(1.0 - places))
-        return EdgeFactors(power(d_left, d_right), slopes if self.work.stresses else slopes[:, :0])
+        return power(d_left, d_right), slopes if self.work.stresses else slopes[:, :0]
 
     def sampled(self, task: Task, level: Any) -> Sampled:
         """Sample of a solved speed for the fit, without the singular factors of the edges."""
         fields = bool({BELOW, YIELD, AT_INTERFACES} & self.work.stresses)
         sample = sampled(level.punch, self.at, level.slopes, fields)
-        return sample.smooth(self.singular(task))
+        forces, slopes = self.singular(task)
+        return sample.scaled(1.0 / forces, 1.0 / slopes)
 
     def take(self, solved: Sequence[tuple[int, Sampled, dict[str, Any]]]) -> None:
         """Take in speeds that were solved: number, sample and record of each."""
@@ -124,7 +129,7 @@ class Fit:
     def level(self, task: Task, shares: NDArray | None = None) -> Iterator[Any]:
         """Level of a speed by the fit, or by other shares of the samples, (samples,)."""
         shares = self.shares(task.number) if shares is None else shares
-        combined = together(self.samples, shares).singular(self.singular(task))
+        combined = together(self.samples, shares).scaled(*self.singular(task))
         punch = FittedPunch(self.space, task.response, self.at, combined)
         try:
             yield PunchLevel(self.work, task, self.space, self.at.g, punch, self.recovery)

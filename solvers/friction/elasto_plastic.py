@@ -7,16 +7,19 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from ..parameters import parameter
 from .law import LAWS
 from .lugre import Bristles
 
-#: Width in y of a panel of Gauss's rule, its points, and y beyond that of breakaway squared from which
-#: on slip is y and a constant to the last digit.
-_WIDTH, _POINTS, _FAR = 0.5, 16, 40.0
-#: Steps of Newton's method that are always enough.
-_STEPS = 60
+#: Width in y of a panel of Gauss's rule, and y beyond that of breakaway squared from which on slip is y
+#: and a constant to the last digit.
+_WIDTH, _FAR = 0.25, 40.0
+#: Gauss's rule of a panel.
+_NODES, _WEIGHTS = leggauss(16)
+#: Steps of Newton's method that are always enough, and the step after which the next is no digit.
+_STEPS, _CLOSE = 60, 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +41,7 @@ class ElastoPlastic(Bristles):
     """
 
     about: ClassVar[str] = "the elasto-plastic law"
+    batched: ClassVar[bool] = True
 
     r: float = parameter(
         "breakaway_ratio", "deflection at breakaway over that of steady sliding", symbol="r",
@@ -60,16 +64,26 @@ class ElastoPlastic(Bristles):
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         ζ0, w0, x = self._scaled(z, s, V, slip)
         straight = ζ0 + s * self.σ0 * np.asarray(slip, dtype=float)
-        if w0 >= 1.0:
-            ζ = ζ0 + (ζ0 - s * self.g(V)) * np.expm1(-x)
-        else:
-            y = _yielding(self.r).after(x - max(self.r - w0, 0.0), max(w0, self.r))
-            ζ = np.where(x <= self.r - w0, straight, -s * self.g(V) * np.expm1(-y))
-        return np.where(x == 0.0, ζ0, ζ)[:, None]
+        decayed = ζ0 + (ζ0 - s * self.g(V)) * np.expm1(-x)
+        yielding = -s * self.g(V) * np.expm1(-self._yielded(w0, x))
+        ζ = np.where(w0 >= 1.0, decayed, np.where(x <= self.r - w0, straight, yielding))
+        return np.where(x == 0.0, ζ0, ζ)[..., None]
+
+    def _yielded(self, w0: NDArray, x: NDArray) -> NDArray[np.float64]:
+        """Coordinate y of :class:`_Yielding` after slips x from w0; anything where w0 >= 1."""
+        x, w = x - np.maximum(self.r - w0, 0.0), np.where(w0 < 1.0, np.maximum(w0, self.r), self.r)
+        if np.ndim(self.r) == 0:
+            return _yielding(float(self.r)).after(x, w)
+        y = np.empty(x.shape)
+        for r in np.unique(self.r).tolist():
+            laws = self.r[:, 0] == r  # type: ignore[index]  # an array here
+            y[laws] = _yielding(r).after(x[laws], w[laws])
+        return y
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """∫ s (σ₀ z + σ₁ ż + σ₂ v) dd, with ∫ w dx in its three parts."""
-        _, w0, x = self._scaled(z, s, V, slip)
+        _, start, x = self._scaled(z, s, V, slip)
+        w0 = float(start)
         if w0 >= 1.0:
             area = x - (w0 - 1.0) * np.expm1(-x)
         else:
@@ -89,10 +103,10 @@ class ElastoPlastic(Bristles):
         steeper = 0.5 * np.pi / (1.0 - self.r) * np.sin(np.pi * between)
         return s * self.rate(z[..., 0], s, V) * (1.0 - V * self.σ1 / g * (α + w * steeper))
 
-    def _scaled(self, z: NDArray, s: int, V: float, slip: NDArray) -> tuple[float, float, NDArray]:
+    def _scaled(self, z: NDArray, s: int, V: float, slip: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """σ₀ z/N and w at the start, and slips x."""
-        g = self.g(V)
-        return float(z[0]), s * float(z[0]) / float(g), self.σ0 / g * np.asarray(slip, dtype=float)
+        ζ0, g = z[..., 0], self.g(V)
+        return ζ0, s * ζ0 / g, self.σ0 / g * np.asarray(slip, dtype=float)
 
 
 class _Yielding:
@@ -111,15 +125,16 @@ class _Yielding:
         self._y = self._first + _WIDTH * np.arange(count + 1)
         pieces = self._pieces(self._y[:-1], self._y[1:])
         self._x, self._short = np.hstack([np.zeros((2, 1)), np.cumsum(pieces, axis=1)])
+        self._near = CubicHermiteSpline(self._x, self._y, 1.0 / self._slopes(self._y))
 
-    def after(self, x: NDArray, w: float) -> NDArray[np.float64]:
+    def after(self, x: NDArray, w: float | NDArray) -> NDArray[np.float64]:
         """Coordinate y after slips x from w, r <= w < 1; x < 0 counts as none."""
-        target = self._at(np.array([-np.log1p(-w)]))[0] + np.maximum(x, 0.0)
-        y = np.interp(target, self._x, self._y) + np.maximum(target - self._x[-1], 0.0)
+        target = self._at(-np.log1p(-np.asarray(w)))[0] + np.maximum(x, 0.0)
+        y = self._near(np.minimum(target, self._x[-1])) + np.maximum(target - self._x[-1], 0.0)
         for _ in range(_STEPS):
             step = (target - self._at(y)[0]) / self._slopes(y)
             y = np.maximum(y + step, self._first)
-            if np.all(np.abs(step) <= 1e-15 * (1.0 + y)):
+            if np.all(np.abs(step) <= _CLOSE):
                 break
         return y
 
@@ -129,7 +144,7 @@ class _Yielding:
         return self._at(self.after(x, w))[1] - self._at(start)[1]
 
     def _at(self, y: NDArray) -> NDArray[np.float64]:
-        """Slip, and ∫ (1 - w) dx, from breakaway to y, (2, n)."""
+        """Slip, and ∫ (1 - w) dx, from breakaway to y (...): (2, ...)."""
         panel = np.clip(np.searchsorted(self._y, y, side="right") - 1, 0, len(self._y) - 2)
         near = np.minimum(y, self._y[-1])
         x, short = self._pieces(self._y[panel], near)
@@ -138,12 +153,11 @@ class _Yielding:
         return np.array([self._x[panel] + x + beyond, self._short[panel] + short + short_beyond])
 
     def _pieces(self, start: NDArray, end: NDArray) -> NDArray[np.float64]:
-        """Slip, and ∫ (1 - w) dx, from one y to another in the same panel, (2, n)."""
-        t, weights = leggauss(_POINTS)
-        half = 0.5 * (end - start)[:, None]
-        y = start[:, None] + half * (1.0 + t)
+        """Slip, and ∫ (1 - w) dx, from y to y in the same panel, (...) each: (2, ...)."""
+        half = 0.5 * (end - start)[..., None]
+        y = start[..., None] + half * (1.0 + _NODES)
         x = self._slopes(y)
-        return np.array([((half * x) @ weights), ((half * x * np.exp(-y)) @ weights)])
+        return np.array([((half * x) @ _WEIGHTS), ((half * x * np.exp(-y)) @ _WEIGHTS)])
 
     def _slopes(self, y: NDArray) -> NDArray[np.float64]:
         """dx/dy."""

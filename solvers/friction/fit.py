@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import log
 from typing import Any
 
 import numpy as np
@@ -11,16 +12,49 @@ from ..parameters import Parameter, Range, build_model, fields, parameters
 from .integrate import exactly
 from .law import FrictionLaw, MeasuredFriction
 
-#: Starts of the search, the first from the guess, and how far the others lie from it, as a factor.
-_STARTS, _AWAY = 6, 3.0
+#: Most starts of the search, the first from the guess, and how far the others lie from it, as a factor.
+_STARTS, _AWAY = 16, 3.0
+#: Moves that laws follow in the search, all starts together, from which on no other start begins.
+_SEARCHED = 25_000
+#: Samples of all measurements through which starts search, and most that the best of them is fitted to.
+_FEW, _MOST = 150, 3000
+#: Tolerance and most steps of the search from a start, and of the fit from the best of them.
+_SEARCH, _FIT = (1e-4, 30), (1e-7, 40)
 #: Relative difference of sums of squares below which two starts led to one law: the search ends.
-_AGAIN = 1e-6
+_AGAIN = 1e-4
+#: Difference of unknowns, over their size, in a derivative.
+_STEP = 1e-6
 #: Residual where a law rejects its parameters.
 _REJECTED = 1e3
 #: Relative difference of speeds below which they count as one.
 _SAME = 1e-6
 #: Distance from the bounds of an open range that a fit keeps.
 _INSIDE = 1e-6
+#: Factor from its start within which a positive number is sought.
+_FARTHEST = 1e5
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Friction measured along a motion that begins at rest, (samples,) each.
+
+    Attributes:
+        t: time [s], growing.
+        X: position [m].
+        f: friction coefficient, positive in forward motion.
+    """
+
+    t: NDArray[np.float64]
+    X: NDArray[np.float64]
+    f: NDArray[np.float64]
+
+    def every(self, n: int) -> "Measured":
+        """Every n-th sample, with those at which the motion turns, stops or starts."""
+        way = np.sign(np.diff(self.X))
+        kept = np.zeros(len(self.X), dtype=bool)
+        kept[::n] = kept[-1] = True
+        kept[1:-1] |= way[1:] != way[:-1]
+        return Measured(self.t[kept], self.X[kept], self.f[kept])
 
 
 @dataclass(frozen=True)
@@ -33,6 +67,7 @@ class Move:
         rest: time at rest before it [s].
         slip: slip since the move began, (n,) [m].
         samples: numbers of the samples, (n,).
+        first: True if a measurement begins with it, and the law at rest.
     """
 
     s: int
@@ -40,6 +75,7 @@ class Move:
     rest: float
     slip: NDArray[np.float64]
     samples: NDArray[np.int64]
+    first: bool = False
 
 
 @dataclass(frozen=True)
@@ -52,7 +88,11 @@ class FittedLaw:
         names: names of the fitted numbers, as ``"mu_c"`` and ``"elements[2, 1]"``, (m,).
         best: fitted numbers, (m,).
         covariance: covariance of the fitted numbers, (m, m); NaN where the data do not determine them.
-        f: friction of the law at the samples, NaN before the first motion, (samples,).
+        sizes: deviation of each number from which on the data do not determine it, (m,).
+        f: friction of the law at the samples of each measurement, NaN before the first motion.
+        samples: number of samples in motion that it is fitted to.
+        rms: root mean square of the residuals of f at these.
+        every: step between the samples, 1 unless there are too many.
     """
 
     law: FrictionLaw
@@ -60,25 +100,43 @@ class FittedLaw:
     names: tuple[str, ...]
     best: NDArray[np.float64]
     covariance: NDArray[np.float64]
-    f: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    f: list[NDArray[np.float64]]
+    samples: int
+    rms: float
+    every: int
 
     @property
     def deviations(self) -> NDArray[np.float64]:
         """Standard deviations of the fitted numbers, (m,)."""
         return np.sqrt(np.diag(self.covariance))
 
+    @property
+    def determined(self) -> NDArray[np.bool_]:
+        """True where the data determine a number: its deviation is smaller than its size, (m,)."""
+        return self.deviations < self.sizes
 
-def moves(t: NDArray, X: NDArray, by_speed: bool) -> list[Move]:
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion, up to a constant of the data: n ln(Σr²/n) + 2 (m + 1), the less the better.
+
+        (H. Akaike, IEEE Transactions on Automatic Control 19 (1974) 716.) The noise is a parameter, too.
+        """
+        return 2.0 * self.samples * log(max(self.rms, 1e-300)) + 2.0 * (len(self.names) + 1)
+
+
+def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]:
     """Moves of a measured motion, from rest at the first sample.
 
     Args:
         t, X: time [s] and position [m] of the samples.
         by_speed: True if the law depends on the speed: a change of speed begins a new move.
+        before: number of the first sample.
     """
     steps, seconds = np.diff(X), np.diff(t)
     pieces: list[tuple[int, float, float, list[float], list[int]]] = []
     rest = 0.0
-    for n, (step, time) in enumerate(zip(steps.tolist(), seconds.tolist()), 1):
+    for n, (step, time) in enumerate(zip(steps.tolist(), seconds.tolist()), before + 1):
         if step == 0.0:
             rest += time
             continue
@@ -90,17 +148,27 @@ def moves(t: NDArray, X: NDArray, by_speed: bool) -> list[Move]:
         else:
             pieces.append((s, V, rest, [abs(step)], [n]))
             rest = 0.0
-    return [Move(s, V, at, np.array(slip), np.array(rows)) for s, V, at, slip, rows in pieces]
+    return [
+        Move(s, V, at, np.array(slip), np.array(rows), first=not i)
+        for i, (s, V, at, slip, rows) in enumerate(pieces)
+    ]
 
 
-def friction(law: FrictionLaw, motion: Sequence[Move], samples: int) -> NDArray[np.float64]:
-    """Friction coefficient of a law at the samples of a motion, NaN before the first move, (samples,)."""
-    f, z = np.full(samples, np.nan), law.rest()
+def friction(
+    law: FrictionLaw, motion: Sequence[Move], samples: int, laws: int = 0
+) -> NDArray[np.float64]:
+    """Friction coefficient of a law at the samples of a motion, NaN before the first move, (samples,).
+
+    Of a law that stands for many, their number ``laws``, (laws, samples).
+    """
+    f = np.full((laws, samples) if laws else samples, np.nan)
+    rest = np.broadcast_to(law.rest(), (laws, 1, law.rest().shape[-1])) if laws else law.rest()
+    z = rest
     for move in motion:
-        z = law.pause(z, move.rest)
+        z = law.pause(rest if move.first else z, move.rest)
         states = exactly(law, z, move.s, move.V, float(move.slip[-1]), move.slip)
-        f[move.samples] = law.friction(states, move.s, move.V)
-        z = states[-1]
+        f[..., move.samples] = law.friction(states, move.s, move.V)
+        z = states[..., -1:, :] if laws else states[-1]
     return f
 
 
@@ -122,70 +190,141 @@ def measured_friction(motion: Sequence[Move], f: NDArray, rows: int) -> Measured
 
 def fit(
     kind: type[FrictionLaw],
-    motion: Sequence[Move],
-    f: NDArray,
+    measured: Sequence[Measured],
     fixed: dict[str, Any],
     start: dict[str, Any],
     rows: int = 3,
+    step: Callable[[int, int], None] = lambda done, of: None,
 ) -> FittedLaw:
     """Law nearest to measured friction, by least squares over its parameters.
 
+    Several starts search through some 250 samples; from the best of them all samples are fitted, or every
+    n-th of more than 3000.
+
     Args:
         kind: class of the law.
-        motion: measured motion.
-        f: friction coefficient at the samples, (samples,).
+        measured: measurements of one law, each of which begins at rest.
         fixed: values by key of parameters that are not fitted.
         start: values by key of other parameters with which the search begins.
         rows: number of rows of tables that are fitted.
+        step: called with the number of starts that are done, and of all, while it works.
 
     Raises:
         ValueError: a parameter has no start, there are fewer samples than numbers, or no start leads
             anywhere.
     """
-    search = _Search(kind, measured_friction(motion, f, rows), fixed, start)
-    used = np.concatenate([move.samples for move in motion])
-    if len(used) <= len(search.names):
+    whole = _Fitted(kind, measured)
+    search = _Search(kind, measured_friction(whole.motion, whole.f, rows), fixed, start)
+    used = len(whole.used)
+    if used <= len(search.names):
         raise ValueError(
-            f"found {len(used)} samples in motion for {len(search.names)} parameters, expected more"
+            f"found {used} samples in motion for {len(search.names)} parameters, expected more"
         )
+    every = -(-used // _MOST)
+    fitted = _Fitted(kind, [one.every(every) for one in measured]) if every > 1 else whole
+    if search.names:
+        few = _Fitted(kind, [one.every(-(-used // _FEW)) for one in measured])
+        θ = _best_start(few if len(few.used) > 2 * len(search.names) else fitted, search, step)
+        result = _least(fitted, search, θ, *_FIT)
+        θ, J = result.x, result.jac
+    else:
+        θ, J = search.begin, np.zeros((len(fitted.used), 0))
+    residuals = fitted.residuals(search, θ[None])[0]
+    if np.abs(residuals).max() >= _REJECTED:
+        raise ValueError("no start of the search leads to a law; fix or start other parameters")
+    law, stretch = search.law(θ), search.stretch(θ)
+    spread = float(residuals @ residuals) / (len(residuals) - len(θ))
+    covariance = spread * _inverse(J) * np.outer(stretch, stretch)
+    with np.errstate(all="ignore"):
+        f = friction(law, whole.motion, len(whole.f))
+    return FittedLaw(
+        law, search.values(θ), search.names, search.numbers(θ), covariance, search.sizes(θ),
+        np.split(f, np.cumsum([len(one.t) for one in measured])[:-1]), len(residuals),
+        float(np.sqrt(np.mean(residuals**2))), every,
+    )  # fmt: skip
 
-    def residuals(θ: NDArray) -> NDArray:
-        try:
-            with np.errstate(all="ignore"):
-                difference = friction(search.law(θ), motion, len(f))[used] - f[used]
-        except ValueError:  # rejected by the law
-            difference = np.full(len(used), np.inf)
+
+class _Fitted:
+    """Measurements one after the other, as a law sees them, and its residuals there.
+
+    Attributes:
+        motion: moves of all.
+        f: measured friction coefficient, (samples,).
+        used: numbers of the samples in motion.
+    """
+
+    def __init__(self, kind: type[FrictionLaw], measured: Sequence[Measured]) -> None:
+        self.motion: list[Move] = []
+        before = 0
+        for one in measured:
+            self.motion += moves(one.t, one.X, kind.depends_on_speed, before)
+            before += len(one.t)
+        self.f = np.concatenate([one.f for one in measured])
+        self.used = np.concatenate([move.samples for move in self.motion])
+        self._at_once = kind.broadcasts or kind.batched
+
+    def residuals(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
+        """Friction of laws less the measured one, (laws, used), at unknowns θ (laws, unknowns)."""
+        with np.errstate(all="ignore"):
+            f = self._friction(search, θ)[:, self.used]
+            difference = f - self.f[self.used]
         return np.where(np.isfinite(difference), difference, _REJECTED)
 
-    best = _least(residuals, search)
-    if best is None or best.cost >= 0.4 * _REJECTED**2 * len(used):
-        raise ValueError("no start of the search leads to a law; fix or start other parameters")
-    law, values = search.law(best.x), search.values(best.x)
-    stretch = search.stretch(best.x)
-    spread = 2.0 * best.cost / (len(used) - len(best.x))
-    covariance = spread * _inverse(best.jac) * np.outer(stretch, stretch)
-    numbers = search.numbers(best.x)
-    return FittedLaw(law, values, search.names, numbers, covariance, friction(law, motion, len(f)))
+    def _friction(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
+        samples = len(self.f)
+        if self._at_once and len(θ) > 1:
+            try:
+                return friction(search.laws(θ), self.motion, samples, len(θ))
+            except ValueError:  # one of them is rejected
+                pass
+        rows = []
+        for row in θ:
+            try:
+                rows.append(friction(search.law(row), self.motion, samples))
+            except ValueError:  # rejected by the law
+                rows.append(np.full(samples, np.nan))
+        return np.array(rows)
 
 
-def _least(residuals: Callable[[NDArray], NDArray], search: "_Search") -> Any:
-    """Best of SciPy's results from several starts; None where no number is fitted."""
+def _best_start(
+    data: _Fitted, search: "_Search", step: Callable[[int, int], None]
+) -> NDArray[np.float64]:
+    """Unknowns at which the best of several starts ends."""
+    rng = np.random.default_rng(0)
+    best = _least(data, search, np.clip(search.begin, search.low, search.high), *_SEARCH)
+    steps = best.nfev
+    for n in range(1, _STARTS):
+        step(n, _STARTS)
+        θ = search.begin + search.reach * rng.uniform(-1.0, 1.0, len(search.begin))
+        result = _least(data, search, np.clip(θ, search.low, search.high), *_SEARCH)
+        again = abs(result.cost - best.cost) <= _AGAIN * best.cost
+        best = min(best, result, key=lambda one: one.cost)
+        steps += result.nfev
+        if again or steps * len(data.motion) > _SEARCHED:
+            break
+    return best.x
+
+
+def _least(data: _Fitted, search: "_Search", θ: NDArray, tolerance: float, steps: int) -> Any:
+    """SciPy's result from a start; a step and all its differences are one pass through the motion."""
     from scipy.optimize import least_squares  # slow to import
 
-    rng, best = np.random.default_rng(0), None
-    for n in range(_STARTS if search.names else 0):
-        θ = search.begin + (n > 0) * search.reach * rng.uniform(-1.0, 1.0, len(search.begin))
-        θ = np.clip(θ, search.low, search.high)
-        result = least_squares(
-            residuals, θ, bounds=(search.low, search.high), x_scale="jac", xtol=1e-12, ftol=1e-12,
-            gtol=1e-12, max_nfev=200,
-        )  # fmt: skip
-        again = best is not None and abs(result.cost - best.cost) <= _AGAIN * best.cost
-        if best is None or result.cost < best.cost:
-            best = result
-        if again:
-            break
-    return best
+    last: dict[bytes, tuple[NDArray, NDArray]] = {}
+
+    def both(θ: NDArray) -> tuple[NDArray, NDArray]:
+        """Residuals and their derivatives."""
+        if θ.tobytes() not in last:
+            h = _STEP * np.maximum(search.reach, np.abs(θ))
+            h = np.where(θ + h > search.high, -h, h)
+            residuals = data.residuals(search, np.concatenate([θ[None], θ + np.diag(h)]))
+            last.clear()
+            last[θ.tobytes()] = residuals[0], ((residuals[1:] - residuals[0]) / h[:, None]).T
+        return last[θ.tobytes()]
+
+    return least_squares(
+        lambda θ: both(θ)[0], θ, lambda θ: both(θ)[1], bounds=(search.low, search.high),
+        x_scale="jac", xtol=1e-10, ftol=tolerance, gtol=1e-12, max_nfev=steps,
+    )  # fmt: skip
 
 
 def _inverse(J: NDArray) -> NDArray[np.float64]:
@@ -235,7 +374,10 @@ class _Search:
             self._values[key] = value
             if key in fixed or parameter.options or (key in kind.conventions and key not in start):
                 continue
-            places = _places(key, parameter, value)
+            places = [
+                place for place in _places(key, parameter, value)
+                if _name(*place) not in kind.conventions
+            ]  # fmt: skip
             self._places += places
             positive = Range(above=0.0) if len(parameter.measured) > 1 else Range()
             ranges += [parameter.range if parameter.single else positive] * len(places)
@@ -247,13 +389,16 @@ class _Search:
             raise ValueError(f"found a start of {name} that is not above 0")
         self.begin = np.where(self._logs, np.log(np.where(self._logs, p, 1.0)), p)
         self.low, self.high = np.array([_ends(r) for r in ranges]).reshape(-1, 2).T
-        self.low[self._logs], self.high[self._logs] = -np.inf, np.inf
+        self.low[self._logs] = self.begin[self._logs] - np.log(_FARTHEST)
+        self.high[self._logs] = self.begin[self._logs] + np.log(_FARTHEST)
+        signed = np.isinf(self.low)
         whole = np.isfinite(self.high - self.low)
         width = np.where(whole, np.where(whole, self.high, 0.0) - np.where(whole, self.low, 0.0), 1.0)
         far = np.where(whole, 0.5 * width, np.maximum(np.abs(p), look.level / max(look.speed, 1e-12)))
         dimensionless = np.array([described[place[0]].unit == "" for place in self._places], dtype=bool)
         far = np.where(dimensionless & ~whole, np.maximum(np.abs(p), 1.0), far)
         self.reach = np.where(self._logs, np.log(_AWAY), far)
+        self._signed = signed
 
     def _numbers(self) -> NDArray[np.float64]:
         return np.array([
@@ -284,6 +429,29 @@ class _Search:
             key: tuple(map(tuple, value)) if isinstance(value, list) else value
             for key, value in values.items()
         }
+
+    def sizes(self, θ: NDArray) -> NDArray[np.float64]:
+        """Sizes of the numbers at θ, (m,): of one without sign its own, else the largest of its key."""
+        size, keys = np.abs(self.numbers(θ)), np.array([key for key, _, _ in self._places])
+        return np.where(self._signed, [size[keys == key].max() for key in keys], size)
+
+    def laws(self, θ: NDArray) -> FrictionLaw:
+        """A law that stands for those at θ (laws, m), as the protocol of laws describes it.
+
+        Raises:
+            ValueError: a law rejects its parameters.
+        """
+        values = {
+            key: np.broadcast_to(value, (len(θ), 1, *np.shape(value))).copy()
+            if isinstance(value, tuple) else value
+            for key, value in self._values.items()
+        }  # fmt: skip
+        for (key, row, column), number in zip(self._places, self.numbers(θ).T):
+            if row < 0:
+                values[key] = number[:, None]
+            else:
+                values[key][:, 0, row, column] = number
+        return build_model(self._kind, values)
 
     def law(self, θ: NDArray) -> FrictionLaw:
         """Law at θ.

@@ -29,6 +29,8 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     """
 
     about: ClassVar[str] = "generalised Maxwell slip"
+    batched: ClassVar[bool] = True
+    conventions: ClassVar[tuple[str, ...]] = ("elements[0, 1]",)  # only the ratios of limits matter
 
     elements: tuple[tuple[float, float], ...] = elements()
     C: float = parameter(
@@ -48,22 +50,23 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     @property
     def k(self) -> NDArray[np.float64]:
         """Stiffnesses over N [1/m], (n,)."""
-        return np.array(self.elements)[:, 0]
+        return np.asarray(self.elements)[..., 0]
 
     @property
     def α(self) -> NDArray[np.float64]:
         """Shares of the elements in steady sliding, (n,)."""
-        μ = np.array(self.elements)[:, 1]
-        return μ / μ.sum()
+        μ = np.asarray(self.elements)[..., 1]
+        return μ / μ.sum(axis=-1, keepdims=True)
 
     def rest(self) -> NDArray[np.float64]:
-        return np.zeros(2 * len(self.elements))
+        return np.zeros(2 * self.k.shape[-1])
 
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
         """State after a rest, in which all elements stick."""
         if seconds <= 0.0:
             return z
-        return np.concatenate([z[: len(self.elements)], np.zeros(len(self.elements))])
+        f, slipping = np.split(z, 2, axis=-1)
+        return np.concatenate([f, 0.0 * slipping], axis=-1)
 
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Rates df_i/dd [1/m], and 0 of the directions of slip."""
@@ -90,15 +93,15 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         return np.append(f, s * slips)
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        return z[..., : len(self.elements)].sum(axis=-1)
+        return z[..., : self.k.shape[-1]].sum(axis=-1)
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """States by a straight line up to α g while an element sticks; |f_i| - α g decays in slip."""
         w, reached, stuck, decay = self._pieces(z, s, V, np.asarray(slip, dtype=float)[:, None])
-        limit = self.α * self.g(V)
+        limit = self._limit(V)
         f = np.where(reached, limit + (w - limit) * np.exp(-decay), w + self.k * stuck)
         slipping = reached | (w + self.k * stuck >= limit * (1.0 - 1e-14))
-        return np.concatenate([s * np.where(slipping & ~reached, limit, f), s * slipping], axis=1)
+        return np.concatenate([s * np.where(slipping & ~reached, limit, f), s * slipping], axis=-1)
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         d = np.asarray(slip, dtype=float)[:, None]
@@ -123,13 +126,18 @@ class GeneralisedMaxwellSlip(StribeckCurve):
             s f_i at the start; True where an element slips from the start on; slip while it sticks [m];
             and the exponent of its decay while it slips.
         """
-        n, limit = len(self.elements), self.α * self.g(V)
-        w = s * z[:n]
+        limit = self._limit(V)
+        f, slipping = np.split(z, 2, axis=-1)
+        w = s * f
         # A speed at which less is borne than an element bears makes it slip at once.
-        reached = (s * z[n:] > 0.0) | (w > limit)
+        reached = (s * slipping > 0.0) | (w > limit)
         stuck = np.minimum(d, np.maximum(limit - w, 0.0) / self.k)
-        decay = d * (self.C / (V * self.g(V)) if V > 0.0 else 1e300)
+        decay = d * (np.asarray(self.C / (V * self.g(V)))[..., None] if V > 0.0 else 1e300)
         return w, reached, stuck, decay
+
+    def _limit(self, V: float) -> NDArray[np.float64]:
+        """Limits α g of the elements."""
+        return self.α * np.asarray(self.g(V))[..., None]
 
 
 LAWS.register("gms", GeneralisedMaxwellSlip)

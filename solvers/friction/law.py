@@ -44,12 +44,16 @@ class FrictionLaw(Protocol):
         broadcasts: True if one law can stand for many. Their parameters are then (m, 1), their states
             (m, slips, n) with one slip where a stroke starts, and :meth:`exact` and :meth:`work` add
             slips by NumPy's rules of broadcasting.
-        conventions: keys of parameters that are chosen, not fitted.
+        batched: True if :meth:`rest`, :meth:`pause`, :meth:`exact` and :meth:`friction` alone do that,
+            with tables (m, 1, rows, columns): enough for a fit, which tries many laws at once.
+        conventions: keys of parameters, or names of numbers in tables as ``"elements[0, 1]"``, that are
+            chosen, not fitted.
     """
 
     about: ClassVar[str]
     depends_on_speed: ClassVar[bool] = True
     broadcasts: ClassVar[bool] = False
+    batched: ClassVar[bool] = False
     conventions: ClassVar[tuple[str, ...]] = ()
 
     @classmethod

@@ -121,6 +121,8 @@ class LayersAtSpeed:
 _DENSITY, _LONGEST, _SHORTEST = 6, 1e-3, 30.0
 #: Number of refinements next to the smallest stiffness, and wavenumbers in each.
 _CLOSER, _THERE = 4, 9
+#: Stiffness that stands for -∞, over that of the solid at the surface.
+_BEYOND = -1.0
 #: Most steps; growth of steps below waves inside, and the second of them.
 _STEPS, _STRIDE, _FIRST_STEP = 90, 2.0, 1e-4
 
@@ -194,25 +196,10 @@ def _stiffness_at(
 
 
 def _zero(f: Callable[[float], NDArray], low: float, high: float, accuracy: float) -> float:
-    """Number up to which a falling function, (1,), is positive; it may be -∞ beyond."""
-    (f_low,), (f_high,), side = f(low), f(high), 0
-    for _ in range(_STEPS):
-        if high - low <= accuracy * high:
-            break
-        middle = (low + high) / 2.0
-        if np.isfinite(f_high) and f_high < 0.0:  # Illinois
-            guess = (low * f_high - high * f_low) / (f_high - f_low)
-            middle = guess if low < guess < high else middle
-        (value,) = f(middle)
-        if value > 0.0:
-            low, f_low = middle, value
-            f_high = f_high / 2.0 if side == 1 else f_high
-            side = 1
-        else:
-            high, f_high = middle, value
-            f_low = f_low / 2.0 if side == -1 else f_low
-            side = -1
-    return float(low)
+    """Number, to a relative accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond."""
+    from scipy.optimize import brentq  # a slow import
+
+    return float(brentq(lambda x: max(f(x)[0], _BEYOND), low, high, xtol=accuracy * high))
 
 
 #: Speeds over the highest at which each wave's stiffness is evaluated first.

@@ -15,42 +15,48 @@ def cells(sheet, head):
 
 
 def test_contacts_whose_ends_are_found_have_their_half_width_and_no_intensity():
-    data = computed("cylinder", CLOSED_FORM | {"motion.c": [0.0, 0.6]}).data
-    sheet = states_sheet(data, "")
+    result = computed("cylinder", CLOSED_FORM | {"motion.c": [0.0, 0.6]})
+    data, sheet = result.data, states_sheet(result.data, result.units())
     assert not any(head.startswith("K") for head in sheet.columns)
-    for head, name in (("a (m)", "half_width"), ("centre (m)", "centre")):
-        np.testing.assert_allclose(
-            np.array(cells(sheet, head), dtype=float), data[f"states/closed_form/{name}"], rtol=1e-4
-        )
-    flat = states_sheet(computed("tables4_5", CLOSED_FORM).data, "")
-    assert "K_I" in flat.columns and "a (m)" not in flat.columns
+    for head, name in (("half-width [µm]", "half_width"), ("centre [µm]", "centre")):
+        expected = 1e6 * data[f"states/closed_form/{name}"]
+        found = np.array(cells(sheet, head), dtype=float)
+        np.testing.assert_allclose(found, expected, rtol=1e-3, atol=0.01)
+    result = computed("tables4_5", CLOSED_FORM)
+    flat = states_sheet(result.data, result.units())
+    assert "K_I, left [MPa·m^(-β)]" in flat.columns
+    assert not any(head.startswith(("half-width", "peak")) for head in flat.columns)
+    assert "half-width = 1 mm" in flat.notes[0]
 
 
 def test_loops_tell_what_they_take_by_what_tells_them_apart():
     laws = {"friction.mu_c": [0.3, 0.7], "output.quantities": ["friction"]}
-    data = computed("tables4_5", laws).data
-    sheet = loops_sheet(data)
+    result = computed("tables4_5", laws)
+    data, sheet = result.data, loops_sheet(result.data, result.units())
     assert cells(sheet, "loop") == ["0", "1"] and cells(sheet, "μ_C") == ["0.3", "0.7"]
-    work = np.array(cells(sheet, "work (J/m)"), dtype=float)
+    work = np.array(cells(sheet, "work [J/m]"), dtype=float)
     np.testing.assert_allclose(work, data["loops/dissipated"].sum(axis=1), rtol=1e-4)
     np.testing.assert_allclose(
-        np.array(cells(sheet, "breakaway (N/m)"), dtype=float),
-        data["loops/breakaway"].max(axis=1),
+        np.array(cells(sheet, "breakaway force [N/mm]"), dtype=float),
+        1e-3 * data["loops/breakaway"].max(axis=1),
         rtol=1e-4,
     )
 
 
 def test_of_many_loops_the_first_are_told():
     many = {"friction.mu_c": np.linspace(0.1, 0.9, LIMIT + 5).tolist(), "output.quantities": ["friction"]}
-    assert len(loops_sheet(computed("tables4_5", many).data).rows) == LIMIT
+    result = computed("tables4_5", many)
+    assert len(loops_sheet(result.data, result.units()).rows) == LIMIT
 
 
 def test_sliders_tell_their_stick_slip():
-    data = computed("slider", {"slider.duration": 15.0}).data
-    (row,) = sliders_sheet(data).rows
+    result = computed("slider", {"slider.duration": 15.0})
+    data = result.data
+    (row,) = sliders_sheet(data, result.units()).rows
     assert row[1] == "stick-slip"
     assert float(row[2]) == pytest.approx(data["slider/period"][0], rel=1e-5)
-    assert not sliders_sheet(computed("tables4_5", {"output.quantities": ["friction"]}).data).rows
+    other = computed("tables4_5", {"output.quantities": ["friction"]})
+    assert not sliders_sheet(other.data, other.units()).rows
 
 
 def test_what_a_law_remembers_is_told_but_where_that_is_f():
@@ -65,8 +71,9 @@ def test_what_a_law_remembers_is_told_but_where_that_is_f():
 
 def test_loops_of_several_loads_say_which_is_theirs():
     loads = {"output.quantities": ["friction"], "punch.load": [2e3, 4e3]}
-    data = computed("tables4_5", loads).data
-    assert "N = 2000 N/m" in loops_sheet(data).notes[0]
+    result = computed("tables4_5", loads)
+    data = result.data
+    assert "N = 2 N/mm" in loops_sheet(data, result.units()).notes[0]
     half = computed("tables4_5", loads | {"punch.load": 1e3}).data
     np.testing.assert_allclose(data["loops/dissipated"], 2.0 * half["loops/dissipated"], rtol=1e-14)
-    assert "N (N/m)" in states_sheet(data, "").columns
+    assert "load [N/mm]" in states_sheet(data, result.units()).columns

@@ -20,8 +20,11 @@ def test_show_as_json(archive):
     shown = json.loads(here("show", archive, "--json").stdout)
     assert shown["verdict"] == "PASS" and len(shown["states"]) == 12
     first = shown["states"][0]
-    assert first["motion"] == "FM1" and first["closed_form"]["K_I"] == pytest.approx(0.3160757828331318)
-    assert first["fem"]["K_I_left"] == pytest.approx(first["closed_form"]["K_I"], rel=1e-6)
+    assert first["motion"] == "FM1" and "K_I" not in first["closed_form"]
+    assert first["fem"]["K_I_left"] == pytest.approx(first["closed_form"]["K_I_left"], rel=1e-6)
+    assert shown["units"]["fem"]["K_I_left"] == "MPa·m^(-β)"
+    plain = json.loads(here("show", archive, "--json", "--dimensionless").stdout)["states"][0]
+    assert plain["closed_form"]["K_I"] == pytest.approx(0.3160757828331318)
 
 
 def test_show_fits_a_terminal(archive):
@@ -36,11 +39,13 @@ def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
     shown = here("show", archive, COLUMNS=str(columns)).stdout
     table = shown.partition("the same in all")[0]
     assert max(map(len, table.splitlines())) <= columns and "…" not in shown
-    heads = [line.split() for line in shown.splitlines() if line.startswith(" state")]
-    assert (len(heads) > 1) == (columns < 80)
-    told = [word for head in heads for word in head if word not in ("state", "(m)")]
-    assert told == ["c", "X/L", "f", "K_I", "error", "estimate", "v₀", "α", "β"]
-    assert shown.count(" 11 FM2 ") == len(heads) and "μ_C = 0.7" in shown
+    parts = len(re.findall(r"^ *─+ *$", table, re.M))
+    assert (parts > 2) == (columns < 80)
+    words = re.sub(r"\s+", " ", table)
+    for head in ("stroke", "speed", "X/L", "K_I,", "indentation"):
+        assert words.count(f" {head}") >= 1, head
+    assert len(re.findall(r"^ 11 ", table, re.M)) == parts
+    assert "μ_C = 0.7" in re.sub(r"\s+", " ", shown)
 
 
 def test_plot(archive, tmp_path):
@@ -99,16 +104,18 @@ def test_in_si_show_tells_yield_speeds_and_lengths(tmp_path):
     result = computed("tables4_5", OWN)
     result.save(tmp_path / "a.h5")
     unit, a = 55.3e3 / 2e-3, 1e-3
-    plain, si = (here("show", tmp_path / "a.h5", *options).stdout for options in ((), ("--si",)))
+    plain, si = (
+        here("show", tmp_path / "a.h5", *options).stdout for options in (("--dimensionless",), ())
+    )
     largest = result.data["states/closed_form/von_mises"]
-    assert re.search(rf"largest von Mises +exact +N/\(2a\) +{largest.min():.4g} ", plain)
-    assert re.search(rf"largest von Mises +exact +Pa +{re.escape(f'{unit * largest.min():.4g}')} ", si)
-    depth = result.data["states/closed_form/von_mises_Y_over_a"].min()
-    assert re.search(rf"at Y +exact +m +{re.escape(f'{a * depth:.4g}')} ", si)
-    assert "speed (m/s) = 940.2" in si and "waves in a stroke" in si
-    shown = json.loads(here("show", tmp_path / "a.h5", "--json", "--si").stdout)
+    assert re.search(rf"largest von Mises \[N/\(2a\)\] +{largest[0]:.4g} ", plain)
+    assert re.search(rf"largest von Mises \[MPa\] +{re.escape(f'{1e-6 * unit * largest[0]:.4g}')} ", si)
+    depth = result.data["states/closed_form/von_mises_Y_over_a"]
+    assert re.search(rf"at Y \[mm\] +{re.escape(f'{1e3 * a * depth[0]:.4g}')} ", si)
+    assert "speed = 940.197 m/s" in si and "waves that cross the contact in a stroke" in si
+    shown = json.loads(here("show", tmp_path / "a.h5", "--json").stdout)
     first, units = shown["states"][0], shown["units"]
-    assert units["closed_form"]["von_mises"] == "Pa" and units["closed_form"]["von_mises_Y"] == "m"
-    assert first["closed_form"]["von_mises"] == pytest.approx(unit * largest[0], rel=1e-14)
+    assert units["closed_form"]["von_mises"] == "MPa" and units["closed_form"]["von_mises_Y"] == "mm"
+    assert first["closed_form"]["von_mises"] == pytest.approx(1e-6 * unit * largest[0], rel=1e-14)
     assert first["speed"] == pytest.approx(result.data["states/speed"][0]) and "c" not in first
     assert units["speed"] == "m/s"

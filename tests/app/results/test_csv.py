@@ -42,27 +42,19 @@ def numbers(column):
 
 
 def test_a_row_a_state_has_what_tells_it_apart_first_and_all_digits(path, result):
-    found, data = read(path), result.data
-    heads = [
-        "state",
-        "c [1]",
-        "mu_c [1]",
-        "sigma0_over_load [1/m]",
-        "delta [1]",
-        "motion",
-        "X_over_L [1]",
-    ]
-    assert [*found][:8] == [*heads, "f [1]"]
+    found, data = read(path, "states", True), result.data
+    heads = ["state", "motion", "f [1]", "c [1]", "load [N/m]", "mu_c [1]", "sigma0_over_load [1/m]"]
+    assert [*found][:9] == [*heads, "delta [1]", "X_over_L [1]"]
     assert found["state"] == tuple(map(str, range(len(data["states/f"]))))
     assert found["motion"] == tuple(data["states/motion"])
     single = [name for name in data if name.startswith("states/") and data[name].ndim == 1]
-    for name in (name for name in single if name != "states/motion"):
+    for name in (name for name in single if name not in ("states/motion", "states/speed")):
         (head,) = (head for head in found if head.startswith(f"{name[7:].replace('/', '_')} ["))
         assert np.array_equal(numbers(found[head]), data[name], equal_nan=True), name
 
 
 def test_a_row_for_each_state_and_point(path, result):
-    found, data = read(path, "surface"), result.data
+    found, data = read(path, "surface", True), result.data
     stress, X = data["surface/closed_form/sigma_YY"], data["surface/X_over_a"]
     assert stress.shape == (len(data["states/c"]), len(X))
     assert np.array_equal(numbers(found["closed_form_sigma_YY [N/(2a)]"]), stress.ravel(), equal_nan=True)
@@ -75,24 +67,26 @@ def test_a_row_for_each_state_and_point(path, result):
 def test_in_si(path, result):
     data, scene = result.data, result.scene
     a = scene.punch.profile.half_width
-    found = read(path, "inside", True)
-    assert [*found][7] == "load [N/m]" and set(numbers(found["load [N/m]"])) == {scene.punch.load}
+    found = read(path, "inside")
+    assert [*found][7] == "load [N/mm]" and set(numbers(found["load [N/mm]"])) == {scene.punch.load / 1e3}
     assert [*found][8:] == [
-        "X [m]",
-        "Y [m]",
-        *(f"closed_form_sigma_{ij} [Pa]" for ij in ("XX", "YY", "XY", "1", "2")),
-        "closed_form_von_mises [Pa]",
+        "X [mm]",
+        "Y [mm]",
+        *(f"closed_form_sigma_{ij} [MPa]" for ij in ("XX", "YY", "XY", "1", "2")),
+        "closed_form_von_mises [MPa]",
     ]
-    stress = data["interior/closed_form/sigma_XY"] * scene.punch.load / (2 * a)
-    assert numbers(found["closed_form_sigma_XY [Pa]"]) == pytest.approx(stress.ravel(), rel=1e-14)
-    assert numbers(found["Y [m]"])[:20] == pytest.approx(a * data["interior/Y_over_a"], rel=1e-14)
-    assert set(numbers(found["speed [m/s]"])) == set(scene.solid.c_s * np.array([0.0, 0.3, 0.6]))
-    assert found["sigma0_over_load [1/m]"] == read(path, "inside")["sigma0_over_load [1/m]"]
+    stress = data["interior/closed_form/sigma_XY"] * scene.punch.load / (2e6 * a)
+    assert numbers(found["closed_form_sigma_XY [MPa]"]) == pytest.approx(stress.ravel(), rel=1e-14)
+    assert numbers(found["Y [mm]"])[:20] == pytest.approx(1e3 * a * data["interior/Y_over_a"], rel=1e-14)
+    speeds = np.unique(numbers(found["speed [m/s]"]))
+    assert speeds == pytest.approx(scene.solid.c_s * np.array([0.0, 0.3, 0.6]), rel=1e-14)
+    of_law = "sigma0_over_load [1/m]"
+    assert numbers(found[of_law]).tolist() == numbers(read(path, "inside", True)[of_law]).tolist()
 
 
 @pytest.mark.parametrize("loads", [1e4, [1e4, 4e4]])
 def test_in_si_every_contact_has_its_own_half_width_and_middle(loads, tmp_path):
-    """Stresses in Pa, places in m from the punch's axis, distances in m: a differs from row to row."""
+    """Stresses in MPa, places from the punch's axis: a differs from row to row."""
     changes = {
         "solve.methods": ["closed_form"], "output.map": None, "punch.load": loads, "motion.c": [0.0, 0.8],
         "output.quantities": ["sif", "surface", "interior", "yield"], "output.points": [[0.5, -0.7]],
@@ -102,36 +96,42 @@ def test_in_si_every_contact_has_its_own_half_width_and_middle(loads, tmp_path):
     data, load = result.data, np.resize(loads, 2 * np.size(loads))
     h, m = (data[f"states/closed_form/{name}"] for name in ("half_width", "centre"))
     load = data.get("states/load", np.full(len(h), 1e4))
-    found = {which: read(path, which, True) for which in ("states", "surface", "inside")}
+    found = {which: read(path, which) for which in ("states", "surface", "inside")}
     for table in found.values():
         assert not [head for head in table if "N/(2a)" in head or "over_a" in head]
     of_states = found["states"]
-    np.testing.assert_array_equal(numbers(of_states["load [N/m]"]), load)
-    unit = load / (2.0 * h)
+    np.testing.assert_allclose(numbers(of_states["load [N/mm]"]), 1e-3 * load, rtol=1e-15)
+    micro = 1e3 if "closed_form_half_width [mm]" in of_states else 1e6  # of the largest contact
+    unit, h, m = load / (2e6 * h), micro * h, micro * m
+    found = {
+        which: {head.replace("[µm]", "[mm]"): column for head, column in table.items()}
+        for which, table in found.items()
+    }
+    of_states = found["states"]
     for head, expected in {
-        "closed_form_largest_pressure [Pa]": unit * data["states/closed_form/largest_pressure"],
-        "closed_form_von_mises [Pa]": unit * data["states/closed_form/von_mises"],
-        "closed_form_von_mises_X [m]": m + h * data["states/closed_form/von_mises_X_over_a"],
-        "closed_form_von_mises_Y [m]": h * data["states/closed_form/von_mises_Y_over_a"],
-        "closed_form_largest_pressure_position [m]":
+        "closed_form_largest_pressure [MPa]": unit * data["states/closed_form/largest_pressure"],
+        "closed_form_von_mises [MPa]": unit * data["states/closed_form/von_mises"],
+        "closed_form_von_mises_X [mm]": m + h * data["states/closed_form/von_mises_X_over_a"],
+        "closed_form_von_mises_Y [mm]": h * data["states/closed_form/von_mises_Y_over_a"],
+        "closed_form_largest_pressure_position [mm]":
             m + h * data["states/closed_form/largest_pressure_position"],
     }.items():  # fmt: skip
         np.testing.assert_allclose(numbers(of_states[head]), expected, rtol=1e-14, err_msg=head)
     X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"]
     np.testing.assert_allclose(
-        numbers(found["surface"]["X [m]"]), np.ravel(m[:, None] + h[:, None] * X), rtol=1e-13
+        numbers(found["surface"]["X [mm]"]), np.ravel(m[:, None] + h[:, None] * X), rtol=1e-13
     )
     np.testing.assert_allclose(
-        numbers(found["surface"]["closed_form_sigma_XX [Pa]"]), np.ravel(unit[:, None] * σ), rtol=1e-14
+        numbers(found["surface"]["closed_form_sigma_XX [MPa]"]), np.ravel(unit[:, None] * σ), rtol=1e-14
     )
-    np.testing.assert_allclose(numbers(found["inside"]["Y [m]"]), -0.7 * h, rtol=1e-14)
+    np.testing.assert_allclose(numbers(found["inside"]["Y [mm]"]), -0.7 * h, rtol=1e-14)
     # Hertz at rest without friction is p₀ = 2N/(πh); friction changes it little.
     np.testing.assert_allclose(
-        numbers(of_states["closed_form_largest_pressure [Pa]"]), 2.0 * load / (np.pi * h), rtol=0.1
+        numbers(of_states["closed_form_largest_pressure [MPa]"]), 2e-6 * micro * load / (np.pi * h), rtol=0.1
     )
-    for text in (here("show", path, "--si").stdout, here("show", path, "--si", "--json").stdout):
+    for text in (here("show", path).stdout, here("show", path, "--json").stdout):
         assert "N/(2a)" not in text
-    here("report", path, "--si", "-o", tmp_path / "a.html")
+    here("report", path, "-o", tmp_path / "a.html")
     assert (
         "N/(2a)" not in (tmp_path / "a.html").read_text(encoding="utf-8").partition('<h2 id="figures')[0]
     )
@@ -160,7 +160,7 @@ def test_few_rows_are_read_and_written_at_once(path, which, together, monkeypatc
 def test_what_an_archive_does_not_hold_is_said(tmp_path):
     few = {"solve.methods": ["closed_form"], "output.quantities": ["sif"]}
     computed("tables4_5", few).save(tmp_path / "a.h5")
-    with pytest.raises(BadInput, match=r'--inside; a scene asks for them .* = \["interior"\]'):
+    with pytest.raises(BadInput, match=r'--inside; a scene asks for it .* = \["interior"\]'):
         "".join(tables.pieces(tmp_path / "a.h5", "inside"))
 
 
@@ -170,7 +170,7 @@ def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
     for _ in range(2):  # its own is made again
         assert here("csv", path, "--surface", "-o", output).returncode == 0
     assert output.read_text(encoding="utf-8") == printed.stdout
-    assert here("csv", path, "--si", "-o", output).returncode == 0
+    assert here("csv", path, "--dimensionless", "-o", output).returncode == 0
     assert here("csv", path, "-o", output).returncode == 0
     output.write_text("state,mine\n", encoding="utf-8")
     refused = here("csv", path, "-o", output)

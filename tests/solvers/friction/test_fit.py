@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.fit import fit, friction, moves
+from galinx.solvers.friction.fit import Measured, fit, friction, moves
 from galinx.solvers.parameters import build_model
 
 #: Standard deviation of the noise.
@@ -58,10 +58,10 @@ def test_known_parameters_are_found_within_three_standard_deviations(name):
     clean = friction(build_model(kind, true | fixed), way, len(t))
     f = clean + NOISE * np.random.default_rng(3).standard_normal(len(t))
     rows = len(next((value for value in true.values() if isinstance(value, tuple)), ()))
-    found = fit(kind, way, f, fixed, {}, rows or 3)
+    found = fit(kind, [Measured(t, X, f)], fixed, {}, rows or 3)
     off = np.abs(found.best - numbers(true, found.names))
     assert (off <= 3.0 * found.deviations).all(), dict(zip(found.names, off / found.deviations))
-    assert np.nanstd(found.f - f) == pytest.approx(NOISE, rel=0.15)
+    assert np.nanstd(found.f[0] - f) == pytest.approx(NOISE, rel=0.15)
     assert len(found.names) >= len(true) - 1
 
 
@@ -69,7 +69,8 @@ def test_without_noise_the_parameters_are_found_to_the_last_digits():
     t, X = motion(ONE)
     true = {"mu_c": 0.4, "sigma0_over_load": 2.2e4, "delta": 0.7}
     way = moves(t, X, False)
-    found = fit(LAWS["dahl"], way, friction(build_model(LAWS["dahl"], true), way, len(t)), {}, {})
+    f = friction(build_model(LAWS["dahl"], true), way, len(t))
+    found = fit(LAWS["dahl"], [Measured(t, X, f)], {}, {})
     np.testing.assert_allclose(found.best, [*true.values()], rtol=1e-7)
 
 
@@ -79,7 +80,8 @@ def test_deviations_are_those_of_repeated_measurements():
     clean = friction(build_model(kind, {"mu_c": 0.4, "sigma0_over_load": 2.2e4}), way, len(t))
     rng, best, told = np.random.default_rng(1), [], []
     for _ in range(30):
-        found = fit(kind, way, clean + NOISE * rng.standard_normal(len(t)), {"delta": 1.0}, {})
+        f = clean + NOISE * rng.standard_normal(len(t))
+        found = fit(kind, [Measured(t, X, f)], {"delta": 1.0}, {})
         best.append(found.best)
         told.append(found.deviations)
     np.testing.assert_allclose(np.std(best, axis=0), np.mean(told, axis=0), rtol=0.35)
@@ -103,14 +105,14 @@ def test_what_the_data_do_not_determine_has_no_deviation():
     way = moves(t, X, True)
     f = friction(build_model(LAWS["coulomb"], {"mu_c": 0.4}), way, len(t))
     f += NOISE * np.random.default_rng(0).standard_normal(len(f))
-    found = fit(LAWS["stribeck"], way, f, {"stribeck_exponent": 2.0}, {})
-    assert np.isnan(found.deviations).any()
+    found = fit(LAWS["stribeck"], [Measured(t, X, f)], {"stribeck_exponent": 2.0}, {})
+    assert np.isnan(found.deviations).any() and not found.determined.any()
 
 
 def test_too_few_samples_and_unknown_parameters_are_refused():
     t, X = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1e-6, 2e-6])
-    way, f = moves(t, X, False), np.array([0.0, 0.1, 0.2])
+    few = [Measured(t, X, np.array([0.0, 0.1, 0.2]))]
     with pytest.raises(ValueError, match="2 samples in motion for 3 parameters"):
-        fit(LAWS["dahl"], way, f, {}, {})
+        fit(LAWS["dahl"], few, {}, {})
     with pytest.raises(ValueError, match="the parameter 'mu', expected mu_c, sigma0_over_load, delta"):
-        fit(LAWS["dahl"], way, f, {"mu": 1.0}, {})
+        fit(LAWS["dahl"], few, {"mu": 1.0}, {})

@@ -1,0 +1,129 @@
+"""Tables of numbers in text files, as measuring devices and spreadsheets write them.
+
+The first line names the columns, units in brackets. Tabs, semicolons or commas separate columns; numbers
+have a decimal point, or where commas do not separate columns a decimal comma.
+"""
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx import files
+
+from .errors import BadInput, excerpt
+from .scene.units import to_si
+
+#: Bytes of a table.
+_LARGEST = 100 * 10**6
+#: A column's head: its name, and its unit in brackets.
+_HEAD = re.compile(r"\s*([^\[\]()]*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
+#: Numbers with a decimal comma, and with a decimal point.
+_COMMA = re.compile(r"\s*[-+]?[0-9]*,[0-9]*(?:[eE][-+]?[0-9]+)?\s*")
+_POINT = re.compile(r"\s*[-+]?[0-9]*\.[0-9]*(?:[eE][-+]?[0-9]+)?\s*")
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """A table of cells with heads.
+
+    Attributes:
+        path: its file.
+        names: names of the columns in small letters, with ``_`` for blanks.
+        units: units of the columns as they are written, "" where there is none.
+        rows: number of the line and cells of each row.
+        decimal: sign before decimals, "," or ".".
+    """
+
+    path: Path
+    names: list[str]
+    units: list[str]
+    rows: list[tuple[int, list[str]]]
+    decimal: str
+
+    def numbers(self, column: int, unit: str) -> NDArray[np.float64]:
+        """Numbers of a column in an SI unit, "" for dimensionless, (rows,).
+
+        Raises:
+            BadInput: a cell is no finite number, or the column has a unit of another dimension.
+        """
+        factor = self.factor(column, unit)
+        return factor * np.array([self._number(line, row, column) for line, row in self.rows])
+
+    def factor(self, column: int, unit: str) -> float:
+        """A column's unit in an SI unit; 1 where it has none.
+
+        Raises:
+            BadInput: it is of another dimension.
+        """
+        given = self.units[column]
+        try:
+            return 1.0 if given in ("", "1", "-") else to_si(f"1 {given}", unit)
+        except ValueError as error:
+            raise BadInput(f"{self.path}, line 1, {self.names[column]}: {error}") from None
+
+    def line(self, row: int) -> int:
+        """Number of a row's line."""
+        return self.rows[row][0]
+
+    def _number(self, line: int, row: list[str], column: int) -> float:
+        cell = row[column] if column < len(row) else ""
+        try:
+            number = float(cell.replace(",", ".") if self.decimal == "," else cell)
+        except ValueError:
+            number = np.nan
+        if not np.isfinite(number):
+            found = f"{self.path}, line {line}, {self.names[column]}: found {excerpt(cell)}"
+            sign = "comma" if self.decimal == "," else "point"
+            hint = f" with a decimal {sign}, as other numbers of the table have" if "," in cell else ""
+            raise BadInput(f"{found}, expected a finite number{hint}")
+        return number
+
+
+def read_table(path: Path, form: str) -> TextTable:
+    """Table of a file; lines before the head that begin with # are left out, and empty ones.
+
+    Args:
+        path: the file.
+        form: a valid first line, for messages.
+
+    Raises:
+        BadInput: the file cannot be read or is no table.
+    """
+    try:
+        text = files.read(path, _LARGEST).decode("utf-8-sig")
+    except OSError as error:
+        raise BadInput(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
+    lines = text.splitlines()
+    first = next((n for n, line in enumerate(lines) if line.strip() and line[0] != "#"), None)
+    if first is None:
+        raise BadInput(f"{path} is empty, expected a first line as {form}")
+    separator = next((sign for sign in "\t;" if sign in lines[first]), ",")
+    rows = [
+        (line, row)
+        for line, row in enumerate(csv.reader(lines[first:], delimiter=separator), first + 1)
+        if any(map(str.strip, row))
+    ]
+    heads = rows.pop(0)[1]
+    matches = [_HEAD.fullmatch(head) for head in heads]
+    for line, row in rows:
+        if any(map(str.strip, row[len(heads) :])):
+            hint = "; with decimal commas, separate columns by semicolons" if separator == "," else ""
+            raise BadInput(
+                f"{path}, line {line}: found {len(row)} columns, {excerpt(separator.join(row))}, "
+                f"expected {len(heads)} as in the first line{hint}"
+            )
+    cells = [cell for _, row in rows for cell in row]
+    comma = any(map(_COMMA.fullmatch, cells)) and not any(map(_POINT.fullmatch, cells))
+    return TextTable(
+        path,
+        ["_".join(match[1].lower().split()) if match else "" for match in matches],
+        [match[2] or "" if match else "" for match in matches],
+        rows,
+        "," if comma and separator != "," else ".",
+    )

@@ -91,7 +91,8 @@ def explorer(of: Archive) -> dict[str, Any] | None:
 
     Returns:
         ``states``: their labels; ``surface``: a chart for each stress with its curves by state and
-        method, whose positions are ``place`` over ``X``; ``maps``: the grid and the values by stress and state.
+        method, whose positions are ``place`` over ``X``; ``maps``: the grid and the values by stress and
+        state.
     """
     on_surface, below = bool(of.by_method(STATE, POINT)), has_map(of)
     if not on_surface and not below:
@@ -102,7 +103,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
         sizes.append(len(of.data[SURFACE_X.path]) * sum(map(len, stresses.values())))
     if below:
         fields = Fields(of)
-        names = [name for name in (*SHOWN, "von_mises") if name in fields.names]
+        names = [name for name in ("von_mises", *SHOWN) if name in fields.names]
         sizes.append(len(names) * fields.grid()[0].size * fields.grid()[1].size)
     shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
     varied = labels.varied()

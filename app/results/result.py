@@ -197,7 +197,7 @@ class Result:
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
         report = Report(self.data, self.attributes, self.scene, dimensionless=dimensionless)
-        for drawing in self.drawings(dimensionless):
+        for drawing in self.drawings(dimensionless, figures=("all",)):
             report.add(drawing)
         target.write(report.text().encode())
 

@@ -68,7 +68,10 @@ def test_any_motion_is_fitted_and_other_columns_are_left_alone(here):
         (("dahl", "slip.csv", "--fix", "mu=1"), "expected KEY=VALUE with mu_c, sigma0_over_load, delta"),
         (("dahl", "slip.csv", "--fix", "mu_c=-1"), "mu_c: found -1, expected > 0"),
         (("dahl", "slip.csv", "--fix", "mu_c=1 m"), "mu_c: found '1 m'"),
-        (("dahl", "heads.csv"), 'expected "slip [mm],f", "time [s],position [mm],f", or with "force [N],load [N]"'),
+        (
+            ("dahl", "heads.csv"),
+            'expected "slip [mm],f", "time [s],position [mm],f", or with "force [N],load [N]"',
+        ),
         (("dahl", "cells.csv"), "line 3, f: found 'x', expected a finite number"),
         (("dahl", "back.csv"), "line 4: expected three or more rows in which the slip grows"),
         (("dahl", "still.csv"), "found one position in all rows, expected a motion"),

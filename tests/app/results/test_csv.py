@@ -127,7 +127,9 @@ def test_in_si_every_contact_has_its_own_half_width_and_middle(loads, tmp_path):
     np.testing.assert_allclose(numbers(found["inside"]["Y [mm]"]), -0.7 * h, rtol=1e-14)
     # Hertz at rest without friction is p₀ = 2N/(πh); friction changes it little.
     np.testing.assert_allclose(
-        numbers(of_states["closed_form_largest_pressure [MPa]"]), 2e-6 * micro * load / (np.pi * h), rtol=0.1
+        numbers(of_states["closed_form_largest_pressure [MPa]"]),
+        2e-6 * micro * load / (np.pi * h),
+        rtol=0.1,
     )
     for text in (here("show", path).stdout, here("show", path, "--json").stdout):
         assert "N/(2a)" not in text

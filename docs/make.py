@@ -135,11 +135,13 @@ with h5py.File("out.h5") as file:
 [Read archives](howto_read_archive.md) shows other ways.
 
 METHOD in a path stands for the methods of the column "with": `closed_form`, `sie` (integral equation)
-or `fem` (finite elements). Its other words are those of `solve.mode` or `output.quantities`; where it
-is empty, the run, or the method in the path, writes the dataset in any case. Words with a slash between
-them follow the order of the names in their row. Values without a unit are dimensionless; NaN means that
-there may be no answer. Each parameter of a friction law is a dataset `/states/KEY` in the SI unit of
-[its row](scene.md#friction). [Your own quantities](howto_extend.md) come beside these.
+or `fem` (finite elements). The column also has words of `solve.mode` and `output.quantities`, and what
+else it takes: a punch of sharp edges (punch) or with free ends, a pressure of your own, finite
+stresses, a single method, fitted speeds. Where it is empty, the run, or the method in the path, writes
+the dataset in any case. Words with a slash between them follow the order of the names in their row.
+Values without a unit are dimensionless; NaN means that there may be no answer. Each parameter of a
+friction law is a dataset `/states/KEY` in the SI unit of [its row](scene.md#friction). [Your own
+quantities](howto_extend.md) come beside these.
 """
 
 _WHOLE = """\
@@ -373,6 +375,7 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
 
     ``asked``: with the word of output.quantities that asks for them; ``usual``: shape that is left out.
     """
+    from galinx.app.methods import MODES
     from galinx.postprocess.quantities.quantity import ANYWHERE, LOCAL, METHODS, NUMBER, TEXT, WHOLE
 
     kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
@@ -395,7 +398,9 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
             if len(same) == 1
             else [f"`{m}`" for m in methods]
         )
-        words += [f"`{word}`" for word in (row.mode, row.asked_by * asked) if word]
+        # Modes of the scene are code; others are words, of which one is an older name.
+        words += [f"`{row.mode}`" if row.mode in MODES else row.mode.replace("found", "free")]
+        words += [f"`{row.asked_by}`"] * bool(row.asked_by and asked)
         rest = ", ".join(filter(None, values)), ", ".join(filter(None, words))
         abouts = [r.about for r in same]
         for said in METHODS.values():

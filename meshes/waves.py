@@ -9,7 +9,7 @@ one size.
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil, log
+from math import ceil, inf, log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,8 @@ class Reached:
             no more than waves need.
         ratio: size of a ring at the edges over that of the ring outside it.
         depths: of interfaces over a, rising, which lines of cells follow.
+        seen: largest side over a of cells within ``around``, where fields are output.
+        around: half-width and depth over a of these.
     """
 
     half_width: float
@@ -45,16 +47,20 @@ class Reached:
     beyond: float = 0.0
     ratio: float = 0.25
     depths: tuple[float, ...] = ()
+    seen: float = inf
+    around: tuple[float, float] = (0.0, 0.0)
 
     def drawn(self) -> QuadMesh:
         """The mesh."""
-        square = min(_SQUARE, self.size, *self.depths[:1])
+        square = min(_SQUARE, self.size, self.seen, *self.depths[:1])
         levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
         beside, _ = corner(square, Refinement(levels, self.ratio, 1, ()), fan=True)
         mirrored = (beside * [-1.0, 1.0])[:, ::-1]
         squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
-        between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / self.size) + 1)
-        outwards = np.concatenate([between, [1.0], self._outwards(1.0 + square, self.half_width)])
+        between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / min(self.size, self.seen)) + 1)
+        outwards = np.concatenate(
+            [between, [1.0], self._outwards(1.0 + square, self.half_width, self.around[0])]
+        )
         X = np.concatenate([-outwards[:0:-1], outwards])
         Y = -np.concatenate([[0.0], self._downwards(square)])
         boxes = np.array([
@@ -68,20 +74,26 @@ class Reached:
     def _downwards(self, first: float) -> NDArray[np.float64]:
         """Depths of rows from the first one on, through all interfaces."""
         between = [first, *(depth for depth in self.depths if depth > first * (1.0 + 1e-9))]
-        lines = [self._lines(*ends, ends[0] - first)[:-1] for ends in pairwise(between)]
+        around = self.around[1]
+        lines = [self._lines(*ends, around, ends[0] - first)[:-1] for ends in pairwise(between)]
         last = max(self.depth, between[-1] + self.size)
-        return np.concatenate([*lines, self._outwards(between[-1], last, between[-1] - first)])
+        return np.concatenate([*lines, self._outwards(between[-1], last, around, between[-1] - first)])
 
-    def _lines(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
+    def _lines(
+        self, first: float, last: float, around: float, before: float = 0.0
+    ) -> NDArray[np.float64]:
         """Lines from the first distance to the last; the first is ``before`` from the small cells."""
         x = [0.0]
         while x[-1] < last - first:
-            x.append(x[-1] + self.size + self.growth * (before + x[-1]))
+            side = self.size + self.growth * (before + x[-1])
+            x.append(x[-1] + (min(side, self.seen) if first + x[-1] < around else side))
         return first + np.array(x) * ((last - first) / x[-1])
 
-    def _outwards(self, first: float, last: float, before: float = 0.0) -> NDArray[np.float64]:
+    def _outwards(
+        self, first: float, last: float, around: float, before: float = 0.0
+    ) -> NDArray[np.float64]:
         """Lines from the first distance to the last, and on to where a steady field is held."""
-        lines = self._lines(first, last, before)
+        lines = self._lines(first, last, around, before)
         more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
         return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
 

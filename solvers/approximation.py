@@ -12,11 +12,12 @@ IMA J. Numer. Anal. 42, 2022).
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
-from numpy.polynomial.legendre import leggauss, legvander
-from numpy.typing import NDArray
+from numpy.polynomial.legendre import legder, leggauss, legvander
+from numpy.typing import ArrayLike, NDArray
 
 
 def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
@@ -26,6 +27,31 @@ def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]
     """
     τ, w = leggauss(nodes)
     return τ, w, (np.arange(nodes) + 0.5)[:, None] * legvander(τ, nodes - 1).T * w
+
+
+def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
+    """Values and derivatives at ``t`` of the polynomials that are 1 at one node, 0 at the others.
+
+    They are expanded in Legendre polynomials, which is well conditioned for nodes that crowd at the ends;
+    SciPy's barycentric interpolation takes the nodes in random order, so no two runs would agree in
+    their last digits.
+
+    Args:
+        nodes: positions of the nodes in [0, 1], (p+1,), p >= 1.
+        t: positions, (n,).
+
+    Returns:
+        Two arrays (n, p+1).
+    """
+    p, x = len(nodes) - 1, 2.0 * np.asarray(t, dtype=float) - 1.0
+    coefficients = _in_legendre(tuple(np.asarray(nodes).tolist()))
+    return legvander(x, p) @ coefficients, 2.0 * legvander(x, p - 1) @ legder(coefficients)
+
+
+@lru_cache
+def _in_legendre(nodes: tuple[float, ...]) -> NDArray[np.float64]:
+    """Legendre coefficients of the polynomials of :func:`lagrange`, (p+1, p+1)."""
+    return np.asarray(np.linalg.inv(legvander(2.0 * np.array(nodes) - 1.0, len(nodes) - 1)), np.float64)
 
 
 def chebyshev_points(count: int) -> NDArray[np.float64]:

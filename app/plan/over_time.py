@@ -358,8 +358,9 @@ _HELD = 5.0
 _RATIO, _SHARP_RATIO = 0.25, 0.5
 #: Largest distance over a from the punch along the surface, and depth over a, of outputs.
 _SEEN = 2.0, 2.0
-#: Side of cells over a where the surface is output: waves ahead of the punch are short.
-_SEEN_SIZE = 2.0 / 3.0
+#: Side of cells over a where the surface is output, where waves ahead of the punch are short, and
+#: half-width and depth over a of these cells.
+_SEEN_SIZE, _SEEN_CELLS = 2.0 / 3.0, (4.0, 2.0)
 #: Largest side of cells over the uppermost layer's thickness.
 _OF_LAYER = 2.0
 #: Steps by which the mesh's end is later than the motion's, for implicit steps.
@@ -544,17 +545,21 @@ class Starts:
         slow = min(1.0, gap / _SLOW) ** 0.5
         long = _LONG + _LONGER * max(digits - 3.0, 0.0)
         size = _SIZE * slow * min(1.0, self.shortest / long)
-        size = min(size, _SEEN_SIZE * slow) if self.every else size
+        seen = min(size, _SEEN_SIZE * slow) if self.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         ratio = _SHARP_RATIO if self.sharp else _RATIO
         width, depth = self._reach(fastest(self.response(solid, c)), c)
         if depths:
-            size = min(size * min(1.0, solid.slowest / solid.c_s), _OF_LAYER * depths[0])
+            slower = min(1.0, solid.slowest / solid.c_s)
+            size, seen = (min(side * slower, _OF_LAYER * depths[0]) for side in (size, seen))
         coarse, fine = (
-            Reached(max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths)
+            Reached(
+                max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths, seen,
+                _SEEN_CELLS,
+            )
             for of in (_GROWN * growth, growth)
-        )
+        )  # fmt: skip
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
 
     def _reach(self, fast: float, c: float) -> tuple[float, float]:

@@ -281,7 +281,7 @@ def _section(one: Fit) -> str:
         f"# of {files}; root mean square of the residuals of f: {one.rms:.3g} (dimensionless);",
         "# ± is one standard deviation",
         "[friction]",
-        f"model = {json.dumps(one.model)}",
+        f"model = {json.dumps(one.model)}  # fitted to {files}",
     ]
     for key, value in one.parameters.items():
         parameter = declared[key]

@@ -41,14 +41,7 @@ from .edges import under_punch
 from .estimate import SAFETY
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
-from .recovery import (
-    density_of_forces,
-    facets_of,
-    jacobi_in_chebyshev,
-    jacobi_norms,
-    lagrange,
-    reference_nodes,
-)
+from .recovery import ContactFacets, jacobi_in_chebyshev, jacobi_norms
 from .solution import Between, Surface, Turns
 from .stresses import NEAR, NEAR_TIP
 
@@ -638,13 +631,11 @@ class KinkedPressure(Pressure):
         infinite: bool = False,
     ) -> None:  # fmt: skip
         self._infinite = infinite
-        facets = facets_of(s, degree)
         self._chart, self.kinks, self._exponent = chart, kinks, exponent
         self.β, self.α = exponents
         self._farthest = farthest_at_kink(tolerance)
-        self._start, self._length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
-        self._nodes = reference_nodes(s, facets)
-        self._density = density_of_forces(s, facets, forces)[facets]
+        self._facets = ContactFacets(s, degree, chart)
+        self._density = self._facets.density(forces)
         self._samples = [places_at_end(gap) for gap in gaps_of(kinks)]
         self._at_samples = [
             self._piecewise(self._samples[0] - 1.0),
@@ -654,7 +645,7 @@ class KinkedPressure(Pressure):
     @property
     def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
         """Positions over a between which pressure times the chart's stretch is a polynomial, (n,)."""
-        return np.asarray(self._chart.surface_position(self._start[1:]))
+        return np.asarray(self._chart.surface_position(self._facets.start[1:]))
 
     def cells_beside(self, places: NDArray) -> NDArray[np.float64]:
         """Length over a of the longer of the two facets that meet at each end or kink, (n,)."""
@@ -689,7 +680,8 @@ class KinkedPressure(Pressure):
         """
         if self._infinite:
             return np.full(1, np.nan), np.full(1, np.nan)
-        nodes = self._start[:, None] + self._length[:, None] * self._nodes
+        facets = self._facets
+        nodes = facets.start[:, None] + facets.length[:, None] * facets.nodes
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         # Facets have their common node a rounding apart: with both places no top would reach past it.
         r = r[under_punch(r) & (np.diff(r, prepend=-2.0) > _SAME)]
@@ -769,8 +761,4 @@ class KinkedPressure(Pressure):
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) of the piecewise polynomial at positions over a, (n,)."""
-        at = self._chart.surface_coordinate(r)
-        facet = np.clip(np.searchsorted(self._start, at, side="right") - 1, 0, len(self._start) - 1)
-        values = lagrange(self._nodes, (at - self._start[facet]) / self._length[facet])
-        density = np.einsum("qi,qi->q", values, self._density[facet])
-        return np.asarray(density / self._chart.surface_stretch(at))
+        return self._facets.stress(self._density, r)

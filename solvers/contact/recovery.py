@@ -31,6 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solveh_banded
 from scipy.special import gammaln, roots_legendre
 
+from ..approximation import lagrange
 from .edges import under_punch
 from .panelled import Panels
 from .pressure import Expansion, Functions
@@ -202,25 +203,19 @@ def contact_recovery(
             their neighbours, and beyond this distance the pressure's second term biases the exponent.
         tests: smooth functions of r, (points, moments), with which forces are tested.
     """
-    facets = facets_of(s, degree)
-    density = density_of_forces(s, facets, np.eye(len(s)))  # symmetric
-    start, length = s[facets[:, 0]], s[facets[:, -1]] - s[facets[:, 0]]
-    nodes = reference_nodes(s, facets)
-
+    contact = ContactFacets(s, degree, chart)
+    density = contact.density(np.eye(len(s)))  # symmetric
+    facets, start, length = contact.facets, contact.start, contact.length
     inside = under_punch(r)
-    at = chart.surface_coordinate(r[inside])
-    facet = np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
-    values = lagrange(nodes, (at - start[facet]) / length[facet])
     raw = np.full((len(s), len(r)), np.nan)
-    raw[:, inside] = np.einsum("qi,nqi->nq", values, density[:, facets[facet]])
-    raw[:, inside] /= chart.surface_stretch(at)
+    raw[:, inside] = contact.stress(density, r[inside])
 
     t = (roots_legendre(degree)[0] + 1.0) / 2.0
     d_left, d_right, stretch = chart.under_punch(
         start[:, None] - s[0] + length[:, None] * t,
         s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
     )
-    at_gauss = density[:, facets] @ lagrange(nodes, t).T / stretch
+    at_gauss = density[:, facets] @ lagrange(contact.nodes, t)[0].T / stretch
     edges = []
     for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
         last = max(int((d.max(axis=1) < farthest).sum()), 3)
@@ -229,42 +224,47 @@ def contact_recovery(
     return ContactRecovery(tests(chart.surface_position(s)), raw, tuple(edges))
 
 
-def facets_of(s: NDArray, degree: int) -> NDArray[np.int64]:
-    """Numbers of the nodes of each facet of the contact, (F, p + 1)."""
-    return np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
-
-
-def density_of_forces(s: NDArray, facets: NDArray, forces: NDArray) -> NDArray[np.float64]:
-    """Density σ_YY dX/ds of nodal forces at the nodes, by the mass matrix of the contact, (n, ...).
+class ContactFacets:
+    """Piecewise polynomials on the facets of a contact, from their consistent nodal forces.
 
     Args:
-        s: surface coordinates of the contact nodes, (n,).
+        s: surface coordinates of the contact nodes in order of X, (n,).
+        degree: polynomial degree p.
+        chart: chart of the mesh, see :class:`galinx.meshes.charts.Chart`.
+
+    Attributes:
         facets: numbers of the nodes of each facet, (F, p + 1).
-        forces: forces at the nodes, (n, ...).
+        start, length: of each facet in the surface coordinate, (F,).
+        nodes: nodes of a facet over its length, (p + 1,), of the widest, which rounding affects least.
     """
-    degree = facets.shape[1] - 1
-    t, w = roots_legendre(degree + 1)
-    nodes = reference_nodes(s, facets)
-    basis = lagrange(nodes, (t + 1.0) / 2.0)
-    unit_mass = basis.T * (w / 2.0) @ basis
-    banded = np.zeros((degree + 1, len(s)))
-    for row in facets:
-        mass = unit_mass * (s[row[-1]] - s[row[0]])
-        for k in range(degree + 1):
-            banded[degree - k, row[k:]] += np.diagonal(mass, k)
-    return np.asarray(solveh_banded(banded, forces))
 
+    def __init__(self, s: NDArray, degree: int, chart: Any) -> None:
+        self._s, self._chart = s, chart
+        self.facets = np.arange((len(s) - 1) // degree)[:, None] * degree + np.arange(degree + 1)
+        self.start, self.length = s[self.facets[:, 0]], s[self.facets[:, -1]] - s[self.facets[:, 0]]
+        widest = np.argmax(self.length)
+        self.nodes = (s[self.facets[widest]] - self.start[widest]) / self.length[widest]
 
-def reference_nodes(s: NDArray, facets: NDArray) -> NDArray[np.float64]:
-    """Nodes of a facet over its length, (p + 1,), taken from the widest, which rounding affects least."""
-    widest = facets[np.argmax(s[facets[:, -1]] - s[facets[:, 0]])]
-    return (s[widest] - s[widest[0]]) / (s[widest[-1]] - s[widest[0]])
+    def density(self, forces: NDArray) -> NDArray[np.float64]:
+        """Density σ_YY dX/ds at the nodes by nodal forces, (n, ...) each, with the mass matrix."""
+        degree = self.facets.shape[1] - 1
+        t, w = roots_legendre(degree + 1)
+        basis, _ = lagrange(self.nodes, (t + 1.0) / 2.0)
+        unit_mass = basis.T * (w / 2.0) @ basis
+        banded = np.zeros((degree + 1, len(self._s)))
+        for row, length in zip(self.facets, self.length):
+            mass = unit_mass * length
+            for k in range(degree + 1):
+                banded[degree - k, row[k:]] += np.diagonal(mass, k)
+        return np.asarray(solveh_banded(banded, forces))
 
-
-def lagrange(nodes: NDArray, t: NDArray) -> NDArray[np.float64]:
-    """Lagrange polynomials of nodes in [0, 1] at points t in [0, 1], (len(t), len(nodes))."""
-    at_nodes, at_t = (np.polynomial.legendre.legvander(2.0 * x - 1.0, len(nodes) - 1) for x in (nodes, t))
-    return at_t @ np.linalg.inv(at_nodes)
+    def stress(self, density: NDArray, r: NDArray) -> NDArray[np.float64]:
+        """Stress over N/(2a) at r under the punch, (..., q), by densities at the nodes, (..., n)."""
+        s = self._chart.surface_coordinate(r)
+        facet = np.clip(np.searchsorted(self.start, s, side="right") - 1, 0, len(self.start) - 1)
+        values, _ = lagrange(self.nodes, (s - self.start[facet]) / self.length[facet])
+        density = np.einsum("qi,...qi->...q", values, density[..., self.facets[facet]])
+        return np.asarray(density / self._chart.surface_stretch(s))
 
 
 #: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.

@@ -1,7 +1,7 @@
 """Quadrilateral cells: places, shape functions and derivatives in a cell, its chart, congruent cells.
 
 A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11. Its
-shape functions are products of Lagrange polynomials (:func:`lagrange`, :class:`Shapes`).
+shape functions are products of Lagrange polynomials (:class:`Shapes`).
 
 :class:`Contracted` is the chart in which a mesh is drawn, as speed contracts it.
 
@@ -14,41 +14,16 @@ one matrix each kind, not one each cell (:func:`model_cells`).
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import legder, leggauss, legvander
-from numpy.typing import ArrayLike, NDArray
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
 
 from galinx.meshes.charts import Chart
 
+from ..approximation import lagrange
 from ..solids.solid import Response
-
-
-def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
-    """Values and derivatives at ``t`` of the polynomials that are 1 at one node, 0 at the others.
-
-    They are expanded in Legendre polynomials, which is well conditioned for nodes that crowd at the ends;
-    SciPy's barycentric interpolation takes the nodes in random order, so no two runs would agree in
-    their last digits.
-
-    Args:
-        nodes: positions of the nodes in [0, 1], (p+1,), p >= 1.
-        t: positions, (n,).
-
-    Returns:
-        Two arrays (n, p+1).
-    """
-    p, x = len(nodes) - 1, 2.0 * np.asarray(t, dtype=float) - 1.0
-    coefficients = _in_legendre(tuple(np.asarray(nodes).tolist()))
-    return legvander(x, p) @ coefficients, 2.0 * legvander(x, p - 1) @ legder(coefficients)
-
-
-@lru_cache
-def _in_legendre(nodes: tuple[float, ...]) -> NDArray[np.float64]:
-    """Legendre coefficients of the polynomials of :func:`lagrange`, (p+1, p+1)."""
-    return np.asarray(np.linalg.inv(legvander(2.0 * np.array(nodes) - 1.0, len(nodes) - 1)), np.float64)
 
 
 @dataclass(frozen=True)

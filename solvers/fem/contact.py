@@ -44,6 +44,7 @@ from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
 from .discretisation import Discretisation
 from .displacement import Displacement
+from .fields import Slopes
 from .ladder import Gauge, Level, of_pressure, solved_to_tolerance
 from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
 from .solution import Solution, SolvedStates, solution_of
@@ -347,9 +348,11 @@ class PunchLevel(Level):
         return self.ends.task(task)
 
     @property
-    def slopes(self) -> Any:
-        """Slopes of the fields on the surface, None where no stress is requested."""
-        return self.stress_gauges.slopes
+    def slopes(self) -> Slopes:
+        """Slopes of the fields on the surface, at no place where no stress is requested."""
+        count = len(self.fields)
+        nowhere = Slopes(np.empty((2, 0, count)), np.empty((0, count)))
+        return self.stress_gauges.slopes if self.work.stresses else nowhere
 
     def displacement_at(self, task: Task) -> Displacement:
         slopes = self._fitted.slopes if self._fitted else None
@@ -440,21 +443,24 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
 
 
+@dataclass(frozen=True)
 class AtSpeed:
     """States at one speed on a mesh that they share, solved to the tolerance.
 
-    Args:
-        ladder: ladder at its last level.
+    Attributes:
+        level: the last level, a :class:`galinx.solvers.fem.ladder.Level`.
         error: error of that level.
+        record: gives numbers of the work.
         fitted: True where the speed was fitted through others.
     """
 
-    def __init__(self, ladder: Any, error: Any, fitted: bool = False) -> None:
-        self.task, self.level, self.error = ladder.task, ladder.levels[-1], error
-        self._ladder, self._fitted = ladder, fitted
+    level: Any
+    error: Any
+    record: Callable[[], dict[str, Any]]
+    fitted: bool = False
 
     def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self.task, self._solved, g, load)
+        return solution_of(self.level.task, self._solved, g, load)
 
     def _solved(self, g: NDArray, load: Any) -> list[SolvedStates]:
         states = self.level.states(g, load)
@@ -463,10 +469,7 @@ class AtSpeed:
             of = self.error.of(g, states.body.load, lambda: self.level.gauges(states))
             return {word: values + states.unresolved for word, values in of.items()}
 
-        return [replace(states, errors=errors, fitted=self._fitted)]
-
-    def record(self) -> dict[str, Any]:
-        return self._ladder.record() | self.error.record()
+        return [replace(states, errors=errors, fitted=self.fitted)]
 
 
 @contextmanager
@@ -480,4 +483,5 @@ def shared_mesh(work: Discretisation, task: Task, g: NDArray, level: Any) -> Ite
         level: class of levels, made of ``work``, ``task``, a space and g.
     """
     with solved_to_tolerance(work, task, g, lambda space, g: level(work, task, space, g)) as solved:
-        yield AtSpeed(*solved)
+        ladder, error = solved
+        yield AtSpeed(ladder.levels[-1], error, lambda: ladder.record() | error.record())

@@ -30,9 +30,10 @@ from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
+from ..approximation import lagrange
 from ..solids.solid import Response
 from . import cells, versions
-from .cells import Shapes, lagrange
+from .cells import Shapes
 from .element import Element
 from .forms import carried_density, momentum_density
 from .space import Space
@@ -54,24 +55,26 @@ def damping(space: Space, sharp: bool = False) -> NDArray[np.float64]:
         sharp: True where there are waves that no cell resolves.
     """
     grid, nodes = cells.tensor_order(space.reference_nodes)
-    p = len(nodes) - 1
-    points, weights = leggauss(p + 2)
-    values, _ = lagrange(nodes, (points + 1.0) / 2.0)
-    orders = np.arange(p + 1)
-    normed = legvander(points, p) * np.sqrt(2.0 * orders + 1.0)
-    along = normed.T @ (weights[:, None] / 2.0 * values)
-    place = np.argsort(grid.ravel())
+    along, place = _to_legendre(nodes), np.argsort(grid.ravel())
     both = np.einsum("ia,jb->ijab", along, along).reshape(len(place), len(place))[:, place]
-    d = _damped(orders, _SHARP_KEPT if sharp else _KEPT)
-    of_unit = both.T @ (np.add.outer(d, d).reshape(-1, 1) * both)
+    of_unit = both.T @ (_damped(len(nodes), sharp).reshape(-1, 1) * both)
     return of_unit * _weights(space.vertices[:, :, :2], sharp)[:, None, None]
 
 
-def _damped(orders: NDArray, kept: float) -> NDArray[np.float64]:
-    p = int(orders[-1])
-    m = round(kept * p)
-    high = np.maximum(orders - m, 1e-9)
-    return np.asarray(np.exp(-(((p - orders) / high) ** 2)), dtype=np.float64)
+def _to_legendre(nodes: NDArray) -> NDArray[np.float64]:
+    """Coefficients of orthonormal Legendre polynomials from values at the nodes, (p+1, p+1)."""
+    points, weights = leggauss(len(nodes) + 1)
+    values, _ = lagrange(nodes, (points + 1.0) / 2.0)
+    normed = legvander(points, len(nodes) - 1) * np.sqrt(2.0 * np.arange(len(nodes)) + 1.0)
+    return np.asarray(normed.T @ (weights[:, None] / 2.0 * values))
+
+
+def _damped(count: int, sharp: bool) -> NDArray[np.float64]:
+    """d_i + d_j of pairs of polynomials, (count, count)."""
+    orders, p = np.arange(count), count - 1
+    high = np.maximum(orders - round((_SHARP_KEPT if sharp else _KEPT) * p), 1e-9)
+    d = np.exp(-(((p - orders) / high) ** 2))
+    return np.asarray(np.add.outer(d, d))
 
 
 def _weights(corners: NDArray, sharp: bool) -> NDArray[np.float64]:
@@ -122,8 +125,12 @@ class Motion:
     @cached_property
     def D(self) -> csr_matrix:
         """Damping of waves that far cells are too large for, for one component."""
-        impedance = np.sqrt(self.ρ * self._of_cells("c66"))
-        return self._sum(impedance[:, None, None] * damping(self.space, self.sharp))
+        return self._sum(self.impedance[:, None, None] * damping(self.space, self.sharp))
+
+    @property
+    def impedance(self) -> NDArray[np.float64]:
+        """Impedance of each cell to shear waves over that of the solid at the surface, (cells,)."""
+        return np.sqrt(self.ρ * self._of_cells("c66"))
 
     @property
     def ρ(self) -> NDArray[np.float64]:
@@ -195,6 +202,75 @@ def _of_component(products: NDArray, density: NDArray) -> NDArray[np.float64]:
         density: by components of the test, and of the trial with its axes, (2, 2·axes).
     """
     return np.einsum("mxab,x->mab", products, density[0, : products.shape[1]])
+
+
+class Products:
+    """Products of the matrices of motion with fields, by quadrature in each direction of each cell.
+
+    A product with an assembled matrix waits for its entries: at degree 10 a cell's stiffness matrix has
+    58 564, while its 144 points of quadrature have a weight and an inverse Jacobian each. Points and
+    weights are those of the matrices, so that results differ by rounding.
+
+    Args:
+        motion: the equations.
+    """
+
+    def __init__(self, motion: Motion) -> None:
+        space, corners = motion.space, motion.space.vertices[:, :, :2]
+        shapes = Shapes.of(space.reference_nodes)
+        grid, nodes = cells.tensor_order(space.reference_nodes)
+        x, _ = leggauss(len(nodes) + 1)
+        self._value, self._slope = lagrange(nodes, (x + 1.0) / 2.0)
+        self._both = np.concatenate([self._value, self._slope])
+        dofs = versions.cell_nodes(space.V)[:, grid]
+        self._dofs = 2 * dofs[:, None].astype(np.int64) + np.arange(2)[:, None, None]
+        m, q, self._size = len(corners), len(x), motion.size
+        by_cell = [shapes.on(cell) for cell in corners]
+        weights = np.array([weights for weights, _ in by_cell]).reshape(m, q, q)
+        inverse = np.array([inverse for _, inverse in by_cell]).reshape(m, q, q, 2, 2)
+        # By direction of the cell and axis, (direction, axis, cells, 1, first, second).
+        self._to_axes = np.ascontiguousarray(np.moveaxis(inverse, (3, 4), (0, 1)))[:, :, :, None]
+        self._weights = weights[:, None]
+        self._weighted_ρ = (motion.ρ[:, None, None] * weights)[:, None]
+        H = space.densities(motion.response, space.vertices)
+        self._H = np.broadcast_to(H, (m, 4, 4))
+        rates = motion.impedance * _weights(corners, motion.sharp)
+        self._legendre, self._rates = _to_legendre(nodes), _damped(len(nodes), motion.sharp)
+        self._damped = np.flatnonzero(rates)
+        self._rates = rates[self._damped, None, None, None] * self._rates
+
+    def stiffness(self, u: NDArray) -> NDArray[np.float64]:
+        """K u of displacements (unknowns,)."""
+        m, _, n, _ = (U := u[self._dofs]).shape
+        q = len(self._value)
+        along = (U.reshape(-1, n) @ self._both.T).reshape(m, 2, n, 2 * q)
+        slopes = self._slope @ along[..., :q], self._value @ along[..., q:]
+        gradients = np.empty((m, 2, 2, q, q))
+        for axis in (0, 1):
+            first, second = self._to_axes[:, axis]
+            gradients[:, :, axis] = first * slopes[0] + second * slopes[1]
+        gradients *= self._weights[:, :, None]
+        fluxes = (self._H @ gradients.reshape(m, 4, -1)).reshape(gradients.shape)
+        by_X, by_Y = fluxes[:, :, 0], fluxes[:, :, 1]
+        result = np.empty((m, 2, n, 2 * q))
+        for direction, factor, part in ((0, self._slope, slice(q)), (1, self._value, slice(q, None))):
+            of_X, of_Y = self._to_axes[direction]
+            result[..., part] = factor.T @ (of_X * by_X + of_Y * by_Y)
+        return self._summed(result.reshape(-1, 2 * q) @ self._both)
+
+    def momentum(self, w: NDArray) -> NDArray[np.float64]:
+        """M w of both components of velocities (unknowns,)."""
+        values = self._value @ (w[self._dofs] @ self._value.T)
+        values *= self._weighted_ρ
+        return self._summed(self._value.T @ values @ self._value)
+
+    def dissipation(self, w: NDArray) -> float:
+        """w·D w of velocities (unknowns,)."""
+        coefficients = self._legendre @ (w[self._dofs[self._damped]] @ self._legendre.T)
+        return float(np.vdot(coefficients, self._rates * coefficients))
+
+    def _summed(self, by_cell: NDArray) -> NDArray[np.float64]:
+        return np.asarray(np.bincount(self._dofs.ravel(), by_cell.ravel(), self._size), dtype=np.float64)
 
 
 def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:

@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dtrsm
 from scipy.special import roots_legendre
 
+from ..approximation import lagrange
 from . import cells
-from .cells import Contracted, lagrange
+from .cells import Contracted
 
 #: Products of functions that are computed at once, so that they stay in the processor's cache.
 _PRODUCTS = 700_000

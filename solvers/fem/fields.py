@@ -12,14 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
+from ..approximation import lagrange
 from ..errors import MeshError
 from ..solids.solid import Response
-from .cells import (
-    gradients_in_plane,
-    lagrange,
-    pull_back,
-    tensor_order,
-)
+from .cells import gradients_in_plane, pull_back, tensor_order
 from .space import Space
 
 #: Distance over a facet's length within which a point counts as between it and the one on the left.

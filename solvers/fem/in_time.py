@@ -37,8 +37,8 @@ from scipy.special import roots_jacobi
 
 from galinx.clock import Clock
 
-from .cells import lagrange
-from .dynamic import Motion, of_both
+from ..approximation import lagrange
+from .dynamic import Motion, Products, of_both
 from .fields import SurfaceTrace
 from .linear import ArraySolver
 from .space import Traction, consistent_forces
@@ -269,6 +269,7 @@ class SlidingInTime:
         self._motion, self._clock = motion, clock or Clock()
         with self._clock("assembly"):
             self._K, self._M, self._D, self._B = motion.K, motion.M, motion.D, motion.B
+            self._products = Products(motion)
         self._Y = 2 * motion.contact + 1
         self._punches: dict[tuple[float, int], PunchConstraint] = {}
 
@@ -355,7 +356,7 @@ class SlidingInTime:
             u_explicit = state.u + h * sum(weight * rate for weight, rate in zip(weights, velocities))
             w_explicit = state.w + h * sum(weight * rate for weight, rate in zip(weights, accelerations))
             at = t + h * time
-            b = of_both(self._M, w_explicit) - γ * h * (self._K @ u_explicit)
+            b = self._products.momentum(w_explicit) - γ * h * self._products.stiffness(u_explicit)
             now, r = stages.solve(b, g(at), -2.0 * load(at) * γ * h)
             velocities.append(now)
             accelerations.append((now - w_explicit) / (γ * h))
@@ -365,10 +366,11 @@ class SlidingInTime:
         return r / (γ * h), h * np.array([*A[-1], γ]) @ np.array(powers)
 
     def _powers(self, r: NDArray, w: NDArray, g: float) -> NDArray[np.float64]:
-        return np.array([r @ w[self._Y], g * (r @ w[self._Y - 1]), w @ of_both(self._D, w)])
+        return np.array([r @ w[self._Y], g * (r @ w[self._Y - 1]), self._products.dissipation(w)])
 
     def _energy(self, state: _State) -> float:
-        return float(state.w @ of_both(self._M, state.w) + state.u @ (self._K @ state.u)) / 2.0
+        of_both = self._products.momentum(state.w), self._products.stiffness(state.u)
+        return float(state.w @ of_both[0] + state.u @ of_both[1]) / 2.0
 
     def destroy(self) -> None:
         """Free the factors."""

@@ -25,6 +25,7 @@ from ..contact.pressure import Expansion
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
+from .fields import Slopes
 from .solution import SolvedStates
 from .space import Space
 
@@ -114,9 +115,9 @@ class StressGauges:
         return self._displacement if self._task is task else None
 
     @property
-    def slopes(self) -> Any:
-        """Slopes of the fields on the surface, None where no stress is requested."""
-        return self._displacement.slopes if self._words else None
+    def slopes(self) -> Slopes:
+        """Slopes of the fields on the surface."""
+        return self._displacement.slopes
 
     def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
         """Gauges of states, by weights (states, fields) and σ_YY on the surface, NaN beside the punch."""

@@ -242,15 +242,12 @@ class Punch:
     Attributes:
         space: the finite element space.
         response: of the half-plane.
+        fields: displacements of the parts, part after part.
     """
 
     space: Space
     response: Response
-
-    @property
-    def fields(self) -> Sequence[PETSc.Vec]:
-        """Displacements of the parts, part after part."""
-        raise NotImplementedError
+    fields: Any
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         """Parts of the states with σ_XY = g σ_YY: the flat punch at v = -1, and each shape held at v = P.
@@ -608,37 +605,27 @@ def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
     return Sampled(total("forces", shares), total("slopes", shares), rounding, total("fields", shares))
 
 
-def sampled(
-    punch: Punch, at: Frictions, slopes: Slopes | None = None, with_fields: bool = False
-) -> Sampled:
+def sampled(punch: Punch, at: Frictions, slopes: Slopes, with_fields: bool = False) -> Sampled:
     """A punch's parts at some frictions.
 
     Args:
         punch: the punch, solved for these frictions.
         at: the frictions.
-        slopes: of its fields, a :class:`.fields.Slopes`; None where they are not needed.
+        slopes: of its fields.
         with_fields: keep the displacements.
     """
-    parts, first, count = punch.parts(at.g), 0, len(at.g)
-    forces = np.array([part.normal for part in parts])
-    fields = punch.fields
-    of_slopes: list[Any] = []
-    noise: list[NDArray] = []
-    displacements: list[NDArray] = []
+    parts, first, fields = punch.parts(at.g), 0, punch.fields
+    of_slopes, noise, displacements = [], [], []
     for part in parts:
-        own = fields[first : first + part.weights.shape[1]]
-        if slopes is not None:
-            weights = np.zeros((count, len(fields)))
-            weights[:, first : first + len(own)] = part.weights
-            of_slopes.append(slopes.of(weights))
-            noise.append(slopes.rounding(weights))
-        if with_fields:
-            displacements.append(part.weights @ np.array([field.array_r for field in own]))
-        first += len(own)
-    if slopes is None:
-        of_slopes, noise = [np.empty((2, count, 0))] * len(parts), [np.empty((count, 0))] * len(parts)
-    if not with_fields:
-        displacements = [np.empty((count, 0))] * len(parts)
+        own = slice(first, first + part.weights.shape[1])
+        weights = np.zeros((len(at.g), len(fields)))
+        weights[:, own] = part.weights
+        of_slopes.append(slopes.of(weights))
+        noise.append(slopes.rounding(weights))
+        u = np.array([field.array_r if with_fields else [] for field in fields[own]])
+        displacements.append(part.weights @ u)
+        first = own.stop
+    forces = np.array([part.normal for part in parts])
     return Sampled(forces, np.array(of_slopes).swapaxes(0, 1), np.array(noise), np.array(displacements))
 
 
@@ -655,12 +642,9 @@ class FittedPunch(Punch):
     def __init__(self, space: Space, response: Response, at: Frictions, samples: Sampled) -> None:
         self.space, self.response = space, response
         self._at, self._samples = at, samples
-        self._fields = _Fields(np.concatenate(list(samples.fields)), space)
-
-    @property
-    def fields(self) -> Sequence[PETSc.Vec]:
-        """Displacements of every part at every friction; made when the first is accessed."""
-        return self._fields
+        each = np.concatenate(list(samples.fields))
+        #: Displacements of every part at every friction.
+        self.fields = [PETSc.Vec().createWithArray(row.copy(), comm=space.comm) for row in each]
 
     @property
     def slopes(self) -> Slopes:
@@ -677,28 +661,7 @@ class FittedPunch(Punch):
 
     def release(self) -> None:
         """Free the fields."""
-        self._fields.destroy()
+        for field in self.fields:
+            field.destroy()
 
     destroy = release
-
-
-class _Fields(Sequence[PETSc.Vec]):
-    """Vectors with given entries, (fields, unknowns), made when the first is accessed."""
-
-    def __init__(self, numbers: NDArray, space: Space) -> None:
-        self._numbers, self._space = numbers, space
-        self._made: list[PETSc.Vec] = []
-
-    def __len__(self) -> int:
-        return len(self._numbers)
-
-    def __getitem__(self, which: Any) -> Any:
-        if not self._made:
-            comm = self._space.comm
-            self._made = [PETSc.Vec().createWithArray(row.copy(), comm=comm) for row in self._numbers]
-        return self._made[which]
-
-    def destroy(self) -> None:
-        for field in self._made:
-            field.destroy()
-        self._made = []

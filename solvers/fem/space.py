@@ -20,11 +20,11 @@ from galinx.clock import Clock
 from galinx.meshes.charts import Chart
 from galinx.meshes.rings import QuadMesh
 
-from ..approximation import interpolation
+from ..approximation import interpolation, lagrange
 from ..errors import MeshError
 from ..solids.solid import Response
 from . import versions
-from .cells import Contracted, lagrange, model_cells
+from .cells import Contracted, model_cells
 from .element import CellMatrices
 from .forms import FORMS
 from .versions import create_mesh, tag_facets

@@ -230,10 +230,6 @@ class FitError:
         around = self._estimates.around(self._z, g)
         return {word: values + self._fit.get(word, 0.0) for word, values in around.items()}
 
-    def record(self) -> dict[str, Any]:
-        """Empty: measured changes are in the records of the solved speeds."""
-        return {}
-
 
 #: Share of the tolerance that the discretisation may take, and share of the larger of the tolerance and
 #: that error that the fit may take: together they stay below the tolerance.
@@ -291,19 +287,7 @@ class Trained:
             yield None
             return
         with fit.level(task) as level:
-            yield AtSpeed(_FittedLadder(task, [level], fit.record(number)), error, fitted)
-
-
-@dataclass(frozen=True)
-class _FittedLadder:
-    """Level and record of a fitted speed, in the place of a ladder."""
-
-    task: Task
-    levels: list[Any]
-    numbers: dict[str, Any]
-
-    def record(self) -> dict[str, Any]:
-        return self.numbers
+            yield AtSpeed(level, error, lambda: fit.record(number), fitted)
 
 
 def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -> Trained | None:

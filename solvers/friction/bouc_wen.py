@@ -11,8 +11,8 @@ from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 #: y = -ln(1 - w) from which on the slip is its asymptote, and y of full slip.
 _FAR, _FULL = 14.0, 700.0
-#: Steps of Newton's method that are always enough.
-_STEPS = 60
+#: Steps of Newton's method that are always enough, and the step after which the next is no digit.
+_STEPS, _CLOSE = 60, 1e-10
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
         slope = np.where(y == 0.0, 1.0, slope)
         step = (x - _slip_of(y, n)) / slope
         y = np.maximum(y + step, 0.0)
-        if np.all(np.abs(step) <= 1e-15 * (1.0 + y)):
+        if np.all(np.abs(step) <= _CLOSE):
             break
     return -np.expm1(-y)
 
@@ -153,7 +153,7 @@ def _unloaded_at(x: NDArray, most: float, k: float, n: float) -> NDArray[np.floa
     for _ in range(_STEPS):
         step = (x - _slip(u, k, n)) * (1.0 - k * u**n)
         u = np.clip(u + step, 0.0, most)
-        if np.all(np.abs(step) <= 1e-16):
+        if np.all(np.abs(step) <= _CLOSE):
             break
     return u
 

@@ -196,7 +196,7 @@ def _stiffness_at(
 
 
 def _zero(f: Callable[[float], NDArray], low: float, high: float, accuracy: float) -> float:
-    """Number, to a relative accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond."""
+    """Number, to an accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond."""
     from scipy.optimize import brentq  # a slow import
 
     return float(brentq(lambda x: max(f(x)[0], _BEYOND), low, high, xtol=accuracy * high))

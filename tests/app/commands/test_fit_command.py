@@ -58,6 +58,61 @@ def test_any_motion_is_fitted_and_other_columns_are_left_alone(here):
     assert parse(section + REST).friction.parameters["mu_c"][0] == pytest.approx(0.3, rel=1e-9)
 
 
+def test_all_laws_are_compared_and_the_first_sample_is_told(here, capsys):
+    assert called("fit", "slip.csv", "motion.csv", "--fix", "delta=1") == 0
+    said = capsys.readouterr().out
+    assert "RMS of f [1]" in said and "AIC" in said and "lugre: depends on the speed" in said
+    assert "2 of 161 samples are not fitted" in said
+    assert (here / "fit" / "fit_2.pdf").exists()
+    assert called("fit", "dahl", "slip.csv", "-q") == 0
+    assert not capsys.readouterr().out
+
+
+SCENE = """# my scene
+[friction]   # of the rig
+model = "bouc_wen"  # guessed
+mu_c = [0.2, 0.3]  # from a book
+pre_sliding = "0.2 mm"  # measured
+yield_displacement = "20 um"
+
+[solid]
+material = "steel"  # 42CrMo4
+[motion]
+c = 0.1
+[output]
+quantities = ["friction"]
+"""
+
+
+def test_a_law_goes_into_a_scene_that_stays_as_it_was_written(here, capsys):
+    (here / "scene.toml").write_text(SCENE, encoding="utf-8")
+    words = ("fit", "slip.csv", "--model", "dahl", "--fix", "delta=1", "--into", "scene.toml")
+    assert called(*words, "-o", "new.toml") == 0
+    assert (here / "scene.toml").read_text(encoding="utf-8") == SCENE
+    new = (here / "new.toml").read_text(encoding="utf-8")
+    assert called(*words) == 0
+    assert (here / "scene.toml").read_text(encoding="utf-8") == new
+    assert "next: ./run.sh run scene.toml" in capsys.readouterr().out.replace(
+        "galinx run", "./run.sh run"
+    )
+    assert new.partition("[solid]")[2] == SCENE.partition("[solid]")[2]
+    assert "# my scene" in new and 'pre_sliding = "0.2 mm"  # measured' in new
+    assert "from a book" not in new and "yield_displacement" not in new and "guessed" not in new
+    assert "delta = 1.0  # dimensionless, given" in new
+    friction = parse(new).friction
+    assert friction.pre_sliding == 2e-4 and friction.parameters["mu_c"][0] == pytest.approx(0.4, abs=2e-3)
+
+
+def test_a_scene_with_faults_and_one_of_another_name_are_left_alone(here, capsys):
+    (here / "scene.toml").write_text(SCENE.replace("c = 0.1", "c = 2"), encoding="utf-8")
+    assert called("fit", "slip.csv", "--into", "scene.toml") == 2
+    assert "motion.c" in capsys.readouterr().err and not (here / "fit").exists()
+    (here / "scene.toml").write_text(SCENE, encoding="utf-8")
+    (here / "new.toml").write_text("mine", encoding="utf-8")
+    assert called("fit", "slip.csv", "--into", "scene.toml", "-o", "new.toml") == 2
+    assert (here / "new.toml").read_text(encoding="utf-8") == "mine"
+
+
 @pytest.mark.parametrize(
     "words, said",
     [

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.free_ends import KinkedPressure
-from galinx.solvers.contact.recovery import lagrange
 
 #: A chart in which surface coordinates are positions.
 AS_DRAWN = SimpleNamespace(
@@ -27,7 +27,7 @@ def facets(kink, rings):
 def nodes_and_forces(ends, degree, σ_YY):
     """Nodes on facets between ``ends``, and consistent forces there."""
     t, w = np.polynomial.legendre.leggauss(60)
-    basis = lagrange(np.linspace(0.0, 1.0, degree + 1), (t + 1.0) / 2.0)
+    basis = lagrange(np.linspace(0.0, 1.0, degree + 1), (t + 1.0) / 2.0)[0]
     sizes = np.diff(ends)
     s = np.append((ends[:-1, None] + sizes[:, None] * np.arange(degree) / degree).ravel(), 1.0)
     forces = np.zeros(len(s))

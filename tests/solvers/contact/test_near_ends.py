@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.free_ends import (
     FARTHER,
     KinkedPressure,
@@ -13,7 +14,6 @@ from galinx.solvers.contact.free_ends import (
     farthest_at_kink,
     towards_kink,
 )
-from galinx.solvers.contact.recovery import lagrange
 
 GAP = 0.7
 
@@ -66,7 +66,7 @@ def nodal_forces(places, degree):
     edges = [x for a, b, m in halves for x in (*(a + (m - a) * towards), *(b - (b - m) * towards))]
     edges = np.unique([*places, *edges])
     t, w = np.polynomial.legendre.leggauss(40)
-    basis = lagrange(np.linspace(0.0, 1.0, degree + 1), (t + 1.0) / 2.0)
+    basis = lagrange(np.linspace(0.0, 1.0, degree + 1), (t + 1.0) / 2.0)[0]
     s = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(degree) / degree).ravel(), 1.0)
     forces = np.zeros(len(s))
     for i, (low, high) in enumerate(pairwise(edges)):

@@ -8,11 +8,12 @@ from scipy.special import roots_jacobi
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
+from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.cells import lagrange
-from galinx.solvers.fem.dynamic import BOX, Energies, Motion, of_both
+from galinx.solvers.fem.dynamic import BOX, Energies, Motion, Products, of_both
 from galinx.solvers.fem.in_time import Phase, SlidingInTime, SurfaceInTime
 from galinx.solvers.fem.space import Space, distribute
+from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.punch import ON_SURFACE, smooth
@@ -29,6 +30,33 @@ def motion(c, degree=4, mesh=None, solid=SOLID, sharp=False):
 @pytest.fixture(scope="module")
 def moving():
     return motion(0.5)
+
+
+@pytest.mark.parametrize("sharp", [False, True])
+@pytest.mark.parametrize(
+    "solid", [SOLID, Layered((Layer(0.7, Isotropic(3.0, 0.1, 2.0)),), SOLID)], ids=["uniform", "layer"]
+)
+def test_products_by_quadrature_are_those_of_the_matrices(solid, sharp):
+    mesh = Reached(4.3, 3.1, 1.0, 0.3, 1e-2, depths=(0.7,), seen=0.5, around=(2.0, 1.0))
+    of = motion(0.5, 5, mesh, solid, sharp)
+    products, u = Products(of), np.random.default_rng(0).normal(size=of.size)
+    for product, expected in (
+        (products.stiffness(u), of.K @ u),
+        (products.momentum(u), of_both(of.M, u)),
+        (products.dissipation(u), u @ of_both(of.D, u)),
+    ):
+        np.testing.assert_allclose(product, expected, atol=1e-13 * np.abs(expected).max())
+
+
+def test_cells_are_small_where_fields_are_output():
+    """Beside and below the punch as far as asked, and beyond they are as large as without outputs."""
+    mesh = Reached(12.0, 9.0, 2.0, 0.0, 1e-2, seen=0.5, around=(4.0, 2.0)).drawn()
+    corners = mesh.points[mesh.cells]
+    sides, near = np.ptp(corners, axis=1), np.abs(corners).min(axis=1)
+    assert sides[(near[:, 0] < 3.4)][:, 0].max() < 0.51
+    assert sides[(near[:, 1] < 1.4)][:, 1].max() < 0.51
+    assert (sides[near[:, 0] > 4.1][:, 0] > 1.5).all()
+    assert (sides[near[:, 1] > 2.1][:, 1] > 1.5).all()
 
 
 @pytest.mark.parametrize("way", [1, -1])

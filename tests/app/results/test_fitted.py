@@ -1,0 +1,147 @@
+"""Laws fitted in Python: comparison, several measurements, tables as other programs write them."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.results.fitted import ALL
+from galinx.app.results.measured import read
+from galinx.app.scene.read import parse
+from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.fit import friction, moves
+from galinx.solvers.parameters import build_model
+
+REST = '[solid]\nmaterial = "steel"\n[motion]\nspeed = "1 mm/s"\n[output]\nquantities = ["friction"]\n'
+LUGRE = {
+    "mu_c": 0.3, "mu_s": 0.5, "stribeck_velocity": 2e-3, "sigma0_over_load": 3e4,
+    "sigma1_over_load": 20.0,
+}  # fmt: skip
+
+
+def swing(name, parameters, samples=300, speed=2e-3, seed=1):
+    """A sinusoidal motion of 0.1 mm, and a law's friction along it with noise of 0.003."""
+    t = np.linspace(0.0, 2e-4 * np.pi / speed, samples)
+    X = 5e-5 * (1.0 - np.cos(speed / 5e-5 * t))
+    kind = LAWS[name]
+    f = friction(build_model(kind, parameters), moves(t, X, kind.depends_on_speed), samples)
+    f[0] = 0.0
+    return galinx.Measured(t, X, f + 3e-3 * np.random.default_rng(seed).standard_normal(samples))
+
+
+def strokes(name, parameters, seed=1):
+    """Strokes of 0.1 mm there and back, faster and faster, with noise of 0.003."""
+    ends, speeds = np.array([0, 1, 0.2, 1, 0, 0.7]) * 1e-4, np.geomspace(1e-4, 1e-2, 5)
+    at = np.append(0.0, np.cumsum(np.abs(np.diff(ends)) / speeds))
+    t = np.append(0.0, np.concatenate([np.linspace(*leg, 41)[1:] for leg in zip(at, at[1:])]))
+    X = np.interp(t, at, ends)
+    f = friction(build_model(LAWS[name], parameters), moves(t, X, True), len(t))
+    f[0] = 0.0
+    return galinx.Measured(t, X, f + 3e-3 * np.random.default_rng(seed).standard_normal(len(t)))
+
+
+def test_of_all_laws_the_true_one_is_best_and_all_are_told():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = galinx.fit(strokes("dahl", {"mu_c": 0.4, "sigma0_over_load": 2.2e4}))
+    assert {found.model, *(one.model for one in found.others), *found.failed} == {*LAWS}
+    criteria = [found.aic, *(one.aic for one in found.others)]
+    assert criteria == sorted(criteria)
+    # A law that becomes Dahl's is as good, but for the parameters that it needs for it.
+    assert found.model in ("dahl", "bouc_wen", "lugre")
+    assert found.rms == pytest.approx(3e-3, rel=0.15)
+    text = [" ".join(row) for row in found.sheet().rows]
+    assert text[0].startswith(f"{found.model} 0.00") and len(text) == len(LAWS) - len(found.failed)
+
+
+def test_what_the_data_do_not_determine_is_called_so():
+    found = galinx.fit(swing("dahl", {"mu_c": 0.4, "sigma0_over_load": 2.2e4}), "lugre")
+    section = found.scene()
+    assert {"sigma1_over_load", "sigma2_over_load"} & {*found.not_determined}
+    for key in found.not_determined:
+        line = next(line for line in section.splitlines() if line.startswith(f"{key} = "))
+        assert "not determined" in line
+        if found.parameters[key] == 0.0:
+            assert '"0 s/m"' in line
+    assert parse(section + REST).friction.count == 1
+
+
+def test_several_measurements_have_one_set_of_parameters():
+    slow, fast = swing("lugre", LUGRE, speed=5e-4), swing("lugre", LUGRE, speed=2e-2, seed=2)
+    both = galinx.fit([slow, fast], "lugre", fix={"stribeck_exponent": 2.0})
+    assert both.result.samples == 597 and len(both.result.f) == 2
+    for key, value in both.deviations.items():
+        true = LUGRE.get(key, 0.0)
+        assert abs(both.parameters[key] - true) < 4.0 * value, key
+    alone = galinx.fit(slow, "lugre", fix={"stribeck_exponent": 2.0})
+    assert both.deviations["mu_c"] < alone.deviations["mu_c"]
+    first = friction(both.law, moves(slow.t, slow.X, True), 300)
+    np.testing.assert_array_equal(both.result.f[0], first)
+
+
+def written(measured, path, head="time [s],position [mm],f", decimal=".", separator=",", load=0.0):
+    """A measurement as a table."""
+    f = measured.f * (load or 1.0)
+    columns = [measured.t, 1e3 * measured.X, f] + [np.full(len(f), -load)] * bool(load)
+    rows = [separator.join(repr(float(x)).replace(".", decimal) for x in row) for row in zip(*columns)]
+    path.write_text("\n".join([head.replace(",", separator), *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+def test_tables_of_all_conventions_are_one_measurement(tmp_path):
+    measured = swing("dahl", {"mu_c": 0.4, "sigma0_over_load": 2.2e4}, 100)
+    forms = [
+        {}, {"decimal": ",", "separator": ";"}, {"decimal": ",", "separator": "\t"},
+        {"separator": ";"}, {"head": "t (s),Displacement [mm],Friction Coefficient"},
+    ]  # fmt: skip
+    fits = [
+        galinx.fit(written(measured, tmp_path / f"{n}.csv", **form), "dahl")
+        for n, form in enumerate(forms)
+    ]
+    assert all(one.parameters == fits[0].parameters for one in fits)
+    for names in ("friction force [mN/mm],normal load [N/m]", "F [kN],N [kN]"):
+        head = f"time [s],position [mm],{names}"
+        forces = galinx.fit(written(measured, tmp_path / "force.csv", head=head, load=250.0), "dahl")
+        for key, value in fits[0].parameters.items():
+            assert forces.parameters[key] == pytest.approx(value, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("slip [mm];f\n0;0,1\n1;0.2\n2;0,3\n", "line 2, f: found '0,1'.*with a decimal point"),
+        ("slip [mm];f\n0;0\n1;1.234,5\n2;3\n", "line 3, f: found '1.234,5'"),
+        ("slip [mm],f\n0,1,0,2\n", "line 2: found 4 columns.*separate columns by semicolons"),
+        ("slip [mm],force [N]\n0,1\n1,1\n2,1\n", "a friction force without a load"),
+        ("slip [mm],force [N],load [N/m]\n0,1,1\n1,1,1\n", "expected both in N, or both in N/m"),
+        ("slip [mm],force,load\n0,1,1\n1,1,1\n", "expected both in N, or both in N/m"),
+        ("slip [mm],force [N],load [N]\n0,1,1\n1,1,0\n2,1,1\n", "line 3: found no load"),
+        ("slip [mm],f\n", "three or more rows"),
+    ],
+)  # fmt: skip
+def test_faults_of_tables_are_told(tmp_path, text, said):
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(BadInput, match=said):
+        read(tmp_path / "a.csv")
+
+
+def test_a_head_without_a_unit_is_told_and_comments_are_no_rows(tmp_path):
+    (tmp_path / "a.csv").write_text("# rig 3\n\nslip,f\n0,0\n0.1,0.2\n0.2,0.3\n", encoding="utf-8")
+    table = read(tmp_path / "a.csv")
+    assert table.measured.X[-1] == 0.2
+    assert "slip has no unit in its head and is read in m, 0 to 0.2 m" in table.notes[0]
+
+
+def test_speeds_are_those_of_the_tables(tmp_path):
+    for n in (1, 2):
+        (tmp_path / f"{n}.csv").write_text("slip [mm],f\n0,0\n0.1,0.2\n0.2,0.3\n", encoding="utf-8")
+    files = [tmp_path / "1.csv", tmp_path / "2.csv"]
+    found = galinx.fit(files, "coulomb", speed=["1 mm/s", 0.002])
+    np.testing.assert_allclose([table.measured.t[-1] for table in found.tables], [0.2, 0.1])
+    assert "2 of 6 samples are not fitted" in found.notes[0]
+    with pytest.raises(BadInput, match="found 3 for 2 tables of slips"):
+        galinx.fit(files, "coulomb", speed=[1.0, 2.0, 3.0])
+    found = galinx.fit(files, ALL)
+    assert "give --speed" in found.failed["lugre"]

@@ -130,7 +130,6 @@ class Report:
         self._sheets = _published(data, scene) if sheets is None else sheets
         self._units = Units(scene.body, data, dimensionless)
         self._pictures: list[dict[str, Any]] = []
-        self._charts: list[dict[str, Any]] = []
 
     def add(self, drawing: Drawing, png: bytes | None = None) -> None:
         """Add a figure; it can be saved elsewhere afterwards.
@@ -148,8 +147,7 @@ class Report:
         }
         picture |= {"pixels": drawing.pixels, "name": drawing.name}
         if made:
-            picture["charts"] = range(len(self._charts), len(self._charts) + len(made))
-            self._charts += made
+            picture["charts"] = made
         elif png is None or drawing.pixels:
             picture |= {"source": in_a_page(drawing.figure, drawing.pixels)}
         else:  # as wide as it would be if it were drawn for the page
@@ -166,7 +164,12 @@ class Report:
         # The large chart shows these.
         covered = {"surface"} if large and large["surface"] else set()
         covered |= {"inside"} if large and large["maps"] else set()
-        pictures = [p for p in self._pictures if p["name"] not in covered]
+        pictures = [{**p} for p in self._pictures if p["name"] not in covered]
+        made: list[dict[str, Any]] = []
+        for picture in pictures:
+            first = len(made)
+            made += picture["charts"]
+            picture["charts"] = range(first, len(made))
         tables = [starts_sheet(data, self._units), limits_sheet(data, self._units)]
         content = {
             "title": attributes["title"] or "A sliding punch",
@@ -178,7 +181,7 @@ class Report:
             "sheets": self._sheets,
             "states": states_table(data, self._units),
             "explorer": large,
-            "charts": self._charts,
+            "charts": made,
             "pictures": pictures,
             "times": [
                 (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")

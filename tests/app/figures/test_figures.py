@@ -97,6 +97,24 @@ def test_figures_are_legible_at_page_and_column_width(map_run, sweep_run, laws_r
             assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0 + 1e-6
 
 
+#: Scenes of all kinds of figures, by the quickest methods.
+KINDS = {
+    "cylinder": CLOSED_FORM | {"output.quantities": ["sif", "surface", "interior"]},
+    "coating": {"solve.methods": ["sie"]}, "slider": {}, "start_from_rest": {"solve.methods": ["sie"]},
+    "fibres": CLOSED_FORM, "shoulders": CLOSED_FORM, "minor_loops": {}, "velocity_steps": {},
+    "fig6": {}, "sinusoidal": {}, "own_material": CLOSED_FORM,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_figures_of_every_kind_fit_a_column_and_a_page(name):
+    run = computed(name, KINDS[name])
+    for width in ("85mm", "170mm"):
+        shown = list(run.drawings(size=size(width), figures=("all",)))
+        legible(shown)
+        assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0 + 1e-6
+
+
 def test_ends_of_the_contact_are_in_the_picture_where_nothing_is_infinite():
     X = np.cos(np.linspace(1e-3, np.pi - 1e-3, 301))
     smooth, sharp = -np.sqrt(1.0 - X**2)[None], -1.0 / np.sqrt(1.0 - X**2)[None]

@@ -21,7 +21,7 @@ from .states import spread
 from .stresses import SHOWN, Fields, has_map, limits, place_of, position_name, surface_stresses
 
 #: Most numbers of all states along the surface, and in maps: pages stay below 6 MB.
-_NUMBERS = 130_000
+_NUMBERS = 80_000
 _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "markers"}
 _SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open",
             "x": "x", "_": "line-ew-open", ".": "circle"}  # fmt: skip

@@ -61,8 +61,34 @@ _CUT_OFF = 141
 _SCRIPT, _OF_SCRIPT = "./run.sh", ["test", "bench", "stress", "docs"]
 
 
+#: Commands by what they are for, in the order of the help.
+_GROUPS = {
+    "Begin": ("init", "materials", "fit"),
+    "Compute": ("run", "plan"),
+    "Look": ("show", "report", "plot", "csv"),
+    "Expert": ("check", "fields", "dispersion", "response", "paper", "schema"),
+}
+
+
 class _Commands(click.Group):
-    """Commands by name; click takes an unknown one that begins with a sign for a call for help."""
+    """Commands by name, in groups.
+
+    click takes an unknown one that begins with a sign for a call for help.
+    """
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands in groups, each with the first sentence of its help in full."""
+        grouped = {name for names in _GROUPS.values() for name in names}
+        others = tuple(name for name in self.commands if name not in grouped)
+        for title, names in {**_GROUPS, "More": others}.items():
+            rows = [
+                (name, self.commands[name].get_short_help_str(limit=500))
+                for name in names
+                if name in self.commands
+            ]
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args[0] not in self.commands:

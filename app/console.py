@@ -135,7 +135,7 @@ class Progress:
     """
 
     def __init__(self, quiet: bool = False, verbose: bool = False, log: Path | None = None) -> None:
-        self._quiet, self.verbose, self._log = quiet, verbose, log
+        self.quiet, self.verbose, self._log = quiet, verbose, log
         self._bar: Any = None
         self._task: Any = None
         self._last = ""
@@ -146,7 +146,7 @@ class Progress:
             return self
         if self.verbose:
             self._add(logging.StreamHandler(sys.stderr), "%(message)s")
-        elif not self._quiet and sys.stderr.isatty():
+        elif not self.quiet and sys.stderr.isatty():
             self._bar, self._task = _start_bar()
         if self._log:
             self._add(_LogFile(self._log), "%(asctime)s %(message)s")

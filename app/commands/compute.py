@@ -1,6 +1,7 @@
 """Commands that compute: run, plan, paper."""
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from galinx import __version__
 from galinx.clock import Clock, age
 from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.target import Folder, Target
+from galinx.texts import counted
 
 from .. import errors, process, ranks
 from ..console import Progress, print_result, print_times, print_warnings, program, say, width
@@ -89,6 +91,8 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
 
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
+            if journal.states and not progress.quiet:
+                say(f"resume: {counted(journal.states, 'state')} of an interrupted run taken over")
             with process.leaving(
                 lambda: _keep_finished(journal), "what is finished is kept, go on with --resume"
             ):
@@ -134,12 +138,22 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     if ranks.is_root():
         for text in lines(checked, planned):
             say(f"do    {text}", 6)
-        for text in planned.skipped:
+        for text in _folded(planned.skipped):
             say(f"skip  {text}", 6)
         say(f"cost  {expense(planned)}", 6)
         for text in planned.warnings:
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD
+
+
+def _folded(skipped: Iterable[str]) -> list[str]:
+    """What is skipped, one line for each reason."""
+    by_reason: dict[str, list[str]] = {}
+    for text in skipped:
+        what, _, reason = text.partition(": ")
+        name = what.rpartition("/")[2] if what.startswith("states/") else what
+        by_reason.setdefault(reason, []).append(name)
+    return [f"{', '.join(dict.fromkeys(names))}: {reason}" for reason, names in by_reason.items()]
 
 
 @click.command()

@@ -200,7 +200,7 @@ def _draw(
     drawings.append(draw_inside(Archive(inside.data, inside.scene, plain)))
     drawings.append(mesh(Archive(study.data, study.scene, plain)))
     pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
-    report = Report(study.data, study.attributes, study.scene, list(sheets))
+    report = Report(study.data, study.attributes, study.scene, list(sheets), dimensionless=True)
     for drawing in drawings:
         report.add(drawing, pixels[drawing.name])
     return report.text()

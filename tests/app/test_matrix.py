@@ -95,7 +95,7 @@ def test_every_command_reads_it(case, archived):
     places = {"--states": 1, "--surface": len(data["surface/X_over_a"])}
     places |= {"--inside": 4} if "interior" in case.words else {}
     for table, points in places.items():
-        done = here("csv", name, table, "--si", cwd=folder)
+        done = here("csv", name, table, cwd=folder)
         assert done.returncode == 0, done.stderr
         head, *rows = csv.reader(done.stdout.splitlines())
         assert len(rows) == points * len(data["states/f"])

@@ -35,7 +35,7 @@ GOOD = {
     "init": (["table1", "own_material"], []),
     "materials": ([], []),
     "schema": ([], []),
-    "csv": (["quick.h5"], [["--states"], ["--si"]]),
+    "csv": (["quick.h5"], [["--states"], ["--dimensionless"]]),
     "dispersion": (None, []),
     "response": (None, []),
     "plot": (None, []),
@@ -52,7 +52,8 @@ BAD_OPTIONS = [
     ["--nonsense"], ["-z"], ["--set"], ["--set", "x"], ["--set", "=1"], ["--set", "friction.mu_cc=1"],
     ["--set", "motion.c=" + "[" * 3000], ["--set", "solid.E=1 Pa*9**9**9"], ["-o"], ["--state", "x"],
     ["--extent", "x"], ["-q", "-v"], ["--overwrite=1"], ["-n"], ["--json=1"], ["extra", "more"],
-    ["--set", "motion.c=30 deg"], ["--unset"], ["--unset", "motion.cc"], ["--surface"], ["--si=1"],
+    ["--set", "motion.c=30 deg"], ["--unset"], ["--unset", "motion.cc"], ["--surface"],
+    ["--dimensionless=1"],
 ]  # fmt: skip
 #: For what is to be written.
 BAD_PLACES = [["-o", "folder"], ["-o", "no/such/folder/x"]]

@@ -1,0 +1,124 @@
+"""Hertz's contact read off a result: one row a state, against formulas of its own."""
+
+import csv
+
+import numpy as np
+import pytest
+from support import computed, here
+
+from galinx.app.results.csv import pieces
+
+#: A cylinder of 5 mm on steel that yields at 600 MPa, 100 N/mm, slow.
+R, N, YIELD = 5e-3, 1e5, 600e6
+SCENE = {
+    "solid.material": "steel", "solid.yield_strength": YIELD, "punch.profile": "parabolic",
+    "punch.radius": R,
+    "punch.load": N, "punch.half_width": None, "friction.model": "coulomb", "friction.mu_c": 0.15,
+    "friction.sigma0_over_load": None, "friction.delta": None, "motion.c": None,
+    "motion.speed": "1 m/s", "motion.strokes": ["forward"], "motion.X_over_L": [1.0],
+    "solve.methods": ["closed_form"], "output.quantities": ["sif", "surface", "yield"],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result():
+    return computed("tables4_5", SCENE)
+
+
+def hertz(solid):
+    """Half-width [m], largest pressure [Pa], and largest von Mises stress without friction [Pa]."""
+    E, ν = solid.E, solid.ν
+    b = np.sqrt(4.0 * N * R * (1.0 - ν**2) / (np.pi * E))
+    p0 = 2.0 * N / (np.pi * b)
+    z = np.linspace(0.0, 3.0, 30_001)
+    root = np.sqrt(1.0 + z**2)
+    σ_X, σ_Y = -p0 * ((1.0 + 2.0 * z**2) / root - 2.0 * z), -p0 / root
+    σ_Z = ν * (σ_X + σ_Y)
+    mises = np.sqrt(0.5 * ((σ_X - σ_Y) ** 2 + (σ_Y - σ_Z) ** 2 + (σ_Z - σ_X) ** 2))
+    return b, p0, mises.max()
+
+
+def test_a_row_is_hertz_and_its_units_stand_beside(result):
+    row = {column.head: column for column in result.table() if not column.place}
+    b, p0, mises = hertz(result.scene.half_plane.solid)
+    assert row["half-width"].unit == "µm" and row["half-width"].values[0] == pytest.approx(
+        1e6 * b, rel=1e-2
+    )
+    assert row["peak pressure"].unit == "MPa"
+    assert row["peak pressure"].values[0] == pytest.approx(1e-6 * p0, rel=1e-2)
+    # Uncoupled, the tension behind the contact is 2 f p₀ (Smith and Liu); coupling adds some per cent.
+    tension = row["largest tension σ_XX"]
+    assert tension.values[0] == pytest.approx(2.0 * 0.15 * 1e-6 * p0, rel=0.04)
+    assert row["largest von Mises"].values[0] == pytest.approx(1e-6 * mises, rel=0.05)
+    assert row["yields"].values[0].startswith("yes, 134")
+    place = result.table()[[c.head for c in result.table()].index("largest tension σ_XX") + 1]
+    end = row["centre"].values[0] - row["half-width"].values[0]
+    assert place.place and place.values[0] == pytest.approx(end, rel=1e-12)  # exactly the trailing end
+
+
+def test_without_friction_every_number_is_hertz_to_a_per_cent():
+    still = computed("tables4_5", SCENE | {"friction.mu_c": 1e-4, "punch.load": 0.5 * N})
+    row = {column.head: column for column in still.table() if not column.place}
+    b, p0, mises = (value * np.sqrt(0.5) for value in hertz(still.scene.half_plane.solid))
+    for head, expected in (
+        ("half-width", 1e6 * b), ("peak pressure", 1e-6 * p0), ("largest von Mises", 1e-6 * mises),
+        ("load at first yield", 0.5e-3 * N * (YIELD / mises) ** 2),
+    ):  # fmt: skip
+        assert row[head].values[0] == pytest.approx(expected, rel=1e-2), head
+    share = 100.0 * (mises / YIELD) ** 2
+    assert row["yields"].values[0].startswith("no, ")
+    assert float(row["yields"].values[0][4:-2]) == pytest.approx(share, rel=2e-2)
+
+
+def test_screen_csv_and_notebook_show_the_same_row(result, tmp_path):
+    result.save(tmp_path / "a.h5")
+    shown, html = here("show", tmp_path / "a.h5").stdout, result._repr_html_()
+    heads, cells = csv.reader("".join(pieces(tmp_path / "a.h5")).splitlines())
+    table = dict(zip(heads, cells))
+    for column in result.table():
+        if column.constant and column.name in ("motion", "X_over_L"):
+            continue
+        head = column.name if column.unit == "none" else f"{column.name} [{column.unit}]"
+        assert head in table, head
+        text = column.texts()[0]
+        assert text in shown and (text in html or f"{column.head} = {text}" in html), column.head
+        if not isinstance(column.values[0], str):
+            assert float(table[head]) == pytest.approx(float(column.values[0]), rel=1e-14)
+
+
+def test_a_cylinder_is_told_in_twenty_lines_the_answer_among_the_first_ten(tmp_path):
+    (tmp_path / "one.toml").write_text(
+        'title = "A cylinder on steel"\n[solid]\nmaterial = "steel"\nyield_strength = "600 MPa"\n'
+        '[punch]\nprofile = "parabolic"\nradius = "5 mm"\nload = "100 N/mm"\n[friction]\n'
+        'model = "coulomb"\nmu_c = 0.15\n[motion]\nspeed = "500 m/s"\nstrokes = ["forward"]\n'
+        'X_over_L = [1.0]\n[solve]\nmethods = ["closed_form"]\n'
+        '[output]\nquantities = ["sif", "surface", "yield"]\n'
+    )
+    lines = here("run", tmp_path / "one.toml", cwd=tmp_path).stdout.splitlines()
+    assert len(lines) <= 20 and max(map(len, lines)) <= 80
+    first = "\n".join(lines[:10])
+    for word in (
+        "peak pressure",
+        "MPa",
+        "largest tension σ_XX",
+        "largest von Mises",
+        "yields",
+        "500 m/s",
+    ):
+        assert word in first
+
+
+def test_a_failure_begins_with_what_failed_where_and_what_to_do(result):
+    from galinx.postprocess.compare import checked, failed
+
+    text = "estimated error of K_I and moments, relative"
+    attributes = {
+        "verdict": "FAIL", "load": N, "comparisons": f'{{"{text}": 3e-05}}',
+        "verdict_reasons": f'["{text}: 3.0e-05, at most 1e-06"]',
+    }  # fmt: skip
+    data = {path: np.repeat(result.data[path], 2) for path in ("states/c", "states/f")}
+    data |= {"states/fem/estimate": np.array([1e-9, 3e-5])}
+    first, last = failed(data, attributes)
+    assert first.startswith(f"{text}: 3.0e-05, 30 times what is wanted, 1e-06, in state 1 (c = ")
+    assert "solve.tolerance=1e-07" in last and "solve.tolerance=1e-04 accepts" in last
+    assert checked(attributes) == "numbers checked: estimated error 3e-05, wanted 1e-06 (dimensionless)"

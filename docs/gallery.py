@@ -28,7 +28,7 @@ SHOWN = {
     "fig9": (STUDY, "A stiffer contact comes nearer to full slip at the same place of the stroke."),
     "fig10": (STUDY, "Dahl's exponent acts through f alone, and little."),
     "parameter_study": ("parameters", "What K_I and the exponents make of μ_C, at three speeds."),
-    "inside": ("inside", "Stresses below the punch, slow and fast, and how far both methods are apart."),
+    "inside": ("inside", "Stresses below the punch, slow and fast, on one scale."),
     "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
     "cylinder": ("surface", "A cylinder: the pressure ends at 0, and friction moves the contact back."),
     "shoulders": ("surface", "A flat base with rounded shoulders, on which the contact ends."),
@@ -82,8 +82,8 @@ def _called(name: str, figure: str) -> str:
 def main(*names: str) -> None:
     """Compute the scenes and draw what is shown, of some scenes alone where they are named."""
     from galinx import compute, template
+    from galinx.app.figures.files import content
     from galinx.app.study.drawings import of_study
-    from galinx.postprocess.figures.canvas import content
 
     folder = DOCS / "figures" / "gallery"
     folder.mkdir(parents=True, exist_ok=True)

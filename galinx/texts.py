@@ -1,6 +1,8 @@
-"""Texts that can be archived and shown, without control characters; counts of things in words."""
+"""Texts that can be archived and shown; numbers, symbols and units as TeX and as plain text."""
 
+import re
 import unicodedata
+from textwrap import fill
 
 #: Characters that change the direction of writing.
 _DIRECTIONS = {0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)}
@@ -21,3 +23,69 @@ def unseen(text: str) -> str:
 def counted(count: int, thing: str, things: str = "") -> str:
     """A number of things, as one says it: "1 state", "3 states"."""
     return f"{count} {thing if count == 1 else things or thing + 's'}"
+
+
+#: Beyond these numbers are written with a power of ten.
+_SMALL, _LARGE = 1e-3, 1e6
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number in TeX, without dollars: ``4.786 \\times 10^{-7}``."""
+    shown = f"{value:.{digits - 1}e}"
+    mantissa, exponent = shown.split("e")
+    if float(shown) == 0.0 or _SMALL <= abs(float(shown)) < _LARGE:
+        whole, dot, rest = f"{float(shown):f}".rstrip("0").rstrip(".").partition(".")
+        if len(whole.lstrip("-")) > 4:
+            whole = f"{int(whole):,}".replace(",", r"\,")
+        return whole + dot + rest
+    mantissa = mantissa.rstrip("0").rstrip(".")
+    power = f"10^{{{int(exponent)}}}"
+    return {"1": power, "-1": f"-{power}"}.get(mantissa, rf"{mantissa} \times {power}")
+
+
+def unit(name: str) -> str:
+    """Unit in TeX, with the space before it; nothing for what has none."""
+    if name in ("1", "", "none"):
+        return ""
+    if "(" in name:  # a quantity, as N/(2a) is
+        return rf"\,{name}"
+    over = re.fullmatch(r"1/(\w+)", name)
+    return rf"\,\mathrm{{{over[1]}^{{-1}}}}" if over else rf"\,\mathrm{{{name}}}"
+
+
+def plain(text: str) -> str:
+    """Plain text of a text with formulas between dollars: μ_C = 4.786 × 10⁻⁷."""
+
+    def greek(match: re.Match[str]) -> str:
+        word = match[1]
+        kind = "CAPITAL" if word[0].isupper() else "SMALL"
+        name = {"lambda": "LAMDA"}.get(word.lower(), word.upper())
+        try:
+            return unicodedata.lookup(f"GREEK {kind} LETTER {name}")
+        except KeyError:
+            return word
+
+    def formula(match: re.Match[str]) -> str:
+        characters = match[1].replace(r"\times", "×").replace(r"\,", "\u202f")
+        characters = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(_RAISED), characters)
+        characters = re.sub(r"\\(?:mathrm|mathit|text)\{((?:[^{}]|\{[^{}]*\})*)\}", r"\1", characters)
+        characters = re.sub(r"\\([A-Za-z]+)", greek, characters)
+        characters = re.sub(r"_\{?(\d)\}?", lambda index: index[1].translate(_LOWERED), characters)
+        return characters.replace(r"\_", "_").replace("{", "").replace("}", "")
+
+    return re.sub(r"\$([^$]*)\$", formula, text)
+
+
+def folded(text: str, width: int) -> str:
+    """Text in lines of at most so many characters; formulas count as they are shown and stay whole."""
+    pieces = re.findall(r"\$[^$]*\$", text)
+    marks = [f"\0{n}".ljust(max(3, len(plain(piece))), "\0") for n, piece in enumerate(pieces)]
+    for piece, mark in zip(pieces, marks):
+        text = text.replace(piece, mark, 1)
+    text = fill(text, width, break_long_words=False, break_on_hyphens=False)
+    for piece, mark in zip(pieces, marks):
+        text = text.replace(mark, piece, 1)
+    return text

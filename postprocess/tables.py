@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .figures.style import plain
+from galinx.texts import plain
+
 from .quantities import (
     Quantity,
     layers,

@@ -12,7 +12,7 @@ ONE_PLACE = {
     "gmsh": {"meshes/store.py"},
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/versions.py"},
-    "matplotlib": {"postprocess/figures/", "app/pictures/choice.py"},
+    "matplotlib": {"app/figures/"},
     "jinja2": {"postprocess/page/"},
     "xarray": {"postprocess/named.py", "app/results/result.py"},
     "tomlkit": {"app/scene/changes.py"},

@@ -112,9 +112,8 @@ def fit(
 
     Example: ./run.sh fit scenes/slip.csv --model dahl -o fit
     """
-    from galinx.postprocess.figures.canvas import save
-    from galinx.postprocess.figures.friction import fitted_figure
-
+    from ..figures.files import save
+    from ..figures.friction import fitted_figure
     from ..results.fitted import ALL, split
     from ..results.fitted import fit as fit_laws
     from ..scene.read import read as read_scene

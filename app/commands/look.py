@@ -157,8 +157,8 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     "--figure",
     default="",
     metavar="NAMES",
-    help="friction, parameters, surface, interfaces, inside, angles, thicknesses, degrees, mesh, film; "
-    "several as in surface,inside.",
+    help="surface, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
+    "energies, angles, thicknesses, degrees, mesh, film; several as in surface,mesh; all for all.",
 )
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
 @click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")
@@ -189,14 +189,15 @@ def plot(
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
-    Without options the figures, their states and their axes are chosen automatically. States that a
-    figure does not show are named.
+    Without options these are the stresses on the surface and below it, what follows from what is swept,
+    and the friction loop; states and axes are chosen automatically. States that a figure does not show
+    are named.
 
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
-    from ..pictures import choice
-    from ..pictures.choice import Files
-    from ..results.drawings import in_units, write
+    from ..figures import choice
+    from ..figures.archive import in_units, write
+    from ..figures.files import Files
     from ..results.result import load
 
     selection = choice.Choice(
@@ -230,8 +231,8 @@ def dispersion(
 
     Example: ./run.sh dispersion scenes/coating.toml -o figures
     """
-    from ..pictures import waves
-    from ..pictures.choice import Files
+    from ..figures import waves
+    from ..figures.files import Files
     from ..scene.changes import from_words
     from ..scene.read import read
 
@@ -293,8 +294,8 @@ def response(
 
     Example: ./run.sh response scenes/start_from_rest.toml -o figures
     """
-    from ..pictures import waves as punch
-    from ..pictures.choice import Files
+    from ..figures import waves as punch
+    from ..figures.files import Files
     from ..scene.changes import from_words
     from ..scene.read import read
 

@@ -121,17 +121,17 @@ class Result:
         return state_columns(self.data, self.units(dimensionless))
 
     def drawings(self, dimensionless: bool = False, **options: Any) -> Iterator[Any]:
-        """Figures of the result, as :class:`galinx.app.pictures.choice.Drawing`.
+        """Figures of the result, as :class:`galinx.app.figures.choice.Drawing`.
 
         Args:
             dimensionless: stresses over N/(2a), positions over a.
-            options: attributes of :class:`galinx.app.pictures.choice.Choice`.
+            options: attributes of :class:`galinx.app.figures.choice.Choice`.
 
         Raises:
             BadInput: the result lacks a chosen figure or quantity.
         """
-        from ..pictures.choice import Choice
-        from .drawings import in_units, of_archive
+        from ..figures.archive import in_units, of_archive
+        from ..figures.choice import Choice
 
         choice = in_units(Choice(**options), self.units(dimensionless))
         return of_archive(self.data, self.scene, choice)
@@ -147,9 +147,8 @@ class Result:
         Raises:
             BadInput: the result has no such figure.
         """
-        from galinx.postprocess.figures.canvas import for_notebook
-
-        from .drawings import names
+        from ..figures.archive import names
+        from ..figures.files import for_notebook
 
         usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
         (drawing,) = self.drawings(figures=(name or usual,), **options)
@@ -179,8 +178,9 @@ class Result:
         """
         if to is None:
             return self.figure(dimensionless=dimensionless, **options)
-        from ..pictures.choice import Choice, Files
-        from .drawings import in_units, write
+        from ..figures.archive import in_units, write
+        from ..figures.choice import Choice
+        from ..figures.files import Files
 
         choice = in_units(Choice(**options), self.units(dimensionless))
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
@@ -197,7 +197,7 @@ class Result:
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
         report = Report(self.data, self.attributes, self.scene, dimensionless=dimensionless)
-        for drawing in self.drawings(dimensionless):
+        for drawing in self.drawings(dimensionless, figures=("all",)):
             report.add(drawing)
         target.write(report.text().encode())
 

@@ -9,22 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes.kind import edges
-from galinx.postprocess.figures.friction import Panel, loops_figure, motion_figure
-from galinx.postprocess.figures.rows import Curve, Row, laws_figure, rows_figure
-from galinx.postprocess.figures.sketches import mesh_figure, problem_figure, procedure_figure
-from galinx.postprocess.figures.style import COLOURS, LINES, Look, looks, number, plain
-from galinx.postprocess.figures.surface import Stress
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
-from galinx.postprocess.quantities.stresses import SURFACE_X
+from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import fields
+from galinx.texts import number, plain
 
-from ..pictures.choice import Choice, Drawing
-from ..pictures.friction import Loops
-from ..pictures.state_labels import PLACE, STROKE, C, StateLabels
-from ..pictures.surface import SHOWN, stresses_of
+from ..figures.choice import Archive, Choice, Drawing
+from ..figures.friction import Loops, loop_panel, loops_figure
+from ..figures.render import LINE, MARKERS, Curve, Panel, handle, marked, render, spaced
+from ..figures.sketches import mesh_figure, problem_figure, procedure_figure
+from ..figures.states import PLACE, STROKE, C, StateLabels
+from ..figures.stresses import _BESIDE, along, broken, limits
+from ..figures.style import COLOURS, GREY, LINES, Look, looks
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states
 from ..scene import read as scenes
@@ -166,14 +165,14 @@ LAWS_SHOWN: dict[str, tuple[str, dict[str, tuple[Any, ...]]]] = {
 
 def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Figs 1 to 10 of the study from an archive of scenes/study.toml, and two that it speaks of."""
-    loops, fig6 = Loops(data, scene), scenes.read(SCENES / "fig6.toml")
+    loops, fig6 = Loops(Archive(data, scene, Choice())), scenes.read(SCENES / "fig6.toml")
     reference = _state(loops.labels, REFERENCE)
     yield Drawing("fig1", _PROBLEM, problem_figure())
-    yield Drawing("fig2", _LOOP, loops_figure([loops.panel([reference], [])]))
+    yield Drawing("fig2", _LOOP, loops_figure([loops.panel([reference], [])], []))
     yield Drawing("fig3", _PROCEDURE, procedure_figure())
     yield _block(scenes.read(SCENES / "box.toml"))
     yield stresses_drawing("fig5", data, loops.labels)
-    yield Drawing("fig6", _PARAMETERS, _loops(Loops(enumerate_states(fig6).datasets, fig6)))
+    yield Drawing("fig6", _PARAMETERS, _loops(Loops(_archive(fig6))))
     for name in ("fig7", "fig8", "fig9", "fig10"):
         yield stresses_drawing(name, data, loops.labels)
     yield _sinusoidal(scenes.read(SCENES / "sinusoidal.toml"))
@@ -193,37 +192,54 @@ def _block(scene: Scene) -> Drawing:
 
 def _sinusoidal(scene: Scene) -> Drawing:
     """Friction over time and position of a motion that is prescribed point by point."""
-    loops = Loops(enumerate_states(scene).datasets, scene)
-    loop = loops.of(0, [])
+    loop = Loops(_archive(scene)).of(0, [])
     assert loop and scene.motion.path
     times = np.array([t for t, _ in scene.motion.path])
     points = len(loop.f) // len(scene.legs)
     t = np.concatenate([np.linspace(start, end, points) for start, end in pairwise(times)])
     cycle = times[np.flatnonzero(np.array(scene.motion.path)[:, 1] == 0.0)[1]]
-    return Drawing("sinusoidal", _SINE, motion_figure(t / cycle, Panel("", [loop])))
+    _, force = looks(2)
+    over_time = Panel(
+        "time over that of a cycle", "position $X/L$, friction $f$", title="over time", at_y=(0.0,),
+        curves=[
+            Curve(t / cycle, loop.X_over_L, Look(GREY, LINES[1], ""), "position $X/L$"),
+            Curve(t / cycle, loop.f, force._replace(line="-"), "friction $f$"),
+        ],
+    )  # fmt: skip
+    over_position = replace(loop_panel([loop]), title="over position")
+    return Drawing("sinusoidal", _SINE, render([over_time, over_position]))
+
+
+def _archive(scene: Scene) -> Archive:
+    """Friction of a scene, which nothing is solved for."""
+    return Archive(enumerate_states(scene).datasets, scene, Choice())
 
 
 def _laws(scene: Scene, X: NDArray) -> Drawing:
     """Contact stresses of several friction laws, by the closed form."""
-    under, shown, places, curves = under_punch(X), [], [], []
+    under, shown, dots, curves = under_punch(X), [], [], []
     motion = replace(scene.motion, c=(SS, HS), X_over_L=(_AT,))
     for (name, (called, values)), look in zip(LAWS_SHOWN.items(), looks(len(LAWS_SHOWN))):
         given = {key: (field.default,) for key, field in fields(LAWS[name]).items()} | values
         friction = replace(scene.friction, law=LAWS[name], parameters=given, vary=())
         own = replace(scene, friction=friction, motion=motion)
         states = enumerate_states(own)
-        loops = Loops(states.datasets, own)
+        loops = Loops(Archive(states.datasets, own, Choice()))
         of = [_state(loops.labels, {STROKE: FM2, C: c}) for c in (SS, HS)]
         punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in of]
         both = [np.array([np.where(under, punch.σ_YY(X), np.nan), punch.σ_XX(X)]) for punch in punches]
-        curves.append(Curve(called, look, both[0], both[1]))
-        shown += [loop for loop in (loops.of(of[0], []),) if loop]
-        places.append((_AT, states.columns["f"][of[0]]))
-    says = _slow_and_fast(loops.labels, of)
-    labels = [Choice().label(*words) for words in SHOWN.values()]
-    figure = laws_figure(
-        Panel("", shown), X, labels, Row(f"FM2, $X/L = {_AT:g}$", curves), says, np.array(places)
-    )
+        curves.append(_Stressed(called, look, both[0], both[1]))
+        shown += [replace(loop, label=called) for loop in (loops.of(of[0], []),) if loop]
+        place = np.array([_AT]), np.array([states.columns["f"][of[0]]])
+        dots.append(Curve(*place, look, "", MARKERS))
+    row = _Row(f"FM2, $X/L = {_AT:g}$", curves)
+    left = loop_panel(shown)
+    panels = [replace(left, curves=[*left.curves, *dots], title="loops, and the place shown")]
+    panels += [_stress_panel(X, [row], row, column, column == 0) for column in range(2)]
+    panels[1:] = [
+        replace(panel, curves=[replace(c, label="") for c in panel.curves]) for panel in panels[1:]
+    ]
+    figure = render(panels, None, 3, _says(*_slow_and_fast(loops.labels, of)), high=0.95)
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
     return Drawing("laws", _LAWS.format(laws=names, at=_AT), figure)
 
@@ -240,14 +256,95 @@ def _loops(loops: Loops) -> Any:
         shown = [loop for loop in (loops.of(state, [name]) for state in states) if loop]
         if name == C:
             shown = [replace(loop, label=f"$c = {number(c)}$") for loop, c in zip(shown, SPEEDS)]
-        panels.append(Panel(labels.label(states[0], others), shown, True))
-    return loops_figure(panels)
+        panels.append(loop_panel(shown, True, labels.label(states[0], others)))
+    return loops_figure(panels, shown)
+
+
+@dataclass(frozen=True)
+class _Stressed:
+    """Stresses with one name and one look in a row of panels: lines, markers, or both.
+
+    Attributes:
+        label, look: name in the legend, and look of line and markers.
+        line, markers: σ_YY and σ_XX, (2, points); None for none.
+        width: of the line [pt].
+    """
+
+    label: str
+    look: Look
+    line: NDArray | None = None
+    markers: NDArray | None = None
+    width: float = 1.0
+
+
+@dataclass(frozen=True)
+class _Row:
+    """Curves of one row of panels."""
+
+    title: str
+    curves: Sequence[_Stressed]
+
+
+#: Axes of the two stresses.
+_AXES = (r"contact stress $\sigma_{YY}/(N/2a)$", r"in-plane stress $\sigma_{XX}/(N/2a)$")
+#: Differences below this are those of rounding [N/(2a)], and height of their panels over the others'.
+_LEAST, _FLAT = 1e-15, 0.5
+
+
+def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, named: bool) -> Panel:
+    """Panel of one stress of a row, between limits that all rows share."""
+    every = [values for of in rows for curve in of.curves for values in (curve.line, curve.markers)]
+    shown = np.array([values[column] for values in every if values is not None])
+    half = along(X, shown)
+    inside, curves = np.abs(X) <= half, []
+    for n, curve in enumerate(row.curves):
+        label = curve.label if named else ""
+        if curve.line is not None:
+            curves.append(Curve(*broken(X, curve.line[column]), curve.look, label, LINE, curve.width))
+        if curve.markers is not None:
+            label = label * (curve.line is None)
+            at = spaced(np.where(inside, X, np.nan), n / len(row.curves))
+            curves.append(Curve(X[at], curve.markers[column][at], curve.look, label, MARKERS))
+    return Panel(
+        "position on the surface $X/a$", _AXES[column], curves=curves, title=row.title,
+        xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,),
+        bands=[(-1.0, 1.0)] if half == _BESIDE else (),
+    )  # fmt: skip
+
+
+def _says(lines: str, markers: str) -> list[Any]:
+    """Handles that say what lines and markers are."""
+    return [handle(Look(GREY, "-", ""), lines), marked(markers)]
+
+
+def _rows_figure(
+    X: NDArray, rows: Sequence[_Row], says: tuple[str, str], differ: dict[str, NDArray]
+) -> Any:
+    """Stresses row by row, and below them the largest differences of both methods."""
+    panels = [
+        panel if row is rows[-1] else replace(panel, x=None)
+        for row in rows
+        for panel in (_stress_panel(X, rows, row, column, column == 0) for column in range(2))
+    ]
+    how = ", ".join(f"{name} {line}" for name, line in zip(differ, ("line", "dashes")))
+    for column in range(2) if differ else ():
+        curves = [
+            Curve(
+                *broken(X, np.maximum(values[column], _LEAST)), Look(COLOURS[-2], LINES[n], ""), width=0.8
+            )
+            for n, values in enumerate(differ.values())
+        ]
+        above = panels[column]
+        panels.append(Panel(
+            "position on the surface $X/a$", r"$|\Delta\sigma|/(N/2a)$", curves=curves, xlim=above.xlim,
+            log="y", tall=_FLAT, title=f"largest difference of both methods: {how}",
+        ))  # fmt: skip
+    return render(panels, None, 2, _says(*says), high=0.5)
 
 
 def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
     """A figure of stresses by its name."""
     figure = STRESSES[name]
-    shown = stresses_of(data, Choice())
     rows, states = [], []
     for value in figure.rows:
         at = figure.at | {figure.row: value}
@@ -258,25 +355,24 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
         states += pairs
         styles = labels.looks([pair[0] for pair in pairs], [figure.curve])
         curves = [
-            _curve(labels.label(pair[0], [figure.curve]), look, shown, pair)
+            _curve(labels.label(pair[0], [figure.curve]), look, data, pair)
             for pair, look in zip(pairs, styles)
         ]
         if name == "fig7":
             travelled = _state(labels, at | {STROKE: BM1, C: SS, PLACE: 1.0 - value})
             dots = Look(COLOURS[6], LINES[3], "")
             label = "BM1 (SS), $X/L$ travelled since its turn"
-            curves.append(Curve(label, dots, _values(shown, CLOSED_FORM, travelled), width=0.8))
-        rows.append(Row(labels.label(pairs[0][0], [figure.row]), curves))
+            curves.append(_Stressed(label, dots, _values(data, CLOSED_FORM, travelled), width=0.8))
+        rows.append(_Row(labels.label(pairs[0][0], [figure.row]), curves))
     if len(figure.speeds) == 1:
         says = ("lines: closed form", "markers: finite elements")
         differ: dict[str, NDArray] = {}
     else:
         says = _slow_and_fast(labels, states[0])
-        differ = {} if FEM not in shown[0].values else {
-            word: _differences(shown, [pair[n] for pair in states]) for n, word in enumerate(("SS", "HS"))
+        differ = {} if PRESSURE[FEM].path not in data else {
+            word: _differences(data, [pair[n] for pair in states]) for n, word in enumerate(("SS", "HS"))
         }  # fmt: skip
-    drawn = rows_figure(data[SURFACE_X.path], [stress.label for stress in shown], rows, says, differ)
-    return Drawing(name, figure.caption + _ENDS, drawn)
+    return Drawing(name, figure.caption + _ENDS, _rows_figure(data[SURFACE_X.path], rows, says, differ))
 
 
 def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str]:
@@ -285,22 +381,21 @@ def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str
     return f"lines: SS, {slow}", f"markers: HS, {fast}"
 
 
-def _curve(label: str, look: Look, shown: list[Stress], states: Sequence[int]) -> Curve:
+def _curve(label: str, look: Look, data: dict[str, Any], states: Sequence[int]) -> _Stressed:
     """A curve: the slow state as a line and the fast one as markers, or both methods at one speed."""
     method = CLOSED_FORM if len(states) > 1 else FEM
-    has = method in shown[0].values
-    markers = _values(shown, method, states[-1]) if has else None
-    return Curve(label, look, _values(shown, CLOSED_FORM, states[0]), markers)
+    markers = _values(data, method, states[-1]) if PRESSURE[method].path in data else None
+    return _Stressed(label, look, _values(data, CLOSED_FORM, states[0]), markers)
 
 
-def _values(shown: list[Stress], method: str, state: int) -> NDArray[np.float64]:
-    return np.array([stress.values[method][state] for stress in shown])
+def _values(data: dict[str, Any], method: str, states: Any) -> NDArray[np.float64]:
+    """σ_YY and σ_XX of states over N/(2a), (2, …, points)."""
+    return np.array([data[rows[method].path][states] for rows in (PRESSURE, IN_PLANE)])
 
 
-def _differences(shown: list[Stress], states: list[int]) -> NDArray[np.float64]:
-    """Largest differences between closed form and finite elements of some states, (stresses, points)."""
-    apart = [stress.values[FEM][states] - stress.values[CLOSED_FORM][states] for stress in shown]
-    return np.abs(np.array(apart)).max(axis=1)
+def _differences(data: dict[str, Any], states: list[int]) -> NDArray[np.float64]:
+    """Largest differences between closed form and finite elements of some states, (2, points)."""
+    return np.abs(_values(data, FEM, states) - _values(data, CLOSED_FORM, states)).max(axis=1)
 
 
 def _state(labels: StateLabels, values: dict[str, Any]) -> int:

@@ -186,11 +186,10 @@ def _draw(
     study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, progress: Progress
 ) -> str:
     """Write the figures; the report, with all of them and all tables."""
-    from galinx.postprocess.figures.canvas import save
-
-    from ..pictures.choice import Choice
-    from ..pictures.numerics import mesh
-    from ..pictures.surface import inside as draw_inside
+    from ..figures.choice import Archive, Choice
+    from ..figures.files import save
+    from ..figures.numerics import mesh
+    from ..figures.stresses import inside as draw_inside
     from ..results.report import Report
     from .drawings import of_study
 
@@ -198,7 +197,8 @@ def _draw(
     for drawing in of_study(study.data, study.scene):
         progress.say(f"figure: {drawing.name}")
         drawings.append(drawing)
-    drawings += [draw_inside(inside.data, inside.scene, plain), mesh(study.data, study.scene, plain)]
+    drawings.append(draw_inside(Archive(inside.data, inside.scene, plain)))
+    drawings.append(mesh(Archive(study.data, study.scene, plain)))
     pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
     report = Report(study.data, study.attributes, study.scene, list(sheets), dimensionless=True)
     for drawing in drawings:

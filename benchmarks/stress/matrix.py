@@ -44,7 +44,7 @@ def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
             progress.done(i + 1, len(makers))
     good = all(verdict.holds for row in rows for verdict in row.verdicts)
     if ranks.is_root():
-        from galinx.postprocess.figures.canvas import save
+        from galinx.app.figures.files import save
 
         save([(row.name, _figure(row)) for row in rows], folder)
         _write(target, rows, good)
@@ -52,7 +52,7 @@ def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
 
 
 def _figure(row: Row) -> Any:
-    from galinx.postprocess.figures.curves import lines_figure
+    from galinx.app.figures.numerics import lines_figure
 
     return lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
 

@@ -1,6 +1,10 @@
 """HTML pages, self-contained: nothing is loaded from elsewhere, and symbols and numbers are typeset."""
 
 import re
+from base64 import b64encode
+from functools import cache
+from gzip import compress
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from unicodedata import normalize
@@ -8,7 +12,7 @@ from unicodedata import normalize
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from ..figures.style import plain
+from galinx.texts import plain
 
 #: Names of stresses, factors and coefficients, as archives, verdicts and figures write them.
 _INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
@@ -44,4 +48,17 @@ def render(content: dict[str, Any]) -> str:
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
     )
     environment.filters["typeset"] = markup
-    return environment.get_template("page.html").render(content)
+    return environment.get_template("page.html").render(content | {"plotly": _plotly()})
+
+
+#: plotly.js beside its Python package: of Debian, and of PyPI.
+_SCRIPTS = ("/usr/share/python3-plotly/plotly.js", "package_data/plotly.min.js")
+
+
+@cache
+def _plotly() -> str:
+    """plotly.js, compressed, as text; browsers unpack it."""
+    spec = find_spec("plotly")
+    folder = Path(spec.origin).parent if spec and spec.origin else Path()
+    path = next(path for path in (folder / name for name in reversed(_SCRIPTS)) if path.is_file())
+    return b64encode(compress(path.read_bytes(), 9, mtime=0)).decode()

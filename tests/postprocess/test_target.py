@@ -5,15 +5,15 @@ import socket
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from support import at_once, full_disk
 
 from galinx import compute, load, template
 from galinx.app.console import Progress, new_console, print_sheet
+from galinx.app.figures import files
+from galinx.app.figures.render import Panel
 from galinx.app.results.csv import pieces
 from galinx.app.results.fields import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
-from galinx.postprocess.figures import maps
 from galinx.postprocess.hdf5 import vtkhdf
 from galinx.postprocess.tables import Sheet
 from galinx.postprocess.target import (
@@ -42,8 +42,8 @@ def made(tmp_path_factory):
     result.save(folder / "a.h5")
     result.report(folder / "a.html")
     pdf, png, svg = result.plot(folder, "a", formats=("pdf", "png", "svg"))[:3]
-    picture = Figure()
-    (folder / "a.gif").write_bytes(maps.content(maps.Film(picture, 2, picture.suptitle), "gif", 30))
+    moving = files.Film(lambda frame: [Panel(title=f"frame {frame}")], 2)
+    (folder / "a.gif").write_bytes(files.film_content(moving, "gif", 30))
     square = StateField(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
     vtkhdf.write(folder / "a.hdf", [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:

@@ -13,10 +13,11 @@ import pytest
 from support import computed
 
 from galinx import compute, template
-from galinx.app.results import report
-from galinx.app.results.report import curves, states_table
+from galinx.app.results.report import states_table
 from galinx.app.scene.read import parse
 from galinx.postprocess.page import markup
+from galinx.postprocess.tables import state_columns
+from galinx.postprocess.units import Units
 
 CHROMIUM = shutil.which("chromium")
 CLOSED = {"solve.methods": ["closed_form"]}
@@ -25,7 +26,7 @@ CLOSED = {"solve.methods": ["closed_form"]}
 @pytest.fixture(scope="module")
 def page(map_run, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
-    map_run.report(path, dimensionless=True)
+    map_run.report(path)
     return path
 
 
@@ -50,12 +51,14 @@ class Page(HTMLParser):
 
 def test_a_report_needs_nothing_else(page):
     text = page.read_text(encoding="utf-8")
-    assert len(text) < 5e6
+    assert len(text) < 6e6
     found = Page(text)
     assert found.loaded and all(address.startswith("data:") for address in found.loaded)
     assert "@import" not in text and "url(" not in text.replace("url(#inside)", "")
-    assert len([source for source in found.loaded if source.startswith("data:image")]) == 5
-    for expected in ("FM1", "0.3161", "PASS", "dolfinx", "title = &#34;Tables 4 and 5&#34;"):
+    assert (
+        sum(source.startswith("data:image") for source in found.loaded) == 1
+    )  # the mesh; others are charts
+    for expected in ("FM1", "PASS", "dolfinx", "title = &#34;Tables 4 and 5&#34;"):
         assert expected in text
     # Published beside computed, by the study's arithmetic.
     assert (found.cells.count("yes"), found.cells.count("NO")) == (12, 0) and "1.65" in found.cells
@@ -84,32 +87,40 @@ def data_of(page, name):
 
 
 def test_a_report_has_every_state_and_its_curves(page, map_run):
-    table, curves = data_of(page, "states"), data_of(page, "curves")
-    heads = [column["csv"] for column in table["columns"]]
-    found = dict(zip(heads, zip(*table["rows"])))
-    np.testing.assert_allclose(found["f"], map_run.data["states/f"], rtol=1e-11)
-    np.testing.assert_allclose(found["fem_v0 [m]"], map_run.data["states/fem/v0"], rtol=1e-11)
+    table, large = data_of(page, "states"), data_of(page, "explorer")
+    found = dict(zip((column["name"] for column in table["columns"]), zip(*table["rows"])))
+    for column in state_columns(map_run.data, map_run.units()):
+        if not column.constant and not isinstance(column.values[0], str):
+            np.testing.assert_allclose(found[column.name or column.head], column.values, rtol=1e-11)
     assert list(found["motion"]) == list(map_run.data["states/motion"])
-    fem = curves["methods"].index("finite elements")
-    drawn = np.array(curves["values"][fem][curves["quantities"].index("σ_XX")])
-    order = np.argsort(map_run.data["surface/X_over_a"])
-    np.testing.assert_allclose(drawn, map_run.data["surface/fem/sigma_XX"][:, order], rtol=1e-4)
-    assert (np.diff(curves["X"]) >= 0).all()
+    X, order = map_run.data["surface/X_over_a"], np.argsort(map_run.data["surface/X_over_a"])
+    kept = [x is not None for x in large["X"]]
+    np.testing.assert_allclose(np.array(large["X"], dtype=float)[kept], X[order], rtol=1e-8)
+    stress = 1e-6 * map_run.scene.body.stress
+    for chart, (name, sign) in zip(large["surface"], (("sigma_YY", -1.0), ("sigma_XX", 1.0))):
+        for method, path in (("finite elements", "fem"), ("closed form", "closed_form")):
+            drawn = np.array(chart["curves"][method], dtype=float)[:, kept]
+            held = sign * stress * map_run.data[f"surface/{path}/{name}"][:, order]
+            np.testing.assert_allclose(drawn, held, rtol=1e-4)
+        assert chart["label"].endswith("(MPa)") and "(mm)" in large["x"]
+    half = 1e3 * map_run.scene.body.half_width
+    assert large["place"] == [[half, 0.0]] * len(large["states"]) and len(large["maps"]["stresses"]) == 3
 
 
-def test_a_report_begins_with_results_in_units(tmp_path, map_run):
-    map_run.report(tmp_path / "page.html")
-    text = (tmp_path / "page.html").read_text(encoding="utf-8")
-    X, stress = map_run.data["surface/X_over_a"], map_run.data["surface/fem/sigma_XX"]
-    largest = stress[:, np.abs(np.abs(X) - 1.0) >= 0.01].max() * 55.3e3 / 2e-3 / 1e6
-    assert f"{largest:.1f} MPa" in text
-    assert text.index("Results</h2>") < text.index("Accuracy</h2>") < text.index("States</h2>")
+def test_a_report_begins_with_its_verdict_and_results_in_units(page):
+    text = page.read_text(encoding="utf-8")
+    places = [
+        text.index(f">{name}</h2>") for name in ("Results", "Stresses", "Figures", "Accuracy", "Work")
+    ]
+    assert places == sorted(places) and text.index("PASS") < places[0]
+    heads = [column["head"] for column in data_of(page, "states")["columns"]]
+    assert any(head.endswith("[MPa]") for head in heads) and any(head.endswith("m]") for head in heads)
 
 
 def test_many_states_are_counted_where_not_all_are_shown(map_run):
     many = {path: np.repeat(values, 5000, axis=0) for path, values in map_run.data.items()
             if path.startswith("states/")}  # fmt: skip
-    table = states_table(many)
+    table = states_table(many, Units(map_run.scene.body, many))
     count = len(many["states/f"])
     assert len(table["data"]["rows"]) < count and f"{count} states" in table["note"]
 
@@ -127,24 +138,20 @@ def test_symbols_are_typeset(text, shown):
     assert markup(text) == shown
 
 
-#: Of a page in a browser: pictures that are not decoded, pictures, does all fit the width; rows of the
-#: table at first, and of a search; the last f on top after sorting twice; curves, and what is read there.
-PROBE = """<script>addEventListener('load', () => {
+#: Of a page in a browser, once its charts are there: pictures that are not decoded, does all fit the
+#: width, rows of the table at first and of a search, charts, and those without a curve or a map.
+PROBE = """<script>addEventListener('load', async () => {
+  while (!document.body.dataset.ready) await new Promise(done => setTimeout(done, 20));
   const rows = () => document.querySelectorAll('#table tbody tr');
   const search = document.getElementById('search'), found = [rows().length];
-  search.value = 'BM1 c=0.6'; search.dispatchEvent(new Event('input')); found.push(rows().length);
+  search.value = 'BM1'; search.dispatchEvent(new Event('input')); found.push(rows().length);
   search.value = ''; search.dispatchEvent(new Event('input'));
-  const head = [...document.querySelectorAll('th button')].find(b => b.textContent === 'f');
-  head.click(); head.click();
-  found.push([...rows()[0].cells][[...head.closest('tr').cells].indexOf(head.closest('th'))].textContent);
-  const svg = document.querySelector('#curves svg'), box = svg.getBoundingClientRect();
-  svg.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + 58 + (box.width - 70) / 2 }));
+  const charts = [...document.querySelectorAll('.chart')];
   document.querySelector('figure img').click();
-  const [pictures, curves] = ['figure img', '#curves path'].map(q => document.querySelectorAll(q).length);
   parent.document.title = JSON.stringify([
-    [...document.images].filter(i => i.src && !i.naturalWidth).length, pictures,
-    innerWidth, document.documentElement.scrollWidth <= innerWidth, ...found, curves,
-    document.querySelector('#curves output').textContent.split(';')[0],
+    [...document.images].filter(i => i.src && !i.naturalWidth).length,
+    innerWidth, document.documentElement.scrollWidth <= innerWidth, ...found, charts.length,
+    charts.filter(chart => !chart.querySelector('.trace, .heatmaplayer image')).length,
     document.getElementById('large').open]);
 })</script></body>"""
 
@@ -152,7 +159,7 @@ PROBE = """<script>addEventListener('load', () => {
 @pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")
 @pytest.mark.parametrize("width", [390, 1200])
 def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
-    """Pictures are decoded, nothing is wider than the window, what moves does; an empty console."""
+    """Pictures are decoded, nothing is wider than the window, charts are drawn; an empty console."""
     probe = tmp_path / "probe.html"
     text = html.escape(page.read_text(encoding="utf-8").replace("</body>", PROBE))
     # In a frame: no window of this browser is narrower than 500 px.
@@ -161,16 +168,14 @@ def test_a_browser_shows_the_report(page, map_run, tmp_path, width):
     done = subprocess.run(
         [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1300,900",
          f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr", "--dump-dom",
-         "--virtual-time-budget=5000", probe.as_uri()],
+         "--virtual-time-budget=30000", probe.as_uri()],
         capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert "CONSOLE" not in done.stderr, done.stderr
     told = json.loads(html.unescape(re.findall("<title>(.*?)</title>", done.stdout)[0]))
-    f = map_run.data["states/f"]
-    at = (map_run.data["states/c"] == 0.6) & (map_run.data["states/motion"] == "BM1")
-    assert told == [
-        0, 5, width, True, min(len(f), 25), at.sum(), f"{f.max():.6g}", 2, "X/a = 0", True
-    ]  # fmt: skip
+    states, backward = len(map_run.data["states/f"]), (map_run.data["states/motion"] == "BM1").sum()
+    charts = data_of(page, "charts")
+    assert told == [0, width, True, min(states, 25), backward, len(charts) + 3, 0, True]
 
 
 #: Clicks, drags, sorts, chooses and types into everything on a page.
@@ -204,80 +209,37 @@ PAGES = {
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")
-@pytest.mark.parametrize("name, si", [*((name, False) for name in PAGES), ("cylinder", True)])
-def test_everything_on_a_page_does_what_it_says(name, si, tmp_path):
+@pytest.mark.parametrize(
+    "name, dimensionless", [*((name, False) for name in PAGES), ("cylinder", True)]
+)  # fmt: skip
+def test_everything_on_a_page_does_what_it_says(name, dimensionless, tmp_path):
     result = computed(*PAGES[name])
-    result.report(tmp_path / "report.html", dimensionless=not si)
+    result.report(tmp_path / "report.html", dimensionless=dimensionless)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     (faults, told), console = browsed(page, tmp_path, EVERYTHING)
-    assert not faults and not console and told["saved"] == "states.csv"
-    if "surface/X_over_a" not in result.data:
-        assert "left" not in told
-        return
-    assert told["left"] == pytest.approx(-1.0, abs=0.02) and told["right"] == pytest.approx(1.0, abs=0.02)
-    assert told["all"] == pytest.approx(0.0, abs=0.1) == told["double click"]
-    assert told["dragged"] == pytest.approx(-1.5, abs=0.1) == told["not dragged"]
-    assert told["drawn"] == 1  # of one method, for every state and quantity
+    assert not faults and not console and told["saved"] == "states.csv" and told["charts"] > 0
+    if "surface/X_over_a" in result.data:
+        states = len(result.data["states/f"])
+        assert told["states"] == min(states, told["last"] + 1) and told["held"] == min(2, states)
+        assert told["zoomed"] and told["whole again"]
 
 
-@pytest.mark.parametrize(
-    "value, shown",
-    [
-        (1.138e11, "113.8 GPa"), (-2.5e-7, "−250 nPa"), (0.0, "0 Pa"), (999.96, "1 kPa"),
-        (1.0, "1 Pa"), (7e15, "7000 TPa"), (3e-14, "0.03 pPa"),
-    ],
-)  # fmt: skip
-def test_numbers_have_prefixes(value, shown):
-    assert report.engineering(value, "Pa") == shown
+def test_dimensionless_tables_agree_with_those_in_units(map_run):
+    scene, data = map_run.scene, map_run.data
+    both = [states_table(data, Units(scene.body, data, plain))["data"] for plain in (False, True)]
+    (speed,), (c,) = (
+        [i for i, column in enumerate(table["columns"]) if column["name"] == name]
+        for table, name in zip(both, ("speed", "c"))
+    )  # fmt: skip
+    values = [[row[i] for row in table["rows"]] for table, i in zip(both, (speed, c))]
+    assert values[0] == pytest.approx(np.array(values[1]) * scene.solid.c_s, rel=1e-11)
 
 
-def test_in_si_the_table_and_the_curves_have_units(map_run):
-    data = map_run.data
-    table = states_table(data, map_run.units())
-    columns = {column["csv"]: i for i, column in enumerate(table["data"]["columns"])}
-    speed = columns["speed [m/s]"]
-    assert [row[speed] for row in table["data"]["rows"]] == pytest.approx(data["states/speed"], rel=1e-11)
-    width = columns["closed_form_slip_reversed_left [mm]"]
-    expected = data["states/closed_form/slip_reversed_left"]
-    assert [row[width] for row in table["data"]["rows"]] == pytest.approx(expected, rel=1e-11)
-    assert "closed_form_slip_reversed_left" in {
-        column["csv"] for column in states_table(data)["data"]["columns"]
+def cells(result):
+    return {
+        (column.head, column.unit): np.asarray(column.values)
+        for column in state_columns(result.data, result.units())
     }
-
-
-def test_a_report_tells_where_the_solid_yields_and_where_answers_hold():
-    result = computed(
-        "tables4_5",
-        {
-            "solid.material": "T302",
-            "solve.methods": ["closed_form"],
-            "output.quantities": ["sif", "yield"],
-        },
-    )
-    found = {
-        answer.name: answer.value for answer in report.answers(result.data, result.scene, result.units())
-    }
-    depth = result.data["states/closed_form/yield_depth"]
-    assert found["Depth of the yielded zone"] == f"{depth.min():.4g} mm to {depth.max():.4g} mm"
-    assert found["Wave crossings of the contact in a stroke"].startswith("0.08333 to 1.045e+05")
-
-
-def test_in_si_curves_are_in_megapascals(surface_run):
-    data = surface_run.data
-    plain, si = curves(data), curves(data, surface_run.units())
-    assert plain["data"]["unit"] == "/ (N/2a)" and si["data"]["unit"] == "[MPa]"
-    one, other = (np.array(found["data"]["values"][0][0], dtype=float) for found in (plain, si))
-    np.testing.assert_allclose(other, 27.65 * one, rtol=1e-4)  # of five digits
-
-
-@pytest.fixture(scope="module")
-def surface_run():
-    return computed("tables4_5", {"solve.methods": ["closed_form"]})
-
-
-def in_pascals(text):
-    number, unit = text.split()
-    return float(number) * {"k": 1e3, "M": 1e6, "G": 1e9}[unit[0]]
 
 
 def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
@@ -290,9 +252,9 @@ def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
     )
     scene = parse(text)
     result = compute(scene)
-    shown = {answer.name: answer for answer in report.answers(result.data, scene, result.units())}
-    tension = in_pascals(shown["Largest in-plane tension σ_XX on the surface"].value)
-    p0 = in_pascals(shown["Largest contact pressure"].value)
+    (tension,), (p0,) = (
+        cells(result)[head, "MPa"] for head in ("largest tension σ_XX", "peak pressure")
+    )  # fmt: skip
     # The surface's own stress next to the end, where it is largest.
     X, σ = (result.data[f"surface/{path}"] for path in ("X_over_a", "closed_form/sigma_XX"))
     beside = (
@@ -304,10 +266,6 @@ def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
 def test_the_largest_shear_at_an_interface_is_that_of_either_sign():
     scene = template("coating", {"solve.methods": ["sie"], "output.quantities": ["interfaces"]})
     result = compute(scene)
-    shown = {answer.name: answer for answer in report.answers(result.data, scene, result.units())}
-    for name, path in (("shear |σ_XY| at", "sigma_XY"), ("tension σ_YY at", "sigma_YY")):
-        σ = np.nan_to_num(result.data[f"interfaces/sie/{path}"][:, 0])
-        largest = np.abs(σ).max() if "shear" in name else σ.max()
-        unit = scene.body.stress
-        answer = next((shown[key] for key in shown if name in key), None)
-        assert answer and in_pascals(answer.value) == pytest.approx(unit * largest, rel=1e-2)
+    σ = np.nan_to_num(result.data["interfaces/sie/sigma_XY"][:, 0])
+    largest = 1e-6 * scene.body.stress * np.abs(σ).max(axis=1)
+    assert cells(result)["interface shear", "MPa"] == pytest.approx(largest, rel=1e-2)

@@ -15,7 +15,8 @@ from galinx.app.plan.states import enumerate_states
 from galinx.app.results.check import faults
 from galinx.app.results.csv import pieces
 from galinx.app.results.fields import displacement
-from galinx.app.results.report import answers, summary
+from galinx.app.results.report import summary
+from galinx.postprocess.tables import state_columns
 from galinx.solvers.contact.exact import ClosedForm, ExactSolution
 from galinx.solvers.parameters import parameter
 from galinx.solvers.profiles import PROFILES
@@ -122,10 +123,11 @@ def test_a_report_tells_the_loads():
     asked = {"punch.load": list(LOADS), "output.quantities": ["sif"], "output.points": None}
     result = computed("tables4_5", ALL | punch("parabolic") | CLOSED | asked)
     assert "load 20 N/mm to 300 N/mm" in summary(result.data, result.scene)
-    told = {one.name: one.value for one in answers(result.data, result.scene, result.units())}
+    told = {column.head: column for column in state_columns(result.data, result.units())}["peak pressure"]
     a, p = (result.data[f"states/closed_form/{name}"] for name in ("half_width", "largest_pressure"))
-    largest = (p * result.data["states/load"] / (2.0 * a)).max()
-    assert f"{largest / 1e6:.4g} MPa" in told["Largest contact pressure"]
+    largest = p * result.data["states/load"] / (2.0 * a)
+    assert told.unit == "MPa"
+    np.testing.assert_allclose(told.values, largest / 1e6, rtol=1e-12)
 
 
 def test_yield_follows_the_load():
@@ -306,7 +308,7 @@ def breaks(line):
 
 
 def test_in_si_every_load_has_its_own_unit_and_place():
-    """MPa of each state; positions in mm where the contact's ends are found, else over a."""
+    """MPa of each state, and positions in mm or µm from the punch's axis."""
     changes = ALL | CLOSED | {"motion.X_over_L": [1.0], "punch.load": list(LOADS)}
     changes |= {"output.points": None, "output.map": {"X": [-2, 2, 9], "Y": [-2, -0.5, 5]}}
     for name in ("rounded", "parabolic", "flat"):
@@ -318,20 +320,22 @@ def test_in_si_every_load_has_its_own_unit_and_place():
         axis = surface.figure.axes[0]
         drawn = [line for line in axis.get_lines() if len(line.get_xdata()) > 20]
         assert len(drawn) == 3 and "(MPa)" in axis.get_ylabel()
-        assert ("mm" in axis.get_xlabel()) == (name != "flat")
+        assert f"({result.units().position.unit})" in axis.get_xlabel()
+        per_m = {"mm": 1e3, "µm": 1e6}[result.units().position.unit]
         for i in range(3):
             _, under, *_ = np.split(np.column_stack(drawn[i].get_data()), breaks(drawn[i]))
             X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"][i]
             some = np.abs(X) < 1.0
-            places = X if name == "flat" else 1e3 * (m[i] + a[i] * X)
+            places = per_m * (m[i] + a[i] * X)
             np.testing.assert_allclose(under[1:, 0], places[some], rtol=1e-12)
             in_MPa = 1e-6 * σ[some] * LOADS[i] / (2.0 * a[i])
             np.testing.assert_allclose(under[1:, 1], in_MPa, rtol=1e-12)
         (inside,) = result.drawings(figures=("inside",), quantities=("von_mises",), states=(0, 2))
         first, last = (axis for axis in inside.figure.axes if axis.get_xlabel())
         width = [np.ptp(axis.get_xlim()) for axis in (first, last)]
-        expected = (4e3 * a[[0, 2]]) if name != "flat" else [4.0, 4.0]
-        np.testing.assert_allclose(width, expected, rtol=1e-12)
+        # Both on one scale, which shows the map of either.
+        ends = per_m * np.array([m[[0, 2]] - 2.0 * a[[0, 2]], m[[0, 2]] + 2.0 * a[[0, 2]]])
+        np.testing.assert_allclose(width, [ends[1].max() - ends[0].min()] * 2, rtol=1e-12)
 
 
 def test_a_slider_moves_under_every_load():

@@ -10,10 +10,11 @@ from matplotlib.text import Text
 from support import computed, here
 
 from galinx.app.errors import BadInput
-from galinx.app.pictures.choice import Choice, Files, size
-from galinx.app.results.drawings import of_archive, write
+from galinx.app.figures import files as written
+from galinx.app.figures.archive import of_archive, write
+from galinx.app.figures.choice import Archive, Choice, size
+from galinx.app.figures.files import Files
 from galinx.postprocess.errors import Occupied
-from galinx.postprocess.figures import maps
 from galinx.postprocess.target import GIF, MP4, SVG
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
@@ -102,7 +103,7 @@ def test_any_column_can_be_drawn_over_any_other(sweep):
     (axis,) = drawn(sweep, "parameters", x="f", y=("K_I",), by="c").figure.axes
     assert axis.get_xlabel() == "friction coefficient F/N"
     (axis,) = drawn(sweep, "parameters", x="speed", y=("K_I",)).figure.axes
-    assert axis.get_xlabel() == "speed [m/s]"
+    assert axis.get_xlabel() == "speed $V$ (m/s)"
     assert curves(axis)[0].get_xdata()[-1] == pytest.approx(0.9 * sweep.scene.solid.c_s)
 
 
@@ -114,13 +115,13 @@ def test_a_quantity_of_ones_own_is_drawn_by_itself(sweep, monkeypatch):
     data = sweep.data | {row.path: 1e-5 * sweep.data["states/mu_c"] ** 2}
     drawing = next(d for d in of_archive(data, sweep.scene, Choice(figures=("parameters",))))
     labels = [axis.get_ylabel().replace("\n", " ") for axis in drawing.figure.axes]
-    assert any(label.startswith("depth of wear $[10^{-6}") for label in labels)
+    assert any(label.startswith("depth of wear ($10^{-6}$ m") for label in labels)
 
 
 def test_speeds_are_also_told_in_metres_per_second(fast):
     figure = drawn(fast, "parameters").figure
     (beside,) = figure.axes[0].child_axes
-    assert beside.get_xlabel() == "speed [m/s]"
+    assert beside.get_xlabel() == "speed (m/s)"
     figure.canvas.draw()
     c_s = fast.scene.solid.c_s
     assert beside.get_xlim() == pytest.approx([c_s * c for c in figure.axes[0].get_xlim()])
@@ -142,7 +143,11 @@ def test_over_layers_lines_are_of_the_integral_equation_and_equal_steps_of_speed
 def test_a_single_map_is_a_figure_of_its_own(strokes):
     drawing = drawn(strokes, "inside", states=(2,), quantities=("von_mises",))
     (axis,) = drawing.figure.axes
-    assert drawing.figure.get_figwidth() == 3.5 and len(axis.images) == 1 and axis.collections
+    assert (
+        drawing.figure.get_figwidth() * 25.4 == pytest.approx(85.0)
+        and len(axis.images) == 1
+        and axis.collections
+    )
     label = axis.child_axes[0].get_ylabel()
     assert label.startswith("von Mises") and "\n" not in label
 
@@ -171,14 +176,15 @@ def test_films_are_made_of_strokes(strokes, tmp_path):
 
 
 def test_a_film_goes_along_every_stroke_in_the_order_of_travel(strokes):
-    from galinx.app.pictures.film import film as made
+    from galinx.app.figures.film import film as made
 
-    shown, _ = made(strokes.data, strokes.scene, Choice())
+    shown, _ = made(Archive(strokes.data, strokes.scene, Choice()))
     places = []
     for n in range(shown.frames):
         shown.show(n)
         axis = shown.figure.axes[0]
-        places.append(axis.get_title(loc="left").split(", $f")[0].replace("$", ""))
+        title = axis.get_title(loc="left").removeprefix("(a)").strip()
+        places.append(title.split(", $f")[0].replace("$", ""))
     assert places[0] == "FM1, X/L = 0" and places[5:8] == [
         "FM1, X/L = 1", "BM1, X/L = 1", "BM1, X/L = 0.8",
     ]  # fmt: skip
@@ -189,11 +195,11 @@ def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
     if shutil.which("ffmpeg"):
         (one,) = write(strokes.data, strokes.scene, Choice(), files)
         assert MP4.of(one.path)
-    monkeypatch.setattr(maps.shutil, "which", lambda _: None)
+    monkeypatch.setattr(written.shutil, "which", lambda _: None)
     with pytest.raises(BadInput, match=r"mp4 needs ffmpeg, which is not installed; gif does not"):
         write(strokes.data, strokes.scene, Choice(), files)
     assert Files(tmp_path).endings("film") == ("gif",)
-    monkeypatch.setattr(maps.shutil, "which", lambda _: "/usr/bin/ffmpeg")
+    monkeypatch.setattr(written.shutil, "which", lambda _: "/usr/bin/ffmpeg")
     assert Files(tmp_path).endings("film") == ("mp4",)
 
 
@@ -263,8 +269,8 @@ def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
     """27.65 MPa is N/(2a) of these scenes."""
     for run, name, quantity in ((fast, "surface", "sigma_XX"), (strokes, "inside", "von_mises")):
         plain, si = (
-            drawn(run, name, states=(1,), quantities=(quantity,), unit=unit).figure
-            for unit in (0.0, 27.65)
+            drawn(run, name, states=(1,), quantities=(quantity,), units=run.units(plain)).figure
+            for plain in (True, False)
         )
         one, other = (figure.axes[0] for figure in (plain, si))
         if name == "surface":
@@ -279,16 +285,18 @@ def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
 
 def test_plot_in_si_takes_the_unit_from_the_scene(fast, tmp_path, monkeypatch):
     from galinx.app.commands.look import plot
-    from galinx.app.results import drawings
+    from galinx.app.figures import archive
 
     fast.save(tmp_path / "a.h5")
     units = []
     monkeypatch.setattr(
-        drawings, "write", lambda data, scene, choice, files: units.append(choice.unit) or []
+        archive, "write", lambda data, scene, choice, files: units.append(choice.units.stress) or []
     )
     for options in (["--dimensionless"], []):
         plot.main([str(tmp_path / "a.h5"), *options], standalone_mode=False)
-    assert units == [0.0, pytest.approx(27.65)]
+    assert [(unit.unit, unit.factor) for unit in units] == [
+        ("N/(2a)", 1.0), ("MPa", pytest.approx(27.65)),
+    ]  # fmt: skip
 
 
 ROUND = {"solve.methods": ["closed_form"], "output.map": None, "output.quantities": ["sif"]}
@@ -299,9 +307,9 @@ def test_contacts_of_several_widths_are_compared_in_units():
     result = computed("cylinder", ROUND)
     h, p = (result.data[f"states/closed_form/{name}"] for name in ("half_width", "largest_pressure"))
     pressure = 1e-6 * p * result.scene.punch.load / (2.0 * h)
-    axes = drawn(result, "parameters").figure.axes
-    (axis,) = (axis for axis in axes if axis.get_ylabel().startswith("largest contact pressure"))
-    assert r"[\mathrm{MPa}]" in axis.get_ylabel()
+    axes = drawn(result, "parameters", units=result.units()).figure.axes
+    (axis,) = (axis for axis in axes if axis.get_ylabel().startswith("largest contact"))
+    assert "(MPa)" in axis.get_ylabel()
     values = np.concatenate([line.get_ydata() for line in curves(axis)])
     assert np.isclose(values[:, None], pressure, rtol=1e-14).any(axis=1).all()
     assert values.max() == pytest.approx(pressure.max(), rel=1e-14)
@@ -311,7 +319,7 @@ def test_contacts_of_several_widths_are_compared_in_units():
 
 @pytest.mark.parametrize("profile", ["parabolic", "wedge", "tilted", "flat"])
 def test_angles_are_of_the_archives_own_punch(profile):
-    """Each panel at the archive's angle has what the archive has, and radii begin at 0."""
+    """Each panel at the archive's angle has what the archive has, and axes begin at 0."""
     given = {
         "parabolic": {"punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm"},
         "wedge": {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005},
@@ -320,29 +328,30 @@ def test_angles_are_of_the_archives_own_punch(profile):
     }[profile]
     fibres = {"solid.material": "carbon-epoxy", "solid.angle": "30 deg", "motion.c": [0.3]}
     result = computed("tables4_5", ROUND | fibres | given | {"motion.strokes": ["forward"]})
-    drawing = drawn(result, "angles", size=size("85mm"))
+    drawing = drawn(result, "angles", size=size("85mm"), units=result.units())
     g, axes = result.data["states/g"], drawing.figure.axes
     state = int(np.argmax(np.abs(g)))
     held = {name: result.data.get(f"states/closed_form/{name}", np.full(len(g), np.nan))[state]
             for name in ("half_width", "largest_pressure", "K_I_left", "K_I_right")}  # fmt: skip
     unit = 1e-6 * result.scene.punch.load / (2.0 * held["half_width"])
+    length = result.units().length.unit
     expected = {
-        "half-width [mm]": 1e3 * held["half_width"],
-        "largest pressure [MPa]": unit * held["largest_pressure"],
+        f"half-width ({length})": {"mm": 1e3, "µm": 1e6}[length] * held["half_width"],
+        "largest pressure (MPa)": unit * held["largest_pressure"],
         "$K_I$": held["K_I_right"] if profile == "flat" else np.nan,
     }
-    titles = {axis.get_title(loc="left").partition(")")[2].strip(): axis for axis in axes}
+    titles = {axis.get_ylabel().replace("\n", " "): axis for axis in axes}
     shown = {
-        "parabolic": {"half-width [mm]", "largest pressure [MPa]", "largest tension [MPa]"},
-        "wedge": {"half-width [mm]", "largest tension [MPa]"},
-        "tilted": {"half-width [mm]", "largest tension [MPa]", "$K_I$"},
-        "flat": {"$-\\alpha$, $-\\beta$", "$K_I$"},
+        "parabolic": {f"half-width ({length})", "largest pressure (MPa)", "largest tension (MPa)"},
+        "wedge": {f"half-width ({length})", "largest tension (MPa)"},
+        "tilted": {f"half-width ({length})", "largest tension (MPa)", "$K_I$"},
+        "flat": {"edge exponents $-\\alpha$, $-\\beta$", "$K_I$"},
     }[profile]
-    assert titles.keys() == {"speed limit [m/s]"} | shown
+    assert titles.keys() == {"speed limit (m/s)"} | shown
     for title, axis in titles.items():
         assert axis.get_ylim()[0] == 0.0
-        line = axis.lines[0]
-        (value,) = line.get_ydata()[np.isclose(line.get_xdata(), np.deg2rad(30.0))]
+        line = curves(axis)[0]
+        (value,) = line.get_ydata()[np.isclose(line.get_xdata(), 30.0)]
         if np.isfinite(expected.get(title, np.nan)):
             np.testing.assert_allclose(value, expected[title], rtol=1e-9)
 

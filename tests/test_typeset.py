@@ -2,7 +2,7 @@
 
 import pytest
 
-from galinx.postprocess.figures.style import folded, number, plain, unit
+from galinx.texts import folded, number, plain, unit
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.style import LINES, MARKERS, Look, looks, number, plain, unit
 from galinx.postprocess.quantities import column
 from galinx.postprocess.quantities.quantity import TEXT
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.tables import parameters
+from galinx.postprocess.units import Units
+from galinx.texts import number, plain, unit
 
 from ..scene.scene import Scene
+from .style import LINES, MARKERS, Look, looks
 
 #: States and values that a sentence names.
 _NAMED = 6
@@ -28,10 +30,12 @@ class StateLabels:
     Args:
         data: datasets of the archive by path.
         scene: the archive's scene.
+        units: of parameters.
     """
 
-    def __init__(self, data: dict[str, Any], scene: Scene) -> None:
+    def __init__(self, data: dict[str, Any], scene: Scene, units: Units | None = None) -> None:
         self._data, self.c_s = data, scene.solid.c_s
+        self._units = units or Units(scene.body, data, dimensionless=True)
         self.parameters = {path.rpartition("/")[2]: row for path, row in parameters(data).items()}
         self.all = np.arange(len(data[SPEED.path]))
 
@@ -82,22 +86,32 @@ class StateLabels:
 
     def listed(self, name: str, values: Sequence[Any]) -> str:
         """Some values of a parameter as plain text."""
-        row = self.parameters[name]
         if not self.numeric(name):
             return _short(values)
-        text = _short([plain(f"${number(value)}$") for value in values])
-        return f"{plain(f'${row.symbol}$')} = {text}{plain(f'${unit(row.unit)}$')}"
+        symbol, factor, in_unit = self.scale(name)
+        text = _short([plain(f"${number(factor * value)}$") for value in values])
+        return f"{plain(f'${symbol}$')} = {text}{plain(f'${unit(in_unit)}$')}"
 
     def _value_label(self, name: str, value: Any) -> str:
-        row = self.parameters[name]
         if not self.numeric(name):
             return str(value)
-        text = f"${row.symbol} = {number(value)}{unit(row.unit)}$"
-        return f"{text} ({self.speed(value)})" if name == C else text
+        symbol, factor, in_unit = self.scale(name)
+        text = f"${symbol} = {number(factor * value)}{unit(in_unit)}$"
+        if name == C and self._units.dimensionless:
+            text += f" (${number(value * self.c_s)}{unit('m/s')}$)"
+        return text
 
-    def speed(self, c: float) -> str:
-        """Speed in m/s of a speed over the shear wave speed, in TeX."""
-        return f"${number(c * self.c_s)}{unit('m/s')}$"
+    def scale(self, name: str) -> tuple[str, float, str]:
+        """Symbol in TeX of a numeric parameter, what its values are multiplied by, and its unit."""
+        row = self.parameters[name]
+        scaled = self._units(row, name)
+        if scaled is None or np.ndim(scaled.factor) or scaled.offset:
+            return str(row.symbol), 1.0, row.unit
+        return (
+            "V" if name == C and scaled.unit != "1" else str(row.symbol),
+            float(scaled.factor),
+            scaled.unit,
+        )
 
     def fixed(self, names: Sequence[str], states: NDArray) -> dict[str, Any]:
         """Values of the named parameters at which the others are varied.

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.figures.curves import Curve, dispersion_figure, response_figure
 from galinx.solvers.layers.layered import dispersion
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
@@ -21,7 +20,9 @@ from ..plan.over_time import headings
 from ..plan.states import enumerate_states
 from ..scene.scene import Scene
 from .choice import Drawing
-from .state_labels import drive_label, spread
+from .render import MARKERS, Curve, Panel, Size, render
+from .states import drive_label, spread
+from .style import COLUMN, GREY, looks
 
 #: Wavenumbers times the thickness of all layers; fewer where a layer is graded.
 _kH, _FEWER = np.geomspace(0.03, 100.0, 61), 4
@@ -78,7 +79,20 @@ def curve(scene: Scene) -> Dispersion:
 
 def dispersion_drawing(slowest: Dispersion) -> Drawing:
     """Figure of the speed of the slowest wave over its wavenumber."""
-    figure = dispersion_figure(slowest.kH, slowest.speed, slowest.limit, slowest.ends)
+    look = looks(1)[0]
+    places, ends = slowest.kH[[0, -1]], np.array(slowest.ends)
+    limit = np.full(2, slowest.limit)
+    curves = [
+        Curve(slowest.kH, slowest.speed, look, "slowest wave"),
+        Curve(
+            places, limit, look._replace(colour=GREY, line="--"), "highest speed of a punch", width=0.7
+        ),
+        Curve(places, ends, look, "along either end's solid alone", MARKERS),
+    ]
+    panel = Panel(
+        "wavenumber $kH$", "speed (m/s)", curves=curves, log="x", xlim=(places[0] / 1.1, places[1] * 1.1)
+    )
+    figure = render([panel], Size(COLUMN), high=0.72)
     caption = (
         "Speed of the slowest wave along the layers over its wavenumber k times the thickness H of all "
         f"layers. The dashed line is the highest speed of a punch, {slowest.limit:.6g} m/s; circles are "
@@ -90,6 +104,11 @@ def dispersion_drawing(slowest: Dispersion) -> Drawing:
 
 #: Speeds with frictions that are solved at most, and curves that can be distinguished.
 MOST, _CURVES = 24, 6
+#: Axes of stiffness and damping.
+_LABELS = (
+    r"stiffness $\mathrm{Re}\,(\hat N/\hat v_0)/2\mu$",
+    r"damping $\mathrm{Im}\,(\hat N/\hat v_0)/2\mu\;/\;(\omega a/c_s)$",
+)
 #: Highest frequency by default, over c_s/a.
 _USUAL = 10.0
 
@@ -180,7 +199,19 @@ def table(scene: Scene, answer: Answer) -> list[str]:
 def response_drawing(computed: list[Answer]) -> Drawing:
     """Figure of stiffness and damping over frequency."""
     shown = [computed[i] for i in spread(list(range(len(computed))), _CURVES)]
-    curves = [_curve(answer) for answer in shown]
+    panels = []
+    for n, label in enumerate(_LABELS):
+        curves, styles = [], looks(len(shown))
+        for answer, look in zip(shown, styles):
+            K, ω = answer.oscillation.stiffness, answer.oscillation.ω
+            name = drive_label(answer.c, answer.g, answer.way)
+            curves.append(Curve(ω, (K.real, K.imag / ω)[n], look, name))
+            if n == 1:
+                far = np.full(2, answer.plane_waves)
+                curves.append(Curve(ω[[0, -1]], far, look._replace(line="--"), width=0.5))
+        panels.append(
+            Panel(r"frequency $\omega a/c_s$", label, curves=curves, log="x", xlim=(ω[0], ω[-1]))
+        )
     caption = (
         "Dynamic stiffness of the punch, N̂/v̂₀ of a load N̂ e^(iωt) about that of steady sliding: its "
         "real part, and its imaginary part over ω, which is what waves carry away. Dashed: plane waves "
@@ -189,12 +220,5 @@ def response_drawing(computed: list[Answer]) -> Drawing:
     )
     missing = f"{len(computed) - len(shown)} of {len(computed)} speeds with frictions not shown."
     return Drawing(
-        "response", caption, response_figure(curves), left_out=missing * (len(shown) < len(computed))
+        "response", caption, render(panels, high=0.72), left_out=missing * (len(shown) < len(computed))
     )
-
-
-def _curve(answer: Answer) -> Curve:
-    K, ω = answer.oscillation.stiffness, answer.oscillation.ω
-    parts: NDArray[np.float64] = np.array([K.real, K.imag / ω])
-    label = drive_label(answer.c, answer.g, answer.way)
-    return Curve(label, ω, parts, answer.plane_waves)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from .canvas import Room, Size, lettered, panels
+from .render import Panel, Size, render
 from .style import COLOURS, GREY, PAGE, SMALL, TEXT, styled
 
 _BLUE, _ORANGE, _GREEN = COLOURS[:3]
@@ -131,7 +131,6 @@ def procedure_figure() -> Figure:
 _DOT = 1.0 / 500.0
 
 
-@styled
 def mesh_figure(
     edges: NDArray,
     nodes: NDArray,
@@ -148,30 +147,28 @@ def mesh_figure(
         zooms: half-widths of the panels over a; the first is centred on the punch.
         first: title of that one.
     """
-    size = size or Size(PAGE)
-    columns = max(1, min(len(zooms), int(size.width / 2.0)))
-    rows = -(-len(zooms) // columns)
-    figure, axes = panels(rows, columns, size, 0.65, Room(0.55, 0.2, 0.38, 0.2, 0.6, 0.55))
-    for n, (axis, half) in enumerate(zip(axes.flat, zooms)):
+
+    def panel(n: int, half: float) -> Panel:
         centre = (0.0 if n == 0 else 1.0, 0.0)
         # Coordinates from the panel's centre: far-away points would lose the picture's digits.
         lines, dots = edges - centre, nodes - centre
         near = np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half
-        axis.add_collection(LineCollection(lines[near], colors="#555555", linewidths=0.5))
         near_dots = dots[np.abs(dots).max(axis=1) < 1.5 * half]
         printed = np.unique(np.round(near_dots / (2.0 * half * _DOT)), axis=0) * (2.0 * half * _DOT)
-        axis.plot(
-            *printed.T, linestyle="none", marker=".", markersize=1.3, markeredgewidth=0.0,
-            color=COLOURS[0], rasterized=True,
-        )  # fmt: skip
         punch = np.clip([-1.0 - centre[0], 1.0 - centre[0]], -half, half)
-        axis.fill_between(punch, 0.0, 0.12 * half, color=COLOURS[1], linewidth=0.0)
-        axis.set(xlim=(-half, half), ylim=(-1.18 * half, 0.12 * half))
-        axis.set_xlabel("$X/a$" if n == 0 else "$X/a - 1$")
-        axis.set_ylabel("$Y/a$")
-        axis.locator_params(nbins=5)
-    for axis in axes.flat[len(zooms) :]:
-        axis.remove()
-    titles = [first, *[f"{zooms[0] / half:.0f} times larger" for half in zooms[1:]]]
-    lettered(axes.flat[: len(zooms)], titles)
-    return figure
+
+        def after(axis: Axes) -> None:
+            axis.add_collection(LineCollection(lines[near], colors="#555555", linewidths=0.5))
+            axis.plot(
+                *printed.T, linestyle="none", marker=".", markersize=1.3, markeredgewidth=0.0,
+                color=COLOURS[0], rasterized=True,
+            )  # fmt: skip
+            axis.fill_between(punch, 0.0, 0.12 * half, color=COLOURS[1], linewidth=0.0)
+
+        return Panel(
+            "$X/a$" if n == 0 else "$X/a - 1$", "$Y/a$", xlim=(-half, half),
+            ylim=(-1.18 * half, 0.12 * half), after=after,
+            title=first if n == 0 else f"{zooms[0] / half:.0f} times larger",
+        )  # fmt: skip
+
+    return render([panel(n, half) for n, half in enumerate(zooms)], size, high=0.65)

@@ -1,16 +1,13 @@
-"""Style of all figures: type, sizes, colours, line styles; numbers, symbols and units as TeX and text."""
+"""Style of all figures: type, sizes, colours and line styles."""
 
-import re
-import unicodedata
 from collections.abc import Callable, Sequence
 from functools import wraps
-from textwrap import fill
 from typing import Any, NamedTuple
 
 import numpy as np
 
-#: Widths of a column and of a page of most journals [in].
-COLUMN, PAGE = 3.5, 7.0
+#: Widths of a column and of a page of most journals, and the height of a page [in].
+COLUMN, PAGE, TALLEST = 85.0 / 25.4, 170.0 / 25.4, 230.0 / 25.4
 
 #: Sizes of type [pt]; nothing is smaller than the last when printed.
 TEXT, SMALL = 8.5, 7.5
@@ -108,69 +105,3 @@ def looks(count: int, ordered: bool = False) -> list[Look]:
         Look(colours[n % len(colours)], LINES[n % len(LINES)], MARKERS[n % len(MARKERS)])
         for n in range(count)
     ]
-
-
-#: Beyond these numbers are written with a power of ten.
-_SMALL, _LARGE = 1e-3, 1e6
-
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
-def number(value: float, digits: int = 4) -> str:
-    """A number in TeX, without dollars: ``4.786 \\times 10^{-7}``."""
-    shown = f"{value:.{digits - 1}e}"
-    mantissa, exponent = shown.split("e")
-    if float(shown) == 0.0 or _SMALL <= abs(float(shown)) < _LARGE:
-        whole, dot, rest = f"{float(shown):f}".rstrip("0").rstrip(".").partition(".")
-        if len(whole.lstrip("-")) > 4:
-            whole = f"{int(whole):,}".replace(",", r"\,")
-        return whole + dot + rest
-    mantissa = mantissa.rstrip("0").rstrip(".")
-    power = f"10^{{{int(exponent)}}}"
-    return {"1": power, "-1": f"-{power}"}.get(mantissa, rf"{mantissa} \times {power}")
-
-
-def unit(name: str) -> str:
-    """Unit in TeX, with the space before it; nothing for what has none."""
-    if name in ("1", "", "none"):
-        return ""
-    if "(" in name:  # a quantity, as N/(2a) is
-        return rf"\,{name}"
-    over = re.fullmatch(r"1/(\w+)", name)
-    return rf"\,\mathrm{{{over[1]}^{{-1}}}}" if over else rf"\,\mathrm{{{name}}}"
-
-
-def plain(text: str) -> str:
-    """Plain text of a text with formulas between dollars: μ_C = 4.786 × 10⁻⁷."""
-
-    def greek(match: re.Match[str]) -> str:
-        word = match[1]
-        kind = "CAPITAL" if word[0].isupper() else "SMALL"
-        name = {"lambda": "LAMDA"}.get(word.lower(), word.upper())
-        try:
-            return unicodedata.lookup(f"GREEK {kind} LETTER {name}")
-        except KeyError:
-            return word
-
-    def formula(match: re.Match[str]) -> str:
-        characters = match[1].replace(r"\times", "×").replace(r"\,", "\u202f")
-        characters = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(_RAISED), characters)
-        characters = re.sub(r"\\(?:mathrm|mathit|text)\{((?:[^{}]|\{[^{}]*\})*)\}", r"\1", characters)
-        characters = re.sub(r"\\([A-Za-z]+)", greek, characters)
-        characters = re.sub(r"_\{?(\d)\}?", lambda index: index[1].translate(_LOWERED), characters)
-        return characters.replace(r"\_", "_").replace("{", "").replace("}", "")
-
-    return re.sub(r"\$([^$]*)\$", formula, text)
-
-
-def folded(text: str, width: int) -> str:
-    """Text in lines of at most so many characters; formulas count as they are shown and stay whole."""
-    pieces = re.findall(r"\$[^$]*\$", text)
-    marks = [f"\0{n}".ljust(max(3, len(plain(piece))), "\0") for n, piece in enumerate(pieces)]
-    for piece, mark in zip(pieces, marks):
-        text = text.replace(piece, mark, 1)
-    text = fill(text, width, break_long_words=False, break_on_hyphens=False)
-    for piece, mark in zip(pieces, marks):
-        text = text.replace(mark, piece, 1)
-    return text

@@ -9,9 +9,9 @@ from support import HOME, computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.pictures import sweep
-from galinx.app.pictures.choice import Choice, size
-from galinx.app.results.drawings import names, of_archive
+from galinx.app.figures import sweep
+from galinx.app.figures.archive import names, of_archive
+from galinx.app.figures.choice import Choice, size
 from galinx.app.scene.read import parse
 from galinx.solvers.errors import SolveError
 
@@ -71,12 +71,12 @@ def test_what_is_chosen_is_drawn(coated):
 
 
 def test_in_megapascals_curves_have_the_unit(coated):
-    plain, scaled = (
-        curves(drawn(coated, "interfaces", unit=unit).figure.axes[1])[0].get_ydata()
-        for unit in (0.0, 7.0)
-    )
-    assert scaled == pytest.approx(7.0 * plain)
-    assert "MPa" in drawn(coated, "interfaces", unit=7.0).figure.axes[1].get_ylabel()
+    axes = [
+        drawn(coated, "interfaces", units=coated.units(plain)).figure.axes[1] for plain in (True, False)
+    ]
+    plain, scaled = (curves(axis)[0].get_ydata() for axis in axes)
+    assert scaled == pytest.approx(1e-6 * coated.scene.body.stress * plain)
+    assert "(N/2a)" in axes[0].get_ylabel() and "MPa" in axes[1].get_ylabel()
 
 
 def test_interfaces_are_lines_in_maps(coated):
@@ -151,11 +151,11 @@ def test_thinner_and_thicker_layers_are_what_their_scenes_say():
 def test_thicknesses_are_drawn_of_uniform_layers_that_are_not_thin():
     alone = {"output.quantities": ["sif"], "friction.mu_c": 0.1}
     here = computed("coating", alone)
-    assert "thicknesses" in names(here.data, here.scene, Choice())
+    assert "thicknesses" in names(here.data, here.scene, Choice(("all",)))
     (top,) = here.scene.layers
     graded = replace(here.scene, layers=(replace(top, bottom=here.scene.half_plane.solid),))
     thin = replace(here.scene, layers=(replace(top, thickness=1e-5),))
-    assert all("thicknesses" not in names(here.data, one, Choice()) for one in (graded, thin))
+    assert all("thicknesses" not in names(here.data, one, Choice(("all",))) for one in (graded, thin))
 
 
 def test_where_the_equation_has_no_answer_curves_have_a_gap(monkeypatch):
@@ -186,7 +186,7 @@ def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():
     axes = next(result.drawings(figures=("interfaces",))).figure.axes
     axis = axes[0]
     X = data["interfaces/X_over_a"]
-    assert "[mm]" in axes[-1].get_xlabel()
+    assert "(mm)" in axes[-1].get_xlabel()
     for state, line in enumerate(curves(axis)):
         stress = 1e-6 * data["interfaces/sie/sigma_YY"][state, 0] * load[state] / (2.0 * h[state])
         found = np.interp(line.get_xdata(), 1e3 * (m[state] + h[state] * X), stress)

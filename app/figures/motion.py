@@ -1,0 +1,382 @@
+"""Motions in time of an archive.
+
+From rest or from steady motion: centre of the pressure, indentation and K_I over time; where the energy
+goes; pressures at some times; and stresses along the surface at some of the chosen times, beside those of
+steady motion, which are the closed form's. Films show pressures and stresses as they change.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.postprocess.over_time import energy_imbalance
+from galinx.postprocess.quantities import over_time as rows
+from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
+from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.texts import number
+
+from ..scene.scene import Time
+from .choice import Archive, Drawing, both, explained, named
+from .render import Curve, Film, Panel, Size, handle, render
+from .states import drive_label, spread
+from .stresses import _BESIDE, limits, position_name, surface_curves
+from .style import COLUMN, GREY, Look, looks
+
+#: Starts that can be told apart in a figure, times that are drawn of one, and frames of a film at most.
+_STARTS, _TIMES, _SURFACE_TIMES, _FRAMES = 6, 6, 5, 160
+#: Frames that make a film of stresses.
+_LEAST_FRAMES = 4
+#: Pressure over the largest that is drawn, over N/(2a): it is infinite at the ends.
+_TOP = 2.5
+#: What is drawn over time, and what it is called.
+_OVER_TIME = (
+    (rows.CENTRE, "centre of pressure"), (rows.V0, "indentation $v_0$"),
+    (rows.K_I_LEFT, "$K_I$ at $X = -a$"),
+    (rows.K_I_RIGHT, "$K_I$ at $X = a$"),
+)  # fmt: skip
+
+
+def has_motions(of: Archive) -> bool:
+    """Return True if an archive holds motions in time."""
+    return of.has(rows.TIMES)
+
+
+def _time(of: Archive) -> tuple[str, NDArray]:
+    """Name of the axis of time, and times."""
+    unit = of.scaled(rows.TIMES).unit
+    return ("time $t/(a/c_s)$" if unit == "a/c_s" else f"time $t$ ({unit})"), of.values(rows.TIMES)
+
+
+def _at_time(of: Archive, t: float) -> str:
+    """Label of a time over a/c_s."""
+    scale = of.scaled(rows.TIMES)
+    unit = r"\,a/c_s$" if scale.unit == "a/c_s" else f"$ {scale.unit}"
+    return f"$t = {number(t * scale.factor, 3)}{unit}"
+
+
+def _over_a(of: Archive, words: str, row: Any) -> str:
+    """Name of an axis of a quantity, over what it is over where it is dimensionless."""
+    unit = of.scaled(row).unit
+    over = {"N/(2mu)": "$/(N/2\\mu)$", "1": "$/a$" if row.scale else ""}
+    return words + over[unit] if unit in over else named(words, unit)
+
+
+def time(of: Archive) -> Drawing:
+    """Figure of the centre of the pressure, indentation and intensities over time of some starts."""
+    data, settings = of.data, of.scene.time
+    assert settings
+    methods = [name for name in (SIE, FEM) if rows.V0[name].path in data]
+    c, g = (data[row.path] for row in (rows.SPEED, rows.RATIO))
+    way = data[rows.DIRECTION.path][:, -1]
+    shown = spread(list(range(len(c))), _STARTS)
+    styles = looks(len(shown))
+    label, t = _time(of)
+    panels = []
+    for n, (by_method, words) in enumerate(_OVER_TIME):
+        row = by_method[methods[0]]
+        values = {m: of.values(by_method[m]) for m in methods}
+        if not any(np.isfinite(y[shown]).any() for y in values.values()):
+            continue
+        curves = []
+        for k, (i, look) in enumerate(zip(shown, styles)):
+            name = drive_label(c[i], g[i], way[i]) if n == 0 and len(shown) > 1 else ""
+            curves += both(t, {m: y[i] for m, y in values.items()}, look, name, k / len(shown))
+            if n == 0:
+                steady = of.values(rows.CENTRES)[i]
+                curves.append(Curve(t, steady, look._replace(line=":"), width=0.7))
+        panels.append(Panel(label, _over_a(of, words, row), curves=curves, xlim=(0.0, float(t[-1]))))
+    with_K_I = len(panels) > 2
+    caption = (
+        f"From {'steady motion on' if settings.steady else 'rest to steady sliding'}, "
+        f"{' and '.join(METHODS[m] for m in methods)}: centre of the pressure, whose dotted line "
+        "is that of steady motion by the friction of the same time, indentation since the first"
+        f"{', and K_I at both ends by the full load' * with_K_I}, over time. {_history(settings)}"
+    )
+    if len(shown) == 1:
+        caption += f" At {drive_text(c[0], g[0], way[0])}."
+    missing = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
+    columns = 2 if not of.size or of.size.width > 3.0 else 1
+    return Drawing(
+        "time", caption, render(panels, of.size, columns, explained(methods)), left_out=missing
+    )
+
+
+def drive_text(c: float, g: float, way: float) -> str:
+    """Speed, friction and way of a motion as plain text."""
+    from galinx.texts import plain
+
+    return plain(drive_label(c, g, way))
+
+
+def _history(settings: Time) -> str:
+    load = f"The load comes on within {settings.load_ramp:g} a/c_s." * (
+        not settings.load and not settings.steady
+    ) or "The load changes as the scene says." * bool(settings.load)
+    return " ".join(filter(None, [load, "Friction follows its law along the strokes." * settings.by_law]))
+
+
+_DONE = {"load": OF_LOAD[FEM], "friction": OF_FRICTION[FEM], "being carried past the punch": rows.CARRIED}
+_HELD = {"strain near": rows.STRAIN, "motion near": rows.KINETIC, "radiated": rows.RADIATED}
+
+
+def has_energies(of: Archive) -> bool:
+    """Return True if an archive holds energies over time."""
+    return of.has(*_DONE.values(), *_HELD.values())
+
+
+def energies(of: Archive) -> Drawing:
+    """Figure of the work and the energies over time of the first start."""
+    label, t = _time(of)
+    styles = iter(looks(len(_DONE) + len(_HELD)))
+    panels = []
+    for what, kinds in (("work", _DONE), ("energy", _HELD)):
+        values = {name: of.values(row)[0] for name, row in kinds.items()}
+        curves = [Curve(t, np.sum(list(values.values()), axis=0), Look(GREY, "-", ""), width=1.8)]
+        curves += [Curve(t, y, next(styles), name) for name, y in values.items()]
+        unit = of.scaled(next(iter(kinds.values()))).unit
+        over = r" over $N^2/4\mu$" if unit.startswith("N^2") else f" ({unit})"
+        panels.append(Panel(
+            label, rf"{what} since $t = 0${over}", curves=curves, at_y=(0.0,), xlim=(0.0, float(t[-1]))
+        ))  # fmt: skip
+    every = np.concatenate([curve.y for panel in panels for curve in panel.curves])
+    room = 0.05 * np.ptp(every)
+    panels = [replace(panel, ylim=(every.min() - room, every.max() + room)) for panel in panels]
+    notes = [handle(Look(GREY, "-", ""), "all together", linewidth=1.8)]
+    off = float(np.abs(energy_imbalance(of.data)[0]).max())
+    heat, unit = float(of.values(rows.DISSIPATED)[0, -1]), of.scaled(rows.DISSIPATED).unit
+    caption = (
+        "Work of the punch on the solid besides the heat of friction, and where it is: strained and "
+        "moving within 3 a of the middle and 2 a below it, and what went beyond, finite elements. Sums "
+        f"are within {off:.1e} of the largest work. Friction took {heat:.3g} {unit.replace('*', ' ')} "
+        "meanwhile, of first order in the load, where all of these are of second."
+    )
+    return Drawing(
+        "energies", caption, render(panels, of.size, 0, notes, high=0.68), left_out=_left_out(of)
+    )
+
+
+def has_pressures(of: Archive) -> bool:
+    """Return True if an archive holds pressures over time."""
+    return of.has(rows.PRESSURE, rows.PLACES)
+
+
+def _pressures(of: Archive, start: int) -> tuple[NDArray, NDArray, NDArray, Panel]:
+    """Positions, pressures over time and in steady motion, and a panel for them without any."""
+    scale = of.scaled(rows.PRESSURE)
+    X, p = of.values(rows.PLACES), -of.values(rows.PRESSURE)[start]
+    steady = np.full(len(X), np.nan)
+    if not of.scene.layers:  # else there is no closed form
+        c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
+        steady = -scale.factor * FlatPunch(of.scene.solid.response(c), g).σ_YY(of.data[rows.PLACES.path])
+    name = named(r"contact pressure $-\sigma_{YY}$", scale.unit)
+    panel = Panel(
+        position_name(of, "position "),
+        name,
+        xlim=_ends(of),
+        ylim=(0.0, _TOP * float(np.max(scale.factor))),
+    )
+    return X, p, steady, panel
+
+
+def _ends(of: Archive) -> tuple[float, float]:
+    """Ends of the contact in the figure's units."""
+    scale = of.scaled(rows.PLACES)
+    ends = scale.of(np.array([-1.0, 1.0]))
+    return float(ends[0]), float(ends[1])
+
+
+_STEADY = Look(GREY, "--", "")
+
+
+def pressures(of: Archive) -> Drawing:
+    """Figure of the pressure of the start whose steady pressure leans most, at times that double up."""
+    start = _leaning(of)
+    t = of.data[rows.TIMES.path]
+    c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
+    at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)])
+    X, p, steady, panel = _pressures(of, start)
+    curves = [
+        Curve(X, p[i], look, _at_time(of, t[i])) for i, look in zip(at, looks(len(at), ordered=True))
+    ]
+    curves.append(Curve(X, steady, _STEADY, "steady", width=0.8))
+    caption = (
+        f"Contact pressure under the punch at c = {c:.4g}, σ_XY/σ_YY = {g:.4g}, by the integral "
+        "equation, at times after it touched; dashed in steady motion. While the load comes on the "
+        "pressure grows, and then it shifts from one side to the other."
+    )
+    figure = render([replace(panel, curves=curves)], of.size or Size(COLUMN), high=0.75)
+    return Drawing("pressures", caption, figure, left_out=_left_out(of))
+
+
+def _centre(of: Archive, method: str, start: int, steady: float | None) -> tuple[NDArray, Panel]:
+    label, t = _time(of)
+    row = rows.CENTRE[method]
+    centre = of.values(row)[start]
+    lines = () if steady is None else (float(np.ravel(of.scaled(row).of(np.array([steady])))[0]),)
+    panel = Panel(
+        label, _over_a(of, "centre of pressure", row), xlim=(0.0, float(t[-1])), at_y=lines,
+        curves=[Curve(t, centre, looks(1)[0])],
+    )  # fmt: skip
+    return centre, panel
+
+
+def pressure_film(of: Archive) -> tuple[Film, str]:
+    """Film of the pressure of the start whose steady pressure leans most, and what it leaves out."""
+    start, t = _leaning(of), of.data[rows.TIMES.path]
+    frames = np.unique(np.linspace(0, len(t) - 1, _FRAMES).round().astype(int))
+    X, p, steady, panel = _pressures(of, start)
+    centre, way = _centre(of, SIE, start, float(of.data[rows.STEADY_CENTRE.path][start]))
+    times = _time(of)[1]
+
+    def panels(frame: int) -> list[Panel]:
+        i = frames[frame]
+        line = [Curve(X, p[i], looks(1)[0]), Curve(X, steady, _STEADY, width=0.8)]
+        dot = Curve(times[i : i + 1], centre[i : i + 1], Look("black", "none", "o"), form="markers")
+        return [
+            replace(panel, curves=line, title=_at_time(of, t[i])), replace(way, curves=[*way.curves, dot])
+        ]  # fmt: skip
+
+    return Film(panels, len(frames), of.size), _left_out(of)
+
+
+def _leaning(of: Archive) -> int:
+    """Number of the start whose steady pressure leans most."""
+    return int(np.abs(of.data[rows.STEADY_CENTRE.path]).argmax())
+
+
+def _left_out(of: Archive) -> str:
+    count = len(of.data[rows.SPEED.path])
+    return f"{count - 1} of {count} starts not shown." * (count > 1)
+
+
+#: Stresses along the surface over time: what they are called, and their sign.
+_LABELS = {
+    "sigma_YY": (r"contact pressure $-\sigma_{YY}$", -1.0, rows.SURFACE_PRESSURE),
+    "sigma_XX": (r"in-plane stress $\sigma_{XX}$", 1.0, rows.SURFACE_IN_PLANE),
+}
+#: What a caption says of what is beside it.
+_BESIDE_IT = "; beside it what they were if they were at once those of steady motion"
+
+
+def has_surface(of: Archive) -> bool:
+    """Return True if an archive holds stresses along the surface over time."""
+    return bool(_methods(of))
+
+
+def has_film(of: Archive) -> bool:
+    """Return True if stresses along the surface are held at enough times for a film."""
+    return has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= _LEAST_FRAMES
+
+
+def stresses(of: Archive) -> Drawing:
+    """Figure of the stresses along the surface of the first start, at chosen times from the first to the
+    last, beside those of steady motion with the friction and the load of these times."""
+    t, methods = of.data[rows.SURFACE_TIMES.path], _methods(of)
+    shown = np.unique(np.linspace(0, len(t) - 1, _SURFACE_TIMES).round().astype(int))
+    styles = looks(len(shown), True)
+    steady = _steady(of, t[shown])
+    panels = []
+    for n, name in enumerate(_LABELS):
+        values = {method: _over_time(of, name, method)[shown] for method in methods}
+        columns = [("in time", values)]
+        if not of.scene.layers:
+            columns.append(("steady motion of that time's friction and load", {SIE: steady[name]}))
+        panels += _beside(of, name, columns, [_at_time(of, t[i]) for i in shown], styles, n == 0)
+    c = float(of.data[rows.SPEED.path][0])
+    caption = (
+        "Stresses along the surface, under the punch (grey) and beside it, over time, "
+        f"{' and '.join(METHODS[method] for method in methods)}, at c = {c:.4g}"
+        f"{_BESIDE_IT * (not of.scene.layers)}. At the edges they grow without bound."
+    )
+    figure = render(panels, of.size, 1 if of.scene.layers else 2, explained(methods))
+    return Drawing("stresses", caption, figure, left_out=_left_out(of))
+
+
+def _beside(
+    of: Archive, name: str, columns: Any, labels: list[str], styles: list[Look], top: bool
+) -> list[Panel]:
+    """A row of panels of a stress, with the same limits."""
+    X, words = of.data[rows.SURFACE_PLACES.path], _LABELS[name][0]
+    scale, unit = of.scaled(rows.SURFACE_PLACES), of.scaled(_LABELS[name][2][_methods(of)[0]]).unit
+    place = float(np.max(scale.factor)), float(np.max(scale.offset))
+    every = np.vstack([y for _, values in columns for y in values.values()])
+    half = 1.04 if name == "sigma_YY" else _BESIDE
+    return [
+        Panel(
+            position_name(of), named(words, unit) if n == 0 else None, title=title if top else "",
+            curves=[
+                curve
+                for k, look in enumerate(styles)
+                for curve in surface_curves(
+                    X, {method: y[k] for method, y in values.items()}, look, labels[k], k / len(styles),
+                    place,
+                )
+            ],
+            xlim=(place[1] - half * place[0], place[1] + half * place[0]), ylim=limits(X, every),
+            at_y=(0.0,),
+            bands=[_ends(of)] if half == _BESIDE else (),
+        )
+        for n, (title, values) in enumerate(columns)
+    ]  # fmt: skip
+
+
+def film_of_surface(of: Archive) -> tuple[Film, str]:
+    """Film of the stresses along the surface of the first start, and a sentence on what it leaves out."""
+    method = _methods(of)[-1]
+    t, times = of.data[rows.SURFACE_TIMES.path], of.data[rows.TIMES.path]
+    last = _steady(of, times[-1:])
+    nearest = np.abs(np.subtract.outer(t, times)).argmin(axis=1)
+    centre, way = _centre(of, method, 0, None)
+    over = _time(of)[1]
+    empty = {name: _beside(of, name, [("", {method: _over_time(of, name, method)})], [""] * len(t),
+                           looks(1) * len(t), True)[0] for name in _LABELS}  # fmt: skip
+
+    def panels(frame: int) -> list[Panel]:
+        shown: list[Panel] = []
+        for name, panel in empty.items():
+            steady = replace(panel.curves[0], y=panel.curves[0].y * np.nan)
+            if np.isfinite(last[name]).any():
+                X, scale = of.data[rows.SURFACE_PLACES.path], of.scaled(rows.SURFACE_PLACES)
+                place = float(np.max(scale.factor)), float(np.max(scale.offset))
+                steady = surface_curves(X, {SIE: last[name][0]}, _STEADY, "", 0.0, place)[0]
+            per = len(panel.curves) // len(t)
+            now = [
+                replace(curve, form="line", width=1.0)
+                for curve in panel.curves[per * frame : per * frame + 1]
+            ]
+            title = _at_time(of, t[frame]) if not shown else ""
+            shown.append(replace(panel, curves=[*now, steady], title=title))
+        i = nearest[frame]
+        dot = Curve(over[i : i + 1], centre[i : i + 1], Look("black", "none", "o"), form="markers")
+        return [*shown, replace(way, curves=[*way.curves, dot])]
+
+    return Film(panels, len(t), of.size), _left_out(of)
+
+
+def _methods(of: Archive) -> list[str]:
+    return [name for name in (SIE, FEM) if rows.SURFACE_IN_PLANE[name].path in of.data]
+
+
+def _over_time(of: Archive, name: str, method: str) -> NDArray[np.float64]:
+    """A stress of the first start at the chosen times in the figure's units, (times, places)."""
+    _, sign, by_method = _LABELS[name]
+    return sign * of.values(by_method[method])[0]
+
+
+def _steady(of: Archive, t: NDArray) -> dict[str, NDArray[np.float64]]:
+    """Stresses of steady motion at the friction and load of some times over a/c_s, (times, places)."""
+    data, X = of.data, of.data[rows.SURFACE_PLACES.path]
+    if of.scene.layers:  # no closed form
+        return {name: np.full((len(t), len(X)), np.nan) for name in _LABELS}
+    response = of.scene.solid.response(float(data[rows.SPEED.path][0]))
+    at: dict[str, list[NDArray]] = {name: [] for name in _LABELS}
+    for i in np.abs(np.subtract.outer(t, data[rows.TIMES.path])).argmin(axis=1):
+        punch = FlatPunch(response, float(data[rows.RATIOS.path][0][i]))
+        load = float(data[rows.LOAD.path][i])
+        at["sigma_XX"].append(load * punch.σ_XX(X))
+        at["sigma_YY"].append(-load * punch.σ_YY(X))
+    factor = float(np.max(of.scaled(rows.SURFACE_PRESSURE[_methods(of)[0]]).factor))
+    return {name: factor * np.array(values) for name, values in at.items()}

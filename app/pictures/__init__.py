@@ -1,2 +1,0 @@
-"""Pictures of an archive or a scene: figures and films of states, friction loops, motions in time and
-meshes."""

@@ -1,1 +1,0 @@
-"""Figures, the one room that meets matplotlib: pure functions from arrays to figures."""

@@ -67,7 +67,7 @@ class Sheet:
     words: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Column:
     """Column of a table in its units: a number, or a word, for each state.
 
@@ -189,8 +189,10 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     if pull := [column for column in _columns(data, units, _PULL)]:
         results += pull if np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
-    results += _columns(data, units, _OF_STRENGTH)
-    results += _yields(data, units)
+    results += _of_layers(data, units) or [
+        *_columns(data, units, _OF_STRENGTH),
+        *_yields(data, units),
+    ]
     results += [
         c for c in _columns(data, units, (("depth of yield", yielding.DEPTH),)) if np.nanmax(c.values)
     ]
@@ -275,6 +277,37 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     return columns
 
 
+def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Columns of the largest von Mises stress of each layer and of the solid below, its place, and
+    whether that yields; none for uniform solids, nor where it was not computed."""
+    row = preferred(data, yielding.OF_LAYERS)
+    if row is None:
+        return []
+    values, columns = data[row.path], []
+    places = [rows[row.method] for rows in (yielding.OF_LAYERS_X, yielding.OF_LAYERS_Y)]
+    shares = data.get(yielding.OVER_STRENGTH[row.method].path, np.full(values.shape, np.nan))
+    for i in range(values.shape[1]):
+        below = i == values.shape[1] - 1
+        where = "below the layers" if below else f"in layer {i + 1}"
+        name = f"von_mises_{'below' if below else i + 1}"
+        columns.append(
+            Column(f"von Mises {where}", units.stress.of(values[:, i]), units.stress.unit, name)
+        )
+        for head, scale, place in zip("XY", (units.position, units.length), places):
+            at = scale.of(data[place.path][:, i])
+            head = f"at {head}{'/a' * units.dimensionless}"
+            columns.append(Column(head, at, scale.unit, f"{name}_{head[3]}", place=True))
+        if np.isfinite(shares[:, i]).any():
+            words = [_share(share) for share in shares[:, i]]
+            columns.append(Column(f"yields {where}", words, "of the yield strength", f"{name}_yields"))
+    return columns
+
+
+def _share(share: float) -> str:
+    """Whether a solid yields under a share of what it bears, in words; "" for NaN."""
+    return "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
+
+
 def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Columns of whether every state yields, and from which load on; none where that was not computed."""
     count, contact = len(data[of.FRICTION.path]), units.contact
@@ -288,10 +321,7 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
         return [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
     else:
         return []
-    words = [
-        "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
-        for share in shares
-    ]
+    words = [_share(share) for share in shares]
     loads = _columns(data, units, (("load at first yield", yielding.FIRST_LOAD),))
     return [Column("yields", words, unit, "yields"), *loads]
 
@@ -348,7 +378,9 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
     columns, count = state_columns(data, units), len(data[of.FRICTION.path])
     known = {*parameters(data), of.LOAD.path, of.FRICTION.path, ""}
     given = [column for column in columns if column.path in known and column.name != "yields"]
-    same = [c for c in given if c.constant and (count > 1 or c.name in ("motion", "X_over_L"))]
+    same = [
+        c for c in given if c.constant and not c.place and (count > 1 or c.name in ("motion", "X_over_L"))
+    ]
     shown = [column for column in columns if column not in same]
     notes = [f"and {count - LIMIT} more states; csv and show --json list all"] if count > LIMIT else []
     told = [c for c in same if not (c.name in ("motion", "X_over_L") and count == 1)]
@@ -380,7 +412,7 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
             lacking.append('"surface" (σ_XX)')
         if len(units.contact.solid.depths) and not any("shear" in head for head in heads):
             lacking.append('"interfaces" (their shear)')
-        if "yields" not in heads and "largest von Mises" not in heads:
+        if not any(word in head for head in heads for word in ("yields", "von Mises")):
             lacking.append('"yield" (von Mises, yields or not)')
     if lacking:
         yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"

@@ -19,7 +19,7 @@ TREES = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in
 #: Scenes that are planned in a moment, and whose solutions give every quantity.
 PLANNED = (
     "coating", "cylinder", "flat", "own_pressure", "pressure_on_coating", "speeds_of_a_cylinder",
-    "third_power", "tilted_on_coating",
+    "steady", "third_power", "tilted_on_coating",
 )  # fmt: skip
 #: Known solids are constants, and no code of their own.
 CONSTANTS = ("solid.material", "layer.material")

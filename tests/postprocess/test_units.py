@@ -20,6 +20,7 @@ SIZES = {
     "nJ/m": (1e-9, (1, 1, -2)), "µJ/m": (1e-6, (1, 1, -2)), "mJ/m": (1e-3, (1, 1, -2)),
     "J/m": (1.0, (1, 1, -2)), "kJ/m": (1e3, (1, 1, -2)),
     "N/m²": (1.0, _PASCAL), "kN/m²": (1e3, _PASCAL), "N/mm²": (1e6, _PASCAL), "kN/mm²": (1e9, _PASCAL),
+    "kg/m^3": (1.0, (-3, 1, 0)), "deg": (1.0, (0, 0, 0)), "rad": (1.0, (0, 0, 0)), "m^(1-k)": (1.0, (0, 0, 0)),
     "1": (1.0, (0, 0, 0)), "none": (1.0, (0, 0, 0)),
 }  # fmt: skip
 
@@ -36,7 +37,7 @@ SCENES = {
 def archived(row, contact, h, m, N):
     """What one of an archive's numbers is worth in SI: its factor and its offset, by the row's unit."""
     a, μ, c_s = contact.half_width, contact.solid.μ, contact.solid.c_s
-    by_state = row.path.split("/")[0] in ("states", "surface", "interior", "interfaces")
+    by_state = row.path.split("/")[0] in ("states", "surface", "interior", "interfaces", "layers")
     a, N = (h, N) if by_state else (a, contact.load)
     units = {
         "N/(2a)": N / (2.0 * a), "a/c_s": a / c_s, "N/(2mu)": N / (2.0 * μ), "N*a": N * a,

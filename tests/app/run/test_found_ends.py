@@ -416,7 +416,7 @@ def test_every_profile_has_an_archive(changes, tmp_path):
     again = galinx.load(tmp_path / "a.h5")
     assert not faults(tmp_path / "a.h5")
     again.report(tmp_path / "r.html")
-    assert "Half-width of the contact" in (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "half-width [" in (tmp_path / "r.html").read_text(encoding="utf-8")
     assert len(list(again.drawings())) >= 2
 
 

@@ -203,7 +203,7 @@ def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
         later = np.maximum(data["slider/time"] - μ * 2e4 / 0.8, 0.0)
         wanted = 0.1 * (1.0 - np.cos(2.0 * later))
         np.testing.assert_allclose(data["slider/velocity"][row], wanted, rtol=0.0, atol=1e-9)
-    assert [drawing.name for drawing in result.drawings()] == ["friction", "slider"]
+    assert [drawing.name for drawing in result.drawings()] == ["slider"]
 
 
 @pytest.mark.parametrize(

@@ -194,16 +194,18 @@ def test_constants_that_are_lists_are_archived(tmp_path):
 
 
 def test_figures_turn_a_solid_that_has_an_angle():
-    from galinx.app.results import drawings
+    from galinx.app.figures import archive
 
     changes = {"solve.methods": ["closed_form"], "output.quantities": ["sif"], "output.map": None}
     fibres, steel = (
         galinx.template(name, changes | more)
         for name, more in (("fibres", {}), ("inside", {"output.points": None}))
     )
-    assert "angles" in drawings.names(galinx.compute(fibres).data, fibres)
-    assert "angles" not in drawings.names(galinx.compute(steel).data, steel)
-    drawn = {d.name: d for d in drawings.of_archive(galinx.compute(fibres).data, fibres)}
+    every = archive.Choice(figures=("all",))
+    assert "angles" in archive.names(galinx.compute(fibres).data, fibres, every)
+    assert "angles" not in archive.names(galinx.compute(steel).data, steel, every)
+    data = galinx.compute(fibres).data
+    drawn = {d.name: d for d in archive.of_archive(data, fibres, archive.Choice(figures=("angles",)))}
     limits = drawn["angles"].figure.axes[0].lines[0]
     turned = limits.get_ydata()[np.isclose(limits.get_xdata(), np.deg2rad(30.0))]
     assert turned == pytest.approx(fibres.solid.limit() * fibres.solid.c_s, rel=1e-12)

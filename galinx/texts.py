@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from math import floor, log10
 from textwrap import fill
 
 #: Characters that change the direction of writing.
@@ -89,3 +90,25 @@ def folded(text: str, width: int) -> str:
     for piece, mark in zip(pieces, marks):
         text = text.replace(mark, piece, 1)
     return text
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number with so many significant digits: 1206, 0.03125, 1.2e-07; "" for NaN."""
+    if value != value:
+        return ""
+    rounded = float(f"{value:.{digits - 1}e}")
+    return f"{rounded:.0f}" if 10.0**digits <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
+
+
+#: Prefixes of units, and the position of the empty one.
+_PREFIXES, _MIDDLE = "pnµm kMGT", 4
+
+
+def with_prefix(value: float, unit: str, digits: int = 6) -> str:
+    """Number in an SI unit with the prefix that suits it: 113.8 GPa, 5 mm."""
+    if value == 0.0:
+        return f"0 {unit}"
+    size = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
+    thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
+    prefix = _PREFIXES[thousands + _MIDDLE].strip()
+    return f"{significant(value / 1000.0**thousands, digits)} {prefix}{unit}".replace("-", "−")

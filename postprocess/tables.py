@@ -43,7 +43,7 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
 
 
 #: Most states in a table, most of them side by side, and most inner variables of a law.
-LIMIT, _BESIDE, _VARIABLES = 24, 8, 6
+LIMIT, BESIDE, _VARIABLES = 24, 8, 6
 #: Characters of a narrow column.
 _NARROW = 11
 
@@ -316,7 +316,7 @@ def layout(title: str, labels: Sequence[str], columns: Sequence[Column], width: 
         return Sheet(title, ["", ""], lines)
     texts = [column.texts(len(labels)) for column in shown]
     heads = [f"  {column.label}" if column.place else column.label for column in shown]
-    if width and len(labels) <= _BESIDE:
+    if width and len(labels) <= BESIDE:
         return Sheet(title, ["state", *labels], [[head, *row] for head, row in zip(heads, texts)])
     heads = [_folded(column) if width else column.label for column in shown]
     return Sheet(title, ["state", *heads], [[label, *row] for label, *row in zip(labels, *texts)])

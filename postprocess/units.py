@@ -6,13 +6,14 @@ This is the only place where they become MPa, µm and m/s: tables, figures, page
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from math import floor, log10
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact.solution import Contact
+from galinx.texts import significant as number
+from galinx.texts import with_prefix
 
 from .quantities import Quantity, of_states, over_time, states, swept, table
 from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
@@ -254,26 +255,9 @@ def contacts_of_states(data: Mapping[str, Any]) -> tuple[NDArray, NDArray] | Non
     return None
 
 
-def number(value: float, digits: int = 4) -> str:
-    """A number with so many significant digits: 1206, 0.03125, 1.2e-07; "" for NaN."""
-    if value != value:
-        return ""
-    rounded = float(f"{value:.{digits - 1}e}")
-    return f"{rounded:.0f}" if 10.0**digits <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
-
-
-#: Prefixes of units, and the position of the empty one.
-_PREFIXES, _MIDDLE = "pnµm kMGT", 4
-
-
 def engineering(value: float, unit: str, digits: int = 4) -> str:
     """Number with four digits and a prefix of its own: 113.8 GPa; N/mm for loads."""
     if unit == "N/m":
         name, of_si = prefixed(unit, abs(value))
         return f"{number(value / of_si, digits)} {name}"
-    if value == 0.0:
-        return f"0 {unit}"
-    size = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
-    thousands = min(max(size // 3, -_MIDDLE), len(_PREFIXES) - 1 - _MIDDLE)
-    prefix = _PREFIXES[thousands + _MIDDLE].strip()
-    return f"{number(value / 1000.0**thousands, digits)} {prefix}{unit}".replace("-", "−")
+    return with_prefix(value, unit, digits)

@@ -10,9 +10,18 @@ from typing import Any
 
 import numpy as np
 
+from galinx.postprocess.compare import checked
 from galinx.postprocess.page import render
 from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.tables import Sheet, limits_sheet, solved_speeds, starts_sheet, state_columns
+from galinx.postprocess.tables import (
+    BESIDE,
+    Sheet,
+    limits_sheet,
+    solved_speeds,
+    starts_sheet,
+    state_columns,
+    states_sheet,
+)
 from galinx.postprocess.units import Units, engineering
 from galinx.texts import counted
 
@@ -29,6 +38,8 @@ from ..study.published import (
     limit_of_steady_motion,
 )
 
+#: Width of tables of few states in characters: the states stand side by side.
+_WIDE = 100
 #: Most cells of the table: a page stays below 6 MB.
 _CELLS = 60_000
 
@@ -170,16 +181,19 @@ class Report:
             first = len(made)
             made += picture["charts"]
             picture["charts"] = range(first, len(made))
-        tables = [starts_sheet(data, self._units), limits_sheet(data, self._units)]
+        few = len(data[states.FRICTION.path]) <= BESIDE
+        tables = [states_sheet(data, self._units, "Every state", _WIDE)] if few else []
+        tables += [f(data, self._units, _WIDE * few) for f in (starts_sheet, limits_sheet)]
         content = {
             "title": attributes["title"] or "A sliding punch",
             "verdict": attributes["verdict"],
+            "checked": checked(attributes),
             "summary": summary(data, scene),
             "warnings": json.loads(attributes["warnings"]),
             "reasons": json.loads(attributes["verdict_reasons"]),
             "tables": [sheet for sheet in tables if sheet.rows],
             "sheets": self._sheets,
-            "states": states_table(data, self._units),
+            "states": None if few else states_table(data, self._units),
             "explorer": large,
             "charts": made,
             "pictures": pictures,

@@ -1,8 +1,8 @@
 "use strict";
 const byId = (id) => document.getElementById(id);
 
-// The table of states: sorted, searched and shown a page at a time.
-{
+// The table of many states: sorted, searched and shown a page at a time.
+if (byId("table")) {
   const PAGE = 25;
   const { columns, rows } = JSON.parse(byId("states-data").textContent);
   const heads = [...document.querySelectorAll("#table th")];

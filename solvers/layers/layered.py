@@ -31,6 +31,8 @@ from numpy.polynomial.chebyshev import chebvander
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..approximation import bisected, chebyshev_points, interpolation
 from ..errors import SolveError
 from ..parameters import build_model, parameters, values
@@ -304,7 +306,7 @@ class Layer:
 
     def words(self) -> str:
         """Description of the layer with units, as part of a sentence."""
-        words = f"{self.thickness:.6g} m of {self.solid.words()}"
+        words = f"{with_prefix(self.thickness, 'm')} of {self.solid.words()}"
         if self.bottom is None:
             return words
         how = self.grading + f" {self.exponent:g}" * (self.grading == "power")

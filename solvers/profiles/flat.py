@@ -7,6 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, parameter
 from .profile import PROFILES
 
@@ -53,7 +55,7 @@ class Flat:
 
     def words(self) -> str:
         tilted = f", tilted by {self.tilt:g}° counterclockwise" * bool(self.tilt)
-        return f"flat punch, half-width {self.half_width:g} m{tilted}"
+        return f"flat punch, half-width {with_prefix(self.half_width, 'm')}{tilted}"
 
 
 PROFILES.register("flat", Flat)

@@ -6,6 +6,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, parameter
 from .profile import PROFILES
 
@@ -34,7 +36,7 @@ class Parabolic:
         return np.asarray(X) / self.radius
 
     def words(self) -> str:
-        return f"parabolic punch, radius {self.radius:g} m"
+        return f"parabolic punch, radius {with_prefix(self.radius, 'm')}"
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, parameter
 from .profile import PROFILES
 
@@ -45,8 +47,8 @@ class RoundedFlat:
 
     def words(self) -> str:
         return (
-            f"punch, flat up to {self.flat_half_width:g} m on both sides, "
-            f"shoulders of radius {self.radius:g} m"
+            f"punch, flat up to {with_prefix(self.flat_half_width, 'm')} on both sides, "
+            f"shoulders of radius {with_prefix(self.radius, 'm')}"
         )
 
 

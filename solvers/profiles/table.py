@@ -8,6 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, rows
 from .profile import PROFILES
 
@@ -125,8 +127,8 @@ class Table:
         return slope + curvature * d
 
     def words(self) -> str:
-        first, last = self.reach
-        return f"punch through {len(self.shape)} points from X = {first:g} m to {last:g} m"
+        first, last = (with_prefix(end, "m") for end in self.reach)
+        return f"punch through {len(self.shape)} points from X = {first} to {last}"
 
 
 PROFILES.register("table", Table)

@@ -7,6 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, numbers
 from .plane import PlaneSolid, check_minors
 from .solid import SOLIDS, USUAL_STIFFNESS, density, in_plane
@@ -68,7 +70,9 @@ class Anisotropic(PlaneSolid):
 
     def words(self) -> str:
         names = ("c11", "c12", "c16", "c22", "c26", "c66")
-        constants = ", ".join(f"{name} = {value:.6g} Pa" for name, value in zip(names, self.constants))
+        constants = ", ".join(
+            f"{name} = {with_prefix(value, 'Pa')}" for name, value in zip(names, self.constants)
+        )
         return f"{constants}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
 
 

@@ -7,6 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, parameter
 from .plane import PlaneSolid, check_minors, rotated
 from .solid import SOLIDS, angle, density, in_plane, modulus
@@ -47,9 +49,10 @@ class Cubic(PlaneSolid):
         return share * (σ_XX + σ_YY)
 
     def words(self) -> str:
+        c11, c12, c44 = (with_prefix(value, "Pa") for value in (self.c11, self.c12, self.c44))
         return (
-            f"c11 = {self.c11:.6g} Pa, c12 = {self.c12:.6g} Pa, c44 = {self.c44:.6g} Pa, [100] at "
-            f"{self.angle:g}° from X, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+            f"c11 = {c11}, c12 = {c12}, c44 = {c44}, [100] at {self.angle:g}° from X, "
+            f"ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
         )
 
 

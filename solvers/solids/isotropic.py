@@ -12,6 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..approximation import bisected
 from ..parameters import check, parameter
 from .half_plane import Roots, UniformHalfPlane
@@ -84,7 +86,9 @@ class Isotropic(Solid):
         return (self.ν if self.plane == "strain" else 0.0) * (σ_XX + σ_YY)
 
     def words(self) -> str:
-        return f"E = {self.E:.6g} Pa, ν = {self.ν:g}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+        return (
+            f"E = {with_prefix(self.E, 'Pa')}, ν = {self.ν:g}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+        )
 
 
 @dataclass(frozen=True)

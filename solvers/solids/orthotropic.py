@@ -7,6 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..parameters import check, parameter
 from .plane import PlaneSolid, along_axes, check_minors, rotated
 from .solid import SOLIDS, angle, density, in_plane, modulus
@@ -73,10 +75,11 @@ class Orthotropic(PlaneSolid):
         return held * (self.ν13 / self.E1 * σ_1 + self.ν23 / self.E2 * σ_2)
 
     def words(self) -> str:
+        E1, E2, E3, G12 = (with_prefix(value, "Pa") for value in (self.E1, self.E2, self.E3, self.G12))
         return (
-            f"E1 = {self.E1:.6g} Pa, E2 = {self.E2:.6g} Pa, E3 = {self.E3:.6g} Pa, ν12 = {self.ν12:g}, "
-            f"ν13 = {self.ν13:g}, ν23 = {self.ν23:g}, G12 = {self.G12:.6g} Pa, axis 1 at {self.angle:g}° "
-            f"from X, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+            f"E1 = {E1}, E2 = {E2}, E3 = {E3}, ν12 = {self.ν12:g}, ν13 = {self.ν13:g}, "
+            f"ν23 = {self.ν23:g}, G12 = {G12}, axis 1 at {self.angle:g}° from X, ρ = {self.ρ:g} kg/m³ "
+            f"in plane {self.plane}"
         )
 
 

@@ -108,7 +108,7 @@ def test_it_has_a_page_and_fields_or_says_why_not(case, archived):
     done = here("report", path.name, "--overwrite", cwd=path.parent)
     assert done.returncode == 0, done.stderr
     page = path.with_suffix(".html").read_text(encoding="utf-8")
-    assert page.rstrip().endswith("</html>") and "verdict" in page and "<svg" in page
+    assert page.rstrip().endswith("</html>") and "verdict" in page and "Plotly.react" in page
     done = here("fields", path.name, "--overwrite", "--extent", 2, cwd=path.parent)
     scene = galinx.load(path).scene
     refusals = {

@@ -150,6 +150,7 @@ NOT_COMPUTED = {
     *(f"run/fem/{name}" for name in ("back_substitutions", "change_by_degree", "factorisations",
       "iterations", "largest_condition", "largest_residual")),
     "run/seconds", "surface/fem/sigma_YY_raw", "states/fem/largest_pressure_position",
+    "states/fem/sigma_XX_max_X_over_a", "states/fem/sigma_XX_min_X_over_a",
 }  # fmt: skip
 OF_THE_RUN = {"created", "machine", "program", "version", "versions"}
 

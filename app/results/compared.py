@@ -136,7 +136,7 @@ class Comparison:
             for key in keys:
                 column = next(table[key] for table in self._tables if key in table)
                 cells = [text[key][i] if key in text else "" for text, i in zip(texts, pair)]
-                if not any(cells) or (not _is_number(column) and len(set(cells)) == 1):
+                if not any(cells) or (column.path == states.MOTION.path and len(set(cells)) == 1):
                     continue
                 row = [f"{'  ' * column.place}{column.label}", cells[0]]
                 for n, cell in enumerate(cells[1:], 1):
@@ -159,9 +159,9 @@ class Comparison:
             yield f"states without a partner: {found}"
         if not self._by and len(self.pairs) > 1:
             yield "states are paired by their order: their parameters do not agree"
-        yield (
-            "difference: from the first, of places and the centre over its half-width; of K_I none where "
-            "the exponents, and so the units, differ"
+        intensities = any(head.startswith("K_I") for head, *_ in self._tables[0])
+        yield "difference: from the first, of places and the centre over its half-width" + (
+            "; of K_I none where the exponents, and so the units, differ" * intensities
         )
         verdicts = [result.verdict for result in self.results]
         if set(verdicts) != {"PASS"}:

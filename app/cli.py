@@ -65,7 +65,7 @@ _SCRIPT, _OF_SCRIPT = "./run.sh", ["test", "bench", "stress", "docs"]
 _GROUPS = {
     "Begin": ("init", "materials", "fit"),
     "Compute": ("run", "plan"),
-    "Look": ("show", "report", "plot", "csv"),
+    "Look": ("show", "compare", "report", "plot", "csv"),
     "Expert": ("check", "fields", "dispersion", "response", "paper", "schema"),
 }
 

@@ -352,6 +352,15 @@ def print_result(
     print_verdict(console, attributes, verbose)
 
 
+def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:
+    """Print tables, and lines below them."""
+    console = new_console(colours=colours())
+    for sheet in sheets:
+        print_sheet(console, sheet)
+    for note in notes:
+        _print_folded(console, note)
+
+
 def print_warnings(attributes: dict[str, Any]) -> None:
     """Print the warnings of an archive on the error stream."""
     for text in json.loads(attributes["warnings"]):

@@ -18,6 +18,7 @@ __version__ = "0.1.0"
 #: Module of each public name, which is imported when the name is used.
 _NAMES = {
     **dict.fromkeys(("Result", "compute", "load", "read_scene", "template"), "app.results.result"),
+    "compare": "app.results.compared",
     "fit": "app.results.fitted",
     "Measured": "solvers.friction.fit",
     # Base classes of models, and the registries to which a model of one's own is added.

@@ -5,7 +5,7 @@ This is the only place where they become MPa, µm and m/s: tables, figures, page
 :class:`Units`. In a result all stresses have one unit, all lengths of the contact have one, and so on.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -108,16 +108,20 @@ class Units:
         contact: punch and half-plane of the scene, under its first load.
         data: datasets by path; those of one value a state, with the contacts of states where they differ.
         dimensionless: quantities as archived, over N/(2a), a and c_s.
+        beside: units of other results, which these share: prefixes suit the largest of all.
 
     Attributes:
-        contact, data, dimensionless: as given.
+        contact, data, dimensionless, beside: as given.
         half_width, middle: of contacts [m], numbers, or (states,) where contacts of states differ.
         load: per depth [N/m], a number, or (states,) where states differ in it.
         c_s: shear wave speed [m/s], a number, or (states,) where solids of states differ.
     """
 
-    def __init__(self, contact: Contact, data: Mapping[str, Any], dimensionless: bool = False) -> None:
-        self.dimensionless = dimensionless
+    def __init__(
+        self, contact: Contact, data: Mapping[str, Any], dimensionless: bool = False,
+        beside: "Sequence[Units]" = (),
+    ) -> None:  # fmt: skip
+        self.dimensionless, self.beside = dimensionless, beside
         self.contact, self.data = contact, data
         given = data.get(swept.HALF_WIDTH.path, contact.half_width)
         ends: tuple[Any, Any] = contacts_of_states(data) or (given, 0.0)
@@ -159,6 +163,13 @@ class Units:
         """
         if self.dimensionless:
             return Scaled("", "1" if kind in (OVER_A, X_OVER_A, OVER_C_S, OVER_N) else kind)
+        unit, factor, offset, size = self._in_si(kind, row)
+        sizes = [size, *(other._in_si(kind, row)[3] for other in self.beside)]
+        name, of_si = prefixed(unit, float(max(sizes)))
+        return Scaled("", name, factor / of_si, offset / of_si)
+
+    def _in_si(self, kind: str, row: Quantity | None) -> tuple[str, Any, Any, Any]:
+        """SI unit of a kind of quantities, factor and offset to it, and a size for its prefix."""
         contact, of_states_ = self.contact, row is None or of_states(row.path)
         a, N = (self.half_width, self.load) if of_states_ else (contact.half_width, contact.load)
         offset: Any = 0.0
@@ -182,8 +193,7 @@ class Units:
             factor = size if kind != "N*a" else contact.load * contact.half_width
         else:
             unit, factor, size = kind, 1.0, self._largest(kind, row)
-        name, of_si = prefixed(unit, float(size))
-        return Scaled("", name, factor / of_si, offset / of_si)
+        return unit, factor, offset, size
 
     @property
     def stress(self) -> Scaled:

@@ -1,4 +1,4 @@
-"""Commands that look at results: show, check, report and fields of an archive.
+"""Commands that look at results: show, check, report and fields of an archive, and compare of several.
 
 Further ones draw archives and scenes, plot, dispersion and response, or give an archive to other
 programs, csv.
@@ -13,7 +13,7 @@ import click
 from galinx.postprocess.target import TABLE, Target
 
 from .. import errors, ranks
-from ..console import print_result, print_warnings, program, say, width
+from ..console import print_result, print_sheets, print_warnings, program, say, width
 from . import options
 
 
@@ -150,6 +150,60 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     }
 
 
+_MEASURED = click.option(
+    "--measured", type=options.FILE, metavar="FILE",
+    help="Table of measured points that lie over the figure, as position [mm] and pressure [MPa] or "
+    "sigma_XX [MPa]; slip [mm] and f.",
+)  # fmt: skip
+
+
+def _given(*files: Path | None) -> list[Path]:
+    return [file for file in files if file]
+
+
+@click.command()
+@click.argument("archives", type=options.FILE, nargs=-1, required=True)
+@click.option("-o", "to", type=options.PATH, help="Draw them as well: folder, or a file.")
+@click.option("--states", default="", metavar="NUMBERS", help="States of the first: 0,4,7 or 0-3.")
+@_MEASURED
+@options.dimensionless
+@options.overwrite
+def compare(
+    archives: tuple[Path, ...], to: Path | None, states: str, measured: Path | None,
+    dimensionless: bool, overwrite: bool,
+) -> int:  # fmt: skip
+    """Print the numbers of ARCHIVES side by side, and the differences of all from the first.
+
+    States are paired by the parameters that vary in them where these agree, else by their order. -o draws
+    contact pressure and in-plane stress of all in one figure.
+
+    Example: ./run.sh compare steel.h5 coated.h5 -o both.pdf
+    """
+    from ..figures.files import Files
+    from ..figures.measured import read as read_measured
+    from ..results.compared import Comparison
+
+    if len(archives) < 2:
+        raise click.UsageError(f"found one archive, {archives[0]}; expected two or more")
+    if measured and not to:
+        raise click.UsageError("--measured lies over a figure; say by -o where to draw it")
+    points = read_measured(measured) if measured else None
+    results = [_loaded(archive, stresses=bool(to)) for archive in archives]
+    comparison = Comparison(results, dimensionless, options.numbers(states) if states else ())
+    if ranks.is_root():
+        if to:
+            inputs = options.inputs(*archives, *_given(measured))
+            files = Files(to, archives[0].stem, overwrite=overwrite, inputs=inputs)
+            files.check(["compare"])
+            written = files.write(iter([comparison.drawing(points)]), None)
+        print_sheets(comparison.sheets(), comparison.notes())
+        for file in written if to else ():
+            print(f"{file.noun}: {file.path}")
+        if to and written[-1].left_out:
+            say(f"  {written[-1].left_out}", 2)
+    return errors.GOOD
+
+
 @click.command()
 @options.archive
 @options.figures_to
@@ -181,11 +235,13 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
     metavar="NAMES",
     help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
 )
+@_MEASURED
 @options.dimensionless
 @options.overwrite
 def plot(
     archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
-    by: str, size: str, dpi: int, formats: str, dimensionless: bool, overwrite: bool,
+    by: str, size: str, dpi: int, formats: str, measured: Path | None, dimensionless: bool,
+    overwrite: bool,
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
@@ -198,14 +254,23 @@ def plot(
     from ..figures import choice
     from ..figures.archive import in_units, write
     from ..figures.files import Files
+    from ..figures.measured import read as read_measured
     from ..results.result import load
 
     selection = choice.Choice(
         figures=choice.words(figure), quantities=choice.words(quantity),
         states=tuple(options.numbers(states)) if states else (),
         method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
+        measured=read_measured(measured) if measured else None,
     )  # fmt: skip
-    files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, options.inputs(archive))
+    files = Files(
+        to,
+        archive.stem,
+        choice.words(formats),
+        dpi,
+        overwrite,
+        options.inputs(archive, *_given(measured)),
+    )
     result = load(archive)
     if ranks.is_root():
         selection = in_units(selection, result.units(dimensionless))
@@ -351,4 +416,6 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
     return errors.GOOD
 
 
-COMMANDS: tuple[Any, ...] = (show, check, report, fields, plot, dispersion, response, csv)
+COMMANDS: tuple[Any, ...] = (
+    show, compare, check, report, fields, plot, dispersion, response, csv,
+)  # fmt: skip

@@ -41,12 +41,14 @@ def _no_figure(of: Archive) -> Drawing:
 
 #: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
-    "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES, True),
+    "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES | {"measured"}, True),
     "inside": _Figure(stresses.inside, stresses.has_inside, _STRESSES, True),
     "parameters": _Figure(
         sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), True
     ),
-    "friction": _Figure(friction.friction, lambda of: not of.scene.steady, frozenset({"states"}), True),
+    "friction": _Figure(
+        friction.friction, lambda of: not of.scene.steady, frozenset({"states", "measured"}), True
+    ),
     "slider": _Figure(friction.slider, friction.has_slider, usual=True),
     "time": _Figure(motion.time, motion.has_motions, usual=True),
     "interfaces": _Figure(stresses.interfaces, stresses.has_interfaces, _STRESSES),
@@ -123,6 +125,13 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
     selected = (() if whole else choice.figures) or [
         name for name in offered if name != FILM and choice.given <= FIGURES[name].follows
     ]
+    if measured := choice.measured:
+        selected = [name for name in selected if measured.lies_in(name, choice.quantities)]
+        if not selected:
+            raise BadInput(
+                f"--measured {measured.name}: found {', '.join(measured.points)}, which no chosen figure "
+                "or quantity shows"
+            )
     drawable = [name for name in selected if name == FILM or FIGURES[name].has(of)]
     if not drawable or (choice.figures and not whole and len(drawable) < len(choice.figures)):
         raise BadInput(

@@ -20,6 +20,7 @@ from galinx.postprocess.units import Scaled, Units, as_archived
 
 from ..errors import BadInput, nearest, short
 from ..scene.scene import Scene
+from .measured import Measured
 from .render import Curve, Size, of_methods
 from .states import StateLabels
 from .style import Look
@@ -45,7 +46,7 @@ class Choice:
         y: names of the numbers drawn over ``x``.
         size: of every figure.
         units: of the result's numbers; None: dimensionless.
-        measured: curves that lie over figures, as :func:`galinx.app.figures.measured.read` gives them.
+        measured: points that lie over figures, as :func:`galinx.app.figures.measured.read` gives them.
     """
 
     figures: tuple[str, ...] = ()
@@ -57,12 +58,12 @@ class Choice:
     by: str = ""
     size: Size | None = None
     units: Units | None = None
-    measured: Any = None
+    measured: Measured | None = None
 
     @property
     def given(self) -> set[str]:
         """Names of the options set by the user that say what is drawn."""
-        names = ("states", "quantities", "method", "x", "y", "by")
+        names = ("states", "quantities", "method", "x", "y", "by", "measured")
         return {name for name in names if getattr(self, name)}
 
     def check_states(self, data: dict[str, Any]) -> None:

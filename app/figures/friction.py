@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import runs
+from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.motion import names
 
@@ -221,6 +221,10 @@ def friction(of: Archive) -> Drawing:
         shown, drawn = [loops.panel(choice.states, varied)], list(choice.states)
     else:
         shown, drawn = loops.panels()
+    if choice.measured:
+        lengths = of.data.get(column("friction.pre_sliding"), np.array([of.scene.friction.pre_sliding]))
+        lengths = lengths[drawn] if len(lengths) > 1 else lengths
+        shown = [choice.measured.over_loops(panel, lengths) for panel in shown]
     figure = loops_figure(shown, [loop for loop in map(loops.of, drawn) if loop], choice.size)
     covered = np.flatnonzero(np.isin(rows, rows[drawn])).tolist()
     missing = not_shown(labels, covered, "--figure friction --states", choice.states)
@@ -238,7 +242,10 @@ def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Any = Non
     from .render import Size
 
     size = size or Size(COLUMN if len(panels) == 1 else PAGE)
-    entries = [tuple(curve.label for curve in panel.curves if curve.label) for panel in panels]
+    entries = [
+        tuple(curve.label for curve in panel.curves if curve.label and curve.form != DOTS)
+        for panel in panels
+    ]
     if len(set(entries)) > 1:
         panels = [replace(panel, own_legend=True) for panel in panels]
     several = any(len(names_) for names_ in entries)

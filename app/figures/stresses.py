@@ -30,7 +30,7 @@ from galinx.texts import number, plain
 
 from .choice import Archive, Drawing, both, explained, named, require_one_of
 from .friction import Loops
-from .render import LINE, Curve, Map, Panel, across, handle, render, spaced
+from .render import DOTS, LINE, Curve, Map, Panel, across, handle, render, spaced
 from .states import C, N, StateLabels, not_shown, spread, states_for_panel
 from .style import COLUMN, GREY, PAGE, SMALL, Look, looks
 
@@ -111,13 +111,18 @@ def surface_names(of: Archive, method: str | None = None) -> list[str]:
     return list(of.by_method(STATE, POINT, method=method))
 
 
+def stress_names(of: Archive) -> list[str]:
+    """Names of the stresses along the surface that figures show."""
+    shown = of.choice.quantities or [name for name in SHOWN if name in surface_names(of)]
+    return list(dict.fromkeys(shown))
+
+
 def surface_stresses(of: Archive) -> dict[str, dict[str, NDArray]]:
     """Stresses along the surface by the name of their axis and by method, (states, points), the chosen
     ones or those that are shown by default."""
     available = of.by_method(STATE, POINT)
-    names = of.choice.quantities or [name for name in SHOWN if name in available]
     shown = {}
-    for name in (require_one_of("quantity", name, available) for name in names):
+    for name in (require_one_of("quantity", name, available) for name in stress_names(of)):
         rows = available[name]
         row = next(iter(rows.values()))
         words, sign = SHOWN.get(name, (short_name(row), 1.0))
@@ -169,7 +174,7 @@ def surface(of: Archive) -> Drawing:
     shown = surface_stresses(of)
     X = data[SURFACE_X.path]
     panels: list[Panel] = []
-    for n, (label, values) in enumerate(shown.items()):
+    for n, (name, (label, values)) in enumerate(zip(stress_names(of), shown.items())):
         drawn = next(iter(values.values()))
         half = along(X, drawn)
         ranges = _ranges(X, drawn, [numbers for _, numbers, _ in groups])
@@ -189,17 +194,24 @@ def surface(of: Archive) -> Drawing:
                 min(b - half * a for a, b in places), max(b + half * a for a, b in places)
             )  # fmt: skip
             bare = len(set(ranges)) == 1 and column > 0
-            panels.append(Panel(
+            panel = Panel(
                 position_name(of), None if bare else label, curves=curves, title=title if not n else "",
                 xlim=window, ylim=ranges[column], at_y=(0.0,),
                 bands=ends if len(ends) == 1 and half == _BESIDE else (),
                 after=_inset(of, loops, numbers, styles) if not n and half == _UNDER else None,
-            ))  # fmt: skip
+            )  # fmt: skip
+            measured = choice.measured
+            panels.append(measured.over_stress(panel, name, of.units) if measured else panel)
     if not any(panel.after for panel in panels) or _same_places(of, loops, groups):
         panels[1 : len(groups)] = [replace(panel, after=None) for panel in panels[1 : len(groups)]]
     if len([1 for _, numbers, _ in groups for _ in numbers]) == len(groups) == 1:
         panels = [
-            replace(panel, curves=[replace(curve, label="") for curve in panel.curves])
+            replace(
+                panel,
+                curves=[
+                    curve if curve.form == DOTS else replace(curve, label="") for curve in panel.curves
+                ],
+            )
             for panel in panels
         ]
     methods = {method for values in shown.values() for method in values}

@@ -1,7 +1,7 @@
 """Changes of a scene's text, made where the value stands; comments and layout stay."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import tomlkit
@@ -169,13 +169,29 @@ def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
     return [path for path in ("solid.material", *_CONSTANTS) if path.removeprefix("solid.") not in own]
 
 
-def _keys(tree: Mapping[str, Any]) -> Iterator[str]:
-    """Keys of a scene, as ``"section.key"`` or ``"title"``."""
+def _keys(tree: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of a scene by their keys, as ``"section.key"`` or ``"title"``."""
+    values: dict[str, Any] = {}
     for name, value in tree.items():
         if isinstance(value, list) and all(isinstance(table, dict) for table in value):
-            yield from (f"{name}[{i}].{key}" for i, table in enumerate(value) for key in table)
+            values |= {f"{name}[{i}].{key}": table[key] for i, table in enumerate(value) for key in table}
+        elif isinstance(value, dict):
+            values |= {f"{name}.{key}": value[key] for key in value}
         else:
-            yield from (f"{name}.{key}" for key in value) if isinstance(value, dict) else [name]
+            values[name] = value
+    return values
+
+
+def differences(texts: Iterable[str]) -> dict[str, list[str]]:
+    """Values of the keys in which scenes differ, as text, "–" where a scene lacks the key.
+
+    Args:
+        texts: of the scenes, TOML.
+    """
+    scenes = [_keys(tomlkit.parse(text).unwrap()) for text in texts]
+    keys = dict.fromkeys(key for scene in scenes for key in scene)
+    values = {key: [str(scene.get(key, "–")) for scene in scenes] for key in keys}
+    return {key: of_scenes for key, of_scenes in values.items() if len(set(of_scenes)) > 1}
 
 
 def _change(tree: Any, path: str, value: Any) -> None:

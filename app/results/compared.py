@@ -1,0 +1,252 @@
+"""Results beside each other: numbers of paired states in common units, and their differences."""
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galinx.postprocess.quantities import runs, states
+from galinx.postprocess.tables import LIMIT, Column, Sheet, parameters, state_columns
+from galinx.postprocess.units import Units
+
+from ..errors import BadInput, listed, short
+from ..scene.changes import differences
+from .result import Result
+
+#: Characters of a narrow column, and decimals of parameters that pair states.
+_NARROW, _DIGITS = 18, 9
+
+
+class Comparison:
+    """States of results, paired by the parameters that vary in them, or else by their order.
+
+    Args:
+        results: two or more; differences are those from the first.
+        dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
+        chosen: states of the first; () for all.
+
+    Attributes:
+        results: as given.
+        labels: of the results: their titles, or the names of their files where titles are alike.
+        units: of the results, the same for all.
+        pairs: a state of each result, (pairs, results).
+
+    Raises:
+        BadInput: the first has no such state, or it has no partner.
+    """
+
+    def __init__(
+        self, results: Sequence[Result], dimensionless: bool = False, chosen: Sequence[int] = ()
+    ) -> None:
+        self.results, self.labels = results, _labels(results)
+        own = [result.units(dimensionless) for result in results]
+        self.units = [Units(r.scene.body, r.data, dimensionless, own) for r in results]
+        self._by, self.pairs = _paired([result.data for result in results])
+        counts = [len(result.data[states.FRICTION.path]) for result in results]
+        self._alone = [n - len({*self.pairs[:, k].tolist()}) for k, n in enumerate(counts)]
+        if chosen:
+            if missing := sorted({*chosen} - {*self.pairs[:, 0].tolist()}):
+                raise BadInput(
+                    f"--states: found {missing[0]}, expected numbers of states of {self.labels[0]} that "
+                    f"have a partner: {listed([str(i) for i in self.pairs[:, 0]])}"
+                )
+            self.pairs = self.pairs[np.isin(self.pairs[:, 0], chosen)]
+        self._tables = [_by_head(state_columns(r.data, u)) for r, u in zip(results, self.units)]
+
+    @property
+    def titles(self) -> list[str]:
+        """Numbers of the states of each pair, and the parameters that pair them."""
+        table = self._tables[0]
+        of_key = [c for c in table.values() if c.path in self._by and c.path]
+        titles = []
+        for pair in self.pairs.tolist():
+            same = len(set(pair)) == 1
+            numbers = f"state {pair[0]}" if same else f"states {', '.join(map(str, pair))}"
+            values = [
+                f"{c.head} {c.words(pair[0])}" if c.unit != "none" else c.words(pair[0]) for c in of_key
+            ]
+            titles.append(numbers + f" ({', '.join(values)})" * bool(values))
+        return titles
+
+    def columns(self) -> list[Column]:
+        """One row a pair: each quantity of every result, then its difference from the first [%]."""
+        columns = []
+        for key in dict.fromkeys(key for table in self._tables for key in table):
+            first = self._tables[0].get(key)
+            for n, table in enumerate(self._tables):
+                if (column := table.get(key)) is None:
+                    continue
+                rows, head = self.pairs[:, n].tolist(), ", ".join([*key, self.labels[n]])
+                values = [column.values[i] for i in rows]
+                texts = column.unit == "none" or isinstance(values[0], str)
+                columns.append(Column(
+                    head, values if texts else np.array(values, dtype=float), column.unit,
+                    f"{column.name}_{n + 1}", "", column.digits, column.place, column.step,
+                ))  # fmt: skip
+                if n and first is not None and not texts:
+                    difference = self._difference(first, column, n)
+                    columns.append(
+                        Column(
+                            f"{head}, difference", difference, "%", f"{column.name}_{n + 1}_difference"
+                        )
+                    )
+        return columns
+
+    def _difference(self, first: Column, other: Column, n: int) -> NDArray[np.float64]:
+        """Difference of a column from the first result's [%], of places over the half-width; NaN where
+        units differ, (pairs,)."""
+        i, k = self.pairs[:, 0], self.pairs[:, n]
+        a, b = np.asarray(first.values, dtype=float)[i], np.asarray(other.values, dtype=float)[k]
+        size, dimensionless = np.abs(a), self.units[0].dimensionless
+        if first.place and dimensionless:
+            size = np.ones(len(a))
+        elif (first.place or first.head == "centre") and ("half-width",) in self._tables[0]:
+            size = np.asarray(self._tables[0]["half-width",].values, dtype=float)[i]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            percent = np.where(a == b, 0.0, 100.0 * (b - a) / size)
+        percent[~np.isfinite(percent) | np.isnan(a) | np.isnan(b)] = np.nan
+        if first.head.startswith("K_I") and not dimensionless:  # its unit has the power of the exponent
+            path = (states.BETA if first.head.endswith("left") else states.ALPHA).path
+            exponents = [self.results[m].data.get(path) for m in (0, n)]
+            if exponents[0] is not None and exponents[1] is not None:
+                percent[np.abs(exponents[0][i] - exponents[1][k]) > 1e-9] = np.nan
+        return percent if first.unit == other.unit else np.full(len(a), np.nan)
+
+    def sheets(self) -> Iterator[Sheet]:
+        """A table for each pair of states, results side by side; of many the first."""
+        keys = [
+            key for key in dict.fromkeys(key for table in self._tables for key in table)
+            if not any(key in t and t[key].path and t[key].path in self._by for t in self._tables)
+        ]  # fmt: skip
+        heads = [textwrap.fill(self.labels[0], _NARROW)]
+        for label in self.labels[1:]:
+            heads += [textwrap.fill(label, _NARROW), "difference\n[%]"]
+        texts = [{key: column.texts() for key, column in table.items()} for table in self._tables]
+        differences_ = {
+            (key, n): self._difference(self._tables[0][key], table[key], n)
+            for n, table in enumerate(self._tables)
+            for key in keys
+            if n and key in table and key in self._tables[0] and _is_number(table[key])
+        }
+        for p, (title, pair) in enumerate(zip(self.titles[:LIMIT], self.pairs.tolist())):
+            rows = []
+            for key in keys:
+                column = next(table[key] for table in self._tables if key in table)
+                cells = [text[key][i] if key in text else "" for text, i in zip(texts, pair)]
+                if not any(cells) or (column.path == states.MOTION.path and len(set(cells)) == 1):
+                    continue
+                row = [f"{'  ' * column.place}{column.label}", cells[0]]
+                for n, cell in enumerate(cells[1:], 1):
+                    percent = differences_[key, n][p] if (key, n) in differences_ else np.nan
+                    row += [cell, "" if np.isnan(percent) else f"{percent:+.3g}" if percent else "0"]
+                rows.append(row)
+            yield Sheet(title, ["", *heads], rows)
+
+    def notes(self) -> Iterator[str]:
+        """In what the scenes differ, how states are paired, and what differences are."""
+        texts = [result.data[runs.SCENE.path] for result in self.results]
+        apart = differences(texts)
+        apart.pop("title", None)
+        said = [f"{key}: {' | '.join(short(v, 40) for v in values)}" for key, values in apart.items()]
+        yield f"scenes differ in {'; '.join(said)}" if said else "scenes do not differ"
+        if len(self.pairs) > LIMIT:
+            yield f"and {len(self.pairs) - LIMIT} more pairs of states; choose by --states"
+        if any(self._alone):
+            found = ", ".join(f"{n} of {label}" for n, label in zip(self._alone, self.labels) if n)
+            yield f"states without a partner: {found}"
+        if not self._by and len(self.pairs) > 1:
+            yield "states are paired by their order: their parameters do not agree"
+        intensities = any(head.startswith("K_I") for head, *_ in self._tables[0])
+        yield "difference: from the first, of places and the centre over its half-width" + (
+            "; of K_I none where the exponents, and so the units, differ" * intensities
+        )
+        verdicts = [result.verdict for result in self.results]
+        if set(verdicts) != {"PASS"}:
+            yield f"verdicts: {' | '.join(verdicts)}"
+
+    def drawing(self, measured: Any = None) -> Any:
+        """Figure of contact pressure and in-plane stress, a :class:`galinx.app.figures.choice.Drawing`.
+
+        Args:
+            measured: points over it, of :func:`galinx.app.figures.measured.read`; None for none.
+
+        Raises:
+            BadInput: a result has no stresses along the surface, or no measured point lies in the figure.
+        """
+        from ..figures.choice import Archive, Choice
+        from ..figures.compared import compared
+
+        if measured and not measured.lies_in("surface"):
+            raise BadInput(
+                f"--measured {measured.name}: found {', '.join(measured.points)}, expected pressure or "
+                "sigma_XX, which compare draws"
+            )
+        archives = [
+            Archive(result.data, result.scene, Choice(units=units, measured=measured))
+            for result, units in zip(self.results, self.units)
+        ]
+        return compared(archives, self.labels, self.pairs.tolist(), self.titles)
+
+
+def compare(first: Result, *others: Result, dimensionless: bool = False) -> list[Column]:
+    """Results beside each other, one row a pair of states: columns with head, unit and values.
+
+    States are paired by the parameters that vary in them where these agree, else by their order. All
+    results have common units. After the numbers of each further result stand their differences from the
+    first [%], of places and centres over the half-width; NaN where there is none, as for K_I whose edges
+    have different exponents.
+
+    Args:
+        first, others: results.
+        dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
+    """
+    return Comparison([first, *others], dimensionless).columns()
+
+
+def _is_number(column: Column) -> bool:
+    return column.unit != "none" and not isinstance(column.values[0], str)
+
+
+def _by_head(columns: Sequence[Column]) -> dict[tuple[str, ...], Column]:
+    """Columns by their heads, places by what they are places of as well: methods do not matter."""
+    table: dict[tuple[str, ...], Column] = {}
+    of = ""
+    for column in columns:
+        of = of if column.place else column.head
+        table[(of, column.head) if column.place else (of,)] = column
+    return table
+
+
+def _labels(results: Sequence[Result]) -> list[str]:
+    """Titles of results, or names of their files, or numbers: the first of these that differ."""
+    titles = [str(result.attributes["title"]) for result in results]
+    files = [result.inputs[0] if result.inputs else Path() for result in results]
+    for labels in (titles, [file.stem for file in files], [str(file) for file in files]):
+        if len(set(labels)) == len(results) and all(labels):
+            return labels
+    return [f"{title} ({n})" for n, title in enumerate(titles, 1)]
+
+
+def _paired(results: Sequence[dict[str, Any]]) -> tuple[list[str], NDArray[np.int64]]:
+    """Paths of the parameters that pair states, [] where order does, and pairs, (pairs, results).
+
+    A parameter that is constant in every result pairs nothing, whatever its values are.
+    """
+    common = [path for path in parameters(results[0]) if all(path in data for data in results)]
+    by = [path for path in common if any(len(set(_values(data, path))) > 1 for data in results)]
+    keys = [[*zip(*(_values(data, path) for path in by))] for data in results]
+    if by and all(len(set(key)) == len(key) for key in keys):
+        places = [{key: n for n, key in enumerate(of_result)} for of_result in keys]
+        pairs = [[place[key] for place in places] for key in keys[0] if all(key in p for p in places)]
+        if pairs:
+            return by, np.array(pairs)
+    count = min(len(data[states.FRICTION.path]) for data in results)
+    return [], np.tile(np.arange(count)[:, None], len(results))
+
+
+def _values(data: dict[str, Any], path: str) -> list[Any]:
+    values = np.asarray(data[path]).tolist()
+    return [float(f"{v:.{_DIGITS}g}") if isinstance(v, float) else v for v in values]

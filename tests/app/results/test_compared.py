@@ -1,0 +1,212 @@
+"""Results beside each other, and measured points over figures."""
+
+import re
+
+import numpy as np
+import pytest
+from support import computed, here
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.figures.measured import read
+from galinx.app.results.compared import Comparison
+
+PLAIN = {"solve.methods": ["closed_form"], "motion.c": 0.3}
+HEAVY = {"punch.load": "600 N/mm", "friction.mu_c": 0.5, "title": "heavy"}
+POINTS = "position [mm],pressure [MPa],sigma_XX [MPa]\n-0.5,15.5,-20\n0,17.25,-30.5\n0.75,2e3,-25\n"
+
+
+@pytest.fixture(scope="module")
+def light():
+    return computed("tables4_5", PLAIN)
+
+
+@pytest.fixture(scope="module")
+def heavy():
+    """Ten times the load, less friction, and one place more on the strokes, before the others."""
+    return computed("tables4_5", PLAIN | HEAVY | {"motion.X_over_L": [0.1, 0.2, 0.8]})
+
+
+@pytest.fixture(scope="module")
+def two(light, heavy, tmp_path_factory):
+    paths = [tmp_path_factory.mktemp("two") / f"{name}.h5" for name in ("light", "heavy")]
+    for path, result in zip(paths, (light, heavy)):
+        result.save(path)
+    return paths
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Function that writes a table of measured points."""
+
+    def write(text):
+        path = tmp_path / "device.csv"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def dots(axis):
+    """Numbers of the points of a panel."""
+    (line,) = [line for line in axis.lines if line.get_color() == "black" and line.get_marker() == "o"]
+    return line.get_xydata()
+
+
+def by_name(columns):
+    return {column.name: column for column in columns}
+
+
+def test_states_are_paired_by_their_parameters(light, heavy):
+    columns = by_name(galinx.compare(light, heavy))
+    for name in ("motion", "X_over_L"):
+        assert list(columns[f"{name}_1"].values) == list(columns[f"{name}_2"].values)
+    assert columns["X_over_L_1"].values.tolist() == light.data["states/X_over_L"].tolist()
+    own = {column.name: column for column in heavy.table()}
+    kept = np.flatnonzero(np.asarray(own["X_over_L"].values) > 0.15)
+    np.testing.assert_array_equal(columns["f_2"].values, np.asarray(own["f"].values)[kept])
+    np.testing.assert_allclose(
+        columns["load_2_difference"].values, 100.0 * (600.0 / 55.3 - 1.0), rtol=1e-12
+    )
+    K_I = "closed_form_K_I_right_2_difference"
+    assert np.isnan(columns[K_I].values).all()  # of edges with other exponents
+    plain = by_name(galinx.compare(light, heavy, dimensionless=True))
+    assert np.isfinite(plain[K_I].values).all()
+
+
+def test_both_have_one_unit(light):
+    """Pressures of 0.09 MPa alone would be in kPa, beside those of 28 MPa they are not."""
+    small = computed("tables4_5", PLAIN | {"punch.load": "0.18 N/mm", "title": "small"})
+    tension = "closed_form_sigma_XX_max"
+    assert by_name(small.table())[tension].unit == "kPa"
+    columns = by_name(galinx.compare(small, light))
+    assert columns[f"{tension}_1"].unit == columns[f"{tension}_2"].unit == "MPa"
+    values = by_name(small.table())[tension].values
+    np.testing.assert_allclose(columns[f"{tension}_1"].values, 1e-3 * values, rtol=1e-14)
+    difference = columns[f"{tension}_2_difference"].values
+    np.testing.assert_allclose(difference, 100.0 * (55.3 / 0.18 - 1.0), rtol=1e-9)
+
+
+def test_the_swapped_order_is_the_mirror(light, heavy):
+    there, back = (by_name(galinx.compare(*pair)) for pair in ((light, heavy), (heavy, light)))
+    assert there.keys() - {n for n in there if "difference" in n} == {
+        re.sub(r"_[12]$", lambda m: {"_1": "_2", "_2": "_1"}[m[0]], name)
+        for name in back
+        if "difference" not in name
+    }
+    compared = 0
+    for name, column in there.items():
+        mirrored = re.sub(r"_1$", "_2", name)
+        if name.endswith("_1"):
+            assert column.unit == back[mirrored].unit
+            np.testing.assert_array_equal(column.values, back[mirrored].values)
+        elif name.endswith("_difference") and not column.place:
+            a, b = (there[name.replace("_2_difference", f"_{n}")].values for n in (1, 2))
+            np.testing.assert_allclose(
+                column.values * np.abs(a), -back[name].values * np.abs(b), rtol=1e-9
+            )
+            compared += 1
+    assert compared > 5
+
+
+def test_other_parameters_are_paired_by_their_order(light):
+    other = computed("tables4_5", PLAIN | {"motion.X_over_L": [0.3, 0.7], "title": "other"})
+    comparison = Comparison([light, other])
+    assert comparison.pairs.tolist() == [[i, i] for i in range(6)]
+    notes = " ".join(comparison.notes())
+    assert "paired by their order" in notes
+    assert "motion.X_over_L: [0.2, 0.8] | [0.3, 0.7]" in notes and "friction" not in notes
+
+
+def test_compare_prints_and_draws(two, tmp_path):
+    done = here("compare", *two, "-o", tmp_path / "both.svg", "--states", "1")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "both.svg").stat().st_size > 10_000
+    assert "states 1, 2 (FM1, X/L 0.8)" in done.stdout and "state 0" not in done.stdout
+    assert re.search(r"load \[N/mm\] +55\.3 +600 +\+985", done.stdout)
+    assert "punch.load: 55.3 N/mm | 600 N/mm; friction.mu_c: 0.7 | 0.5" in " ".join(done.stdout.split())
+    assert "states without a partner: 3 of heavy" in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= 80
+    for words, said in (
+        ((two[0],), "expected two or more"),
+        ((*two, "--states", "17"), "that have a partner: 0, 1"),
+        ((*two, "--measured", "p.csv"), "say by -o where"),
+    ):
+        done = here("compare", *words)
+        assert done.returncode == 2 and said in done.stderr, done.stderr
+
+
+def test_compared_curves_have_one_unit(light, heavy):
+    drawing = Comparison([heavy, light], chosen=[2]).drawing()
+    pressure, tension = drawing.figure.axes
+    assert "(MPa)" in pressure.get_ylabel() and "(mm)" in tension.get_xlabel()
+    middles = [
+        np.interp(0.0, *line.get_xydata()[np.isfinite(line.get_xydata()).all(axis=1)].T)
+        for line in pressure.lines
+        if len(line.get_xdata()) > 2
+    ]
+    middle = np.argmin(np.abs(heavy.data["surface/X_over_a"]))
+    for value, result, state in zip(middles, (heavy, light), (2, 1)):
+        mean = result.units().contact.load / 2e-3 * 1e-6  # N/(2a) in MPa
+        archived = -result.data["surface/closed_form/sigma_YY"][state, middle]
+        assert value == pytest.approx(mean * archived, rel=1e-3)
+
+
+def test_measured_points_lie_at_their_places(light, heavy, table):
+    points = read(table(POINTS))
+    pressure, tension = light.figure("surface", states=(1,), measured=points).axes
+    assert dots(pressure).tolist() == pytest.approx(np.array([[-0.5, 15.5], [0, 17.25], [0.75, 2e3]]))
+    assert dots(tension).tolist() == pytest.approx(np.array([[-0.5, -20], [0, -30.5], [0.75, -25]]))
+    assert pressure.get_ylim()[1] > 2e3  # above the curves
+    pressure, _ = light.figure("surface", states=(1,), measured=points, dimensionless=True).axes
+    assert dots(pressure)[1] == pytest.approx([0.0, 17.25 / 27.65], rel=1e-12)
+    pressure, _ = Comparison([light, heavy]).drawing(points).figure.axes
+    assert dots(pressure)[1] == pytest.approx([0.0, 17.25], rel=1e-12)
+
+
+def test_measured_friction_lies_over_its_slip(light, table):
+    axis = light.figure("friction", measured=read(table("slip [µm]\tf [1]\n25\t0.4\n50\t0.55\n"))).axes[0]
+    assert dots(axis) == pytest.approx(np.array([[0.25, 0.4], [0.5, 0.55]]))  # L is 0.1 mm
+
+
+def test_a_german_table_is_the_same(table):
+    english = read(table(POINTS))
+    german = read(table(POINTS.replace(",", ";").replace(".", ",")))
+    micro = read(
+        table("x [µm];p [kPa];sigma_XX [GPa]\n-500;15500;-0,02\n0;17250;-0,0305\n750;2e6;-0,025")
+    )
+    for name, of_english in english.points.items():
+        for other in (german, micro):
+            np.testing.assert_allclose(other.points[name], of_english, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("position [mm],presure [MPa]\n0,1\n", "unknown column 'presure'; did you mean pressure"),
+        ("position,pressure [MPa]\n0,1\n", "position has no unit, expected one as in position [mm]"),
+        ("position [mm],pressure\n0,1\n", "pressure has no unit, expected one as in pressure [MPa]"),
+        ("position [MPa],pressure [MPa]\n0,1\n", "line 1, position: found '1 MPa'"),
+        ("pressure [MPa]\n1\n", "expected \"position [mm]"),
+        ("position [mm],pressure [MPa]\n", "in 0 rows"),
+        ("position [mm],x [mm],f\n1,1,1\n", "two columns of x"),
+    ],
+)  # fmt: skip
+def test_what_is_no_measured_table_is_refused(table, text, said):
+    with pytest.raises(BadInput, match=re.escape(said)):
+        read(table(text))
+
+
+def test_points_beside_what_is_drawn_are_refused(light, two, table, tmp_path):
+    far = table("position [m],pressure [MPa]\n5,1\n")
+    done = here("plot", two[0], "--measured", far, "-o", tmp_path)
+    assert done.returncode == 2, done.stdout
+    assert "found points at 5000 to 5000, the figure shows -1.04 to 1.04" in done.stderr
+    for options in ({"figures": ("friction",)}, {"quantities": ("sigma_XX",)}):
+        with pytest.raises(BadInput, match="which no chosen figure or quantity shows"):
+            list(light.drawings(measured=read(far), **options))
+    near = table(POINTS)
+    done = here("plot", two[0], "--measured", near, "-o", tmp_path / "near.svg")
+    assert done.returncode == 0 and (tmp_path / "near.svg").exists(), done.stderr
+    done = here("plot", two[0], "--measured", near, "-o", near)
+    assert done.returncode == 2

@@ -44,7 +44,8 @@ FILES = {
 }
 #: What the mechanics outside solvers/fem/ is made of.
 PURE = {
-    "solvers", "registry", "numpy", "scipy", "math", "abc", "dataclasses", "functools", "collections",
+    "solvers", "registry", "texts", "numpy", "scipy", "math", "abc", "dataclasses", "functools",
+    "collections",
     "contextlib", "itertools", "typing", "warnings",
 }  # fmt: skip
 #: What finite elements are compared with, and may not use: but the mode that prescribes the closed form's

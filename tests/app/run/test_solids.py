@@ -206,6 +206,7 @@ def test_figures_turn_a_solid_that_has_an_angle():
     assert "angles" not in archive.names(galinx.compute(steel).data, steel, every)
     data = galinx.compute(fibres).data
     drawn = {d.name: d for d in archive.of_archive(data, fibres, archive.Choice(figures=("angles",)))}
-    limits = drawn["angles"].figure.axes[0].lines[0]
-    turned = limits.get_ydata()[np.isclose(limits.get_xdata(), np.deg2rad(30.0))]
+    limits = drawn["angles"].figure.axes[0].lines[1]  # the first is the angle of the scene
+    angles, speeds = (np.asarray(values) for values in limits.get_data())
+    turned = speeds[np.isclose(angles, 30.0)]
     assert turned == pytest.approx(fibres.solid.limit() * fibres.solid.c_s, rel=1e-12)

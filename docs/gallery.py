@@ -5,6 +5,7 @@ The page itself is written by ``docs/make.py``, which ``./run.sh docs`` runs.
 
 import sys
 from pathlib import Path
+from typing import Any
 
 DOCS = Path(__file__).resolve().parent
 
@@ -41,6 +42,13 @@ SHOWN = {
     "box": (STUDY, "The study's block, whole and near the punch."),
     "own_material": ("surface", "Acrylic glass at 1 mm/s, 100 m/s and 800 m/s."),
 }  # fmt: skip
+
+#: Figure of each scene of recipes.md, or of a scene by its name in scenes/.
+RECIPES = {
+    "cylinder": "surface", "coated": "parameters", "crystal": "parameters", "wedge": "surface",
+    "loop": "surface", "start": "time", "stick_slip": "slider", "fast": "parameters",
+}  # fmt: skip
+_TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 
 _HEAD = """\
 # Gallery
@@ -79,6 +87,24 @@ def _called(name: str, figure: str) -> str:
     return f"results/{CALLED.get(name, name)}" if figure == STUDY else f"{name}_{figure}"
 
 
+def _recipe(name: str) -> Any:
+    """Scene of a recipe: as its page has it, with the law that is fitted to the measured loop."""
+    from galinx import fit, template
+    from galinx.app.scene.read import parse
+
+    if name in _TEMPLATES:
+        return template(_TEMPLATES[name])
+    page = (DOCS / "recipes.md").read_text(encoding="utf-8")
+    text = page.partition(f"# {name}.toml\n")[2].partition("```")[0]
+    if name == "loop":
+        law = fit(str(DOCS.parent / "scenes" / "slip.csv"), "dahl", fix={"delta": 1.0})
+        values = {key: law.parameters[key] for key in ("mu_c", "sigma0_over_load")}
+        text = text.replace("mu_c = 0.5", f"mu_c = {values['mu_c']}").replace(
+            '"10000 1/m"', f"{values['sigma0_over_load']}"
+        )
+    return parse(text, name)
+
+
 def main(*names: str) -> None:
     """Compute the scenes and draw what is shown, of some scenes alone where they are named."""
     from galinx import compute, template
@@ -95,6 +121,10 @@ def main(*names: str) -> None:
             pictures[name] = drawn[CALLED.get(name, name)]
         elif not names or name in names:
             pictures[name] = compute(template(name)).figure(wanted)
+    (DOCS / "figures" / "recipes").mkdir(parents=True, exist_ok=True)
+    for name, figure in RECIPES.items():
+        if not names or name in names:
+            pictures[f"../recipes/{name}"] = compute(_recipe(name)).figure(figure)
     for name, figure in pictures.items():
         (folder / f"{name}.png").write_bytes(content(figure, "png", 110))
         print(f"written: docs/figures/gallery/{name}.png", flush=True)

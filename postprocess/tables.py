@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from galinx.solvers.contact import YIELD
 from galinx.texts import plain
 
 from .quantities import (
@@ -412,7 +413,8 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
             lacking.append('"surface" (σ_XX)')
         if len(units.contact.solid.depths) and not any("shear" in head for head in heads):
             lacking.append('"interfaces" (their shear)')
-        if not any(word in head for head in heads for word in ("yields", "von Mises")):
+        computed = any(word in head for head in heads for word in ("yields", "von Mises"))
+        if not computed and YIELD not in units.contact.lacks:
             lacking.append('"yield" (von Mises, yields or not)')
     if lacking:
         yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"

@@ -177,7 +177,7 @@ def compare(
     States are paired by the parameters that vary in them where these agree, else by their order. -o draws
     contact pressure and in-plane stress of all in one figure.
 
-    Example: ./run.sh compare steel.h5 coated.h5 -o both.pdf
+    Example: ./run.sh compare tables.h5 tables.h5 -o both.pdf
     """
     from ..figures.files import Files
     from ..figures.measured import read as read_measured

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities import column
 from galinx.postprocess.quantities.quantity import TEXT
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import parameters
 from galinx.postprocess.units import Units
 from galinx.texts import number, plain, unit
@@ -49,8 +50,15 @@ class StateLabels:
         return [name for name in self.parameters if len(self.distinct(name, states)) > 1]
 
     def values(self, name: str) -> NDArray:
-        """Values of a parameter in all states, (states,)."""
-        return self._data[column(name)]
+        """Values of a parameter in all states, (states,); speeds over the wave speed of the scene's solid.
+
+        In a sweep over solids one speed has several c, as the wave speed differs.
+        """
+        values = self._data[column(name)]
+        if name != C or WAVE_SPEED.path not in self._data:
+            return values
+        V = values * self._data[WAVE_SPEED.path]
+        return np.array([float(f"{speed:.12g}") for speed in V]) / self.c_s
 
     def distinct(self, name: str, states: NDArray | Sequence[int] | None = None) -> list[Any]:
         """Distinct values of a parameter: numbers in ascending order, texts in the order of states."""

@@ -36,6 +36,7 @@ GOOD = {
     "materials": ([], []),
     "schema": ([], []),
     "csv": (["quick.h5"], [["--states"], ["--dimensionless"]]),
+    "compare": (["quick.h5", "quick.h5"], [["--dimensionless"], ["--states", "0"]]),
     "dispersion": (None, []),
     "response": (None, []),
     "plot": (None, []),

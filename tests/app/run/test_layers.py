@@ -69,7 +69,7 @@ def test_the_example_from_scene_to_archive(tmp_path):
     again = galinx.load(path)
     assert again.scene.layers == result.scene.layers
     told = json.loads(again.attributes["solid"])
-    assert told["layer 1"].startswith("0.001 m of E = 7.5e+09 Pa")
+    assert told["layer 1"].startswith("1 mm of E = 7.5 GPa")
 
 
 def test_results_begin_with_what_may_part_a_layer_from_what_it_lies_on():

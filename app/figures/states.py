@@ -50,7 +50,7 @@ class StateLabels:
         return [name for name in self.parameters if len(self.distinct(name, states)) > 1]
 
     def values(self, name: str) -> NDArray:
-        """Values of a parameter in all states, (states,); speeds over the wave speed of the scene's solid.
+        """Values of a parameter in all states, (states,); speeds over the wave speed of the first solid.
 
         In a sweep over solids one speed has several c, as the wave speed differs.
         """

@@ -36,7 +36,7 @@ GOOD = {
     "materials": ([], []),
     "schema": ([], []),
     "csv": (["quick.h5"], [["--states"], ["--dimensionless"]]),
-    "compare": (["quick.h5", "quick.h5"], [["--dimensionless"], ["--states", "0"]]),
+    "compare": (None, []),
     "dispersion": (None, []),
     "response": (None, []),
     "plot": (None, []),

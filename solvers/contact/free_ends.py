@@ -42,7 +42,7 @@ from .estimate import SAFETY
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
 from .recovery import ContactFacets, jacobi_in_chebyshev, jacobi_norms
-from .solution import Between, Surface, Turns
+from .solution import Surface, Turns
 from .stresses import NEAR, NEAR_TIP
 
 #: Number of shapes: two determine the factors, the third measures their error.
@@ -366,7 +366,7 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
 
 #: log(d/d') between two knots at the distances d and d': at a few places that show where the stress is
 #: highest, and at the many between which it is interpolated.
-_COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
+_COARSE, GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
 #: Number of the highest, and of the lowest, of the few places next to which the many are evaluated.
 _TOPS = 4
 
@@ -394,8 +394,10 @@ def at_and_between(
     states: int,
     σ_XX: Callable[[NDArray], NDArray[np.float64]],
     infinite: NDArray | tuple[bool, bool] = (False, False),
-) -> tuple[NDArray[np.float64], Between]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """In-plane stress over N/(2a) at places where its slope is infinite, (states, places), and between.
+
+    The second is as in :class:`galinx.solvers.contact.solution.Turns`.
 
     Args:
         places: rising positions over a from -1 to 1, (places,).
@@ -411,8 +413,8 @@ def at_and_between(
     # A place belongs to the intervals on both sides of it.
     intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
     intervals = intervals[(intervals >= 0) & (intervals < len(places) - 1)]
-    graded = np.tile(_between(places, _GRADED)[intervals], (states, 1, 1))
-    return each[:, ::per], Between(graded, _GRADED, σ_XX(graded[0].ravel()).reshape(graded.shape))
+    graded = np.tile(_between(places, GRADED)[intervals], (states, 1, 1))
+    return each[:, ::per], np.array([graded, σ_XX(graded[0].ravel()).reshape(graded.shape)])
 
 
 def _between(places: NDArray, x: NDArray) -> NDArray[np.float64]:
@@ -494,18 +496,17 @@ def extreme_in_plane(
     ]
     u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
     u = u + np.arcsin(np.clip(X, -1.0, 1.0))
-    between = surface.turns and surface.turns.between
-    if between:
-        graded = np.isfinite(between.X).any(axis=(1, 2))[:, None]
+    between = surface.turns.between if surface.turns else None
+    if between is not None:
+        graded = np.isfinite(between[0]).any(axis=(1, 2))[:, None]
         values = np.where(graded & (np.abs(X) < 1.0), -np.inf, values)
     top, at_u = _largest(u, values, pieces)
     beyond = np.maximum(np.abs(at_u) - np.pi / 2.0, 0.0)
     tops.append((top, np.where(beyond > 0.0, np.sign(at_u) * np.cosh(beyond), np.sin(at_u))))
-    intervals = () if not between else zip(np.moveaxis(between.X, 1, 0), np.moveaxis(between.σ_XX, 1, 0))
-    for X, σ in intervals:
+    for X, σ in () if between is None else np.moveaxis(between, 2, 0):
         values = np.where(np.isfinite(σ) & _finite(X, infinite), sign * σ, -np.inf)
-        top, at_x = _largest(between.x, values, np.zeros(values.shape))
-        tops.append((top, np.array([np.interp(x, between.x, row) for x, row in zip(at_x, X)])))
+        top, at_x = _largest(GRADED, values, np.zeros(values.shape))
+        tops.append((top, np.array([np.interp(x, GRADED, row) for x, row in zip(at_x, X)])))
     largest_, places = (np.array(column) for column in zip(*tops))
     best = largest_.argmax(axis=0)[None]
     value, place = (np.take_along_axis(of, best, 0)[0] for of in (largest_, places))

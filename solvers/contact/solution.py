@@ -476,82 +476,55 @@ class Turns:
     Attributes:
         X: places over a, NaN for none, (states, k).
         σ: σ_XX, σ_YY, σ_XY over N/(2a) at these places, NaN for none, (3, states, k).
-        between: in-plane stress between the places, where samples of the surface are too far from them;
-            None where samples are near enough.
+        between: positions over a in intervals between neighbouring kinks, near both of which σ_XX has a
+            logarithm of the distance, and σ_XX there, NaN for none, (2, states, intervals, n); positions
+            are at :data:`galinx.solvers.contact.free_ends.GRADED`. None without kinks.
     """
 
     X: NDArray[np.float64]
     σ: NDArray[np.float64]
-    between: "Between | None" = None
+    between: NDArray[np.float64] | None = None
 
     def of(self, rows: NDArray) -> "Turns":
         """Turns of the states with these numbers, which may repeat."""
-        between = self.between and Between(
-            self.between.X[rows], self.between.x, self.between.σ_XX[rows]
-        )  # fmt: skip
+        between = None if self.between is None else self.between[:, rows]
         return Turns(self.X[rows], self.σ[:, rows], between)
 
     def joined(self, other: "Turns") -> "Turns":
         """Turns at these places and at other places of the same states."""
         σ = np.concatenate([self.σ, other.σ], axis=2)
-        return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
-
-
-@dataclass(frozen=True)
-class Between:
-    """In-plane stress between neighbouring kinks, near both of which it has a logarithm of the distance.
-
-    Attributes:
-        X: positions over a, in intervals between kinks, NaN for none, (states, intervals, n).
-        x: logarithm of the ratio of a position's distances from both kinks, in which stresses are
-            smooth, (n,).
-        σ_XX: in-plane stress over N/(2a) at these positions, NaN for none, (states, intervals, n).
-    """
-
-    X: NDArray[np.float64]
-    x: NDArray[np.float64]
-    σ_XX: NDArray[np.float64]
+        between = other.between if self.between is None else self.between
+        return Turns(np.concatenate([self.X, other.X], axis=1), σ, between)
 
 
 def together(each: list[Turns]) -> Turns | None:
-    """Turns of all states from those of each, padded with NaN where a state has fewer places than others.
+    """Turns of all states from those of some, padded with NaN where these have fewer places than others.
 
     Args:
-        each: turns of a single state.
+        each: turns of one or several states.
 
     Returns:
         Turns of as many states; None where the list is empty.
     """
     if not each:
         return None
-    σ = np.array([_padded([turns.σ[i] for turns in each]) for i in range(3)])
-    return Turns(_padded([turns.X for turns in each]), σ, all_between([turns.between for turns in each]))
-
-
-def all_between(each: list[Between | None]) -> Between | None:
-    """Stresses between kinks of all states from those of each, padded with NaN; None where none has any.
-
-    Args:
-        each: stresses of a single state, None where it has none.
-    """
-    x = next((between.x for between in each if between), None)
-    if x is None:
-        return None
-    none = Between(np.empty((1, 0, len(x))), x, np.empty((1, 0, len(x))))
-    betweens = [between or none for between in each]
-    X, σ_XX = (_padded([getattr(between, name) for between in betweens]) for name in ("X", "σ_XX"))
-    return Between(X, x, σ_XX)
+    X, σ = _padded([turns.X[None] for turns in each])[0], _padded([turns.σ for turns in each])
+    n = {turns.between.shape[-1] for turns in each if turns.between is not None}
+    between = [
+        np.empty((2, len(turns.X), 0, *n)) if turns.between is None else turns.between for turns in each
+    ]
+    return Turns(X, σ, _padded(between) if n else None)
 
 
 def _padded(each: list[NDArray]) -> NDArray[np.float64]:
-    """Arrays (1, k, ...) of states one after the other, padded with NaN to the largest k."""
-    most = max(values.shape[1] for values in each)
+    """Arrays (components, states, k, ...), one after the other, padded with NaN to the largest k."""
+    most = max(values.shape[2] for values in each)
 
     def whole(values: NDArray) -> NDArray[np.float64]:
-        widths = [(0, (most - values.shape[1]) * (axis == 1)) for axis in range(values.ndim)]
+        widths = [(0, (most - values.shape[2]) * (axis == 2)) for axis in range(values.ndim)]
         return np.pad(np.asarray(values, dtype=float), widths, constant_values=np.nan)
 
-    return np.concatenate([whole(values) for values in each])
+    return np.concatenate([whole(values) for values in each], axis=1)
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from loaded import LoadedHalfPlane
 from support import THOROUGH, computed
 
 import galinx
 from galinx.app.scene.read import parse
-from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.solvers.contact.uniform import contacts

@@ -28,17 +28,17 @@ the local analysis says.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 from ..profiles import check_reach
 from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
+from .panelled import Panels
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
 from .recovery import ContactFacets, jacobi_in_chebyshev, jacobi_norms
@@ -48,9 +48,8 @@ from .stresses import NEAR, NEAR_TIP
 #: Number of shapes: two determine the factors, the third measures their error.
 SHAPES = 3
 
-#: Gauss points of a panel; size of a panel over that of the next larger one; numbers of panels towards a
-#: kink and towards an end.
-_POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
+#: Longest panel of the quadrature of their conditions.
+_FINEST = 0.7
 
 #: First half-width tried [m].
 _FIRST = 1e-3
@@ -149,40 +148,9 @@ class EndConditions:
 
     def _rule(self, kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
         """Quadrature of both conditions, see :data:`.ends.Rule`."""
-        s, weights = _rule(kinks, self.α, self.β)
-        lifting, carrying = np.polynomial.chebyshev.chebval(s, self.factors.T) * weights
-        return s, lifting, 2.0 * carrying
-
-
-@lru_cache(maxsize=64)
-def _towards(exponent: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points in [0, 1] and weights of ∫ t^exponent F(t) dt on panels graded towards 0, (n,) each."""
-    τ, w = np.polynomial.legendre.leggauss(_POINTS)
-    x = (τ + 1.0) / 2.0
-    ends = _RATIO ** np.arange(panels + 1)
-    t = ends[1:, None] + (ends[:-1] - ends[1:])[:, None] * x
-    weights = (ends[:-1] - ends[1:])[:, None] * w / 2.0 * t**exponent
-    inner, of_inner = roots_jacobi(_POINTS, 0.0, exponent)
-    size = ends[-1]
-    t = np.append(t.ravel(), size * (inner + 1.0) / 2.0)
-    return t, np.append(weights.ravel(), of_inner * (size / 2.0) ** (exponent + 1.0))
-
-
-@lru_cache(maxsize=8)
-def _rule(at: tuple[float, ...], α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and weights, (n,) each, of ∫ (1 - s)^β (1 + s)^α F(s) ds, F smooth between places ``at``."""
-    places = np.concatenate([[-1.0], np.unique(at), [1.0]])
-    last, s, weights = len(places) - 2, [], []
-    for i, half in enumerate(np.diff(places) / 2.0):
-        for x, sign, exponent in ((places[i], 1.0, α * (i == 0)), (places[i + 1], -1.0, β * (i == last))):
-            t, w = _towards(exponent, _TO_END if exponent else _TO_KINK)
-            points = x + sign * half * t
-            w = w * half ** (exponent + 1.0)
-            factor_right = 1.0 if exponent and sign < 0.0 else (1.0 - points) ** β
-            factor_left = 1.0 if exponent and sign > 0.0 else (1.0 + points) ** α
-            s.append(points)
-            weights.append(w * factor_left * factor_right)
-    return np.concatenate(s), np.concatenate(weights)
+        panels = Panels(self.β, self.α, _FINEST, kinks)
+        lifting, carrying = np.polynomial.chebyshev.chebval(panels.t, self.factors.T) * panels.weights
+        return panels.t, lifting, 2.0 * carrying
 
 
 #: Distances from an end, over that of the nearest kink, between which the pressure is sampled; number of

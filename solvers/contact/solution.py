@@ -6,6 +6,7 @@ change with a power of the distance, and the largest may lie between samples: a 
 limits there, :class:`Turns`.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
@@ -13,11 +14,12 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import SolveError
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
 from ..solids.solid import Response
 from . import FREE_ENDS, OWN_PRESSURE, YIELD
-from .edges import under_punch
+from .edges import EdgeExponents, Exponents, under_punch
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
 
@@ -181,14 +183,18 @@ class Contact:
             g: σ_XY/σ_YY under the punch, (states,).
             load: of each state [N/m], (states,); None for this contact's.
         """
-        compression = self.loaded(load).compression
-        if self.layered:
-            from . import free_on_layers as layers  # SciPy's special functions, a slow import
+        edges = EdgeExponents(response, g)
+        free_left, free_right = self._free_ends(response, g, self.loaded(load).compression).T
+        return Exponents(edges.α + free_right, edges.β + free_left)
 
-            return layers.local_exponents(response, g, self.profile, self.half_width, compression)
-        from .uniform import local_exponents
+    def _free_ends(self, response: Response, g: NDArray, compression: Any) -> NDArray[np.bool_]:
+        """True where the left and the right end of states are free, (states, 2).
 
-        return local_exponents(response, g, self.profile, compression)
+        Args:
+            response, g: as in :meth:`local_exponents`.
+            compression: N/μ [m], a number or (states,).
+        """
+        return np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
 
     @property
     def layered(self) -> bool:
@@ -380,6 +386,22 @@ class OneFreeContact(FreeEndContact):
     """Contact between a sharp corner of the punch and an end that is free where the punch lifts off."""
 
     ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
+
+    def _free_ends(self, response: Response, g: NDArray, compression: Any) -> NDArray[np.bool_]:
+        free = super()._free_ends(response, g, compression)
+        if not self.layered:
+            from .uniform import contacts  # SciPy's special functions, a slow import
+
+            with suppress(SolveError):  # the method that solves reports it
+                of = contacts(response, g, self.profile, compression).of
+                free = np.column_stack([of("β"), of("α")]) > 0.0
+            return free
+        from .free_on_layers import free_edges
+
+        for i, N in enumerate(np.broadcast_to(compression, g.shape).tolist()):
+            with suppress(SolveError):
+                free[i] = free_edges(response, float(g[i]), self.profile, self.half_width, N)
+        return free
 
 
 class FreeContact(FreeEndContact):

@@ -27,7 +27,6 @@ from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
 from ..solids.solid import Response
 from .closed_form import FlatPunch, Weighted, in_plane
-from .edges import Exponents
 from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
 from .pressure import Pressure
@@ -152,20 +151,6 @@ class Contacts:
         return self.joined(
             lambda group: np.broadcast_to(group.pressure.largest(), (2, len(group.rows))), 1
         )
-
-
-def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
-    """Exponents by the local analysis: those of a flat punch at sharp ends, one more at free ends."""
-    flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
-    if all(sharp):
-        return flat
-    try:
-        exact = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
-    except SolveError:
-        exact = None  # the method that solves reports it
-    if exact:
-        return Exponents(exact.of("α"), exact.of("β"))
-    return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
 
 
 def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:

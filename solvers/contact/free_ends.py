@@ -40,7 +40,7 @@ from .edges import under_punch
 from .estimate import SAFETY
 from .panelled import Panels
 from .prescribed_pressure import LinearPressure
-from .pressure import Pressure
+from .pressure import Pressure, largest
 from .recovery import ContactFacets, jacobi_in_chebyshev, jacobi_norms
 from .solution import Surface, Turns
 from .stresses import NEAR, NEAR_TIP
@@ -563,9 +563,8 @@ def _vertex(
     return np.where(inside, vertex, curve.max(axis=1)), place
 
 
-#: Most tops of a pressure that are refined; places evaluated at a time; distance between them over a at
-#: which refinement ends; and distance within which two places are one.
-_KINKED_TOPS, _PLACES_AT_A_TIME, _STEP, _SAME = 4, 41, 2e-5, 1e-14
+#: Distance over a within which two places are one.
+_SAME = 1e-14
 
 
 def gaps_of(kinks: NDArray) -> tuple[float, float]:
@@ -643,10 +642,7 @@ class KinkedPressure(Pressure):
         return (σ / ((1.0 - r) ** self.α * (1.0 + r) ** self.β))[None]
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each.
-
-        It is refined around the best nodes.
-        """
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each."""
         if self._infinite:
             return np.full(1, np.nan), np.full(1, np.nan)
         facets = self._facets
@@ -654,26 +650,10 @@ class KinkedPressure(Pressure):
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         # Facets have their common node a rounding apart: with both places no top would reach past it.
         r = r[under_punch(r) & (np.diff(r, prepend=-2.0) > _SAME)]
-        p = -self.σ_YY(r)[0]
-        tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
-        tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
-        peaks = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
+        top = largest(lambda r: -self.σ_YY(r)[0], self.kinks, places=r)
         if self._exponent:
-            peaks += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
-        value, place = np.array(max(peaks))[:, None]
-        return value, place
-
-    def _nearer(self, low: float, high: float) -> tuple[float, float]:
-        """Largest pressure over N/(2a) between two positions over a, and its place over a."""
-        step = 1.0
-        while step > _STEP:
-            # At a kink the pressure may have a cusp, which no grid meets.
-            r = np.linspace(low, high, _PLACES_AT_A_TIME)
-            r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
-            p = -self.σ_YY(r)[0]
-            i, step = int(p.argmax()), (high - low) / (_PLACES_AT_A_TIME - 1)
-            low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
-        return float(p[i]), float(r[i])
+            top = max(top, *((-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)))
+        return np.array(top[:1]), np.array(top[1:])
 
     def at_kink(self, number: int) -> float:
         """Contact stress σ_YY over N/(2a) at a kink."""

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
 from .pressure import Pressure
 
@@ -29,7 +29,7 @@ _STEPS = 80
 
 
 def in_plane(
-    response: Response, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
+    response: HalfPlane, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
 ) -> NDArray[np.float64]:
     """In-plane stress over N/(2a) on the surface.
 

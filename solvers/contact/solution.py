@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..errors import SolveError
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, YIELD
 from .edges import EdgeExponents, Exponents, under_punch
 from .prescribed_pressure import LinearPressure
@@ -154,7 +154,7 @@ class Contact:
         layers = self.solid.layers if self.layered else ()  # type: ignore[attr-defined]
         return (*(layer.yield_strength for layer in layers), self.yield_strength)
 
-    def response(self, c: float) -> Response:
+    def response(self, c: float) -> HalfPlane:
         """Response of the half-plane at a speed over its wave speed, dimensionless.
 
         Raises:
@@ -175,7 +175,7 @@ class Contact:
         """Normal stress out of the plane at a solution's points inside, over N/(2a), (states, m)."""
         return solution.σ_ZZ if self.layered else self.solid.σ_ZZ(*solution.inside)
 
-    def local_exponents(self, response: Response, g: NDArray, load: Any = None) -> Any:
+    def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Exponents of the pressure at the ends of states.
 
         Args:
@@ -187,7 +187,7 @@ class Contact:
         free_left, free_right = self._free_ends(response, g, self.loaded(load).compression).T
         return Exponents(edges.α + free_right, edges.β + free_left)
 
-    def _free_ends(self, response: Response, g: NDArray, compression: Any) -> NDArray[np.bool_]:
+    def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
         """True where the left and the right end of states are free, (states, 2).
 
         Args:
@@ -224,7 +224,7 @@ class Contact:
         """
         return np.column_stack([local.β, local.α]) < 0.0
 
-    def known_pressure(self, response: Response, g: NDArray) -> Pressure | None:
+    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure | None:
         """Pressure without an equation to solve, over a uniform half-plane; None where there is one.
 
         Args:
@@ -303,7 +303,7 @@ class SharpContact(Contact):
     def growth_exponent(self) -> float | None:
         return 0.0 if self.flat else None
 
-    def known_pressure(self, response: Response, g: NDArray) -> Pressure | None:
+    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure | None:
         from .closed_form import FlatPunch  # SciPy's special functions, a slow import
 
         return FlatPunch(response, g) if self.flat else None
@@ -326,7 +326,7 @@ class PrescribedContact(SharpContact):
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         return np.tile(self.pressure.values[[0, -1]] != 0.0, (len(local.α), 1))
 
-    def known_pressure(self, response: Response, g: NDArray) -> Pressure:
+    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure:
         return self.pressure
 
 
@@ -387,7 +387,7 @@ class OneFreeContact(FreeEndContact):
 
     ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
 
-    def _free_ends(self, response: Response, g: NDArray, compression: Any) -> NDArray[np.bool_]:
+    def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
         free = super()._free_ends(response, g, compression)
         if not self.layered:
             from .uniform import contacts  # SciPy's special functions, a slow import
@@ -456,7 +456,7 @@ class Task:
 
     number: int
     body: Contact
-    response: Response
+    response: HalfPlane
     places: Places
     runs: tuple[slice, ...]
     loads: tuple[float, ...]
@@ -464,6 +464,20 @@ class Task:
     def of(self, values: NDArray) -> NDArray:
         """Rows of the task's states, of values of all states, (states, …)."""
         return np.concatenate([values[run] for run in self.runs])
+
+    def probes(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """Frictions and loads of states that stand for all: at both ends of the loads, unless similar.
+
+        Args:
+            g: frictions, (n,).
+
+        Returns:
+            Frictions, and loads [N/m], None for the task's, (states,) each.
+        """
+        if self.body.alike:
+            return g, None
+        ends = sorted({min(self.loads), max(self.loads)})
+        return np.tile(g, len(ends)), np.repeat(ends, len(g))
 
 
 def solved_once(

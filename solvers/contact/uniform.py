@@ -25,7 +25,7 @@ from ..errors import SolveError
 from ..profiles import check_reach, cusp, jumps
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .closed_form import FlatPunch, Weighted, in_plane
 from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
@@ -93,7 +93,7 @@ class Contacts:
         groups: all states by the kind of their pressure.
     """
 
-    response: Response
+    response: HalfPlane
     g: NDArray[np.float64]
     groups: tuple[Group, ...]
 
@@ -167,7 +167,7 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
 
 
-def contacts_of(body: Any, response: Response, g: NDArray) -> Contacts:
+def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
     """Contacts of a body, prescribed, with free ends or sharp.
 
     Args:
@@ -193,7 +193,7 @@ def _fixed(rows: NDArray, pressure: Pressure, half_width: float) -> Group:
     return Group(rows, pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
 
 
-def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
+def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:
     """Contacts of a punch with free ends.
 
     Args:
@@ -219,7 +219,7 @@ def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contact
     return Contacts(response, g, tuple(_by_quadrature(response, g, n, profile, load)))
 
 
-def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
+def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
     flat = FlatPunch(response, g)
     a, b = 1.0 + flat.α, 1.0 + flat.β
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
@@ -229,7 +229,7 @@ def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, l
 
 
 def _tilted(
-    response: Response, g: NDArray, n: NDArray, profile: Flat, load: NDArray
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Flat, load: NDArray
 ) -> tuple[Group, ...]:
     """Contacts of a tilted flat punch: both edges in contact, or one lifted off."""
     flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
@@ -256,7 +256,7 @@ def _tilted(
 
 
 def _by_quadrature(
-    response: Response, g: NDArray, n: NDArray, profile: Any, load: NDArray
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Any, load: NDArray
 ) -> Sequence[Group]:
     """Contacts of any convex profile, state after state; equal states are solved once."""
     a, groups = 1.0 + FlatPunch(response, g).α, []
@@ -292,7 +292,7 @@ def rule_of_ends(profile: Any, a: float, n: float) -> Rule:
     return rule
 
 
-def pressure_of(punch: Punch, a: float, response: Response, g: float, m: float, h: float) -> FreeEnds:
+def pressure_of(punch: Punch, a: float, response: HalfPlane, g: float, m: float, h: float) -> FreeEnds:
     """Pressure of a contact with given ends.
 
     Args:

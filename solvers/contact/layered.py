@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..layers.kernel import Level
 from ..layers.layered import LayersAtSpeed
 from ..layers.stiffness import Medium
-from ..profiles import cusp, jumps, kinks
+from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch, in_plane
 from .edges import Exponents, under_punch, weights_hilbert
@@ -398,12 +398,11 @@ class LayeredSolution:
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        profile = self.at.task.body.profile
         finite = self.free.all(axis=1) & np.isinf(self.tips).all(axis=1)
         value, place = np.full((2, len(self.g)), np.nan)
         for i in np.flatnonzero(finite).tolist():
             of_state = partial(self._pressure, i)
-            value[i], place[i] = largest(of_state, self._kinks(i), cusp(profile))
+            value[i], place[i] = largest(of_state, self._kinks(i))
         return value, place
 
     def _pressure(self, i: int, r: NDArray) -> NDArray[np.float64]:

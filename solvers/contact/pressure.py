@@ -13,8 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from .edges import weights_hilbert
 
-#: Distance over a from a cusp of the pressure at which it is sampled, on both sides.
-_CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
 #: Places at which the pressure is sampled for its largest value, and places about kinks; most tops that
 #: are refined. Where there is a kink: places between a top's neighbours, and least distance of these.
 _SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
@@ -38,7 +36,6 @@ class Pressure:
         α, β: exponents at the right and the left end.
         kinks: places inside at which the pressure is not smooth.
         tips: places inside at which it is infinite.
-        cusp: exponent below 1 of its change by the distance from a kink; 0 for none.
         breaks: ends of pieces in which it is linear; none for other pressures.
         resultant: ∫ σ_YY d(X/a) over N/(2a); -2 under a punch.
         near: |r| up to which p can be evaluated.
@@ -48,7 +45,6 @@ class Pressure:
     β: Any
     kinks: Sequence[float] | NDArray = ()
     tips: Sequence[float] = ()
-    cusp: float = 0.0
     breaks: Sequence[float] | NDArray = ()
     resultant: float = -2.0
     near: float = 1.0
@@ -91,7 +87,7 @@ class Pressure:
         """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
         if not self.finite:
             return np.full(1, np.nan), np.full(1, np.nan)
-        top, at = largest(lambda r: -self.σ_YY(r), self.kinks, self.cusp)
+        top, at = largest(lambda r: -self.σ_YY(r), self.kinks)
         return np.array([top]), np.array([at])
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
@@ -208,7 +204,6 @@ class Expansion(Pressure):
 def largest(
     pressure: Callable[[NDArray], NDArray],
     kinks: Sequence[float] | NDArray = (),
-    cusp: float = 0.0,
     places: NDArray = _SAMPLES,
 ) -> tuple[float, float]:
     """Largest pressure of a state under a punch and its place, by a search about several tops.
@@ -216,7 +211,6 @@ def largest(
     Args:
         pressure: at r in (-1, 1), (points,).
         kinks: places at which it is not smooth.
-        cusp: exponent of its change by the distance from them; 0 where that is d log d.
         places: places at which it is sampled besides, (n,).
     """
     beside = np.ravel(np.add.outer(np.array(kinks, dtype=float), _BESIDE_KINKS))
@@ -224,12 +218,7 @@ def largest(
     p = pressure(r)
     tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
     tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    maxima = [_nearer(pressure, r[i - 1 : i + 2], np.asarray(kinks)) for i in tops.tolist()]
-    if cusp:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
-        for at in kinks:
-            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
-            maxima.append((near + (near - far) / (2.0**cusp - 1.0), float(at)))
-    return max(maxima)
+    return max(_nearer(pressure, r[i - 1 : i + 2], np.asarray(kinks)) for i in tops.tolist())
 
 
 def _nearer(
@@ -239,10 +228,10 @@ def _nearer(
 
     It is that of ever closer parabolas; as long as there is a kink about, of ever finer samples.
     """
-    step = np.inf
-    while ((kinks >= three[0]) & (kinks <= three[2])).any():
-        r = np.linspace(three[0], three[2], _BETWEEN)
-        p, step = pressure(r), r[1] - r[0]
+    while len(inside := kinks[(kinks >= three[0]) & (kinks <= three[2])]):
+        step = (three[2] - three[0]) / (_BETWEEN - 1)
+        r = np.union1d(np.linspace(three[0], three[2], _BETWEEN), inside)
+        p = pressure(r)
         i = int(np.clip(np.argmax(p), 1, len(r) - 2))
         three = r[i - 1 : i + 2]
         if step < _AT_KINK:  # where the largest pressure may have a cusp

@@ -71,9 +71,9 @@ def _refusal(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) ->
 _OF_FLAT_PUNCHES = {
     SHARP: {
         states.K_I_BOTH.path: "the two ends differ",
-        BELOW: "known below flat punches only",
-        YIELD: "known below flat punches only",
-        PUNCH: "known of flat punches only",
+        BELOW: "known below flat punches with one friction only",
+        YIELD: "known below flat punches with one friction only",
+        PUNCH: "known of flat punches with one friction only",
     }
 }
 

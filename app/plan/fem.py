@@ -44,6 +44,8 @@ from . import cost
 #: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
 #: that is rounding.
 _MOST_SHAPES, _ROUNDED = 48, 1e-13
+#: Positions along the contact at which friction is sampled for its extremes.
+_ACROSS = 201
 #: Most unknowns of a speed that one rank solves faster than two ranks together.
 SMALL = 200_000
 
@@ -66,7 +68,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         depths = scene.solid.depths / scene.body.half_width
         kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
     _check_degree_and_solver(scene)
-    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, _ACROSS))
+    mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
     exponent = min(
         -0.5 - abs(EdgeExponents(response, end).α + 0.5) for response in responses for end in ends
     )

@@ -12,11 +12,13 @@ Next to the ends it goes with α(1) and β = -1 - α(-1). The transform of σ_XY
 σ_YY by the regular integral C = (1/π) ∫ (g(t) - g(X)) σ_YY(t)/(t - X) dt.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
 from ..friction.along import Along, Piecewise
@@ -127,3 +129,49 @@ def _off(t: NDArray, ends: NDArray) -> NDArray[np.float64]:
     """Positions moved off the ends of panels, where logarithms of two panels cancel."""
     on = ends[np.clip(np.searchsorted(ends, t), 0, len(ends) - 1)] == t
     return np.where(on, t + 1e-15, t)
+
+
+@dataclass(frozen=True)
+class Recovered(Pressure):
+    """Pressures with given moments, of several states: each a polynomial times that of the closed form.
+
+    The form of the pressure between the ends is that of the surface's local analysis, as are exponents
+    elsewhere; its polynomial is a constant where moments are those of the closed form.
+
+    Attributes:
+        forms: pressures of the states in closed form.
+        c: Chebyshev coefficients, (states, moments).
+    """
+
+    forms: tuple[FlatAlong, ...]
+    c: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, response: Response, along: Sequence[Along], moments: NDArray) -> "Recovered":
+        """Pressures at one speed with moments ∫ σ_YY T_k dr over N/(2a), (states, moments)."""
+        forms, c = tuple(FlatAlong(response, each) for each in along), np.empty_like(moments)
+        for i, form in enumerate(forms):
+            T = chebvander(form._rule.t, moments.shape[1] - 1)
+            c[i] = np.linalg.solve((form._forces[:, None] * T).T @ T, moments[i])
+        return cls(forms, c)
+
+    @property
+    def α(self) -> NDArray[np.float64]:  # type: ignore[override]
+        return np.array([[form.α] for form in self.forms])
+
+    @property
+    def β(self) -> NDArray[np.float64]:  # type: ignore[override]
+        return np.array([[form.β] for form in self.forms])
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        polynomials = np.tensordot(self.c, chebvander(np.clip(r, -1.0, 1.0), self.c.shape[1] - 1), (-1, -1))
+        return polynomials * np.array([form.series(r) for form in self.forms])
+
+    @property
+    def unresolved(self) -> NDArray[np.float64]:
+        """Relative error measured on the last of the functions, 0, (states,)."""
+        return np.zeros(len(self.c))
+
+    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
+        """Change of the smooth factor where both edges are misplaced, 0: no edge of the mesh is."""
+        return np.zeros((len(self.c), len(r)))

@@ -97,6 +97,15 @@ class KrylovSpace:
         return self._V[:, self.applied :]
 
     @property
+    def loads(self) -> NDArray[np.float64]:
+        """All loads, (n, loads)."""
+        return self._V
+
+    def load_by(self, loads: NDArray) -> None:
+        """Take other orthonormal loads, (n, k), before any is applied."""
+        self._V = loads
+
+    @property
     def unsettled(self) -> NDArray[np.float64]:
         """Loads that are applied and have no fields yet, (n, loads)."""
         return self._V[:, len(self.fields) - 1 : self.applied]

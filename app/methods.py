@@ -12,7 +12,12 @@ from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
-from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
+from galinx.solvers.contact.fem_plan import (
+    FREE_ON_LAYERS,
+    OWN_MESHES,
+    PRESCRIBED_ON_LAYERS,
+    crowded_kinks,
+)
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,
@@ -121,6 +126,8 @@ def fem_mode(scene: Any) -> str:
 
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
+    if mode == VARYING and (crowded := crowded_kinks(body.rough_friction[0])):
+        return f"friction along the contact has {crowded}"
     lacks = _LACKING.get(mode, {})
     if scene.layers:
         if body.solid.nearly_incompressible:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
+from galinx.meshes.kind import with_kinks
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact import FREE_ENDS
 from galinx.solvers.contact.edges import EdgeExponents
@@ -83,7 +84,8 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
-    drawn = kind.drawn(required)
+    kinks, _ = scene.body.rough_friction
+    drawn = with_kinks(refinement, np.array(kinks)) if kinks else kind.drawn(required)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))
     solver = solve.solver
@@ -96,7 +98,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=pressure_moments(scene.solid, kind, required),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
+        kinks=kinks, shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
     )  # fmt: skip
 
 

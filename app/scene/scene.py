@@ -438,6 +438,7 @@ def _not_varying(scene: Scene) -> str:
         f"a {punch.words()}": not isinstance(punch, Flat) or punch.rise != 0.0,
         "layers": bool(scene.layers),
         f'solve.mode = "{solve.mode}"': solve.mode != "contact",
+        f'solve.mesh = "{solve.mesh}"': solve.mesh != "confocal",
         f'solve.solver = "{solve.solver}"': solve.solver not in ("auto", "direct"),
         'the quantity "yield"': YIELD in scene.output.quantities,
         "strokes or positions on them with an advected state": (

@@ -42,7 +42,8 @@ class VaryingPunch(SlidingPunch):
     def prepare(self, g: NDArray[np.float64]) -> None:
         (space,) = self._spaces
         T, R0 = self._of_nodes[:, 1].T, space.forces[0, 1]
-        for value, G in zip(g.tolist(), self._facets.products(lambda X: self._body.ratio(g, X))):
+        for value in g.tolist():
+            G = self._facets.product(self._body.along[value])
             self._tangential_forces[value] = G @ np.linalg.solve(np.eye(len(T)) - T @ G, R0)
         loads, size, _ = np.linalg.svd(np.transpose([*self._tangential_forces.values()]), full_matrices=False)
         space.load_by(loads[:, size > LEAST * size[0]])

@@ -18,8 +18,11 @@ from .law import FrictionLaw
 #: Gauss points of a panel, and from values there to coefficients of Legendre polynomials.
 _NODES = 16
 _τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
-#: Last coefficients over the largest value at which a panel is not halved further; its least length.
-_RESOLVED, _LAST, _SHORTEST = 1e-12, 2, 1e-9
+#: Last coefficients over the largest value at which a panel is not halved further, of functions known to
+#: all digits and of those integrated; number of these; least half-length; most panels.
+_DIGITS, _INTEGRATED, _LAST, _SHORTEST, _MOST = 1e-12, 1e-9, 2, 1e-9, 4000
+#: Distance from which on short panels belong to different kinks.
+_APART = 1e-6
 #: Size of Bernstein's ellipse through a place from which Gauss's rule alone serves a panel.
 _NEAR = 3.5
 
@@ -30,20 +33,28 @@ class Piecewise:
     Args:
         function: values at positions, (n,): (n,).
         breaks: positions at which it is not smooth.
+        digits: last coefficients over the largest value at which a panel is not halved further.
+
+    Raises:
+        ValueError: too many panels would be needed.
 
     Attributes:
         ends: of the panels, (panels + 1,).
         c: coefficients, (panels, nodes).
     """
 
-    def __init__(self, function: Callable[[NDArray], NDArray], breaks: Sequence[float] = ()) -> None:
+    def __init__(
+        self, function: Callable[[NDArray], NDArray], breaks: Sequence[float] = (), digits: float = _DIGITS
+    ) -> None:
         left = np.array([-1.0, *breaks])
         half, size, done = np.diff([*left, 1.0]) / 2.0, 0.0, []
         while len(left):
+            if len(left) + len(done) > _MOST:
+                raise ValueError("friction along the contact is too rough to be resolved")
             t = (left + half)[:, None] + half[:, None] * _τ
             values = np.asarray(function(t.ravel())).reshape(t.shape)
             c, size = values @ _TO_LEGENDRE.T, max(size, float(np.abs(values).max()))
-            good = (np.abs(c[:, -_LAST:]).max(axis=1) <= _RESOLVED * size) | (half < _SHORTEST)
+            good = (np.abs(c[:, -_LAST:]).max(axis=1) <= digits * size) | (half < _SHORTEST)
             done += list(zip(left[good], c[good]))
             half = np.repeat(half[~good] / 2.0, 2)
             left = np.repeat(left[~good], 2)
@@ -51,6 +62,10 @@ class Piecewise:
         done.sort(key=lambda panel: panel[0])
         self.ends = np.array([*(start for start, _ in done), 1.0])
         self.c = np.array([c for _, c in done])
+        #: Places at which no panel resolved the function: it has a kink or jump there.
+        short = self.ends[:-1][np.diff(self.ends) < 2.0 * _SHORTEST]
+        first = np.flatnonzero(np.diff(short, prepend=-2.0) > _APART)
+        self.kinks = tuple(float(run.mean()) for run in np.split(short, first[1:]) if len(run))
 
     def __call__(self, t: NDArray) -> NDArray[np.float64]:
         """Values at positions t, beside [-1, 1] those of its ends, in the shape of t."""
@@ -144,4 +159,6 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
         z = exactly(law, start, s, V, 2.0 * a, a * (1.0 - leading * X))
         return np.asarray(stress_ratio * law.friction(z, s, V))
 
-    return Along(Piecewise(ratio))
+    digits = _INTEGRATED if law.exact(start, s, V, np.zeros(1)) is None else _DIGITS
+    kinks = tuple(X for X in Piecewise(ratio, (), digits).kinks if abs(X) < 1.0 - _APART)
+    return Along(Piecewise(ratio, kinks, digits), kinks)

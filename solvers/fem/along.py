@@ -5,9 +5,9 @@ that tangential forces R cause, friction requires
 
     (I - T G) R = R₀,
 
-where G takes the normal forces to the tangential ones: through the contact's mass matrix to σ_YY, which
-times g(X) is σ_XY. Every state is solved by dense algebra; the tangential forces of all states span the
-loads whose displacements are solved for.
+where G takes the normal forces to the tangential ones t = G R: through the contact's mass matrix to σ_YY,
+which times g(X) is σ_XY. All states share loads t; what they leave of the equation of a state is the next
+load, as in GMRES.
 """
 
 from typing import Any
@@ -24,6 +24,10 @@ from .punch import LEAST, Part, SlidingPunch
 from .space import Space
 
 
+#: States whose equations are in memory at a time.
+_TOGETHER = 33
+
+
 class VaryingPunch(SlidingPunch):
     """All states of a flat punch with friction that varies along the contact, at one speed.
 
@@ -36,26 +40,40 @@ class VaryingPunch(SlidingPunch):
         super().__init__(*sliding)
         nodes, chart = self.space.contact, self.space.chart
         self._body, self._facets = body, ContactFacets(nodes.s, self.space.degree, chart)
-        #: Tangential forces of a state by its number, (n,).
-        self._tangential_forces: dict[float, NDArray[np.float64]] = {}
+        #: Coefficients of the loads of each state, by its number.
+        self._of_states: dict[float, NDArray[np.float64]] = {}
 
     def prepare(self, g: NDArray[np.float64]) -> None:
         (space,) = self._spaces
-        T, R0 = self._of_nodes[:, 1].T, space.forces[0, 1]
-        for value in g.tolist():
-            G = self._facets.product(self._body.along[value])
-            self._tangential_forces[value] = G @ np.linalg.solve(np.eye(len(T)) - T @ G, R0)
-        loads, size, _ = np.linalg.svd(np.transpose([*self._tangential_forces.values()]), full_matrices=False)
-        space.load_by(loads[:, size > LEAST * size[0]])
-        rough = self._displacements(self._tangential(space.waiting))
-        space.take(rough, np.array([self._boundary.follow(force) for force in self._reactions(rough)]))
+        space.load_by(np.empty((len(self.space.contact.s), 0)))
+        for first in range(0, len(g), _TOGETHER):
+            some = g[first : first + _TOGETHER].tolist()
+            products = [self._facets.product(self._body.along[value]) for value in some]
+            while True:
+                left = np.transpose([self._solved(G)[1] for G in products])
+                more = space.beside(left[:, np.linalg.norm(left, axis=0) > max(self._left, 10.0 * LEAST)])
+                if not more.shape[1]:
+                    break
+                space.load_by(np.column_stack([space.loads, more]))
+                rough = self._displacements(self._tangential(more))
+                forces = [self._boundary.follow(force) for force in self._reactions(rough)]
+                space.take(rough, np.array(forces))
         self._settle(space)
+        for value in g.tolist():
+            self._of_states[value] = self._solved(self._facets.product(self._body.along[value]))[0]
         space.complete = True
+
+    def _solved(self, G: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients of the loads in t = G R, and what they leave of it, over G R₀."""
+        (space,) = self._spaces
+        A, b = space.loads - G @ space.forces[1:, 1].T, G @ space.forces[0, 1]
+        y, *_ = np.linalg.lstsq(A, b, rcond=None)
+        return y, (b - A @ y) / max(float(np.linalg.norm(b)), np.finfo(float).tiny)
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
         (space,) = self._spaces
-        loads = np.array([self._tangential_forces[value] for value in g.tolist()])
-        return [Part(np.column_stack([np.ones(len(g)), loads @ space.loads]), space.forces)]
+        loads = np.array([self._of_states[value] for value in g.tolist()])
+        return [Part(np.column_stack([np.ones(len(g)), loads]), space.forces)]
 
 
 class VaryingEnds(SharpEnds):

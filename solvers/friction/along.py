@@ -21,8 +21,8 @@ _τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
 #: Last coefficients over the largest value at which a panel is not halved further, of functions known to
 #: all digits and of those integrated; number of these; least half-length; most panels.
 _DIGITS, _INTEGRATED, _LAST, _SHORTEST, _MOST = 1e-12, 1e-9, 2, 1e-9, 4000
-#: Distance from which on short panels belong to different kinks.
-_APART = 1e-6
+#: Length of panels over their distance from the nearer end below which they surround a kink.
+_BESIDE = 1e-3
 #: Size of Bernstein's ellipse through a place from which Gauss's rule alone serves a panel.
 _NEAR = 3.5
 
@@ -62,10 +62,14 @@ class Piecewise:
         done.sort(key=lambda panel: panel[0])
         self.ends = np.array([*(start for start, _ in done), 1.0])
         self.c = np.array([c for _, c in done])
-        #: Places at which no panel resolved the function: it has a kink or jump there.
-        short = self.ends[:-1][np.diff(self.ends) < 2.0 * _SHORTEST]
-        first = np.flatnonzero(np.diff(short, prepend=-2.0) > _APART)
-        self.kinks = tuple(float(run.mean()) for run in np.split(short, first[1:]) if len(run))
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Places towards which panels shrink from both sides: there the function is not smooth."""
+        middle, width = (self.ends[1:] + self.ends[:-1]) / 2.0, np.diff(self.ends)
+        short = np.flatnonzero(width < _BESIDE * (1.0 - np.abs(middle)))
+        runs = np.split(short, np.flatnonzero(np.diff(short) > 1) + 1)
+        return tuple(float(middle[run[np.argmin(width[run])]]) for run in runs if len(run))
 
     def __call__(self, t: NDArray) -> NDArray[np.float64]:
         """Values at positions t, beside [-1, 1] those of its ends, in the shape of t."""
@@ -160,5 +164,5 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
         return np.asarray(stress_ratio * law.friction(z, s, V))
 
     digits = _INTEGRATED if law.exact(start, s, V, np.zeros(1)) is None else _DIGITS
-    kinks = tuple(X for X in Piecewise(ratio, (), digits).kinks if abs(X) < 1.0 - _APART)
-    return Along(Piecewise(ratio, kinks, digits), kinks)
+    values = Piecewise(ratio, (), digits)
+    return Along(values, values.kinks)

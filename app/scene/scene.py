@@ -326,7 +326,9 @@ class Scene:
         friction, a = self.friction, float(half_width(self.punch.profile))
         if friction.along is not None:
             law = next(friction.laws())
-            means = {friction.stress_ratio * float(law.friction(law.rest(), s, 0.0)) + 0.0 for s in (1, -1)}
+            means = {
+                friction.stress_ratio * float(law.friction(law.rest(), s, 0.0)) + 0.0 for s in (1, -1)
+            }
             scale = max(means)
             return {g: tabulated(friction.along, g / scale if scale else 1.0) for g in sorted(means)}
         if friction.state != ADVECTED:

@@ -194,7 +194,9 @@ class Along:
     """Pairs [X/a, f] from X/a = -1 to 1."""
 
     def __call__(self, value: Any) -> tuple[tuple[float, float], ...]:
-        expected = "pairs [X/a, f] with positions that grow from X/a = -1 to 1 and f of at least 0, not all 0"
+        expected = (
+            "pairs [X/a, f] with positions that grow from X/a = -1 to 1 and f of at least 0, not all 0"
+        )
         if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
             raise ValueError(f"found {excerpt(value)}, expected {expected}")
         pairs = tuple((to_si(X, ""), to_si(f, "")) for X, f in value)

@@ -164,7 +164,9 @@ class Recovered(Pressure):
         return np.array([[form.β] for form in self.forms])
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        polynomials = np.tensordot(self.c, chebvander(np.clip(r, -1.0, 1.0), self.c.shape[1] - 1), (-1, -1))
+        polynomials = np.tensordot(
+            self.c, chebvander(np.clip(r, -1.0, 1.0), self.c.shape[1] - 1), (-1, -1)
+        )
         return polynomials * np.array([form.series(r) for form in self.forms])
 
     @property

@@ -341,9 +341,13 @@ class VaryingContact(SharpContact):
     @property
     def rough_friction(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         each = self.along.values()
-        kinks, ends = ({x for of in sets for x in of} for sets in (
-            (along.breaks for along in each), (along.ratio.ends[1:-1].tolist() for along in each)
-        ))
+        kinks, ends = (
+            {x for of in sets for x in of}
+            for sets in (
+                (along.breaks for along in each),
+                (along.ratio.ends[1:-1].tolist() for along in each),
+            )
+        )
         return tuple(sorted(kinks)), tuple(sorted(ends - kinks))
 
     def edges(self, response: Response, g: NDArray) -> Exponents:

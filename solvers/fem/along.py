@@ -82,7 +82,9 @@ class VaryingEnds(SharpEnds):
     def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Recovered:
         body: Any = level.task.body
         moments = ends.contact.tested(level.moments)
-        return Recovered.of(level.task.response, [body.along[g] for g in ends.contact.g.tolist()], moments)
+        return Recovered.of(
+            level.task.response, [body.along[g] for g in ends.contact.g.tolist()], moments
+        )
 
 
 class VaryingLevel(PunchLevel):

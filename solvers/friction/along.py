@@ -44,7 +44,10 @@ class Piecewise:
     """
 
     def __init__(
-        self, function: Callable[[NDArray], NDArray], breaks: Sequence[float] = (), digits: float = _DIGITS
+        self,
+        function: Callable[[NDArray], NDArray],
+        breaks: Sequence[float] = (),
+        digits: float = _DIGITS,
     ) -> None:
         left = np.array([-1.0, *breaks])
         half, size, done = np.diff([*left, 1.0]) / 2.0, 0.0, []

@@ -126,7 +126,7 @@ def fem_mode(scene: Any) -> str:
 
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
-    if mode == VARYING and (crowded := crowded_kinks(body.rough_friction[0])):
+    if mode == VARYING and (crowded := crowded_kinks(body.friction_kinks)):
         return f"friction along the contact has {crowded}"
     lacks = _LACKING.get(mode, {})
     if scene.layers:

@@ -48,7 +48,8 @@ def along(of: Archive) -> Drawing:
         over_one += both(x, {m: p / one_of_all for m, p in of_state.items()}, look, "", k / len(states))
         over_p.append(Curve(x, one_of_all, look._replace(line=LINES[3]), "", width=0.7))
     shown = np.concatenate([p[states] for p in values.values()])
-    window = tuple(place_of(of, states[0])[1] + s * _UNDER * place_of(of, states[0])[0] for s in (-1, 1))
+    factor, offset = place_of(of, states[0])
+    window = (offset - factor * _UNDER, offset + factor * _UNDER)
     panels = [
         Panel(position_name(of, "position "), "friction coefficient $f$", curves=over_x, xlim=window, at_y=(0.0,)),
         Panel(

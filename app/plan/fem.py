@@ -84,7 +84,7 @@ def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDA
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
-    kinks, _ = scene.body.rough_friction
+    kinks = scene.body.friction_kinks
     drawn = with_kinks(refinement, np.array(kinks)) if kinks else kind.drawn(required)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))

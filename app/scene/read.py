@@ -18,7 +18,7 @@ from typing import Any
 
 from galinx import files
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.along import mean_of
+from galinx.solvers.friction.along import tabulated
 from galinx.texts import unseen
 
 from ..console import program
@@ -421,7 +421,7 @@ def _fill_in_along(tree: dict[str, Any]) -> list[str]:
         rows = SECTIONS["friction"].keys(tree["friction"])["along"].kind(friction["along"])
     except ValueError:
         return []  # one fault, which its own key reports
-    tree["friction"]["mu_c"] = mean_of(rows)
+    tree["friction"]["mu_c"] = tabulated(rows, 1.0).mean
     return []
 
 

@@ -101,12 +101,12 @@ class ExactSolution:
     @property
     def resultant_ratio(self) -> NDArray[np.float64]:
         """Resultant of σ_XY over that of σ_YY, of friction that varies along the contact, (states,)."""
-        return np.array([group.pressure.friction for group in self.contacts.groups])[self._rows]
+        return np.array([group.pressure.resultant_ratio for group in self.contacts.groups])[self._rows]
 
     @property
     def pressure_centre(self) -> NDArray[np.float64]:
         """Centre of pressure over a, of friction that varies along the contact, (states,)."""
-        return np.array([group.pressure.centre for group in self.contacts.groups])[self._rows]
+        return np.array([group.pressure.pressure_centre for group in self.contacts.groups])[self._rows]
 
     @property
     def normal_force(self) -> NDArray[np.float64]:

@@ -158,8 +158,7 @@ def of_contact(
         return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
 
     layers = _kernels(response, h) if len(response.depths) else []
-    kinks, breaks = [*kinks, *body.rough_friction[0]], [*breaks, *body.rough_friction[1]]
-    exponents = local.α, local.β
+    kinks, exponents = [*kinks, *body.friction_kinks], (local.α, local.β)
     return of_pressure(
         response, lambda r: body.ratio(g, r), exponents, slope, pressure, kinks, breaks, layers
     )

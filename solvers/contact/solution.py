@@ -180,9 +180,9 @@ class Contact:
         return np.asarray(g)[:, None]
 
     @property
-    def rough_friction(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Positions over a at which friction along the contact has kinks, and ends of its panels."""
-        return (), ()
+    def friction_kinks(self) -> tuple[float, ...]:
+        """Positions over a at which friction along the contact is not smooth, in any state."""
+        return ()
 
     def edges(self, response: Response, g: NDArray) -> Any:
         """Local analysis of sharp ends with frictions g, (states,): exponents α and β."""
@@ -339,16 +339,8 @@ class VaryingContact(SharpContact):
         return np.stack([self.along[each](X) for each in np.asarray(g).tolist()])
 
     @property
-    def rough_friction(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        each = self.along.values()
-        kinks, ends = (
-            {x for of in sets for x in of}
-            for sets in (
-                (along.breaks for along in each),
-                (along.ratio.ends[1:-1].tolist() for along in each),
-            )
-        )
-        return tuple(sorted(kinks)), tuple(sorted(ends - kinks))
+    def friction_kinks(self) -> tuple[float, ...]:
+        return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
 
     def edges(self, response: Response, g: NDArray) -> Exponents:
         at = self.ratio(g, np.array([-1.0, 1.0]))

@@ -10,14 +10,15 @@ which times g(X) is σ_XY. All states share loads t; what they leave of the equa
 load, as in GMRES.
 """
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.along import Recovered
-from ..contact.recovery import ContactFacets
-from ..contact.solution import Task
+from ..contact.along import FlatAlong, TimesClosedForm
+from ..contact.pressure import Expansion
+from ..contact.recovery import ContactFacets, from_moments
+from ..contact.solution import Task, VaryingContact
 from .contact import PunchLevel, SharpEnds, SolvedEnds
 from .discretisation import Discretisation
 from .punch import LEAST, Part, SlidingPunch
@@ -79,12 +80,11 @@ class VaryingPunch(SlidingPunch):
 class VaryingEnds(SharpEnds):
     """Sharp edges of a flat punch with friction that varies along the contact."""
 
-    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Recovered:
-        body: Any = level.task.body
-        moments = ends.contact.tested(level.moments)
-        return Recovered.of(
-            level.task.response, [body.along[g] for g in ends.contact.g.tolist()], moments
-        )
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
+        task, body, g = level.task, cast(VaryingContact, level.task.body), ends.contact.g
+        forms = tuple(FlatAlong(task.response, body.along[value]) for value in g.tolist())
+        local = body.edges(task.response, g)
+        return from_moments(ends.contact.tested(level.moments), local.α, local.β, TimesClosedForm(forms))
 
 
 class VaryingLevel(PunchLevel):

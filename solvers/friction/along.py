@@ -8,99 +8,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
-from .integrate import exactly
+from .integrate import closely, exactly, work
 from .law import FrictionLaw
 
-#: Gauss points of a panel, and from values there to coefficients of Legendre polynomials.
-_NODES = 16
-_τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
-#: Last coefficients over the largest value at which a panel is not halved further, of functions known to
-#: all digits and of those integrated; number of these; least half-length; most panels.
-_DIGITS, _INTEGRATED, _LAST, _SHORTEST, _MOST = 1e-12, 1e-9, 2, 1e-9, 4000
-#: Length of panels over their distance from the nearer end below which they surround a kink.
-_BESIDE = 1e-3
-#: Size of Bernstein's ellipse through a place from which Gauss's rule alone serves a panel.
-_NEAR = 3.5
-
-
-class Piecewise:
-    """Function on [-1, 1] as Legendre polynomials on panels, halved until they resolve it.
-
-    Args:
-        function: values at positions, (n,): (n,).
-        breaks: positions at which it is not smooth.
-        digits: last coefficients over the largest value at which a panel is not halved further.
-
-    Raises:
-        ValueError: too many panels would be needed.
-
-    Attributes:
-        ends: of the panels, (panels + 1,).
-        c: coefficients, (panels, nodes).
-    """
-
-    def __init__(
-        self,
-        function: Callable[[NDArray], NDArray],
-        breaks: Sequence[float] = (),
-        digits: float = _DIGITS,
-    ) -> None:
-        left = np.array([-1.0, *breaks])
-        half, size, done = np.diff([*left, 1.0]) / 2.0, 0.0, []
-        while len(left):
-            if len(left) + len(done) > _MOST:
-                raise ValueError("friction along the contact is too rough to be resolved")
-            t = (left + half)[:, None] + half[:, None] * _τ
-            values = np.asarray(function(t.ravel())).reshape(t.shape)
-            c, size = values @ _TO_LEGENDRE.T, max(size, float(np.abs(values).max()))
-            good = (np.abs(c[:, -_LAST:]).max(axis=1) <= digits * size) | (half < _SHORTEST)
-            done += list(zip(left[good], c[good]))
-            half = np.repeat(half[~good] / 2.0, 2)
-            left = np.repeat(left[~good], 2)
-            left[1::2] += 2.0 * half[1::2]
-        done.sort(key=lambda panel: panel[0])
-        self.ends = np.array([*(start for start, _ in done), 1.0])
-        self.c = np.array([c for _, c in done])
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Places towards which panels shrink from both sides: there the function is not smooth."""
-        middle, width = (self.ends[1:] + self.ends[:-1]) / 2.0, np.diff(self.ends)
-        short = np.flatnonzero(width < _BESIDE * (1.0 - np.abs(middle)))
-        runs = np.split(short, np.flatnonzero(np.diff(short) > 1) + 1)
-        return tuple(float(middle[run[np.argmin(width[run])]]) for run in runs if len(run))
-
-    def __call__(self, t: NDArray) -> NDArray[np.float64]:
-        """Values at positions t, beside [-1, 1] those of its ends, in the shape of t."""
-        t = np.clip(t, -1.0, 1.0)
-        panel = np.clip(np.searchsorted(self.ends, t, side="right") - 1, 0, len(self.c) - 1)
-        start, end = self.ends[panel], self.ends[panel + 1]
-        P = legendre.legvander((2.0 * t - start - end) / (end - start), _NODES - 1)
-        return np.einsum("...k,...k->...", P, self.c[panel])
-
-    @property
-    def mean(self) -> float:
-        """Mean over [-1, 1]."""
-        return float(np.diff(self.ends) @ self.c[:, 0] / 2.0)
-
-    def cauchy(self, t: NDArray) -> NDArray[np.float64]:
-        """⨍ f(s)/(s - t) ds at real positions t off the ends of panels, (n,)."""
-        total, half = np.zeros(len(t)), np.diff(self.ends) / 2.0
-        at_nodes = self.c @ legendre.legvander(_τ, _NODES - 1).T * _w
-        for c, values, start, end, h in zip(self.c, at_nodes, self.ends, self.ends[1:], half):
-            τ = (t - start) / h - 1.0
-            near = np.abs(τ) + np.sqrt(np.maximum(τ**2 - 1.0, 0.0)) < _NEAR
-            total[~near] += (values / (_τ - τ[~near, None])).sum(axis=1)
-            τ, Q = τ[near], [0.5 * np.log(np.abs((t[near] - start) / (t[near] - end)))]
-            Q.append(τ * Q[0] - 1.0)
-            for k in range(1, _NODES - 1):
-                Q.append(((2 * k + 1) * τ * Q[k] - k * Q[k - 1]) / (k + 1))
-            total[near] -= 2.0 * (c @ np.array(Q))
-        return total
+#: Points of a panel; its last coefficients over the largest value up to which it resolves friction that is
+#: known exactly, and that is integrated.
+_τ, _, _TO_LEGENDRE = legendre_panel(16)
+_EXACT, _INTEGRATED = 1e-12, 1e-7
+#: Half-length of panels over their distance from the nearer end from which on those that resolve nothing
+#: surround a kink, and at which they are no longer halved; most panels of one length.
+_BESIDE, _SHORTEST, _MOST = 1e-3, 1e-8, 400
 
 
 @dataclass(frozen=True)
@@ -108,40 +28,26 @@ class Along:
     """σ_XY/σ_YY over the contact.
 
     Attributes:
-        ratio: σ_XY/σ_YY at positions X/a in [-1, 1].
-        breaks: positions X/a inside at which its slope jumps.
+        mean: mean over X.
+        ratio: σ_XY/σ_YY at positions X/a in [-1, 1], (n,): (n,).
+        kinks: positions inside at which it is not smooth.
     """
 
-    ratio: Piecewise
-    breaks: tuple[float, ...] = ()
-
-    @property
-    def mean(self) -> float:
-        """Mean of σ_XY/σ_YY over X."""
-        return self.ratio.mean
+    mean: float
+    ratio: Callable[[NDArray], NDArray]
+    kinks: tuple[float, ...] = ()
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
         """σ_XY/σ_YY at X/a, beside the contact that at its nearer end, in the shape of X."""
-        return self.ratio(X)
-
-    @property
-    def extremes(self) -> tuple[float, float]:
-        """Least and largest σ_XY/σ_YY among 1001 positions."""
-        values = self(np.linspace(-1.0, 1.0, 1001))
-        return float(values.min()), float(values.max())
+        X = np.clip(X, -1.0, 1.0)
+        return np.asarray(self.ratio(X.ravel())).reshape(X.shape)
 
 
 def tabulated(rows: Sequence[tuple[float, float]], factor: float) -> Along:
     """Friction linear between rows (X/a, f), from X/a = -1 to 1; σ_XY/σ_YY is ``factor`` times f."""
     X, f = np.transpose(rows)
-    breaks = tuple(X[1:-1].tolist())
-    return Along(Piecewise(lambda at: factor * np.interp(at, X, f), breaks), breaks)
-
-
-def mean_of(rows: Sequence[tuple[float, float]]) -> float:
-    """Mean over the contact of f that is linear between rows (X/a, f)."""
-    X, f = np.transpose(rows)
-    return float(np.diff(X) @ (f[1:] + f[:-1]) / 4.0)
+    mean = float(np.diff(X) @ (f[1:] + f[:-1]) / 4.0)
+    return Along(factor * mean, lambda at: factor * np.interp(at, X, f), tuple(X[1:-1].tolist()))
 
 
 def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) -> Along:
@@ -163,9 +69,36 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
     leading, start = -s * np.sign(stress_ratio), law.settle(law.rest(), s, V)
 
     def ratio(X: NDArray) -> NDArray[np.float64]:
-        z = exactly(law, start, s, V, 2.0 * a, a * (1.0 - leading * X))
+        z = closely(law, start, s, V, 2.0 * a, a * (1.0 - leading * X))
         return np.asarray(stress_ratio * law.friction(z, s, V))
 
-    digits = _INTEGRATED if law.exact(start, s, V, np.zeros(1)) is None else _DIGITS
-    values = Piecewise(ratio, (), digits)
-    return Along(values, values.kinks)
+    mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a, exactly)) / (2.0 * a)
+    known = law.exact(start, s, V, np.zeros(1)) is not None
+    return Along(mean, ratio, _kinks(ratio, _EXACT if known else _INTEGRATED))
+
+
+def _kinks(function: Callable[[NDArray], NDArray], digits: float) -> tuple[float, ...]:
+    """Positions in (-1, 1) at which panels do not resolve a function before they are very short.
+
+    Raises:
+        ValueError: the function is not smooth in between.
+    """
+    left, half, size, rough = np.array([-1.0]), np.ones(1), 0.0, list[tuple[float, float]]()
+    while len(left):
+        t = (left + half)[:, None] + half[:, None] * _τ
+        values = function(t.ravel()).reshape(t.shape)
+        size = max(size, float(np.abs(values).max()))
+        unresolved = np.abs(values @ _TO_LEGENDRE[-2:].T).max(axis=1) > digits * size
+        room, middle = half / (1.0 - np.abs(left + half)), left + half
+        beside = unresolved & (room < _BESIDE)
+        rough += zip(half[beside].tolist(), middle[beside].tolist())
+        halved = unresolved & (room > _SHORTEST)
+        if halved.sum() > _MOST:
+            raise ValueError("friction along the contact is too rough to be resolved")
+        left = (left[halved, None] + half[halved, None] * [0.0, 1.0]).ravel()
+        half = np.repeat(half[halved] / 2.0, 2)
+    kinks: list[float] = []
+    for half_length, place in sorted(rough):  # the shortest panel about a kink comes first
+        if all(abs(place - kink) > 2.0 * half_length for kink in kinks):
+            kinks.append(place)
+    return tuple(sorted(kinks))

@@ -326,8 +326,8 @@ def _checked(
     """Scene of single numbers, or None after its faults are added."""
     before = len(faults)
     faults += _fill_in_stiffness(tree)
-    faults += _fill_in_coefficient(tree)
     faults += _fill_in_along(tree)
+    faults += _fill_in_coefficient(tree)
     steady = _fill_in_motion(tree)
     named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
     title = tree.pop("title", "")

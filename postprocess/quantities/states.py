@@ -171,11 +171,15 @@ RESULTANT = {
 }  # fmt: skip
 
 
+def _attribute(name: str) -> Callable[[Any, Any], NDArray]:
+    return lambda solution, _: np.asarray(getattr(solution, name))
+
+
 #: Resultant and centre of the tractions where friction varies along the contact, by method.
 RESULTANT_RATIO, PRESSURE_CENTRE = (
     {
         method: Quantity(
-            f"states/{method}/{name}", "1", about, (STATE,), lambda s, _, name=name: getattr(s, name),
+            f"states/{method}/{name}", "1", about, (STATE,), _attribute(name),
             method, VARYING, compared=(name,) * (method == FEM), scale=scale,
         )
         for method in (CLOSED_FORM, FEM)

@@ -24,7 +24,6 @@ from .discretisation import Discretisation
 from .punch import LEAST, Part, SlidingPunch
 from .space import Space
 
-
 #: States whose equations are in memory at a time.
 _TOGETHER = 33
 

@@ -14,13 +14,15 @@ from ..approximation import legendre_panel
 from .integrate import closely, exactly, work
 from .law import FrictionLaw
 
-#: Points of a panel; its last coefficients over the largest value up to which it resolves friction that is
+#: Points of a panel; last coefficients over the largest value up to which it resolves friction that is
 #: known exactly, and that is integrated.
 _τ, _, _TO_LEGENDRE = legendre_panel(16)
 _EXACT, _INTEGRATED = 1e-12, 1e-7
 #: Half-length of panels over their distance from the nearer end from which on those that resolve nothing
 #: surround a kink, and at which they are no longer halved; most panels of one length.
 _BESIDE, _SHORTEST, _MOST = 1e-3, 1e-8, 400
+#: End of the first panel: panels end at no round number, where kinks are that they would not meet.
+_FIRST = 0.0618033988
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,8 @@ def _kinks(function: Callable[[NDArray], NDArray], digits: float) -> tuple[float
     Raises:
         ValueError: the function is not smooth in between.
     """
-    left, half, size, rough = np.array([-1.0]), np.ones(1), 0.0, list[tuple[float, float]]()
+    left, half = np.array([-1.0, _FIRST]), np.array([1.0 + _FIRST, 1.0 - _FIRST]) / 2.0
+    size, rough = 0.0, list[tuple[float, float]]()
     while len(left):
         t = (left + half)[:, None] + half[:, None] * _τ
         values = function(t.ravel()).reshape(t.shape)

@@ -314,8 +314,15 @@ def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[C
 
 def _imbalance(data: dict[str, Any], load: Any) -> float:
     normal, tangential = (data[row.path] for row in (of.NORMAL_FORCE, of.TANGENTIAL_FORCE))
-    off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data[of.RATIO.path]))
-    return off.max()
+    ratio = data.get(of.RESULTANT_RATIO[FEM].path, data[of.RATIO.path])
+    return np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + ratio)).max()
+
+
+def _apart(rows: Mapping[str, Quantity]) -> Callable[[dict[str, Any], Any], float]:
+    def measure(data: dict[str, Any], _: Any) -> float:
+        return float(np.abs(data[rows[FEM].path] - data[rows[CLOSED_FORM].path]).max())
+
+    return measure
 
 
 def _resultant(other: str) -> Callable[[dict[str, Any], Any], float]:
@@ -483,6 +490,14 @@ RULES: Registry[Rule] = Registry(
         "estimate": Rule(
             "estimated error of K_I and moments, relative",
             (of.ESTIMATE,), largest_of(of.ESTIMATE), tolerances=1.0,
+        ),
+        "resultant_ratio": Rule(
+            "resultant of σ_XY over that of σ_YY, absolute",
+            tuple(of.RESULTANT_RATIO.values()), _apart(of.RESULTANT_RATIO), tolerances=1.0,
+        ),
+        "pressure_centre": Rule(
+            "centre of pressure, over a",
+            tuple(of.PRESSURE_CENTRE.values()), _apart(of.PRESSURE_CENTRE), tolerances=1.0,
         ),
         **ON_LAYERS,
         **OF_ENDS,

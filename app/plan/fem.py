@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
+from galinx.meshes.kind import with_kinks
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact import FREE_ENDS
 from galinx.solvers.contact.edges import EdgeExponents
@@ -44,6 +45,8 @@ from . import cost
 #: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
 #: that is rounding.
 _MOST_SHAPES, _ROUNDED = 48, 1e-13
+#: Positions along the contact at which friction is sampled for its extremes.
+_ACROSS = 201
 #: Most unknowns of a speed that one rank solves faster than two ranks together.
 SMALL = 200_000
 
@@ -66,7 +69,8 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         depths = scene.solid.depths / scene.body.half_width
         kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
     _check_degree_and_solver(scene)
-    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, _ACROSS))
+    mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
     exponent = min(
         -0.5 - abs(EdgeExponents(response, end).α + 0.5) for response in responses for end in ends
     )
@@ -80,7 +84,8 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
-    drawn = kind.drawn(required)
+    kinks = scene.body.friction_kinks
+    drawn = with_kinks(refinement, np.array(kinks)) if kinks else kind.drawn(required)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))
     solver = solve.solver
@@ -93,7 +98,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=pressure_moments(scene.solid, kind, required),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
+        kinks=kinks, shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
     )  # fmt: skip
 
 

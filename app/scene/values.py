@@ -190,6 +190,27 @@ class Pressure:
         return {"anyOf": [{"const": "closed_form"}, _pairs(2)]}
 
 
+class Along:
+    """Pairs [X/a, f] from X/a = -1 to 1."""
+
+    def __call__(self, value: Any) -> tuple[tuple[float, float], ...]:
+        expected = (
+            "pairs [X/a, f] with positions that grow from X/a = -1 to 1 and f of at least 0, not all 0"
+        )
+        if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
+            raise ValueError(f"found {excerpt(value)}, expected {expected}")
+        pairs = tuple((to_si(X, ""), to_si(f, "")) for X, f in value)
+        X, f = zip(*pairs) if pairs else ((), ())
+        if len(X) < 2 or (X[0], X[-1]) != (-1.0, 1.0) or list(X) != sorted(set(X)) or min(f) < 0.0:
+            raise ValueError(f"found {excerpt(value)}, expected {expected}")
+        if not any(f):
+            raise ValueError(f"found no friction but 0, expected {expected}")
+        return pairs
+
+    def schema(self) -> dict[str, Any]:
+        return _pairs(2)
+
+
 def _below(Y: float) -> float:
     if Y >= 0.0:
         raise ValueError(f"found Y/a = {Y:g}, expected Y/a < 0: the solid lies below the punch")

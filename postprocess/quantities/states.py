@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE
+from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE, VARYING
 from galinx.solvers.contact.solution import FLAT, PUNCH, SOLVED
 from galinx.solvers.contact.stresses import flatness
 from galinx.solvers.parameters import Range
@@ -170,6 +170,25 @@ RESULTANT = {
     for method, rule in ((CLOSED_FORM, "resultant"), (SIE, "resultant over layers"))
 }  # fmt: skip
 
+
+def _attribute(name: str) -> Callable[[Any, Any], NDArray]:
+    return lambda solution, _: np.asarray(getattr(solution, name))
+
+
+#: Resultant and centre of the tractions where friction varies along the contact, by method.
+RESULTANT_RATIO, PRESSURE_CENTRE = (
+    {
+        method: Quantity(
+            f"states/{method}/{name}", "1", about, (STATE,), _attribute(name),
+            method, VARYING, compared=(name,) * (method == FEM), scale=scale,
+        )
+        for method in (CLOSED_FORM, FEM)
+    }
+    for name, about, scale in (
+        ("resultant_ratio", "resultant of sigma_XY over that of sigma_YY", ""),
+        ("pressure_centre", "centre of pressure over the half-width", X_OVER_A),
+    )
+)  # fmt: skip
 
 #: Share of the larger intensity below which an error is over this share rather than over itself.
 _VANISHING = 0.1

@@ -245,6 +245,18 @@ class ContactFacets:
         widest = np.argmax(self.length)
         self.nodes = (s[self.facets[widest]] - self.start[widest]) / self.length[widest]
 
+    def product(self, factor: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
+        """Map from nodal forces of σ_YY to those of its product with a function of r, (n, n)."""
+        degree = self.facets.shape[1] - 1
+        t, w = roots_legendre(degree + 2)
+        basis, _ = lagrange(self.nodes, (t + 1.0) / 2.0)
+        s = self.start[:, None] + self.length[:, None] * (t + 1.0) / 2.0
+        f = np.reshape(factor(self._chart.surface_position(s.ravel())), s.shape)
+        density, product = self.density(np.eye(len(self._s))), np.zeros((len(self._s), len(self._s)))
+        for facet, length, values in zip(self.facets, self.length, f):
+            product[facet] += (basis.T * (values * w / 2.0 * length)) @ basis @ density[facet]
+        return product
+
     def density(self, forces: NDArray) -> NDArray[np.float64]:
         """Density σ_YY dX/ds at the nodes by nodal forces, (n, ...) each, with the mass matrix."""
         degree = self.facets.shape[1] - 1

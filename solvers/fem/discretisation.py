@@ -7,10 +7,11 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 from mpi4py import MPI
 
 from galinx.clock import Clock
-from galinx.meshes.kind import check_cells
+from galinx.meshes.kind import check_cells, with_kinks
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
@@ -136,7 +137,8 @@ def on_finer_cells(plan: FemPlan) -> FemPlan:
     refinement = replace(
         rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
     )
-    return replace(plan, wanted=target, refinement=refinement)
+    drawn = with_kinks(refinement, np.array(plan.kinks)) if plan.kinks else plan.drawn
+    return replace(plan, wanted=target, refinement=refinement, drawn=drawn)
 
 
 @contextmanager

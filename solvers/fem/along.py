@@ -1,0 +1,103 @@
+"""Flat punch with friction that varies along the contact, on the mesh of all contacts.
+
+With R the normal reactions of the contact nodes, R₀ those without friction, and T R the normal reactions
+that tangential forces R cause, friction requires
+
+    (I - T G) R = R₀,
+
+where G takes the normal forces to the tangential ones t = G R: through the contact's mass matrix to σ_YY,
+which times g(X) is σ_XY. All states share loads t; what they leave of the equation of a state is the next
+load, as in GMRES.
+"""
+
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact.along import FlatAlong, TimesClosedForm
+from ..contact.pressure import Expansion
+from ..contact.recovery import ContactFacets, from_moments
+from ..contact.solution import Task, VaryingContact
+from .contact import PunchLevel, SharpEnds, SolvedEnds
+from .discretisation import Discretisation
+from .punch import LEAST, Part, SlidingPunch
+from .space import Space
+
+#: States whose equations are in memory at a time.
+_TOGETHER = 33
+
+
+class VaryingPunch(SlidingPunch):
+    """All states of a flat punch with friction that varies along the contact, at one speed.
+
+    Args:
+        body: the contact, with its friction.
+        *sliding: as of :class:`galinx.solvers.fem.punch.SlidingPunch`.
+    """
+
+    def __init__(self, body: Any, *sliding: Any) -> None:
+        super().__init__(*sliding)
+        nodes, chart = self.space.contact, self.space.chart
+        self._body, self._facets = body, ContactFacets(nodes.s, self.space.degree, chart)
+        #: Coefficients of the loads of each state, by its number.
+        self._of_states: dict[float, NDArray[np.float64]] = {}
+
+    def prepare(self, g: NDArray[np.float64]) -> None:
+        (space,) = self._spaces
+        space.load_by(np.empty((len(self.space.contact.s), 0)))
+        for first in range(0, len(g), _TOGETHER):
+            some = g[first : first + _TOGETHER].tolist()
+            products = [self._facets.product(self._body.along[value]) for value in some]
+            while True:
+                left = np.transpose([self._solved(G)[1] for G in products])
+                more = space.beside(left[:, np.linalg.norm(left, axis=0) > max(self._left, 10.0 * LEAST)])
+                if not more.shape[1]:
+                    break
+                space.load_by(np.column_stack([space.loads, more]))
+                rough = self._displacements(self._tangential(more))
+                forces = [self._boundary.follow(force) for force in self._reactions(rough)]
+                space.take(rough, np.array(forces))
+        self._settle(space)
+        for value in g.tolist():
+            self._of_states[value] = self._solved(self._facets.product(self._body.along[value]))[0]
+        space.complete = True
+
+    def _solved(self, G: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients of the loads in t = G R, and what they leave of it, over G R₀."""
+        (space,) = self._spaces
+        A, b = space.loads - G @ space.forces[1:, 1].T, G @ space.forces[0, 1]
+        y, *_ = np.linalg.lstsq(A, b, rcond=None)
+        return y, (b - A @ y) / max(float(np.linalg.norm(b)), np.finfo(float).tiny)
+
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
+        (space,) = self._spaces
+        loads = np.array([self._of_states[value] for value in g.tolist()])
+        return [Part(np.column_stack([np.ones(len(g)), loads]), space.forces)]
+
+
+class VaryingEnds(SharpEnds):
+    """Sharp edges of a flat punch with friction that varies along the contact."""
+
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
+        task, body, g = level.task, cast(VaryingContact, level.task.body), ends.contact.g
+        forms = tuple(FlatAlong(task.response, body.along[value]) for value in g.tolist())
+        local = body.edges(task.response, g)
+        return from_moments(ends.contact.tested(level.moments), local.α, local.β, TimesClosedForm(forms))
+
+
+class VaryingLevel(PunchLevel):
+    """Punch at one degree, and the maps from its contact forces to its pressure."""
+
+    mirrored = False  # type: ignore[assignment]
+
+    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
+        super().__init__(work, task, space, g, ends=VaryingEnds())
+
+    def sliding(self, *punch: Any) -> VaryingPunch:
+        return VaryingPunch(self.task.body, *punch)
+
+    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
+        """Effect of rounding on each gauge, relative: what the solve leaves of its forces."""
+        own = self.fields_of(self.states(g, load))
+        return [self.factor.largest_residual, *self.stress_gauges.rounding(*own)]

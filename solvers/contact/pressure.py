@@ -221,6 +221,8 @@ def largest(
     r = np.unique(np.concatenate([places, beside[np.abs(beside) < 1.0]]))
     p = pressure(r)
     tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
+    if not len(tops):  # nearer to an end than all samples
+        tops = np.clip([p.argmax()], 1, len(p) - 2)
     tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
     return max(_nearer(pressure, r[i - 1 : i + 2], np.asarray(kinks)) for i in tops.tolist())
 

@@ -22,7 +22,6 @@ from galinx.solvers.solids.solid import Solid
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene, oddities
-from . import cost
 
 
 @dataclass(frozen=True)
@@ -184,21 +183,6 @@ def order(scene: Scene) -> Order:
 def laws_followed(scene: Scene) -> int:
     """Number of laws whose friction is computed: each once, or at each speed if it depends on that."""
     return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
-
-
-def seconds_to_integrate(scene: Scene) -> float:
-    """Time [s] to integrate laws that have no formula, 0 for others.
-
-    Raises:
-        BadInput: the law refuses its parameters.
-    """
-    try:
-        if _has_formula(next(scene.friction.laws())):
-            return 0.0
-    except ValueError as error:
-        raise BadInput(f"friction: {error}") from None
-    laws = laws_followed(scene)
-    return cost.seconds_to_integrate(laws * len(scene.legs), min(laws, INTEGRATED_LOOPS))
 
 
 def _has_formula(law: FrictionLaw) -> bool:

@@ -39,8 +39,9 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
     """
     rows = {path: row for path, row in table().items() if row.symbol and path in data}
     first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
-    own = [path for path in rows if path not in (*first, *last)]
-    return {path: rows[path] for path in (*first, *own, *last)}
+    swept = [path for path in rows if "." in path]
+    own = [path for path in rows if path not in (*swept, *first, *last)]
+    return {path: rows[path] for path in (*swept, *first, *own, *last)}
 
 
 #: Most states in a table, most of them side by side, and most inner variables of a law.

@@ -365,7 +365,7 @@ def compute(
         finished = collector.earlier()
         for variant in variants:
             if not variant.alone:
-                progress.say(variant.words)
+                progress.say(variant.scene.variant)
             for part in _parts(variant.plan, variant.states, finished[variant.rows], progress, clock):
                 collector.take(_placed(part, variant))
         collector.finish()
@@ -381,7 +381,7 @@ def _placed(part: Part, variant: Variant) -> Part:
     if record:
         record = record | {"speed": record["speed"] + speed}
         if "failure" in record:
-            record["failure"] = f"{record['failure']}, {variant.words}"
+            record["failure"] = f"{record['failure']}, {variant.scene.variant}"
     return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
 
 

@@ -109,8 +109,8 @@ class Quantity:
 
 
 def by_method(
-    path: str, unit: str, about: str, over: tuple[str, ...], of: Callable[[Any, Any], NDArray],
-    own: Mapping[str, Mapping[str, Any]], **options: Any,
+    path: str, unit: str, about: str, over: tuple[str, ...],
+    of: Callable[[Any, Any], NDArray] | None, own: Mapping[str, Mapping[str, Any]], **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity that several methods give, by method.
 

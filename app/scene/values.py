@@ -110,18 +110,6 @@ class Whole:
         return {"type": "integer"} | _limits(self.bounds)
 
 
-class Text:
-    """A text."""
-
-    def __call__(self, value: Any) -> str:
-        if not isinstance(value, str):
-            raise ValueError(f"found {excerpt(value)}, expected a text")
-        return value
-
-    def schema(self) -> dict[str, Any]:
-        return dict(_TEXT)
-
-
 @dataclass(frozen=True)
 class Choice:
     """A text."""

@@ -140,7 +140,7 @@ def _of(rows: Iterable[_Rows], method: str) -> list[Quantity]:
 
 def _against(
     other: str,
-    measure: Callable[[NDArray, NDArray, dict[str, Any], Any], float | None],
+    measure: Callable[[list[NDArray], list[NDArray], dict[str, Any], Any], float | None],
     text: str,
     *rows: _Rows,
     beside: tuple[Quantity, ...] = (),
@@ -151,8 +151,8 @@ def _against(
 
     Args:
         other: the other method.
-        measure: function of the quantities by finite elements and by the other method, both
-            (quantities, states, …), of all datasets by path, and of the load.
+        measure: function of the quantities by finite elements and by the other method, (states, …) each,
+            of all datasets by path, and of the load.
         text: meaning of the figure in words.
         rows: the quantities that are compared, by method.
         beside: further quantities that the measure needs.
@@ -162,7 +162,7 @@ def _against(
     of_fem, of_other = _of(rows, FEM), _of(rows, other)
 
     def measured(data: dict[str, Any], load: Any) -> float | None:
-        fem, exact = (np.array([data[row.path] for row in own]) for own in (of_fem, of_other))
+        fem, exact = ([data[row.path] for row in own] for own in (of_fem, of_other))
         return measure(fem, exact, data, load)
 
     needs = (*of_fem, *of_other, *beside)
@@ -174,63 +174,65 @@ def _worst(off: NDArray) -> float | None:
     return float(np.nanmax(off)) if np.isfinite(off).any() else None
 
 
-def _relative(fem: NDArray, exact: NDArray, *_: Any) -> float | None:
-    return _worst(np.abs(fem / exact - 1.0))
+def _relative(fem: Any, exact: Any, *_: Any) -> float | None:
+    return _worst(np.abs(np.divide(fem, exact) - 1.0))
 
 
-def _relative_everywhere(fem: NDArray, exact: NDArray, *_: Any) -> float:
-    return np.max(np.abs(fem / exact - 1.0))
+def _relative_everywhere(fem: Any, exact: Any, *_: Any) -> float:
+    return np.max(np.abs(np.divide(fem, exact) - 1.0))
 
 
-def _over_larger(fem: NDArray, exact: NDArray, *_: Any) -> float:
-    return (np.abs(fem - exact) / np.abs(exact).max(axis=0)).max()
+def _over_larger(fem: Any, exact: Any, *_: Any) -> float:
+    return (np.abs(np.subtract(fem, exact)) / np.abs(exact).max(axis=0)).max()
 
 
-def _over_half_width(fem: NDArray, exact: NDArray, *_: Any) -> float:
-    return (np.abs(fem - exact) / exact[0]).max()
+def _over_half_width(fem: Any, exact: Any, *_: Any) -> float:
+    return (np.abs(np.subtract(fem, exact)) / exact[0]).max()
 
 
-def _intensities(fem: NDArray, exact: NDArray, *_: Any) -> float | None:
+def _intensities(fem: Any, exact: Any, *_: Any) -> float | None:
     """Largest error of K_I at both ends, relative; None for free ends, at which it vanishes."""
-    return of.off_by(fem, exact).max() if exact.any() else None
+    return of.off_by(np.array(fem), np.array(exact)).max() if np.any(exact) else None
 
 
-def _pressure(fem: NDArray, exact: NDArray, data: dict[str, Any], _: Any) -> float | None:
+def _pressure(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float | None:
     if of.HALF_WIDTH[SIE].path in data:
         return None  # the ends are free, and another rule compares
     under = under_punch(data[at.SURFACE_X.path])
-    return (np.abs(fem - exact) / np.maximum(np.abs(exact), _VANISHING))[..., under].max()
+    off = np.abs(np.subtract(fem, exact)) / np.maximum(np.abs(exact), _VANISHING)
+    return off[..., under].max()
 
 
-def _pressure_between_free_ends(fem: NDArray, exact: NDArray, data: dict[str, Any], _: Any) -> float:
+def _pressure_between_free_ends(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
     """Largest error of σ_YY relative to each state's largest, not next to tips, where it is infinite."""
     there = under_punch(data[at.SURFACE_X.path]) & _off_tips(data)
     size = np.where(there, np.abs(exact), 0.0).max(axis=-1, keepdims=True)
-    return (np.where(there, np.abs(fem - exact), 0.0) / size).max()
+    return (np.where(there, np.abs(np.subtract(fem, exact)), 0.0) / size).max()
 
 
-def _in_plane(fem: NDArray, exact: NDArray, data: dict[str, Any], _: Any) -> float:
+def _in_plane(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
     """Largest error of σ_XX relative to its size, but not next to tips inside the contact."""
-    off = np.abs(fem - exact)[0] / stresses.of_in_plane(exact[0], data[at.SURFACE_X.path])
+    off = np.abs(fem[0] - exact[0]) / stresses.of_in_plane(exact[0], data[at.SURFACE_X.path])
     return np.where(_off_tips(data, 1.0 - stresses.NEAR_TIP), off, 0.0).max()
 
 
-def _at_interfaces(fem: NDArray, exact: NDArray, *_: Any) -> float:
-    return (np.abs(fem - exact) / stresses.of_interfaces(exact)).max()
+def _at_interfaces(fem: Any, exact: Any, *_: Any) -> float:
+    return (np.abs(np.subtract(fem, exact)) / stresses.of_interfaces(np.array(exact))).max()
 
 
-def _inside(fem: NDArray, exact: NDArray, data: dict[str, Any], _: Any) -> float:
+def _inside(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
     places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
-    return (stresses.largest(fem - exact) / stresses.of_inside(list(exact), *places)).max()
+    off = stresses.largest(σ_fem - σ for σ_fem, σ in zip(fem, exact))  # one at a time: maps are large
+    return (off / stresses.of_inside(exact, *places)).max()
 
 
-def _yielded_zone(fem: NDArray, exact: NDArray, data: dict[str, Any], _: Any) -> float | None:
+def _yielded_zone(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float | None:
     """Largest relative error of stresses that the reach d of yield stands for: they are a power of d."""
     power = -np.array([data[row.path] for row in (of.BETA, of.ALPHA)])
     return _relative(np.maximum(fem, _NO_REACH) ** power, np.maximum(exact, _NO_REACH) ** power)
 
 
-def _depth(fem: NDArray, exact: NDArray, data: dict[str, Any], load: Any) -> float | None:
+def _depth(fem: Any, exact: Any, data: dict[str, Any], load: Any) -> float | None:
     """Largest relative error of the stresses that depths d of yield stand for.
 
     At sharp edges they are a power of d. Elsewhere, with the load N₁ of first yield, the logarithm of the
@@ -242,7 +244,7 @@ def _depth(fem: NDArray, exact: NDArray, data: dict[str, Any], load: Any) -> flo
     if to.REACH_LEFT[FEM].path in data:
         power = -np.minimum(data[of.ALPHA.path], data[of.BETA.path])
         return _relative((np.maximum(fem, _NO_REACH) / np.maximum(exact, _NO_REACH)) ** power, np.ones(1))
-    apart, deep = np.abs(fem - exact), np.maximum(np.maximum(fem, exact), _NO_REACH)
+    apart, deep = np.abs(np.subtract(fem, exact)), np.maximum(np.maximum(fem, exact), _NO_REACH)
     if to.FIRST_LOAD[CLOSED_FORM].path not in data:
         return _worst((apart / deep) ** 2)
     first, top = (data[row[CLOSED_FORM].path] for row in (to.FIRST_LOAD, to.VON_MISES_Y))

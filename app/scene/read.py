@@ -317,11 +317,8 @@ def _tables(tree: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], dict
             if isinstance(table, dict):
                 named = table.get("material")
                 material = LIBRARY.get(named) if isinstance(named, str) else None
-                yield (
-                    path,
-                    table,
-                    SECTIONS[name].keys(({"kind": material.kind} if material else {}) | table),
-                )
+                kind = {"kind": material.kind} if material else {}
+                yield path, table, SECTIONS[name].keys(kind | table)
 
 
 def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:

@@ -158,7 +158,7 @@ def _array(items: dict[str, Any], at_least: int = 0, at_most: int | None = None)
 def _object(properties: dict[str, Any], required: Collection[str] = ()) -> dict[str, Any]:
     """JSON schema of a table."""
     needed = {"required": list(required)} if required else {}
-    return {"type": "object", "properties": properties, "additionalProperties": False} | needed
+    return {"type": "object", "properties": properties} | needed | {"additionalProperties": False}
 
 
 def _rows(

@@ -80,9 +80,9 @@ def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
     return by_method(
         f"states/{{method}}/K_I_{side}", "1", about, (STATE,), lambda s, _: s.K_I[:, i], {
             CLOSED_FORM: {"requires": (SOLVED,)},
+            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments", "compared": ("K_I",)},
             SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane",
                   "compared": ("K_I of layers",)},
-            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments", "compared": ("K_I",)},
         }, scale=EDGE,
     )  # fmt: skip
 
@@ -115,11 +115,11 @@ ESTIMATE = by_method(
     "states/{method}/estimate", "1",
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], {
+        FEM: {"mode": _CONTACT, "compared": ("estimate",)},
         SIE: {
             "about": "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's "
             "error", "compared": ("estimate of the integral equation",), "requires": (SOLVED,),
         },
-        FEM: {"mode": _CONTACT, "compared": ("estimate",)},
     }, range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 FITTED = Quantity(

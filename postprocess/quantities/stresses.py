@@ -39,13 +39,13 @@ PRESSURE = by_method(
     "surface/{method}/sigma_YY", "N/(2a)", "contact stress", (STATE, POINT),
     lambda s, _: s.surface.σ_YY, {
         CLOSED_FORM: {"about": "contact stress, NaN outside the contact (Eq 55)"},
-        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane",
-              "compared": ("sigma_YY of layers",)},
         FEM: {
             "about": "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
             "compared": ("tension", "sigma_YY", "sigma_YY of found ends",
                          "sigma_YY of found ends over layers"),
         },
+        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane",
+              "compared": ("sigma_YY of layers",)},
     }, asked_by=ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 RAW_PRESSURE = Quantity(
@@ -57,13 +57,13 @@ IN_PLANE = by_method(
     "surface/{method}/sigma_XX", "N/(2a)", "in-plane stress on the surface", (STATE, POINT),
     lambda s, _: s.surface.σ_XX, {
         CLOSED_FORM: {"about": "in-plane stress on the surface (Eq 32)"},
+        FEM: {"compared": ("sigma_XX",)},
         SIE: {"about": "in-plane stress on the surface, layered half-plane",
               "compared": ("sigma_XX of layers",)},
-        FEM: {"compared": ("sigma_XX",)},
     }, asked_by=ON_SURFACE,
 )  # fmt: skip
 
-_METHODS = (CLOSED_FORM, SIE, FEM)
+_METHODS = (CLOSED_FORM, FEM, SIE)
 
 
 def _extreme(end: str, sign: float, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
@@ -109,17 +109,17 @@ def estimate(word: str, name: str, **own: tuple[str, str]) -> dict[str, Quantity
 
 ESTIMATE_IN_PLANE = estimate(
     ON_SURFACE, "sigma_XX",
-    sie=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
-         "from the edges, layered half-plane", "estimate of sigma_XX, sie"),
     fem=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
          "from the edges, no closed form used", "estimate of sigma_XX"),
+    sie=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
+         "from the edges, layered half-plane", "estimate of sigma_XX, sie"),
 )  # fmt: skip
 ESTIMATE_INSIDE = estimate(
     BELOW, "inside",
-    sie=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
-         "layered half-plane", "estimate inside, sie"),
     fem=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
          "no closed form used", "estimate inside"),
+    sie=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
+         "layered half-plane", "estimate inside, sie"),
 )  # fmt: skip
 
 RESIDUAL_INSIDE = Quantity(
@@ -156,7 +156,7 @@ _COMPONENTS = {
     "XX": "in-plane normal stress along X", "YY": "normal stress along Y", "XY": "shear stress",
 }  # fmt: skip
 _SOURCES = {
-    CLOSED_FORM: "from the potentials", SIE: "from the transform", FEM: "from the displacement",
+    CLOSED_FORM: "from the potentials", FEM: "from the displacement", SIE: "from the transform",
 }  # fmt: skip
 #: σ_XX, σ_YY, σ_XY inside, by method.
 STRESSES_INSIDE = {

@@ -452,7 +452,7 @@ def _of_contacts(
         in_pa = body.load / (2.0 * h)
         X = surface_grid()
         X = X[np.abs(np.abs(X) - 1.0) >= nearest]
-        tension = in_pa * float(contact.σ_XX(X).max())
+        tension = in_pa * float(contact.on_surface(X)[0].max())
         pressure = in_pa * float(contact.largest()[0][0])
         return [length * h, of_pa * pressure, of_pa * tension, *contact.of("K_I")[0]]
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from galinx.meshes.charts import Chart
 
 from ..approximation import lagrange
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 
 
 @dataclass(frozen=True)
@@ -221,7 +221,7 @@ def _largest(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArr
 
 
 def model_cells(
-    corners: NDArray, response: Response, constants: Sequence[str], gather: Gather = lambda part: [part]
+    corners: NDArray, response: HalfPlane, constants: Sequence[str], gather: Gather = lambda part: [part]
 ) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
     """Model cells, whose matrices are those of all cells in a plane, and the cells that have each matrix.
 

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
 from ..approximation import lagrange
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import cells, versions
 from .cells import Shapes
 from .element import Element
@@ -100,7 +100,7 @@ class Motion:
     """
 
     space: Space
-    response: Response
+    response: HalfPlane
     sharp: bool = False
 
     @cached_property

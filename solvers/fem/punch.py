@@ -33,7 +33,7 @@ from scipy.linalg import schur
 
 from ..approximation import barycentric
 from ..errors import SolveError
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .boundary import FarBoundary, held_forces
 from .fields import Slopes
 from .linear import LinearSolver, times, vector
@@ -246,7 +246,7 @@ class Punch:
     """
 
     space: Space
-    response: Response
+    response: HalfPlane
     fields: Any
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
@@ -318,7 +318,7 @@ class SlidingPunch(Punch):
     def __init__(
         self,
         space: Space,
-        response: Response,
+        response: HalfPlane,
         solver: str = "direct",
         negligible: float = 0.0,
         heights: NDArray[np.float64] | None = None,
@@ -639,7 +639,7 @@ class FittedPunch(Punch):
         samples: the parts there.
     """
 
-    def __init__(self, space: Space, response: Response, at: Frictions, samples: Sampled) -> None:
+    def __init__(self, space: Space, response: HalfPlane, at: Frictions, samples: Sampled) -> None:
         self.space, self.response = space, response
         self._at, self._samples = at, samples
         each = np.concatenate(list(samples.fields))

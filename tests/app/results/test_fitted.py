@@ -69,6 +69,22 @@ def test_what_the_data_do_not_determine_is_called_so():
     assert parse(section + REST).friction.count == 1
 
 
+def test_the_section_of_a_scene_is_the_law_of_the_stated_rms():
+    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 3e4})
+    found = galinx.fit(data, "lugre")
+    assert found.not_determined
+    (law,) = parse(REST + found.scene()).friction.laws()
+    f = friction(law, moves(data.t, data.X, law.depends_on_speed), len(data.t))
+    assert np.sqrt(np.nanmean((f - data.f)[1:] ** 2)) == pytest.approx(found.rms, rel=1e-4)
+
+
+def test_friction_that_drives_the_motion_has_the_wrong_sign():
+    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 3e4})
+    with pytest.raises(BadInput, match="drives the motion"):
+        galinx.fit(galinx.Measured(data.t, data.X, -data.f), "dahl")
+    assert galinx.fit(galinx.Measured(data.t, -data.X, -data.f), "dahl").model == "dahl"
+
+
 def test_several_measurements_have_one_set_of_parameters():
     slow, fast = swing("lugre", LUGRE, speed=5e-4), swing("lugre", LUGRE, speed=2e-2, seed=2)
     both = galinx.fit([slow, fast], "lugre", fix={"stribeck_exponent": 2.0})

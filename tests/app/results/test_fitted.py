@@ -22,14 +22,14 @@ LUGRE = {
 }  # fmt: skip
 
 
-def swing(name, parameters, samples=300, speed=2e-3, seed=1):
-    """A sinusoidal motion of 0.1 mm, and a law's friction along it with noise of 0.003."""
+def swing(name, parameters, samples=300, speed=2e-3, seed=1, noise=3e-3):
+    """A sinusoidal motion of 0.1 mm, and a law's friction along it with noise."""
     t = np.linspace(0.0, 2e-4 * np.pi / speed, samples)
     X = 5e-5 * (1.0 - np.cos(speed / 5e-5 * t))
     kind = LAWS[name]
     f = friction(build_model(kind, parameters), moves(t, X, kind.depends_on_speed), samples)
     f[0] = 0.0
-    return galinx.Measured(t, X, f + 3e-3 * np.random.default_rng(seed).standard_normal(samples))
+    return galinx.Measured(t, X, f + noise * np.random.default_rng(seed).standard_normal(samples))
 
 
 def strokes(name, parameters, seed=1):
@@ -70,7 +70,7 @@ def test_what_the_data_do_not_determine_is_called_so():
 
 
 def test_the_section_of_a_scene_is_the_law_of_the_stated_rms():
-    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 3e4})
+    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 1.5e4}, samples=748, noise=1e-3)
     found = galinx.fit(data, "lugre")
     assert found.not_determined
     (law,) = parse(REST + found.scene()).friction.laws()

@@ -26,7 +26,7 @@ piecewise polynomial with these nodal forces is as accurate as the forces; towar
 the local analysis says.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -436,6 +436,8 @@ def slopes_towards_ends(
 #: Most tops of the samples that are refined; samples that a polynomial goes through; places between the
 #: neighbours of a top at which it is evaluated.
 _TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
+#: Relative difference of heights, and distance over a of places, up to which they are the same.
+_SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 
 
 def extreme_in_plane(
@@ -443,7 +445,8 @@ def extreme_in_plane(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), and its place over a, (states,).
 
-    At a free end the place is that end, exactly.
+    At a free end the place is that end, exactly. Of places that are as high, as both ends are without
+    friction, it is the left one.
 
     Args:
         solution: states solved by any method, see :class:`galinx.solvers.contact.solution.Solution`.
@@ -457,7 +460,10 @@ def extreme_in_plane(
     values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
     limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
-    i, j = values.argmax(axis=1)[:, None], limits.argmax(axis=1)[:, None]
+    i, j = (
+        _as_high(curves, curves.max(axis=1)[:, None]).argmax(axis=1)[:, None]
+        for curves in (values, limits)
+    )
     tops = [
         (np.take_along_axis(values, i, 1)[:, 0], X[i[:, 0]]),
         (np.take_along_axis(limits, j, 1)[:, 0], np.take_along_axis(at, j, 1)[:, 0]),
@@ -468,17 +474,23 @@ def extreme_in_plane(
     if between is not None:
         graded = np.isfinite(between[0]).any(axis=(1, 2))[:, None]
         values = np.where(graded & (np.abs(X) < 1.0), -np.inf, values)
-    top, at_u = _largest(u, values, pieces)
-    beyond = np.maximum(np.abs(at_u) - np.pi / 2.0, 0.0)
-    tops.append((top, np.where(beyond > 0.0, np.sign(at_u) * np.cosh(beyond), np.sin(at_u))))
+    for top, at_u in _tops_between(u, values, pieces):
+        beyond = np.maximum(np.abs(at_u) - np.pi / 2.0, 0.0)
+        tops.append((top, np.where(beyond > 0.0, np.sign(at_u) * np.cosh(beyond), np.sin(at_u))))
     for X, σ in () if between is None else np.moveaxis(between, 2, 0):
         values = np.where(np.isfinite(σ) & _finite(X, infinite), sign * σ, -np.inf)
-        top, at_x = _largest(GRADED, values, np.zeros(values.shape))
-        tops.append((top, np.array([np.interp(x, GRADED, row) for x, row in zip(at_x, X)])))
-    largest_, places = (np.array(column) for column in zip(*tops))
-    best = largest_.argmax(axis=0)[None]
-    value, place = (np.take_along_axis(of, best, 0)[0] for of in (largest_, places))
+        for top, at_x in _tops_between(GRADED, values, np.zeros(values.shape)):
+            tops.append((top, np.array([np.interp(x, GRADED, row) for x, row in zip(at_x, X)])))
+    heights, places = (np.array(column) for column in zip(*tops))
+    left = np.where(_as_high(heights, heights.max(axis=0)), places, np.inf).min(axis=0)
+    best = np.where(places <= left + _SAME_TOP, heights, -np.inf).argmax(axis=0)[None]
+    value, place = (np.take_along_axis(of, best, 0)[0] for of in (heights, places))
     return sign * value, place
+
+
+def _as_high(heights: NDArray, top: NDArray) -> NDArray[np.bool_]:
+    """Mask of heights that are the highest one, ``top``, up to rounding."""
+    return np.asarray(heights >= top - _SAME_HEIGHT * np.abs(top))
 
 
 def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
@@ -504,18 +516,17 @@ def _infinite(solution: Any, body: Any) -> list[tuple[NDArray[np.float64], float
     return ends + [((tip - solution.centre) / solution.half_width, NEAR_TIP) for tip in body.tips]
 
 
-def _largest(
+def _tops_between(
     u: NDArray, values: NDArray, pieces: NDArray
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest of curves and its place, (states,), by polynomials through samples around their tops.
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Highest tops of curves and their places, (states,) each, by polynomials through samples.
 
     Args:
         u: rising coordinate in which the curves are smooth, (n,).
         values: values of the curves, -inf where they do not count, (states, n).
         pieces: number of the smooth piece of its curve to which a sample belongs, (states, n).
     """
-    rows, best = np.arange(len(values))[:, None], values.max(axis=1)
-    place = u[values.argmax(axis=1)]
+    rows = np.arange(len(values))[:, None]
     inner = values[:, 1:-1]
     top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
     order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS_BETWEEN]
@@ -530,13 +541,11 @@ def _largest(
         usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
         usable &= top[rows[:, 0], column]
         if usable.any():
-            rows_of_top = usable.nonzero()[0]
-            refined, at = _vertex(
-                u, values[rows_of_top[:, None], window[rows_of_top]], window[rows_of_top], i[rows_of_top]
+            height, place = np.full(len(values), -np.inf), np.full(len(values), np.nan)
+            height[usable], place[usable] = _vertex(
+                u, values[rows[usable], window[usable]], window[usable], i[usable]
             )
-            place[rows_of_top] = np.where(refined > best[rows_of_top], at, place[rows_of_top])
-            best[rows_of_top] = np.maximum(best[rows_of_top], refined)
-    return best, place
+            yield height, place
 
 
 def _vertex(

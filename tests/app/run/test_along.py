@@ -88,9 +88,9 @@ def test_archive_has_friction_over_x_its_resultant_and_the_centre():
     ("friction", "more", "words"),
     [
         ("along = [[-1, 0.2], [1, 0.5]]\nmu = 0.3", "", "take mu away"),
-        ("along = [[-0.9, 0.2], [1, 0.5]]", "", "from X/a = -1 to 1"),
-        ("along = [[-1, -0.2], [1, 0.5]]", "", "at least 0"),
-        ("along = [[-1, 0], [1, 0]]", "", "no friction but 0"),
+        ("along = [[-0.9, 0.2], [1, 0.5]]", "", "from X/a = -1 to X/a = 1"),
+        ("along = [[-1, -0.2], [1, 0.5]]", "", "none below 0"),
+        ("along = [[-1, 0], [1, 0]]", "", "not all 0"),
         ("along = [[-1, 0.2], [1, 0.5]]", '[punch]\nprofile = "parabolic"\nradius = 1', "flat punch"),
         ("along = [[-1, 0.2], [1, 0.5]]", "[time]\nend = 3\n[output]\nquantities = ['time']", "in time"),
         (DAHL.format(0.5, 1e4, 1.0), 'strokes = ["forward", "backward"]', "strokes"),

@@ -250,18 +250,16 @@ def test_faults_of_sliders_are_told(words, slider, said):
         parse(text + slider)
 
 
-def test_what_a_law_refuses_is_bad_input_and_integration_has_its_price(monkeypatch):
+def test_what_a_law_refuses_is_bad_input_and_few_loops_are_integrated(monkeypatch):
     from galinx.app.plan import states
-    from galinx.app.plan.plan import make_plan
+    from galinx.app.plan.variants import make_variants
 
     wrong = scene("table", {"shape": [[1e-6, 0.1], [2e-6, 0.2]]})
     with pytest.raises(BadInput, match="friction: shape: found the slips"):
-        make_plan(wrong)
+        make_variants(wrong)
     law = {"mu_c": [0.3, 0.4, 0.5], "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma0_over_load": 2e4}
-    assert make_plan(scene("lugre", law)).integrated == 0.0
     for name in ("exact", "work"):  # as a law of one's own that has no formula
         monkeypatch.setattr(LAWS["elasto_plastic"], name, getattr(FrictionLaw, name))
-    assert make_plan(scene("elasto_plastic", law)).integrated > 0.5
     monkeypatch.setattr(states, "INTEGRATED_LOOPS", 2)
     data = galinx.compute(scene("elasto_plastic", law)).data
     assert data["loops/f"].shape == (2, 505)

@@ -19,8 +19,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 
 from ..friction.along import Along
 from ..solids.half_plane import HalfPlane
@@ -136,24 +136,39 @@ class FlatAlong(Pressure):
 
 
 @dataclass(frozen=True)
-class TimesClosedForm(Polynomials):
-    """Chebyshev polynomials times the pressures of states in closed form, less their weights.
+class Splines(Polynomials):
+    """Splines that follow a pressure without its weight where friction varies along the contact.
 
-    Pressures recovered with these are the closed form's times a polynomial, a constant where moments are
-    those of the closed form.
+    Next to ends and kinks the pressure less its weight has terms like x log x, so knots gather there; at
+    kinks splines are continuous only, elsewhere as smooth as they can be.
 
     Attributes:
-        forms: pressures of the states in closed form.
+        knots: positions over a, those of the ends among them.
+        kinks: those at which splines are continuous only.
+        degree: of the polynomials.
     """
 
-    forms: tuple[FlatAlong, ...]
+    knots: tuple[float, ...]
+    kinks: tuple[float, ...]
+    degree: int
 
-    def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-        c = np.empty_like(moments)
-        for i, form in enumerate(self.forms):
-            T = chebvander(form.rule.t, moments.shape[1] - 1)
-            c[i] = np.linalg.solve((form.forces[:, None] * T).T @ T, moments[i])
-        return c
+    @cached_property
+    def _knots(self) -> NDArray[np.float64]:
+        """Knots as often as the splines' smoothness asks for."""
+        more = [-1.0] * self.degree, list(self.kinks) * (self.degree - 1), [1.0] * self.degree
+        return np.sort(np.concatenate([self.knots, *more]))
+
+    def values(self, r: NDArray, count: int = 0) -> NDArray[np.float64]:
+        return BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
 
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
-        return super().sum(c, r) * np.array([form.series(r) for form in self.forms])
+        return c @ self.values(np.ravel(r)).T
+
+    def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+        rule = Rule(self.knots, 1.0)
+        f, c = self.values(rule.t), np.empty_like(moments)
+        for i, w in enumerate(rule.weights(α, β)):
+            products = f.T @ (w[:, None] * f)
+            size = np.sqrt(np.diagonal(products))
+            c[i] = np.linalg.solve(products / size / size[:, None], moments[i] / size) / size
+        return c

@@ -10,15 +10,15 @@ which times g(X) is σ_XY. All states share loads t; what they leave of the equa
 load, as in GMRES.
 """
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.along import FlatAlong, TimesClosedForm
+from ..contact.along import Splines
 from ..contact.pressure import Expansion
 from ..contact.recovery import ContactFacets, from_moments
-from ..contact.solution import Task, VaryingContact
+from ..contact.solution import Task
 from .contact import PunchLevel, SharpEnds, SolvedEnds
 from .discretisation import Discretisation
 from .punch import LEAST, Part, SlidingPunch
@@ -26,6 +26,9 @@ from .space import Space
 
 #: States whose equations are in memory at a time.
 _TOGETHER = 33
+#: Distance over a from an end or a kink within which the pressure without its weight has no knots; degree
+#: of the cells less that of its splines.
+_NEXT, _LESS = 1e-5, 2
 
 
 class VaryingPunch(SlidingPunch):
@@ -80,10 +83,16 @@ class VaryingEnds(SharpEnds):
     """Sharp edges of a flat punch with friction that varies along the contact."""
 
     def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
-        task, body, g = level.task, cast(VaryingContact, level.task.body), ends.contact.g
-        forms = tuple(FlatAlong(task.response, body.along[value]) for value in g.tolist())
-        local = body.edges(task.response, g)
-        return from_moments(ends.contact.tested(level.moments), local.α, local.β, TimesClosedForm(forms))
+        body, g, degree = level.task.body, ends.contact.g, level.space.degree
+        kinks = np.array(body.friction_kinks)
+        places = np.concatenate([[-1.0], kinks, [1.0]])
+        ends_of_cells = level.r[::degree]
+        apart = np.abs(ends_of_cells[:, None] - places).min(axis=1)
+        knots = np.sort(np.append(ends_of_cells[apart > _NEXT], places))
+        # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
+        splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
+        local = body.edges(level.task.response, g)
+        return from_moments(ends.contact.tested(splines.values(level.r)), local.α, local.β, splines)
 
 
 class VaryingLevel(PunchLevel):

@@ -25,7 +25,7 @@ from scipy.interpolate import BSpline
 from ..friction.along import Along
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, from_edge, under_punch
-from .pressure import Pressure
+from .pressure import Expansion, Pressure
 from .recovery import Polynomials
 from .residual import Rule
 
@@ -164,11 +164,19 @@ class Splines(Polynomials):
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
         return c @ self.values(np.ravel(r)).T
 
-    def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
+    def fitted(
+        self, moments: NDArray, α: NDArray, β: NDArray, tests: Callable[[NDArray], NDArray]
+    ) -> Expansion:
+        """Pressure with given moments.
+
+        Args:
+            moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, splines).
+            α, β: exponents at X = a and X = -a, (states,).
+            tests: functions f_k at r, as many as splines, (points, splines).
+        """
         rule = Rule(self.knots, 1.0)
-        f, c = self.values(rule.t), np.empty_like(moments)
+        f, f_test, c = self.values(rule.t), tests(rule.t), np.empty_like(moments)
         for i, w in enumerate(rule.weights(α, β)):
-            products = f.T @ (w[:, None] * f)
-            size = np.sqrt(np.diagonal(products))
-            c[i] = np.linalg.solve(products / size / size[:, None], moments[i] / size) / size
-        return c
+            size = np.sqrt(w @ f**2)
+            c[i] = np.linalg.solve((f_test / size).T @ (w[:, None] * f / size), moments[i] / size) / size
+        return Expansion(α[:, None], β[:, None], c, self)

@@ -273,10 +273,14 @@ class ContactFacets:
     def stress(self, density: NDArray, r: NDArray) -> NDArray[np.float64]:
         """Stress over N/(2a) at r under the punch, (..., q), by densities at the nodes, (..., n)."""
         s = self._chart.surface_coordinate(r)
+        return self.interpolated(density, r) / self._chart.surface_stretch(s)
+
+    def interpolated(self, nodal: NDArray, r: NDArray) -> NDArray[np.float64]:
+        """Values at r under the punch, (..., q), of functions by their values at the nodes, (..., n)."""
+        s = self._chart.surface_coordinate(r)
         facet = np.clip(np.searchsorted(self.start, s, side="right") - 1, 0, len(self.start) - 1)
         values, _ = lagrange(self.nodes, (s - self.start[facet]) / self.length[facet])
-        density = np.einsum("qi,...qi->...q", values, density[..., self.facets[facet]])
-        return np.asarray(density / self._chart.surface_stretch(s))
+        return np.einsum("qi,...qi->...q", values, nodal[..., self.facets[facet]])
 
 
 #: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.

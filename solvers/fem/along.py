@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..contact.along import Splines
 from ..contact.pressure import Expansion
-from ..contact.recovery import ContactFacets, from_moments
+from ..contact.recovery import ContactFacets
 from ..contact.solution import Task
 from .contact import PunchLevel, SharpEnds, SolvedEnds
 from .discretisation import Discretisation
@@ -26,9 +26,10 @@ from .space import Space
 
 #: States whose equations are in memory at a time.
 _TOGETHER = 33
-#: Distance over a from an end or a kink within which the pressure without its weight has no knots; degree
-#: of the cells less that of its splines.
-_NEXT, _LESS = 1e-5, 2
+#: Distance from an end or a kink, over the length in which friction varies, within which the pressure
+#: without its weight has no knots, and from which on it has two in a cell; degree of the cells less that
+#: of its splines.
+_NEXT, _WIDE, _LESS = 1e-5, 1e-2, 2
 
 
 class VaryingPunch(SlidingPunch):
@@ -87,12 +88,24 @@ class VaryingEnds(SharpEnds):
         kinks = np.array(body.friction_kinks)
         places = np.concatenate([[-1.0], kinks, [1.0]])
         ends_of_cells = level.r[::degree]
-        apart = np.abs(ends_of_cells[:, None] - places).min(axis=1)
-        knots = np.sort(np.append(ends_of_cells[apart > _NEXT], places))
+        ratio = body.ratio(g, ends_of_cells)
+        steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
+        of_knots = [places]
+        middles = (ends_of_cells[1:] + ends_of_cells[:-1]) / 2.0
+        for some, least in ((ends_of_cells, _NEXT), (middles, _WIDE)):
+            of_knots.append(some[np.abs(some[:, None] - places).min(axis=1) > least * length])
+        knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
-        local = body.edges(level.task.response, g)
-        return from_moments(ends.contact.tested(splines.values(level.r)), local.α, local.β, splines)
+        local, at_nodes = body.edges(level.task.response, g), splines.values(level.r)
+        # Nodal forces know of tests their interpolants only.
+        facets = ContactFacets(level.space.contact.s, degree, level.space.chart)
+        return splines.fitted(
+            ends.contact.tested(at_nodes), local.α, local.β,
+            lambda r: facets.interpolated(at_nodes.T, r).T,
+        )  # fmt: skip
 
 
 class VaryingLevel(PunchLevel):

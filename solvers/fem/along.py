@@ -10,26 +10,29 @@ which times g(X) is σ_XY. All states share loads t; what they leave of the equa
 load, as in GMRES.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.along import Splines
-from ..contact.pressure import Expansion
+from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import ContactFacets
 from ..contact.solution import Task
 from .contact import PunchLevel, SharpEnds, SolvedEnds
 from .discretisation import Discretisation
-from .punch import LEAST, Part, SlidingPunch
+from .ladder import Gauge
+from .punch import LEAST, ContactStates, Part, SlidingPunch
+from .solution import SolvedStates
 from .space import Space
 
 #: States whose equations are in memory at a time.
 _TOGETHER = 33
-#: Distance from an end or a kink, over the length in which friction varies, within which the pressure
-#: without its weight has no knots, and from which on it has two in a cell; degree of the cells less that
-#: of its splines.
-_NEXT, _WIDE, _LESS = 1e-5, 1e-2, 2
+#: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
+#: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
+#: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
+_NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
 
 
 class VaryingPunch(SlidingPunch):
@@ -84,7 +87,17 @@ class VaryingEnds(SharpEnds):
     """Sharp edges of a flat punch with friction that varies along the contact."""
 
     def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
-        body, g, degree = level.task.body, ends.contact.g, level.space.degree
+        return self._pressure(level, ends.contact, _NEXT)
+
+    def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
+        gauge, coarse = super().gauge(level, states), self._pressure(level, states.contact, 4.0 * _NEXT)
+        # Without knots next to ends and kinks, splines of all degrees are off alike.
+        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
+        return replace(gauge, unresolved=gauge.unresolved + off)
+
+    def _pressure(self, level: PunchLevel, contact: ContactStates, nearest: float) -> Expansion:
+        """Pressure of contacts, by splines without knots within a distance of ends and kinks."""
+        body, g, degree = level.task.body, contact.g, level.space.degree
         kinks = np.array(body.friction_kinks)
         places = np.concatenate([[-1.0], kinks, [1.0]])
         ends_of_cells = level.r[::degree]
@@ -93,9 +106,9 @@ class VaryingEnds(SharpEnds):
         with np.errstate(divide="ignore", invalid="ignore"):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
         of_knots = [places]
-        middles = (ends_of_cells[1:] + ends_of_cells[:-1]) / 2.0
-        for some, least in ((ends_of_cells, _NEXT), (middles, _WIDE)):
-            of_knots.append(some[np.abs(some[:, None] - places).min(axis=1) > least * length])
+        within = (ends_of_cells[:-1, None] + np.diff(ends_of_cells)[:, None] * _INSIDE).ravel()
+        for some, least in ((ends_of_cells, nearest * np.sqrt(length)), (within, _WIDE * length)):
+            of_knots.append(some[np.abs(some[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
@@ -103,7 +116,7 @@ class VaryingEnds(SharpEnds):
         # Nodal forces know of tests their interpolants only.
         facets = ContactFacets(level.space.contact.s, degree, level.space.chart)
         return splines.fitted(
-            ends.contact.tested(at_nodes), local.α, local.β,
+            contact.tested(at_nodes), local.α, local.β,
             lambda r: facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 

@@ -215,16 +215,15 @@ def commands_page() -> str:
         for name, context in contexts.items()
     }
     counts = Counter(record for records in options.values() for record in records)
-    shared = {
-        names: text for (names, text), count in counts.items() if count > 1 and names[:2] != "-o"
-    }
+    shared = {names: text for (names, text), count in counts.items() if count > 1 and names[:2] != "-o"}
     rows = [(f"`{names}`", text) for names, text in shared.items()]
     parts = [_COMMANDS, _SHARED + _table(("option", "meaning"), rows)]
     for name, command in cli.commands.items():
         context = contexts[name]
         about, _, example = (command.help or "").partition("Example:")
         usage = " ".join([context.info_name or "", *command.collect_usage_pieces(context)])
-        parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\nUsage: `{usage}`" + ", as in" * bool(example) + "\n")
+        usage = f"Usage: `{usage}`" + ", as in" * bool(example)
+        parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\n{usage}\n")
         if example:
             parts.append(f"    {_plain(example).replace(program(), './run.sh', 1)}\n")
         of_several = [names for names, text in options[name] if shared.get(names) == text]

@@ -127,6 +127,22 @@ class KrylovSpace:
         self.fields += fields
         self.rough = []
 
+    def reduce(self, y: NDArray) -> None:
+        """Keep of the unsettled loads what answers need: fewer fields are refined and differentiated.
+
+        Args:
+            y: coefficients of the contact forces of every friction, (states, m).
+        """
+        if len(self.fields) > 1 or len(self.rough) < self.applied:
+            return
+        # The first load is that of the equations.
+        _, size, rows = np.linalg.svd(y[:, 1:] / np.linalg.norm(y, axis=1)[:, None], full_matrices=False)
+        Q = np.zeros((self.applied, 1 + int((size > LEAST).sum())))
+        Q[0, 0], Q[1:, 1:] = 1.0, rows[: Q.shape[1] - 1].T
+        self._V = self._V @ Q
+        self.rough = list(Q.T @ np.array(self.rough))
+        self.forces = np.concatenate([self.forces[:1], np.tensordot(Q.T, self.forces[1:], 1)])
+
     def converged(self, g: NDArray) -> NDArray[np.float64] | None:
         """Coefficients y of R = V y for every g, (states, m); None where more loads are waiting.
 
@@ -373,7 +389,7 @@ class SlidingPunch(Punch):
         frictions a punch is the mirror image, with which rounding is estimated.
         """
         spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
-        self._contact_forces(self._spaces, np.concatenate([spread, -spread]))
+        self._contact_forces(self._spaces, np.concatenate([spread, -spread]), reduces=True)
         for space in self._spaces:
             space.complete = True
 
@@ -430,11 +446,12 @@ class SlidingPunch(Punch):
         return spaces
 
     def _contact_forces(
-        self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64]
+        self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64], reduces: bool = False
     ) -> list[NDArray[np.float64]]:
         """Coefficients y of R = V y for every g, (states, m), in each Krylov space.
 
-        Spaces grow as they need, together where several do: one pass over the factor serves them.
+        Spaces grow as they need, together where several do: one pass over the factor serves them. Where
+        no other g will come they are reduced to what these need.
         """
         if not np.any(g):
             return [np.zeros((len(g), 0)) for _ in spaces]
@@ -443,9 +460,12 @@ class SlidingPunch(Punch):
             short = [space for space, y in zip(spaces, coefficients) if y is None]
             if short:
                 self._extend(short, g)
-            elif unsettled := [space for space in spaces if space.unsettled.size]:
-                for space in unsettled:
-                    self._settle(space)
+            elif any(space.unsettled.size for space in spaces):
+                for space, y in zip(spaces, coefficients):
+                    if space.unsettled.size:
+                        if reduces and y is not None:
+                            space.reduce(y)
+                        self._settle(space)
             else:
                 return [y for y in coefficients if y is not None]
 

@@ -141,7 +141,7 @@ def test_a_motion_may_be_given_point_by_point():
     "motion, said",
     [
         ("speed = 1, strokes = [{to = 0}]", "stroke 1 goes to 0 L, where it begins"),
-        ("speed = 1, strokes = [{to = 1.5}]", "to of a stroke: found 1.5"),
+        ("speed = 1, strokes = [{to = 1.5}]", "in a stroke, to: found 1.5"),
         ("speed = 1, strokes = [{two = 1}]", "found the key 'two' in a stroke"),
         ("speed = 1, strokes = [{speed = 1}]", "found a stroke without to"),
         ("speed = 1, strokes = [{to = 0.1}], X_over_L = 0.5", "no position that a stroke passes"),

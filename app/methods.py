@@ -11,12 +11,11 @@ from typing import Any
 from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.registry import Registry
-from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
+from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import (
     FREE_ON_LAYERS,
     OWN_MESHES,
     PRESCRIBED_ON_LAYERS,
-    crowded_kinks,
 )
 from galinx.solvers.contact.solution import (
     FLAT,
@@ -118,16 +117,12 @@ _LACKING = {
 def fem_mode(scene: Any) -> str:
     """Mode of a scene's finite elements, see :class:`galinx.solvers.contact.fem_plan.FemPlan`."""
     body = scene.body
-    if VARYING in body.modes:
-        return VARYING
-    mode = _MODES[body.ends][bool(scene.layers)][not smooth(body.profile)]
+    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][not smooth(body.profile)]
     return scene.solve.mode if mode == CONTACT else mode
 
 
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
-    if mode == VARYING and (crowded := crowded_kinks(body.friction_kinks)):
-        return f"friction along the contact has {crowded}"
     lacks = _LACKING.get(mode, {})
     if scene.layers:
         if body.solid.nearly_incompressible:

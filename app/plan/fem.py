@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
-from galinx.meshes.kind import with_kinks
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact import FREE_ENDS
 from galinx.solvers.contact.edges import EdgeExponents
@@ -27,6 +26,7 @@ from galinx.solvers.contact.fem_plan import (
     size_of,
     swept,
     unknowns,
+    with_friction_kinks,
 )
 from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, Places
@@ -85,7 +85,9 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
     kinks = scene.body.friction_kinks
-    drawn = with_kinks(refinement, np.array(kinks)) if kinks else kind.drawn(required)
+    drawn = kind.drawn(required)
+    if kinks:
+        drawn = with_friction_kinks(refinement, kinks, solve.tolerance)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))
     solver = solve.solver

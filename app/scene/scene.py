@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities.over_time import TIME
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE
+from galinx.postprocess.quantities.quantity import FEM, FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, ON_SURFACE, YIELD
+from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
 from galinx.solvers.friction import FrictionLaw
@@ -430,6 +431,15 @@ def contradictions(scene: Scene) -> list[str]:
             f"friction varies along the contact, but found {found}; expected steady sliding of a flat "
             "punch that is not tilted on a solid without layers, with a direct solver"
         )
+    elif varies and FEM in solve.methods:
+        try:
+            crowded = crowded_kinks(scene.body.friction_kinks)
+        except ValueError as error:
+            crowded = str(error)
+        if crowded:
+            faults.append(
+                f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
+            )
     fixed = solve.degree is not None
     if not fixed and solve.cuts != 1:
         faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")

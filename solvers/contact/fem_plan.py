@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MeshKind, Requirements
+from galinx.meshes.kind import rings_at_kinks, with_kinks
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import QuadMesh, Refinement
 
@@ -202,7 +203,7 @@ _MANY = 8
 
 #: Most kinks in a contact; over its half-width, their largest distance from its middle, and their least
 #: distance from each other: cells between kinks that are nearer have no shape.
-_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.98, 3e-3
+_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.99, 1e-3
 
 
 def crowded_kinks(places: Sequence[float] | NDArray) -> str:
@@ -216,6 +217,17 @@ def crowded_kinks(places: Sequence[float] | NDArray) -> str:
         f"elements want at most {_MOST}, none within {1.0 - _NEXT_TO_END:.2g} of an end or "
         f"{_NEXT_TO_KINK:g} of another"
     )
+
+
+#: Size of the innermost cells at a kink of friction over the tolerance, and at most: the pressure is
+#: d log d next to it, times the change of the slope of f. Smaller cells lose digits of derivatives.
+_OF_FRICTION, _LARGEST = 500.0, 0.1
+
+
+def with_friction_kinks(refinement: Refinement, kinks: Sequence[float], tolerance: float) -> QuadMesh:
+    """The mesh of a punch with sharp ends, graded towards kinks of friction at positions over a."""
+    size = min(_OF_FRICTION * tolerance, _LARGEST)
+    return with_kinks(refinement, np.array(kinks), rings_at_kinks(refinement, size))
 
 
 @dataclass(frozen=True)

@@ -256,7 +256,7 @@ def indentation(response: HalfPlane, g: NDArray, σ_YY: NDArray, height: Any) ->
 
     Args:
         response: of a uniform half-plane at its speed.
-        g: σ_XY/σ_YY, (states,).
+        g: σ_XY/σ_YY at :func:`places`, (states, n) or (states, 1).
         σ_YY: over N/(2a) at :func:`places`, (states, n).
         height: height of the punch at the left end of the contact over N/(2μ), (states,).
     """
@@ -265,6 +265,6 @@ def indentation(response: HalfPlane, g: NDArray, σ_YY: NDArray, height: Any) ->
     # The exact load is -2: the difference is the part next to the ends of a sharp punch.
     load = weighted.sum(axis=1)
     beyond = np.abs(load / -2.0 - 1.0) > _BEYOND
-    mean = weighted @ np.log((1.0 + X) / DATUM) / load
-    v = -2.0 * (-(response.n + g * response.n12) / np.pi * mean + g * response.q / 2.0)
+    own = (response.n + g * response.n12) * weighted @ np.log((1.0 + X) / DATUM)
+    v = -2.0 * (-own / np.pi + (g * weighted).sum(axis=1) * response.q / 2.0) / load
     return np.where(beyond, np.nan, height - v)

@@ -90,6 +90,8 @@ class Contact:
 
     ends: ClassVar[str]
     found: ClassVar[bool] = False
+    #: Mode of finite elements, "" where that depends on the profile and the solid.
+    fem_mode: ClassVar[str] = ""
 
     @property
     def half_width(self) -> Any:
@@ -335,6 +337,7 @@ class VaryingContact(SharpContact):
     along: Mapping[float, Along] = field(default_factory=dict)
 
     modes = (PUNCH, VARYING)  # type: ignore[assignment]
+    fem_mode = VARYING
 
     @property
     def lacks(self) -> dict[str, str]:

@@ -7,16 +7,15 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 from mpi4py import MPI
 
 from galinx.clock import Clock
-from galinx.meshes.kind import check_cells, with_kinks
+from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
 from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, YIELD
-from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned
+from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned, with_friction_kinks
 from .dolfinx_space import DolfinxSpace
 from .space import Space, distribute
 
@@ -137,8 +136,10 @@ def on_finer_cells(plan: FemPlan) -> FemPlan:
     refinement = replace(
         rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
     )
-    drawn = with_kinks(refinement, np.array(plan.kinks)) if plan.kinks else plan.drawn
-    return replace(plan, wanted=target, refinement=refinement, drawn=drawn)
+    plan = replace(plan, wanted=target, refinement=refinement)
+    if not plan.kinks:
+        return plan
+    return replace(plan, drawn=with_friction_kinks(refinement, plan.kinks, target.tolerance))
 
 
 @contextmanager

@@ -27,7 +27,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.kind import DEGREES, with_kinks
+from galinx.meshes.kind import DEGREES, rings_at_kinks, with_kinks
 from galinx.meshes.rings import Refinement
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
@@ -186,7 +186,7 @@ class EndsBetweenKinks(Ends):
         else:
             order = max((exponent(self._body.profile) or 2.0) - 1.0, 1.0)
             size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
-        return max(0, ceil(log(size) / log(rings.ratio)) - rings.levels)
+        return max(0, rings_at_kinks(rings, size))
 
     def heights(self, level: PunchLevel) -> NDArray[np.float64]:
         X = self._centre + self._half_width * level.r

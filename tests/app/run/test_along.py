@@ -5,6 +5,7 @@ import pytest
 from support import THOROUGH
 
 import galinx
+from galinx.__main__ import main
 from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
 
@@ -95,8 +96,41 @@ def test_archive_has_friction_over_x_its_resultant_and_the_centre():
         ("along = [[-1, 0.2], [1, 0.5]]", "[time]\nend = 3\n[output]\nquantities = ['time']", "in time"),
         (DAHL.format(0.5, 1e4, 1.0), 'strokes = ["forward", "backward"]', "strokes"),
         (DAHL.format(0.5, 1e4, 1.0), '[solve]\nmesh = "box"', 'mesh = "box"'),
+        ("along = [[-1, 0.2], [0, 0.3], [0.0005, 0.3], [1, 0.5]]", "", "0.001 of another"),
     ],
 )
 def test_what_is_not_computed_is_refused_with_the_reason(friction, more, words):
     with pytest.raises(BadInput, match=words):
         parse(scene(friction, more=more))
+
+
+@pytest.mark.parametrize("row", [(0.203, 0.1), (0.2011, 0.6989)])
+def test_kinks_near_each_other_have_cells_between_them(row):
+    result = galinx.compute(parse(scene(f"along = [[-1, 0.2], [0.2, 0.7], {list(row)}, [1, 0.5]]")))
+    assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
+
+
+def test_mirrored_motion_and_friction_mirror_all_results():
+    one, other = (
+        galinx.compute(parse(scene(f'along = {rows}\nsign = "{sign}"'))).data
+        for rows, sign in (
+            ([[-1, 0.2], [0.3, 0.6], [1, 0.1]], "physical"),
+            ([[-1, 0.1], [-0.3, 0.6], [1, 0.2]], "eq25"),
+        )
+    )
+    X = one["surface/X_over_a"]
+    np.testing.assert_allclose(other["surface/X_over_a"], -X[::-1], atol=1e-15)
+    for method, rtol in (("closed_form", 1e-9), ("fem", 1e-7)):
+        for name, sign in (("sigma_YY", 1.0), ("sigma_XX", 1.0)):
+            values = (data[f"surface/{method}/{name}"] for data in (one, other))
+            np.testing.assert_allclose(
+                sign * next(values), next(values)[:, ::-1], rtol=rtol, atol=rtol, equal_nan=True
+            )
+        left, right = one[f"states/{method}/K_I_left"], other[f"states/{method}/K_I_right"]
+        np.testing.assert_allclose(left, right, rtol=rtol)
+
+
+def test_an_archive_is_whole(tmp_path):
+    (tmp_path / "along.toml").write_text(scene("along = [[-1, 0.2], [1, 0.5]]"))
+    assert main(["run", str(tmp_path / "along.toml"), "-o", str(tmp_path / "along.h5")]) == 0
+    assert main(["check", str(tmp_path / "along.h5")]) == 0

@@ -5,8 +5,8 @@ import pytest
 from support import THOROUGH
 
 import galinx
-from galinx.__main__ import main
 from galinx.app.errors import BadInput
+from galinx.app.results import check
 from galinx.app.scene.read import parse
 
 ISOTROPIC = 'E = "40 GPa"\nnu = 0.3\nrho = 2000'
@@ -131,6 +131,6 @@ def test_mirrored_motion_and_friction_mirror_all_results():
 
 
 def test_an_archive_is_whole(tmp_path):
-    (tmp_path / "along.toml").write_text(scene("along = [[-1, 0.2], [1, 0.5]]"))
-    assert main(["run", str(tmp_path / "along.toml"), "-o", str(tmp_path / "along.h5")]) == 0
-    assert main(["check", str(tmp_path / "along.h5")]) == 0
+    path = tmp_path / "along.h5"
+    galinx.compute(parse(scene("along = [[-1, 0.2], [1, 0.5]]"))).save(path)
+    assert check.faults(path) == []

@@ -66,15 +66,6 @@ class Radau:
     def _stages(self, steps: int) -> NDArray[np.float64]:
         return np.asarray(self._h * (np.arange(steps)[:, None] + self._nodes))
 
-    def convolved(self, response: NDArray, given: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
-        """Convolution of a response with a function of time, after each step, (steps, n).
-
-        Args:
-            response: its transform at ``s``, (values, n).
-            given: function of time.
-        """
-        return self.answered(response[..., None], given(self.times)[..., None])
-
     def answered(self, response: NDArray, given: NDArray) -> NDArray[np.float64]:
         """Sum of a response's convolutions with many functions, after each step, (steps, n).
 

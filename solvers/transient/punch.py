@@ -18,19 +18,19 @@ from functools import cached_property
 from math import pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from ..solids.half_plane import HalfPlane
-from .line_load import both_sides
+from .line_load import both_sides, interpolation
 from .march import FrictionInterpolation, Radau, march
 from .residual import Residual
-from .transform import Basis, Transformed, Weighted, divided, response_at
+from .transform import Basis, Transformed, Weighted, divided, double_exponential, response_at
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.125, 10
-#: Steps and half-length of the double exponential rule along the contact, or its part on one side.
-_STEPS, _LENGTH = 161, 3.4
+#: Steps of the double exponential rule along the contact, or its part on one side.
+_STEPS = 161
 #: Points of the pressure in its effect beside the contact.
 _FEW = 128
 
@@ -81,7 +81,7 @@ class AlongSurface:
         for n, X in enumerate(sign * self._X):
             if X > -1.0:
                 last, beyond = min(X, 1.0), max(X - 1.0, 0.0)
-                near, far, w = _both_ends(last + 1.0)
+                near, far, w = (of[0] for of in double_exponential(np.array([last + 1.0]), _STEPS))
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
                 sums[:, n] = self._interpolation(beyond + near).T @ (
@@ -93,9 +93,9 @@ class AlongSurface:
         """Matrix from values at the tabulated distances to values at x, (x, distances)."""
         edges = self._edges
         panel = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
-        t, _ = leggauss(_POINTS)
-        local = 2.0 * (x - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
-        by_point = np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(local, _POINTS - 1).T).T
+        by_point = interpolation(
+            _POINTS, 2.0 * (x - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
+        )
         weights = np.zeros((len(x), len(edges) - 1, _POINTS))
         weights[np.arange(len(x)), panel] = by_point
         return weights.reshape(len(x), -1)
@@ -143,15 +143,6 @@ def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]
     rest = over @ P - (over @ w)[:, None] * pressure.polynomials(X[under])
     transform[under] = rest + pi / np.tan(pi * pressure.α) * σ[under]
     return np.asarray(transform / pi)
-
-
-def _both_ends(length: float) -> tuple[NDArray, NDArray, NDArray]:
-    """Double exponential rule: distances from the right and the left end, and weights, (steps,) each."""
-    u = np.linspace(-_LENGTH, _LENGTH, _STEPS)
-    grown = pi * np.sinh(u)
-    from_right, from_left = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
-    weights = (u[1] - u[0]) * pi * np.cosh(u) * from_right * from_left
-    return length * from_right, length * from_left, length * weights
 
 
 #: Distance over a beyond the ends of the contact at which σ_XX is computed: it is infinite at them.

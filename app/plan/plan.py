@@ -23,6 +23,7 @@ from galinx.postprocess.quantities.quantity import (
     LOCAL,
     SWEPT,
 )
+from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.contact import FREE_ENDS, INTENSITIES, YIELD
 from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
@@ -70,7 +71,6 @@ from galinx.texts import bytes_in_words, counted
 from .. import ranks
 from ..errors import BadInput, listed
 from ..methods import METHODS, OWN_METHODS, fem_mode
-from ..run.slider import check_sliders
 from ..scene.scene import FRICTIONS, Scene, oddities
 from .over_time import starts
 from .states import enumerate_states, order
@@ -81,6 +81,9 @@ _INNER, _OUTERMOST = 0.6, 1e6
 
 #: Most knots of a prescribed pressure over layers, and their least distance over a.
 _KNOTS, _APART = 12, 0.02
+
+#: Most sliders of a scene.
+_SLIDERS = 200
 
 #: Narrowest piece of a prescribed pressure, over a, within which positions have enough digits.
 _NARROWEST = 1e-9
@@ -204,6 +207,20 @@ def check_states(states: int) -> None:
         raise BadInput(
             f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
             "them, or make several scenes"
+        )
+
+
+def check_sliders(scene: Scene) -> None:
+    """Check the number of sliders of a scene.
+
+    Raises:
+        BadInput: a scene has more sliders than are followed.
+    """
+    count = scene.friction.count * len(scene.punch.loads)
+    if SLIDER in scene.output.quantities and count > _SLIDERS:
+        raise BadInput(
+            f"the scene's lists multiply to {count} friction laws and loads, expected at most {_SLIDERS} "
+            "with a slider each: shorten them, or make several scenes"
         )
 
 

@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from ..solids.half_plane import HalfPlane
 from .line_load import both_sides, interpolation
-from .march import FrictionInterpolation, Radau, march
-from .residual import Residual
+from .march import FrictionInterpolation, Radau, Residual, march
 from .transform import Basis, Transformed, Weighted, divided, double_exponential, response_at
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
@@ -182,7 +181,7 @@ class Course:
         σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
         surface: σ_XX, σ_YY and σ_XY at ``ON_SURFACE``, (3, times, places), less the stresses before
             t = 0; None where they are not computed.
-        residual: larger one of that of :class:`.residual.Residual` and of the load's, over its largest,
+        residual: larger one of that of :class:`.march.Residual` and of the load's, over its largest,
             dimensionless; NaN where it is not computed.
     """
 

@@ -28,8 +28,6 @@ from .quantities.quantity import FEM, SIE
 #: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
 #: a wave that runs little faster than the punch is short under it.
 _MOMENTS, _FEWER = 2.5, 4
-#: Points of the quadrature of moments of r log r.
-_POINTS = 400
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
     moments = ceil(_MOMENTS * degree)
     polynomials = moments - _FEWER
     tests = Weighted(α, β, moments)
-    a, (r, w) = forces @ tests.polynomials(X), tests.rule(_POINTS)
+    a, (r, w) = forces @ tests.polynomials(X), tests.rule(400)  # of r log r
     basis = np.column_stack([np.eye(moments, polynomials), tests.polynomials(r).T @ (w * _logs(r)).T])
     factors = np.linalg.lstsq(basis, a.T, rcond=None)[0]
     ends = np.array([-1.0, 1.0])

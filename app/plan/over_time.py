@@ -33,8 +33,6 @@ from .states import States
 
 #: Positions on a stroke between which friction is interpolated; fewest steps of a stroke.
 _PLACES, _OF_STROKE = 801, 12
-#: Points of the quadrature of work in a step.
-_RULE = 4
 #: Number of short steps in place of one after a turn.
 _FINELY = 8
 
@@ -238,7 +236,7 @@ def work_of_friction(ways: tuple[Way, ...], load: Load, drive: Drive) -> NDArray
         load: of the punch over time.
         drive: of the punch.
     """
-    x, w = leggauss(_RULE)
+    x, w = leggauss(4)
     work, t0 = [], 0.0
     for way in ways:
         h = way.duration / way.steps

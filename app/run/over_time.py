@@ -29,11 +29,6 @@ from .. import ranks
 from ..errors import finite_elements_installed
 from ..plan.over_time import Drive, Starts
 
-#: Length over a of the quadrature rule for a pressure over layers.
-_FINEST = 0.5
-#: Accuracy of steady motion over layers, over the scene's tolerance.
-_OF_TOLERANCE = 0.1
-
 
 @dataclass(frozen=True)
 class QuasiSteady:
@@ -54,7 +49,7 @@ class QuasiSteady:
         different, which = np.unique(ratios, return_inverse=True)
         response: Any = self.starts.response(self.solid, self.c)
         if len(response.depths):
-            stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
+            stack, accuracy = response.stack(response.a), 0.1 * self.starts.tolerance
             nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
             return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
         punches = [FlatPunch(response, ratio) for ratio in different]
@@ -67,7 +62,7 @@ class QuasiSteady:
 
 
 def _centre(pressure: Pressure) -> NDArray[np.float64]:
-    t, forces = pressure.points(_FINEST)
+    t, forces = pressure.points(0.5)  # the rule's length over a
     return np.array(forces @ t / forces.sum())
 
 

@@ -178,8 +178,6 @@ _EVEN = 0.125
 _SAMPLES = 24
 #: Points of the pressure in its effect beside the contact.
 _FEW = 96
-#: More polynomials than there are.
-_ALL = 10**6
 
 
 class Transformed:
@@ -206,16 +204,14 @@ class Transformed:
         """Polynomials of the pressure where σ_XY = g σ_YY."""
         return Basis(self._response, g, self._terms)
 
-    def answers(
-        self, basis: Basis, terms: tuple[int, ...] = (_ALL,)
-    ) -> tuple[NDArray[np.complex128], ...]:
-        """Pressure and indentation by a load N̂ for every s, by all polynomials or the first of them.
+    def answers(self, basis: Basis, terms: tuple[int, ...] = ()) -> tuple[NDArray[np.complex128], ...]:
+        """Pressure and indentation by a load N̂ for every s, by so many polynomials, or by all.
 
         Returns:
             Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), (n, count + 1), for each of ``terms``.
         """
         matrices, solutions = self.sinking(basis, basis.tests), []
-        for count in (min(number, self._terms) for number in terms):
+        for count in terms or (self._terms,):
             whole = np.zeros((len(self.s), count + 1, count + 1), dtype=complex)
             whole[:, :-1, :-1] = matrices[:, :count, :count]
             whole[:, 0, -1] = basis.tests.integral

@@ -25,7 +25,7 @@ def cylinder(coating):
 
 
 def test_the_reference_is_hertz_where_nothing_coats():
-    """Half-width and pressure; the tension 2 f p₀ of Smith and Liu, to which coupling adds some per cent."""
+    """Half-width, pressure, and the tension 2 f p₀ of Smith and Liu, to which coupling adds some."""
     plain = cylinder(STEEL)
     b = np.sqrt(4.0 * 1e5 * 5e-3 * (1.0 - 0.3**2) / (np.pi * 210e9))
     assert plain.pressure.max() == pytest.approx(2e5 / (np.pi * b), rel=1e-3)

@@ -311,7 +311,7 @@ def test_the_mirror_image_of_a_smooth_punch_has_the_mirror_image_of_the_answer(s
 
 def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
     """With three polynomials a strongly bent punch is not itself, and the estimate says so."""
-    monkeypatch.setattr("galinx.app.plan.fem._MOST_SHAPES", 3)
+    monkeypatch.setattr("galinx.app.plan.plan._MOST_SHAPES", 3)
     punch = SMOOTH["a user's, strongly bent"]
     result = galinx.compute(scene(punch, c="0.2", output='["sif"]', mu=0.4))
     estimate = result.data["states/fem/estimate"].max()

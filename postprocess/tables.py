@@ -95,7 +95,7 @@ class Column:
 
     @property
     def label(self) -> str:
-        """What it is, with its unit."""
+        """Head with the unit."""
         return self.head + ("" if self.unit in ("1", "none") else f" [{self.unit}]")
 
     @property
@@ -111,7 +111,7 @@ class Column:
         return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
 
     def words(self, i: int) -> str:
-        """What state ``i`` has, with its unit."""
+        """Cell of state ``i`` with its unit."""
         text = self.texts()[i]
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
@@ -306,7 +306,7 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 
 def _share(share: float) -> str:
-    """Whether a solid yields under a share of what it bears, in words; "" for NaN."""
+    """Yes or no to yield under a share of the strength, with the share; "" for NaN."""
     return "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
 
 
@@ -397,7 +397,7 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
 
 
 def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
-    """What has to be known of some columns, and how to ask for those that are not there."""
+    """Notes on columns, and on how to ask for those that are not there."""
     heads = {column.head for column in columns}
     if "K_I, right" in heads:
         if "largest tension σ_XX" in heads:

@@ -79,7 +79,7 @@ class Fit:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was assumed and left out, in sentences."""
+        """Sentences on assumptions and samples left out."""
         samples = sum(len(table.measured.t) for table in self.tables)
         said = [note for table in self.tables for note in table.notes]
         if self.result.every > 1:

@@ -253,32 +253,16 @@ def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict
     Returns:
         A dataset by path, relative to the largest stress; empty where a solution has no stresses.
     """
-    of_both = [
-        [of[row[FEM].path] for row in SURFACE] for of in (before, now) if SURFACE[0][FEM].path in of
-    ]
-    return (
-        {rows.SURFACE_ESTIMATE.path: np.array(largest_surface_change(*of_both))}
-        if len(of_both) == 2
-        else {}
-    )
+    if any(SURFACE[0][FEM].path not in of for of in (before, now)):
+        return {}
+    of_both = ([of[row[FEM].path] for row in SURFACE] for of in (before, now))
+    return {rows.SURFACE_ESTIMATE.path: np.array(largest_surface_change(*of_both))}
 
 
 def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
     """Datasets by path of a method's σ_XX, σ_YY and σ_XY over N/(2a), (3, times, places)."""
-    return dict(
-        zip(
-            (
-                row[method].path
-                for row in (rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE, rows.SURFACE_SHEAR)
-            ),
-            stresses,
-        )
-    )
-
-
-def place_datasets(t: NDArray) -> dict[str, NDArray]:
-    """Datasets by path of the times t over a/c_s, (times,), and places of stresses along the surface."""
-    return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
+    of = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE, rows.SURFACE_SHEAR
+    return {row[method].path: values for row, values in zip(of, stresses)}
 
 
 def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:

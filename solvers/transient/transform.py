@@ -13,9 +13,9 @@ from math import ceil, exp, lgamma, log, pi
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 from ..contact.edges import EdgeExponents
+from ..contact.equation import gauss, jacobi
 from ..solids.half_plane import HalfPlane
 from .line_load import Side, both_sides, interpolation
 
@@ -38,7 +38,7 @@ class Weighted:
 
     def polynomials(self, X: NDArray) -> NDArray[np.float64]:
         """Polynomials without the weight, orthonormal with it, (..., terms)."""
-        return _jacobi(np.asarray(X, dtype=float), self.α, self.β, self.terms) / self._norms
+        return np.ascontiguousarray(jacobi(self.terms, self.α, self.β, X)) / self._norms
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
         """Polynomials times their weight, |X| < 1, (n, terms)."""
@@ -47,11 +47,7 @@ class Weighted:
 
     def rule(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Gauss's points and weights, with the weight in them."""
-        with np.errstate(
-            invalid="ignore", divide="ignore"
-        ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
-            X, w = roots_jacobi(points, self.α, self.β)
-        return X, w
+        return gauss(points, self.α, self.β)
 
     def tested(self, others: "Weighted") -> NDArray[np.float64]:
         """∫ w P_j P'_i dX of polynomials P_j with their weight w and others P'_i, (others, terms)."""
@@ -112,20 +108,6 @@ def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]
         product = (of_test * of_trial)[..., None] * τ
         products.append(product.swapaxes(1, 2) @ σ)
     return np.array(products)
-
-
-def _jacobi(X: NDArray, α: float, β: float, terms: int) -> NDArray[np.float64]:
-    """Jacobi's polynomials by their recurrence, α + β = -1, (..., terms), terms > 1."""
-    P = np.empty((*X.shape, terms))
-    P[..., 0] = 1.0
-    P[..., 1] = (α + 1.0) + (X - 1.0) / 2.0
-    for j in range(2, terms):
-        by_X = (2.0 * j - 2.0) * ((2.0 * j - 1.0) * (2.0 * j - 3.0) * X + (β - α))
-        back = 2.0 * (j + α - 1.0) * (j + β - 1.0) * (2.0 * j - 1.0)
-        P[..., j] = (by_X * P[..., j - 1] - back * P[..., j - 2]) / (
-            2.0 * j * (j - 1.0) * (2.0 * j - 3.0)
-        )
-    return P
 
 
 def _norm(j: int, α: float, β: float) -> float:

@@ -26,11 +26,15 @@ FAST = (
 )  # fmt: skip
 #: Fixtures that compute; what asks for one is not fast wherever it is.
 SLOW = {"tables_run", "map_run", "inside_run", "archives"}
-#: Tests of what dolfinx and PETSc do, each way to use them once: meshes, spaces, factors, and every kind
+#: Tests of what dolfinx and PETSc do, each way to use them once: forms, spaces, factors, and every kind
 #: of scene on one rank and on two (mpi/). What a result is made of then does not depend on their version.
 FEM = (
-    "app/commands/test_compute.py", "app/results/test_paraview.py", "app/run/test_fixed_degree.py",
-    "meshes/", "mpi/", "solvers/fem/",
+    "app/commands/test_compute.py::test_one_and_two_ranks", "app/results/test_paraview.py::test_stresses",
+    "app/run/test_fixed_degree.py::test_multigrid", "meshes/test_store.py", "mpi/",
+    *(f"solvers/fem/test_{name}.py" for name in (
+        "compiler", "condensation", "direct", "distributed", "dolfinx_space", "element", "interior",
+        "punch", "space", "unsymmetric", "versions",
+    )),
 )  # fmt: skip
 #: The longest file comes first, so that no worker has it left when the others are done.
 FIRST = "docs/test_pages.py"
@@ -42,7 +46,7 @@ def pytest_collection_modifyitems(items):
         place = place_of(item)
         if place.startswith(FAST) and not SLOW & set(item.fixturenames):
             item.add_marker("fast")
-        elif place.startswith(FEM):
+        elif f"{place}::{item.name}".startswith(FEM):
             item.add_marker("fem")
 
 

@@ -155,8 +155,8 @@ _OFTEN = ("steady", "law")
 def test_both_methods_with_a_turn(time, tmp_path):
     """By its law the second stroke goes back in time; constant friction is that of each stroke.
 
-    Constant friction by the integral equation alone: finite elements have the mirror image above, and
-    agree with it in test_over_time.py.
+    By the integral equation alone but for GALINX_THOROUGH: finite elements have the mirror image above,
+    turn round in solvers/transient/test_start.py, and agree with it in test_over_time.py.
     """
     there, back = '["forward", "backward"]', '["backward", "forward"]'
     law = STARTS[time].startswith('friction = "law"')

@@ -13,7 +13,7 @@ from galinx.solvers.solids import SOLIDS
 
 TOLERANCE = 1e-2
 #: Scenes by both methods, and those of them whose words and methods are tried one by one.
-ALL = [case.but(tolerance=TOLERANCE) for case in cases(*(() if THOROUGH else (7, 4)))]
+ALL = [case.but(tolerance=TOLERANCE) for case in cases(*(() if THOROUGH else (9, 1)))]
 ALONE = ALL[:: 1 if THOROUGH else 9]
 
 
@@ -102,7 +102,7 @@ def test_every_command_reads_it(case, archived):
         assert all(len(row) == len(head) and row[0] for row in rows)
 
 
-@pytest.mark.parametrize("case", ALL[:: 1 if THOROUGH else 3], ids=str)
+@pytest.mark.parametrize("case", ALL[:: 1 if THOROUGH else 5], ids=str)
 def test_it_has_a_page_and_fields_or_says_why_not(case, archived):
     path, _ = archived(case)
     done = here("report", path.name, "--overwrite", cwd=path.parent)

@@ -36,11 +36,11 @@ def _quick(case, method):
 #: By integral equations alone, which takes a moment, and by finite elements.
 EXACT = [
     case.but(methods=METHODS[case.layered][:1], words=_quick(case, "exact"))
-    for case in cases(1 if THOROUGH else 5, 1)
+    for case in cases(1 if THOROUGH else 9, 1)
 ]
 FEM = [
     case.but(methods=("fem",), tolerance=1e-2, words=_quick(case, "fem"))
-    for case in cases(1 if THOROUGH else 11, 2)
+    for case in cases(1 if THOROUGH else 17, 2)
     if case.by_finite_elements
 ]
 SOLVED = [pytest.param(case, allowed, id=f"{case}, {case.methods[0]}")

@@ -210,7 +210,7 @@ PAGES = {
 
 @pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")
 @pytest.mark.parametrize(
-    "name, dimensionless", [*((name, False) for name in PAGES), ("cylinder", True)]
+    "name, dimensionless", [(name, name == "cylinder") for name in PAGES]
 )  # fmt: skip
 def test_everything_on_a_page_does_what_it_says(name, dimensionless, tmp_path):
     result = computed(*PAGES[name])

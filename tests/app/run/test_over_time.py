@@ -147,7 +147,7 @@ def test_unloading_from_steady_motion_by_both_methods():
 def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
     """Friction grows as along the strokes of the states; where they turn the direction does."""
     changes = {
-        "solve.tolerance": 1e-2, "time.end": 0.7, "friction.pre_sliding": 3e-4, "time.step": 0.1,
+        "solve.tolerance": 1e-2, "time.end": 1.0, "friction.pre_sliding": 3e-4, "time.step": 0.1,
         "motion.X_over_L": [0.0, 0.5], "solve.methods": ["sie", "fem"], "time.every": None,
         "friction.sigma0_over_load": 4000.0,
     }  # fmt: skip

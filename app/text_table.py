@@ -76,48 +76,62 @@ class TextTable:
         except ValueError:
             number = np.nan
         if not np.isfinite(number):
-            found = f"{self.path}, line {line}, {self.names[column]}: found {excerpt(cell)}"
+            name = f", {self.names[column]}" * bool(self.names[column])
+            found = f"{self.path}, line {line}{name}: found {excerpt(cell)}"
             sign = "comma" if self.decimal == "," else "point"
             hint = f" with a decimal {sign}, as other numbers of the table have" if "," in cell else ""
             raise BadInput(f"{found}, expected a finite number{hint}")
         return number
 
 
-def read_table(path: Path, form: str) -> TextTable:
+def read_table(path: Path, form: str, columns: int = 0) -> TextTable:
     """Table of a file; lines before the head that begin with # are left out, and empty ones.
 
     Args:
         path: the file.
         form: a valid first line, for messages.
+        columns: number of columns of a table that needs no head; its units are those asked for then, and
+            it may be empty. 0 for a table with a head.
 
     Raises:
         BadInput: the file cannot be read or is no table.
     """
     try:
-        text = files.read(path, _LARGEST).decode("utf-8-sig")
+        text = files.read(path, _LARGEST + 1).decode("utf-8-sig")
     except OSError as error:
         raise BadInput(f"cannot read {path}: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
+    except ValueError:  # a name with a zero in it
+        raise BadInput(f"found {excerpt(str(path))}, expected the name of a file") from None
+    if len(text) > _LARGEST:
+        raise BadInput(f"{path} is larger than {_LARGEST // 10**6} MB, expected a table of numbers")
     lines = text.splitlines()
     first = next((n for n, line in enumerate(lines) if line.strip() and line[0] != "#"), None)
-    if first is None:
+    if first is None and not columns:
         raise BadInput(f"{path} is empty, expected a first line as {form}")
-    separator = next((sign for sign in "\t;" if sign in lines[first]), ",")
+    start = first or 0
+    separator = next((sign for sign in "\t;" if sign in "".join(lines[start : start + 1])), ",")
     rows = [
         (line, row)
-        for line, row in enumerate(csv.reader(lines[first:], delimiter=separator), first + 1)
+        for line, row in enumerate(csv.reader(lines[start:], delimiter=separator), start + 1)
         if any(map(str.strip, row))
     ]
-    heads = rows.pop(0)[1]
+    headless = not rows or (columns > 0 and any(map(_is_number, rows[0][1])))
+    heads = [""] * columns if headless else rows[0][1]
     matches = [_HEAD.fullmatch(head) for head in heads]
     for line, row in rows:
-        if any(map(str.strip, row[len(heads) :])):
+        if any(map(str.strip, row[len(heads) :])) or (columns and len(row) != columns):
             hint = "; with decimal commas, separate columns by semicolons" if separator == "," else ""
+            expected = columns or f"{len(heads)} as in the first line"
             raise BadInput(
                 f"{path}, line {line}: found {len(row)} columns, {excerpt(separator.join(row))}, "
-                f"expected {len(heads)} as in the first line{hint}"
+                f"expected {expected}{hint}"
             )
+    if columns and None in matches:
+        wrong = heads[matches.index(None)]
+        raise BadInput(f"{path}, line {rows[0][0]}: found {excerpt(wrong)}, expected as in {form}")
+    rows = rows if headless else rows[1:]
     cells = [cell for _, row in rows for cell in row]
     comma = any(map(_COMMA.fullmatch, cells)) and not any(map(_POINT.fullmatch, cells))
     return TextTable(
@@ -127,3 +141,10 @@ def read_table(path: Path, form: str) -> TextTable:
         rows,
         "," if comma and separator != "," else ".",
     )
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return np.isfinite(float(cell.replace(",", ".")))
+    except ValueError:
+        return False

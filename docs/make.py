@@ -32,13 +32,13 @@ the folder you are in. Exit status:
 | 2 | bad input: the message says which key, option or part of an archive, and what was expected |
 | 3 | failure of program or machine, or interrupted |
 
-SIGINT (Ctrl-C), SIGTERM and SIGHUP end a command at once, with status 3 and one message, whichever of
-several processes they reach; so does a rank that is killed. What a run has finished is kept for
-`--resume`. Signals that were ignored when the command was started, as by `nohup`, stay ignored.
+SIGINT (Ctrl-C), SIGTERM, SIGHUP and a killed rank end a command at once, with status 3 and one message.
+What a run has finished is kept for `--resume`. Signals that were ignored at the start, as by `nohup`,
+stay ignored.
 
-A file appears under its name when it is whole. What is made from an archive is made again unasked; what
-galinx did not make, scenes and archives are replaced with `--overwrite` only. Files that a command reads,
-folders, devices and FIFOs never are, links are followed, and `--log` adds to logs only.
+A file appears under its name when it is whole. What is made from an archive is replaced unasked. Scenes,
+archives and what galinx did not make are replaced with `--overwrite` only. Files that a command reads,
+folders, devices and FIFOs never are. Links are followed, and `--log` adds to logs only.
 
 Words that `run.sh` knows besides the commands:
 
@@ -59,6 +59,13 @@ Before the command stand
 
 With the folder `bin` on `PATH` the same command is called `galinx`. An installed `galinx` knows the
 commands and these options, not the words above; `mpirun -n RANKS galinx COMMAND …` runs it on ranks.
+"""
+
+_SHARED = """\
+## Shared options
+
+Options of several commands:
+
 """
 
 _SCENE = """\
@@ -189,25 +196,43 @@ where one exceeds its limit. T is `solve.tolerance`.
 
 
 def commands_page() -> str:
-    """Every command: what it does, usage, example, options."""
+    """Every command: what it does, usage, example, options; options of several commands once."""
     import click
 
     from galinx.app.cli import cli
     from galinx.app.console import program
 
-    parts = [_COMMANDS]
+    contexts = {
+        name: click.Context(command, info_name=f"./run.sh {name}", help_option_names=[])
+        for name, command in cli.commands.items()
+    }
+    options = {
+        name: [
+            record
+            for p in cli.commands[name].params
+            if isinstance(p, click.Option) and (record := p.get_help_record(context))
+        ]
+        for name, context in contexts.items()
+    }
+    counts = Counter(record for records in options.values() for record in records)
+    shared = {names: text for (names, text), count in counts.items() if count > 1 and names[:2] != "-o"}
+    rows = [(f"`{names}`", text) for names, text in shared.items()]
+    parts = [_COMMANDS, _SHARED + _table(("option", "meaning"), rows)]
     for name, command in cli.commands.items():
-        context = click.Context(command, info_name=f"./run.sh {name}", help_option_names=[])
+        context = contexts[name]
         about, _, example = (command.help or "").partition("Example:")
         usage = " ".join([context.info_name or "", *command.collect_usage_pieces(context)])
-        options = (p for p in command.params if isinstance(p, click.Option))
-        rows = [record for p in options if (record := p.get_help_record(context))]
-        parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\nUsage: `{usage}`\n")
+        usage = f"Usage: `{usage}`" + ", as in" * bool(example)
+        parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\n{usage}\n")
         if example:
-            shown = _plain(example).replace(program(), "./run.sh", 1)
-            parts.append(f"Example:\n\n    {shown}\n")
-        if rows:
-            parts.append(_table(("option", "meaning"), [(f"`{names}`", text) for names, text in rows]))
+            parts.append(f"    {_plain(example).replace(program(), './run.sh', 1)}\n")
+        of_several = [names for names, text in options[name] if shared.get(names) == text]
+        if of_several:
+            words = ", ".join(f"`{names.split()[0].rstrip(',')}`" for names in of_several)
+            parts.append(fill(f"[Shared options](#shared-options): {words}.", 106) + "\n")
+        own = [(f"`{names}`", text) for names, text in options[name] if shared.get(names) != text]
+        if own:
+            parts.append(_table(("option", "meaning"), own))
     return "\n".join(parts)
 
 

@@ -164,7 +164,7 @@ class Requirements:
         around: True where such points are all round the edges.
         inside: True where such points are below the surface.
         spread: distance between the planes in which the solid's fields are analytic, see
-            :class:`galinx.solvers.solids.solid.Response`.
+            :class:`galinx.solvers.solids.half_plane.HalfPlane`.
         bends: True where the surface under the punch is not straight, nor the pressure that of a flat
             punch.
     """

@@ -36,8 +36,6 @@ from .quantities.quantity import (
     STATE,
     Quantity,
 )
-from .quantities.states import LARGEST
-from .quantities.stresses import PRESSURE, SURFACE_X
 
 
 @dataclass(frozen=True)
@@ -89,21 +87,22 @@ def largest_of(row: Quantity) -> Callable[[dict[str, Any], Any], float]:
     return lambda data, _: float(data[row.path].max())
 
 
-def next_to_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
-    """Mask of positions next to an infinite pressure of the closed form, (states, n).
+def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
+    """False next to an infinite pressure of the closed form, by states and positions, (states, n).
 
     Args:
         data: datasets by path.
         inside: distance over a from the middle of the contact; infinite pressures farther out do not
             count.
     """
-    X = data[SURFACE_X.path]
-    if LARGEST[CLOSED_FORM].path not in data or PRESSURE[CLOSED_FORM].path not in data:
-        return np.zeros((1, len(X)), dtype=bool)
-    infinite = np.isnan(data[LARGEST[CLOSED_FORM].path])[:, None]
-    σ_YY = np.where(under_punch(X), data[PRESSURE[CLOSED_FORM].path], 0.0)
+    X = data[at.SURFACE_X.path]
+    rows = of.LARGEST[CLOSED_FORM], at.PRESSURE[CLOSED_FORM]
+    if any(row.path not in data for row in rows):
+        return np.ones((1, len(X)), dtype=bool)
+    infinite = np.isnan(data[rows[0].path])[:, None]
+    σ_YY = np.where(under_punch(X), data[rows[1].path], 0.0)
     tips = X[np.abs(σ_YY).argmax(axis=1)][:, None]
-    return infinite & (np.abs(tips) < inside) & ~stresses.off_tips(X, tips)
+    return ~infinite | (np.abs(tips) >= inside) | stresses.off_tips(X, tips)
 
 
 def not_finite(data: dict[str, Any]) -> list[str]:
@@ -121,178 +120,142 @@ def not_finite(data: dict[str, Any]) -> list[str]:
         if allowed == ANYWHERE:
             bad = np.isinf(values)
         elif allowed == BESIDE:
-            bad &= np.isinf(values) | under_punch(data[SURFACE_X.path])
+            bad &= np.isinf(values) | under_punch(data[at.SURFACE_X.path])
         if bad.any():
             paths.append(path)
     return paths
 
 
-def _ends(other: str) -> Callable[[dict[str, Any], Any], float]:
-    def measure(data: dict[str, Any], _: Any) -> float:
-        size = data[of.HALF_WIDTH[other].path]
-        off = [data[row[FEM].path] - data[row[other].path] for row in (of.HALF_WIDTH, of.CENTRE)]
-        return float((np.abs(off) / size).max())
-
-    return measure
-
-
-def _largest_pressure(other: str) -> Callable[[dict[str, Any], Any], float | None]:
-    def measure(data: dict[str, Any], _: Any) -> float | None:
-        fem, exact = (data[of.LARGEST[method].path] for method in (FEM, other))
-        off = np.abs(fem / exact - 1.0)
-        return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: it is infinite
-
-    return measure
-
-
-def extremes_of(other: str) -> Callable[[dict[str, Any], Any], float]:
-    """Measure of a rule: error of highest and lowest σ_XX against another method, dimensionless."""
-
-    def measure(data: dict[str, Any], _: Any) -> float:
-        rows = (at.HIGHEST, at.LOWEST) if other == CLOSED_FORM else (on_layers.HIGHEST, on_layers.LOWEST)
-        exact = np.array([data[row[other].path] for row in rows])
-        fem = np.array([data[row[FEM].path] for row in (at.HIGHEST, at.LOWEST)])
-        return float((np.abs(fem - exact) / np.abs(exact).max(axis=0)).max())
-
-    return measure
-
-
-def _rules(other: str, name: str, against: str) -> dict[str, Rule]:
-    def of_both(*rows: dict[str, Any]) -> tuple[Any, ...]:
-        return tuple(row[method] for row in rows for method in (other, FEM))
-
-    return {
-        f"ends{name}": Rule(
-            f"ends of the contact{against}, over its half-width", of_both(of.HALF_WIDTH, of.CENTRE),
-            _ends(other), tolerances=1.0,
-        ),
-        f"largest pressure{name}": Rule(
-            f"largest contact pressure{against}, relative", of_both(of.LARGEST),
-            _largest_pressure(other), tolerances=1.0,
-        ),
-    }  # fmt: skip
-
-
-#: Rules by the name that quantities give.
-OF_ENDS: dict[str, Rule] = {
-    **_rules(CLOSED_FORM, "", ""),
-    **_rules(SIE, " over layers", " against the integral equation"),
-}
-
-
-#: Share of the larger intensity, or of the mean pressure; where a value is smaller, its error is relative
-#: to this share instead.
+#: Share of the mean pressure; where a pressure is smaller, its error is relative to this share instead.
 _VANISHING = 0.1
 
+#: Quantity by method, or several.
+_Rows = Mapping[str, Any]
 
-def _intensities_of_layers(data: dict[str, Any], _: float) -> float | None:
+
+def _of(rows: Iterable[_Rows], method: str) -> list[Quantity]:
+    each = (row[method] for row in rows)
+    return [one for entry in each for one in (entry if isinstance(entry, tuple) else (entry,))]
+
+
+def _against(
+    other: str,
+    measure: Callable[[list[NDArray], list[NDArray], dict[str, Any], Any], float | None],
+    text: str,
+    *rows: _Rows,
+    beside: tuple[Quantity, ...] = (),
+    tolerances: float = 1.0,
+    own_pressure: bool = False,
+) -> Rule:
+    """Rule that compares finite elements with another method.
+
+    Args:
+        other: the other method.
+        measure: function of the quantities by finite elements and by the other method, (states, …) each,
+            of all datasets by path, and of the load.
+        text: meaning of the figure in words.
+        rows: the quantities that are compared, by method.
+        beside: further quantities that the measure needs.
+        tolerances: largest value of a PASS over the scene's tolerance.
+        own_pressure: True where the rule is applied under a prescribed pressure, too.
+    """
+    of_fem, of_other = _of(rows, FEM), _of(rows, other)
+
+    def measured(data: dict[str, Any], load: Any) -> float | None:
+        fem, exact = ([data[row.path] for row in own] for own in (of_fem, of_other))
+        return measure(fem, exact, data, load)
+
+    needs = (*of_fem, *of_other, *beside)
+    return Rule(text, needs, measured, tolerances=tolerances, own_pressure=own_pressure)
+
+
+def _worst(off: NDArray) -> float | None:
+    """Largest error; None where all are NaN: what is compared is infinite, or could not be fitted."""
+    return float(np.nanmax(off)) if np.isfinite(off).any() else None
+
+
+def _relative(fem: Any, exact: Any, *_: Any) -> float | None:
+    return _worst(np.abs(np.divide(fem, exact) - 1.0))
+
+
+def _relative_everywhere(fem: Any, exact: Any, *_: Any) -> float:
+    return np.max(np.abs(np.divide(fem, exact) - 1.0))
+
+
+def _over_larger(fem: Any, exact: Any, *_: Any) -> float:
+    return (np.abs(np.subtract(fem, exact)) / np.abs(exact).max(axis=0)).max()
+
+
+def _over_half_width(fem: Any, exact: Any, *_: Any) -> float:
+    return (np.abs(np.subtract(fem, exact)) / exact[0]).max()
+
+
+def _intensities(fem: Any, exact: Any, *_: Any) -> float | None:
     """Largest error of K_I at both ends, relative; None for free ends, at which it vanishes."""
-    sides = of.K_I_LEFT | on_layers.K_I_LEFT, of.K_I_RIGHT | on_layers.K_I_RIGHT
-    fem, sie = (np.array([data[side[method].path] for side in sides]) for method in (FEM, SIE))
-    if not sie.any():
-        return None
-    size = np.maximum(np.abs(sie), _VANISHING * np.abs(sie).max(axis=0))
-    return float((np.abs(fem - sie) / size).max())
+    return of.off_by(np.array(fem), np.array(exact)).max() if np.any(exact) else None
 
 
-def _pressures(data: dict[str, Any]) -> tuple[Any, Any]:
-    under = under_punch(data[at.SURFACE_X.path])
-    return data[at.PRESSURE[FEM].path][:, under], data[on_layers.PRESSURE[SIE].path][:, under]
-
-
-def _pressure_between_free_ends_on_layers(data: dict[str, Any], _: float) -> float:
-    """Largest error of σ_YY relative to each state's largest: it vanishes next to free ends."""
-    fem, sie = _pressures(data)
-    return float((np.abs(fem - sie) / np.abs(sie).max(axis=1, keepdims=True)).max())
-
-
-def _pressure_of_layers(data: dict[str, Any], _: float) -> float | None:
+def _pressure(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float | None:
     if of.HALF_WIDTH[SIE].path in data:
-        return None
-    fem, sie = _pressures(data)
-    return float((np.abs(fem - sie) / np.maximum(np.abs(sie), _VANISHING)).max())
+        return None  # the ends are free, and another rule compares
+    under = under_punch(data[at.SURFACE_X.path])
+    off = np.abs(np.subtract(fem, exact)) / np.maximum(np.abs(exact), _VANISHING)
+    return off[..., under].max()
 
 
-def _in_plane_of_layers(data: dict[str, Any], _: float) -> float:
-    fem, sie = (data[row.path] for row in (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE]))
-    return (np.abs(fem - sie) / stresses.of_in_plane(sie, data[at.SURFACE_X.path])).max()
+def _pressure_between_free_ends(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
+    """Largest error of σ_YY relative to each state's largest, not next to tips, where it is infinite."""
+    there = under_punch(data[at.SURFACE_X.path]) & _off_tips(data)
+    size = np.where(there, np.abs(exact), 0.0).max(axis=-1, keepdims=True)
+    return (np.where(there, np.abs(np.subtract(fem, exact)), 0.0) / size).max()
 
 
-def _at_interfaces(data: dict[str, Any], _: float) -> float:
-    fem, sie = (np.array([data[row.path] for row in on_layers.INTERFACES[by]]) for by in (FEM, SIE))
-    return float((np.abs(fem - sie) / stresses.of_interfaces(sie)).max())
+def _in_plane(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
+    """Largest error of σ_XX relative to its size, but not next to tips inside the contact."""
+    off = np.abs(fem[0] - exact[0]) / stresses.of_in_plane(exact[0], data[at.SURFACE_X.path])
+    return np.where(_off_tips(data, 1.0 - stresses.NEAR_TIP), off, 0.0).max()
 
 
-def _inside_layers(data: dict[str, Any], _: float) -> float:
-    rows = at.STRESSES_INSIDE[FEM], on_layers.STRESSES_INSIDE[SIE]
-    fem, sie = ([data[row.path] for row in of_method] for of_method in rows)
+def _at_interfaces(fem: Any, exact: Any, *_: Any) -> float:
+    return (np.abs(np.subtract(fem, exact)) / stresses.of_interfaces(np.array(exact))).max()
+
+
+def _inside(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
     places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
-    off = stresses.largest(σ_fem - σ_sie for σ_fem, σ_sie in zip(fem, sie))
-    return float((off / stresses.of_inside(sie, *places)).max())
+    off = stresses.largest(σ_fem - σ for σ_fem, σ in zip(fem, exact))  # one at a time: maps are large
+    return (off / stresses.of_inside(exact, *places)).max()
 
 
-def _estimate(row: Quantity, what: str) -> Rule:
-    text = f"estimated error of {what}, relative"
-    return Rule(text, (row,), largest_of(row), tolerances=1.0, own_pressure=True)
+def _yielded_zone(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float | None:
+    """Largest relative error of stresses that the reach d of yield stands for: they are a power of d."""
+    power = -np.array([data[row.path] for row in (of.BETA, of.ALPHA)])
+    return _relative(np.maximum(fem, _NO_REACH) ** power, np.maximum(exact, _NO_REACH) ** power)
 
 
-#: Rules by the name that quantities give.
-ON_LAYERS: dict[str, Rule] = {
-    "K_I of layers": Rule(
-        "K_I at both ends against the integral equation, relative",
-        (*(side[FEM] for side in (of.K_I_LEFT, of.K_I_RIGHT)),
-         *(side[SIE] for side in (on_layers.K_I_LEFT, on_layers.K_I_RIGHT))),
-        _intensities_of_layers, tolerances=1.0,
-    ),
-    "sigma_YY of layers": Rule(
-        "σ_YY against the integral equation, relative to itself or a tenth of the mean",
-        (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X), _pressure_of_layers,
-        tolerances=1.0,
-    ),
-    # As on uniform solids under contacts with free ends.
-    "sigma_YY of found ends over layers": Rule(
-        "σ_YY of contacts with free ends against the integral equation, over the largest",
-        (at.PRESSURE[FEM], on_layers.PRESSURE[SIE], at.SURFACE_X, of.LARGEST[SIE]),
-        _pressure_between_free_ends_on_layers, tolerances=10.0,
-    ),
-    "sigma_XX of layers": Rule(
-        "σ_XX against the integral equation, relative to itself or the largest",
-        (at.IN_PLANE[FEM], on_layers.IN_PLANE[SIE], at.SURFACE_X), _in_plane_of_layers,
-        tolerances=1.0, own_pressure=True,
-    ),
-    "extremes of sigma_XX over layers": Rule(
-        "highest and lowest σ_XX against the integral equation, over the larger of them",
-        (at.HIGHEST[FEM], at.LOWEST[FEM], on_layers.HIGHEST[SIE], on_layers.LOWEST[SIE]),
-        extremes_of(SIE), tolerances=1.0, own_pressure=True,
-    ),
-    "estimate of the integral equation": Rule(
-        "estimated error of the integral equation over layers, relative",
-        (on_layers.ESTIMATE,), largest_of(on_layers.ESTIMATE), tolerances=1.0,
-    ),
-    "stresses at interfaces": Rule(
-        "stresses at interfaces against the integral equation, over the largest along each",
-        (*on_layers.INTERFACES[FEM], *on_layers.INTERFACES[SIE]), _at_interfaces, tolerances=1.0,
-        own_pressure=True,
-    ),
-    "stresses inside layers": Rule(
-        "stresses inside against the integral equation, relative to themselves or the largest",
-        (*at.STRESSES_INSIDE[FEM], *on_layers.STRESSES_INSIDE[SIE], at.INSIDE_X, at.INSIDE_Y),
-        _inside_layers,
-        tolerances=1.0, own_pressure=True,
-    ),
-    "estimate at interfaces, fem": _estimate(
-        on_layers.ESTIMATE_AT_INTERFACES[FEM], "stresses at interfaces by finite elements"
-    ),
-    "estimate at interfaces, sie": _estimate(
-        on_layers.ESTIMATE_AT_INTERFACES[SIE], "stresses at interfaces by the integral equation"
-    ),
-    "estimate of sigma_XX, sie": _estimate(
-        on_layers.ESTIMATE_IN_PLANE[SIE], "σ_XX of the integral equation over layers"
-    ),
-    "estimate inside, sie": _estimate(
-        on_layers.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation over layers"
-    ),
-}  # fmt: skip
+def _depth(fem: Any, exact: Any, data: dict[str, Any], load: Any) -> float | None:
+    """Largest relative error of the stresses that depths d of yield stand for.
+
+    At sharp edges they are a power of d. Elsewhere, with the load N₁ of first yield, the logarithm of the
+    stress over the strength falls from ln(N/N₁) at the place of the largest to 0 at d. Where N₁ is 0, the
+    stress is a logarithm of the distance from a jump of the pressure, which any load makes yield: zones
+    there may be minute, and d itself over a counts. Where N₁ is not known, the square of the difference
+    of d stands for it, as next to the place of the largest.
+    """
+    if to.REACH_LEFT[FEM].path in data:
+        power = -np.minimum(data[of.ALPHA.path], data[of.BETA.path])
+        return _relative((np.maximum(fem, _NO_REACH) / np.maximum(exact, _NO_REACH)) ** power, np.ones(1))
+    apart, deep = np.abs(np.subtract(fem, exact)), np.maximum(np.maximum(fem, exact), _NO_REACH)
+    if to.FIRST_LOAD[CLOSED_FORM].path not in data:
+        return _worst((apart / deep) ** 2)
+    first, top = (data[row[CLOSED_FORM].path] for row in (to.FIRST_LOAD, to.VON_MISES_Y))
+    below = np.maximum(deep + top, _NO_REACH)  # the place of the largest stress, Y < 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.minimum(apart / below, 1.0)
+        return _worst(np.where(first > 0.0, np.maximum(np.log(load / first), 0.0) * share, apart))
+
+
+#: Distance over a from an edge that counts as none.
+_NO_REACH = 1e-300
 
 
 def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
@@ -328,16 +291,9 @@ def _resultant(other: str) -> Callable[[dict[str, Any], Any], float]:
     return measure
 
 
-def _intensities(data: dict[str, Any], _: float) -> float | None:
-    """Largest error of K_I at both ends, relative; None for free ends, at which it vanishes."""
-    any_sharp = any(data[side[CLOSED_FORM].path].any() for side in (of.K_I_LEFT, of.K_I_RIGHT))
-    return float(of.K_I_error(data).max()) if any_sharp else None
-
-
 def _exponents(data: dict[str, Any], _: float) -> float | None:
     pairs = (of.FITTED_ALPHA, of.ALPHA), (of.FITTED_BETA, of.BETA)
-    off = np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs])
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: none could be fitted
+    return _worst(np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs]))
 
 
 def _tension(data: dict[str, Any], _: float) -> float | None:
@@ -346,96 +302,18 @@ def _tension(data: dict[str, Any], _: float) -> float | None:
     return largest if largest > 0.0 else None
 
 
-def _both(data: dict[str, Any], rows: dict[str, Quantity], where: NDArray) -> tuple[NDArray, NDArray]:
-    return data[rows[FEM].path][:, where], data[rows[CLOSED_FORM].path][:, where]
-
-
-def _pressure(data: dict[str, Any], _: float) -> float:
-    fem, exact = _both(data, at.PRESSURE, under_punch(data[at.SURFACE_X.path]))
-    return (np.abs(fem - exact) / np.maximum(np.abs(exact), _VANISHING)).max()
-
-
-def _pressure_between_free_ends(data: dict[str, Any], _: float) -> float:
-    """Largest error of σ_YY relative to each state's largest, not next to tips, where it is infinite."""
-    under = under_punch(data[at.SURFACE_X.path])
-    fem, exact = _both(data, at.PRESSURE, under)
-    left_out = next_to_tips(data)[:, under]
-    size = np.where(left_out, 0.0, np.abs(exact)).max(axis=1, keepdims=True)
-    return (np.where(left_out, 0.0, np.abs(fem - exact)) / size).max()
-
-
-def _in_plane(data: dict[str, Any], _: float) -> float:
-    """Largest error of σ_XX relative to its size, but not next to tips inside the contact."""
-    fem, exact = (data[row.path] for row in (at.IN_PLANE[FEM], at.IN_PLANE[CLOSED_FORM]))
-    off = np.abs(fem - exact) / stresses.of_in_plane(exact, data[at.SURFACE_X.path])
-    return np.where(next_to_tips(data, 1.0 - stresses.NEAR_TIP), 0.0, off).max()
-
-
-def _inside(data: dict[str, Any], _: float) -> float:
-    fem, exact = ([data[row.path] for row in at.STRESSES_INSIDE[method]] for method in (FEM, CLOSED_FORM))
-    places = (data[row.path] for row in (at.INSIDE_X, at.INSIDE_Y))
-    off = stresses.largest(σ_fem - σ for σ_fem, σ in zip(fem, exact))
-    return (off / stresses.of_inside(exact, *places)).max()
-
-
-def _largest_stresses(data: dict[str, Any], _: float) -> float | None:
-    pairs = [(data[row[FEM].path], data[row[CLOSED_FORM].path]) for row in (to.VON_MISES, to.SHEAR)]
-    off = np.abs([fem / exact - 1.0 for fem, exact in pairs])
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: all are infinite
-
-
-def _largest_on_layers(rows: Mapping[str, Any]) -> Callable[[dict[str, Any], Any], float]:
-    def measure(data: dict[str, Any], _: Any) -> float:
-        fem, exact = (data[rows[method].path] for method in (FEM, SIE))
-        return float(np.max(np.abs(fem / exact - 1.0)))
-
-    return measure
-
-
-def _yielded_zone(data: dict[str, Any], _: float) -> float | None:
-    """Largest relative error of stresses that the reach d of yield stands for: they are a power of d."""
-    off = []
-    for rows, exponent in ((to.REACH_LEFT, of.BETA), (to.REACH_RIGHT, of.ALPHA)):
-        power = -data[exponent.path]
-        fem, exact = (np.maximum(data[row.path], _NO_REACH) ** power for row in rows.values())
-        off.append(np.abs(fem / exact - 1.0))
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: no solid carries that
-
-
-def _depth(data: dict[str, Any], load: Any) -> float | None:
-    """Largest relative error of the stresses that depths d of yield stand for.
-
-    At sharp edges they are a power of d. Elsewhere, with the load N₁ of first yield, the logarithm of the
-    stress over the strength falls from ln(N/N₁) at the place of the largest to 0 at d. Where N₁ is 0, the
-    stress is a logarithm of the distance from a jump of the pressure, which any load makes yield: zones
-    there may be minute, and d itself over a counts. Where N₁ is not known, the square of the difference
-    of d stands for it, as next to the place of the largest.
-    """
-    exact, fem = (data[to.DEPTH[method].path] for method in (CLOSED_FORM, FEM))
-    deep = np.maximum(np.maximum(fem, exact), _NO_REACH)
-    off = np.abs(fem - exact) / deep
-    if to.REACH_LEFT[FEM].path in data:
-        power = -np.minimum(data[of.ALPHA.path], data[of.BETA.path])
-        off = np.abs((np.maximum(fem, _NO_REACH) / np.maximum(exact, _NO_REACH)) ** power - 1.0)
-    elif to.FIRST_LOAD[CLOSED_FORM].path in data:
-        first, top = (data[row[CLOSED_FORM].path] for row in (to.FIRST_LOAD, to.VON_MISES_Y))
-        below = np.maximum(deep + top, _NO_REACH)  # the place of the largest stress, Y < 0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.minimum(np.abs(fem - exact) / below, 1.0)
-            off = np.where(
-                first > 0.0, np.maximum(np.log(load / first), 0.0) * share, np.abs(fem - exact)
-            )
-    else:
-        off = off**2
-    return float(np.nanmax(off)) if np.isfinite(off).any() else None  # NaN: no solid carries that
-
-
 def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
 
-#: Distance over a from an edge that counts as none.
-_NO_REACH = 1e-300
+def _largest(row: Quantity, text: str, tolerances: float | None = 1.0, **options: Any) -> Rule:
+    """Rule on the largest value of a quantity over all states."""
+    return Rule(text, (row,), largest_of(row), tolerances=tolerances, **options)
+
+
+def _estimate(row: Quantity, what: str, own_pressure: bool = True) -> Rule:
+    return _largest(row, f"estimated error of {what}, relative", own_pressure=own_pressure)
+
 
 #: Name of the rule that applies to every quantity.
 FINITE = "finite"
@@ -446,46 +324,95 @@ BALANCE = Rule(
     (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RATIO), _imbalance, limit=1e-9,
 )  # fmt: skip
 
+#: The integral equation in texts of rules.
+_SIE = " against the integral equation"
+
 #: Rules by the name that quantities give, in the order in which they are reported.
 RULES: Registry[Rule] = Registry(
     "rule of comparison",
     {
         "force balance": BALANCE,
         **{
-            next(iter(row.compared)): Rule(
+            f"resultant{name}": Rule(
                 f"nodal forces against the resultant of the pressure{name}, over it or N",
-                (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, row, of.RATIO), _resultant(method),
-                limit=BALANCE.limit, own_pressure=True,
+                (of.NORMAL_FORCE, of.TANGENTIAL_FORCE, of.RESULTANT[method], of.RATIO),
+                _resultant(method), limit=BALANCE.limit, own_pressure=True,
             )
-            for (method, row), name in zip(of.RESULTANT.items(), ("", " over layers"))
+            for method, name in ((CLOSED_FORM, ""), (SIE, " over layers"))
         },
         FINITE: Rule(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
         ),
-        "residual": Rule(
-            "residual of the integral equation at the closed form's pressure, relative",
-            (of.RESIDUAL[CLOSED_FORM],), largest_of(of.RESIDUAL[CLOSED_FORM]), limit=1e-8,
+        "residual": _largest(
+            of.RESIDUAL[CLOSED_FORM],
+            "residual of the integral equation at the closed form's pressure, relative", None, limit=1e-8,
         ),
-        "residual of finite elements": Rule(
-            "residual of the integral equation at the finite elements' pressure, relative",
-            (of.RESIDUAL[FEM],), largest_of(of.RESIDUAL[FEM]), tolerances=10.0,
+        "residual of finite elements": _largest(
+            of.RESIDUAL[FEM],
+            "residual of the integral equation at the finite elements' pressure, relative", 10.0,
         ),
-        "residual inside": Rule(
-            "stresses inside against line loads and equilibrium, over the largest",
-            (at.RESIDUAL_INSIDE,), largest_of(at.RESIDUAL_INSIDE), limit=1e-8, own_pressure=True,
+        "residual inside": _largest(
+            at.RESIDUAL_INSIDE, "stresses inside against line loads and equilibrium, over the largest",
+            None, limit=1e-8, own_pressure=True,
         ),
-        "K_I": Rule(
-            "K_I at both ends, relative",
-            (*of.K_I_LEFT.values(), *of.K_I_RIGHT.values()),
-            _intensities, tolerances=1.0,
+        "K_I": _against(
+            CLOSED_FORM, _intensities, "K_I at both ends, relative", of.K_I_LEFT, of.K_I_RIGHT
         ),
-        "estimate": Rule(
-            "estimated error of K_I and moments, relative",
-            (of.ESTIMATE,), largest_of(of.ESTIMATE), tolerances=1.0,
+        "estimate": _estimate(of.ESTIMATE[FEM], "K_I and moments", False),
+        "K_I of layers": _against(
+            SIE, _intensities, f"K_I at both ends{_SIE}, relative", of.K_I_LEFT, of.K_I_RIGHT
         ),
-        **ON_LAYERS,
-        **OF_ENDS,
+        "sigma_YY of layers": _against(
+            SIE, _pressure, f"σ_YY{_SIE}, relative to itself or a tenth of the mean",
+            at.PRESSURE, beside=(at.SURFACE_X,),
+        ),
+        # As on uniform solids under contacts with free ends.
+        "sigma_YY of found ends over layers": _against(
+            SIE, _pressure_between_free_ends,
+            f"σ_YY of contacts with free ends{_SIE}, over the largest",
+            at.PRESSURE, beside=(at.SURFACE_X, of.LARGEST[SIE]), tolerances=10.0,
+        ),
+        "sigma_XX of layers": _against(
+            SIE, _in_plane, f"σ_XX{_SIE}, relative to itself or the largest",
+            at.IN_PLANE, beside=(at.SURFACE_X,), own_pressure=True,
+        ),
+        "extremes of sigma_XX over layers": _against(
+            SIE, _over_larger, f"highest and lowest σ_XX{_SIE}, over the larger of them",
+            at.HIGHEST, at.LOWEST, own_pressure=True,
+        ),
+        "estimate of the integral equation": _estimate(
+            of.ESTIMATE[SIE], "the integral equation over layers", False
+        ),
+        "stresses at interfaces": _against(
+            SIE, _at_interfaces, f"stresses at interfaces{_SIE}, over the largest along each",
+            on_layers.INTERFACES, own_pressure=True,
+        ),
+        "stresses inside layers": _against(
+            SIE, _inside, f"stresses inside{_SIE}, relative to themselves or the largest",
+            at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True,
+        ),
+        **{
+            f"estimate at interfaces, {method}": _estimate(
+                on_layers.ESTIMATE_AT_INTERFACES[method], f"stresses at interfaces by {name}"
+            )
+            for method, name in ((FEM, "finite elements"), (SIE, "the integral equation"))
+        },
+        "estimate of sigma_XX, sie": _estimate(
+            at.ESTIMATE_IN_PLANE[SIE], "σ_XX of the integral equation over layers"
+        ),
+        "estimate inside, sie": _estimate(
+            at.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation over layers"
+        ),
+        **{
+            f"{name}{layers}": _against(other, measure, text.format(against), *rows)
+            for other, layers, against in ((CLOSED_FORM, "", ""), (SIE, " over layers", _SIE))
+            for name, measure, text, rows in (
+                ("ends", _over_half_width, "ends of the contact{}, over its half-width",
+                 (of.HALF_WIDTH, of.CENTRE)),
+                ("largest pressure", _relative, "largest contact pressure{}, relative", (of.LARGEST,)),
+            )
+        },
         "exponents": Rule(
             "fitted edge exponents, absolute",
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,
@@ -495,69 +422,55 @@ RULES: Registry[Rule] = Registry(
             (at.PRESSURE[FEM],), _tension, limit=0.0, own_pressure=True,
         ),
         # Under a prescribed pressure there is no raw one, and nothing to compare.
-        "sigma_YY": Rule(
-            "σ_YY pointwise, relative",
-            (at.RAW_PRESSURE, at.PRESSURE[CLOSED_FORM], at.SURFACE_X), _pressure, tolerances=1.0,
+        "sigma_YY": _against(
+            CLOSED_FORM, _pressure, "σ_YY pointwise, relative",
+            at.PRESSURE, beside=(at.RAW_PRESSURE, at.SURFACE_X),
         ),
         # For free ends, where no exponent is assumed; at a sharp edge sigma_YY is the stricter rule.
-        "sigma_YY of found ends": Rule(
+        "sigma_YY of found ends": _against(
+            CLOSED_FORM, _pressure_between_free_ends,
             "σ_YY of contacts with free ends, over the largest further than 0.02 a from a tip",
-            (*at.PRESSURE.values(), at.SURFACE_X, of.LARGEST[CLOSED_FORM]), _pressure_between_free_ends,
-            tolerances=10.0,
+            at.PRESSURE, beside=(at.SURFACE_X, of.LARGEST[CLOSED_FORM]), tolerances=10.0,
         ),
-        "sigma_XX": Rule(
-            "σ_XX pointwise, relative to itself or the largest",
-            (*at.IN_PLANE.values(), at.SURFACE_X), _in_plane, tolerances=1.0, own_pressure=True,
+        "sigma_XX": _against(
+            CLOSED_FORM, _in_plane, "σ_XX pointwise, relative to itself or the largest",
+            at.IN_PLANE, beside=(at.SURFACE_X,), own_pressure=True,
         ),
-        "extremes of sigma_XX": Rule(
-            "highest and lowest σ_XX, over the larger of them",
-            (*at.HIGHEST.values(), *at.LOWEST.values()), extremes_of(CLOSED_FORM), tolerances=1.0,
-            own_pressure=True,
+        "extremes of sigma_XX": _against(
+            CLOSED_FORM, _over_larger, "highest and lowest σ_XX, over the larger of them",
+            at.HIGHEST, at.LOWEST, own_pressure=True,
         ),
-        "estimate of sigma_XX": Rule(
-            "estimated error of σ_XX, relative", (at.ESTIMATE_IN_PLANE,),
-            largest_of(at.ESTIMATE_IN_PLANE), tolerances=1.0, own_pressure=True,
+        "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
+        "stresses inside": _against(
+            CLOSED_FORM, _inside, "stresses inside, relative to themselves or the largest",
+            at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True,
         ),
-        "stresses inside": Rule(
-            "stresses inside, relative to themselves or the largest",
-            (*at.STRESSES_INSIDE[FEM], *at.STRESSES_INSIDE[CLOSED_FORM], at.INSIDE_X, at.INSIDE_Y),
-            _inside, tolerances=1.0, own_pressure=True,
+        "estimate inside": _estimate(at.ESTIMATE_INSIDE[FEM], "stresses inside"),
+        "largest stresses": _against(
+            CLOSED_FORM, _relative, "largest von Mises and shear stress, relative",
+            to.VON_MISES, to.SHEAR, own_pressure=True,
         ),
-        "estimate inside": Rule(
-            "estimated error of stresses inside, relative", (at.ESTIMATE_INSIDE,),
-            largest_of(at.ESTIMATE_INSIDE), tolerances=1.0, own_pressure=True,
+        "largest stresses over layers": _against(
+            SIE, _relative_everywhere, f"largest von Mises stress{_SIE}, relative", to.VON_MISES
         ),
-        "largest stresses": Rule(
-            "largest von Mises and shear stress, relative",
-            tuple(row[method] for row in (to.VON_MISES, to.SHEAR) for method in (CLOSED_FORM, FEM)),
-            _largest_stresses, tolerances=1.0, own_pressure=True,
+        "largest stresses of layers": _against(
+            SIE, _relative_everywhere, f"largest von Mises stress of each layer{_SIE}, relative",
+            to.OF_LAYERS,
         ),
-        "largest stresses over layers": Rule(
-            "largest von Mises stress against the integral equation, relative",
-            (to.VON_MISES[SIE], to.VON_MISES[FEM]), _largest_on_layers(to.VON_MISES), tolerances=1.0,
-        ),
-        "largest stresses of layers": Rule(
-            "largest von Mises stress of each layer against the integral equation, relative",
-            (*to.OF_LAYERS.values(),), _largest_on_layers(to.OF_LAYERS), tolerances=1.0,
-        ),
-        "yielded zone": Rule(
+        "yielded zone": _against(
+            CLOSED_FORM, _yielded_zone,
             "distance from the edges within which yield is passed, as a stress, relative",
-            (*to.REACH_LEFT.values(), *to.REACH_RIGHT.values(), of.ALPHA, of.BETA), _yielded_zone,
-            tolerances=1.0,
+            to.REACH_LEFT, to.REACH_RIGHT, beside=(of.ALPHA, of.BETA),
         ),
-        "depth of yield": Rule(
-            "depth of the yielded zone, as a stress, relative",
-            (*to.DEPTH.values(),), _depth, tolerances=1.0, own_pressure=True,
+        "depth of yield": _against(
+            CLOSED_FORM, _depth, "depth of the yielded zone, as a stress, relative",
+            to.DEPTH, own_pressure=True,
         ),
-        "estimate of yield": Rule(
-            "estimated error of stresses from which yield is computed, relative", (to.ESTIMATE_YIELD,),
-            largest_of(to.ESTIMATE_YIELD), tolerances=1.0, own_pressure=True,
-        ),
+        "estimate of yield": _estimate(to.ESTIMATE_YIELD, "stresses from which yield is computed"),
         # In the traction mode v,X under the punch has to vanish. It is a derivative of the displacement,
         # with about half the digits of the moments to which the tolerance refers.
-        "slope under the punch": Rule(
-            "v,X under the punch over that beside it",
-            (of.SLOPE,), largest_of(of.SLOPE), tolerances=10.0, mode="traction",
+        "slope under the punch": _largest(
+            of.SLOPE, "v,X under the punch over that beside it", 10.0, mode="traction"
         ),
     },
     Rule,

@@ -39,8 +39,9 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
     """
     rows = {path: row for path, row in table().items() if row.symbol and path in data}
     first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
-    own = [path for path in rows if path not in (*first, *last)]
-    return {path: rows[path] for path in (*first, *own, *last)}
+    swept = [path for path in rows if "." in path]
+    own = [path for path in rows if path not in (*swept, *first, *last)]
+    return {path: rows[path] for path in (*swept, *first, *own, *last)}
 
 
 #: Most states in a table, most of them side by side, and most inner variables of a law.
@@ -136,23 +137,23 @@ _OF_CONTACT: tuple[_Spec, ...] = (
     ("half-width", of.HALF_WIDTH),
     ("centre", of.CENTRE),
     ("peak pressure", of.LARGEST), ("at X", of.LARGEST_X),
-    ("largest tension σ_XX", stresses.HIGHEST | layers.HIGHEST),
-    ("at X", stresses.HIGHEST_X | layers.HIGHEST_X),
+    ("largest tension σ_XX", stresses.HIGHEST),
+    ("at X", stresses.HIGHEST_X),
 )  # fmt: skip
 _OF_STRENGTH: tuple[_Spec, ...] = (
     ("largest von Mises", yielding.VON_MISES), ("at X", yielding.VON_MISES_X),
     ("at Y", yielding.VON_MISES_Y),
 )  # fmt: skip
 _OF_EDGES: tuple[_Spec, ...] = (
-    ("K_I, left", of.K_I_LEFT | layers.K_I_LEFT),
-    ("K_I, right", of.K_I_RIGHT | layers.K_I_RIGHT),
+    ("K_I, left", of.K_I_LEFT),
+    ("K_I, right", of.K_I_RIGHT),
     ("exponent β, left", {"": of.BETA}), ("exponent α, right", {"": of.ALPHA}),
 )  # fmt: skip
 _INDENTATION: _Spec = ("indentation v₀", {FEM: of.INDENTATION})
 #: Pull under the punch, which no punch exerts.
 _PULL: tuple[_Spec, ...] = (
-    ("pull under the punch", {m: rows[0] for m, rows in (validity.TENSION | layers.TENSION).items()}),
-    ("at X", {m: rows[1] for m, rows in (validity.TENSION | layers.TENSION).items()}),
+    ("pull under the punch", validity.TENSION),
+    ("at X", validity.TENSION_X),
 )
 #: What says where answers hold, and more of yield, in a table of its own.
 _LIMITS: tuple[_Spec, ...] = (

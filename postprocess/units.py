@@ -5,7 +5,7 @@ This is the only place where they become MPa, µm and m/s: tables, figures, page
 :class:`Units`. In a result all stresses have one unit, all lengths of the contact have one, and so on.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,11 +62,6 @@ class Scaled(NamedTuple):
     def text(self, value: float, digits: int = 4) -> str:
         """A value in this scale with its unit: ``1206 MPa``."""
         return f"{number(value, digits)}{'' if self.unit in ('1', 'none') else f' {self.unit}'}"
-
-
-#: Function of a quantity and its name that gives its scale; None where the quantity is omitted, since
-#: another has equal values in the same unit. :class:`Units` is one.
-Scaling = Callable[[Quantity, str], Scaled | None]
 
 
 def as_archived(row: Quantity, name: str) -> Scaled:

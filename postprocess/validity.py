@@ -84,12 +84,16 @@ class Validity:
             if ends[0].path in data:
                 width = np.max([data[end.path] for end in ends], axis=0)
                 self._count(name, width > WIDE, width)
-        for size, where in of.TENSION.values():
-            if size.path in data:
-                tension = data[size.path]
-                if np.nanmax(tension, initial=0.0) > self._worst.get("tension", 0.0):
-                    self._where = float(data[where.path][np.nanargmax(tension)])
-                self._count("tension", tension > 0.0, tension)
+        methods = [method for method, row in of.TENSION.items() if row.path in data]
+        if methods:
+            each, where = (
+                np.array([data[rows[method].path] for method in methods])
+                for rows in (of.TENSION, of.TENSION_X)
+            )
+            tension = np.nanmax(each, axis=0, initial=0.0)
+            if tension.max(initial=0.0) > self._worst.get("tension", 0.0):
+                self._where = float(where.flat[np.nanargmax(each)])
+            self._count("tension", tension > 0.0, tension)
 
     def _see_strokes(self, c: NDArray, g: NDArray, often: NDArray) -> None:
         states = np.column_stack([c, g, often])[np.isfinite(often)]

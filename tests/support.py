@@ -82,10 +82,16 @@ def called(*words):
     from galinx.app.process import SIGNALS
 
     handlers = {number: signal.getsignal(number) for number in SIGNALS}
+    me, end = os.getpid(), os._exit
+
+    def leave(status):
+        """Processes that a command forks end for good: they must not return into the tests."""
+        return sys.exit(status) if os.getpid() == me else end(status)
+
     try:
         with (
             patch.object(sys, "argv", ["galinx", *words]),
-            patch.object(os, "_exit", sys.exit),
+            patch.object(os, "_exit", leave),
             pytest.raises(SystemExit) as ended,
         ):
             run_from_shell()

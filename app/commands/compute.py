@@ -15,7 +15,6 @@ from galinx.texts import counted
 
 from .. import errors, process, ranks
 from ..console import Progress, print_result, print_times, print_warnings, program, say, width
-from ..errors import BadInput
 from . import options
 
 
@@ -40,7 +39,7 @@ def run(
 
     clock = Clock("start and end", age())
     path = output or Path(scene.stem + ".h5")
-    checked = _read(scene, changes, unset)
+    checked = options.read(scene, changes, unset)
     if not ranks.is_root() and not make_plan(checked).shared:
         return errors.GOOD  # nothing to share
     target = Target(path, None, overwrite, options.inputs(scene))
@@ -68,19 +67,6 @@ def run(
         print(f"archive: {path}")
         print(f"next: {program()} report {path}")
     return errors.FAILED_VERDICT if verdict == "FAIL" else errors.GOOD
-
-
-def _read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
-    """The scene of a file with its changes, whose reader is imported where there are any."""
-    from ..scene.read import read
-
-    if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):
-        raise BadInput(f"only one of several ranks could read {path}; expected a file")
-    if not (changes or unset):
-        return read(path)
-    from ..scene.changes import from_words
-
-    return read(path, from_words(changes, unset))
 
 
 def _archived(scene: Any, target: Target, journal: Any, progress: Progress, clock: Clock) -> str:
@@ -134,7 +120,7 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     from ..plan.plan import expense
     from ..plan.variants import lines_of, make_variants
 
-    checked = _read(scene, changes, unset)
+    checked = options.read(scene, changes, unset)
     variants = make_variants(checked)
     plans = [variant.plan for variant in variants]
     if ranks.is_root():

@@ -5,6 +5,7 @@ programs, csv.
 """
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -197,10 +198,7 @@ def compare(
             files.check(["compare"])
             written = files.write(iter([comparison.drawing(points)]), None)
         print_sheets(comparison.sheets(), comparison.notes())
-        for file in written if to else ():
-            print(f"{file.noun}: {file.path}")
-        if to and written[-1].left_out:
-            say(f"  {written[-1].left_out}", 2)
+        _print_files(written if to else ())
     return errors.GOOD
 
 
@@ -275,10 +273,7 @@ def plot(
     if ranks.is_root():
         selection = in_units(selection, result.units(dimensionless))
         written = write(result.data, result.scene, selection, files)
-        for file, following in zip(written, [*written[1:], None]):
-            print(f"{file.noun}: {file.path}")
-            if file.left_out and (following is None or following.left_out != file.left_out):
-                say(f"  {file.left_out}", 2)
+        _print_files(written)
     return errors.GOOD
 
 
@@ -297,13 +292,9 @@ def dispersion(
     Example: ./run.sh dispersion scenes/coating.toml -o figures
     """
     from ..figures import waves
-    from ..figures.files import Files
-    from ..scene.changes import from_words
-    from ..scene.read import read
 
-    files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
-    files.check(["dispersion"])
-    slowest = waves.curve(read(scene, from_words(changes, unset)))
+    files = _files("dispersion", scene, to, overwrite)
+    slowest = waves.curve(options.read(scene, changes, unset))
     if ranks.is_root():
         print("kH (1)     wavelength (m)  speed (m/s)")
         for kH, length, speed in zip(slowest.kH, slowest.length, slowest.speed):
@@ -315,9 +306,25 @@ def dispersion(
                 "faster radiates into them, and is no limit of the punch"
             )
         print(f"highest speed of a punch: {slowest.limit:.8g} m/s")
-        for file in files.write(iter([waves.dispersion_drawing(slowest)]), None):
-            print(f"{file.noun}: {file.path}")
+        _print_files(files.write(iter([waves.dispersion_drawing(slowest)]), None))
     return errors.GOOD
+
+
+def _files(name: str, scene: Path, to: Path, overwrite: bool) -> Any:
+    """Files of a scene's figure of this name, into which it may be drawn."""
+    from ..figures.files import Files
+
+    files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
+    files.check([name])
+    return files
+
+
+def _print_files(written: Sequence[Any]) -> None:
+    """Print the names of files of figures, and what these leave out, once for the formats of a figure."""
+    for file, following in zip(written, [*written[1:], None]):
+        print(f"{file.noun}: {file.path}")
+        if file.left_out and (following is None or following.left_out != file.left_out):
+            say(f"  {file.left_out}", 2)
 
 
 _FREQUENCY = click.FloatRange(0.0, 1e6, min_open=True)
@@ -360,20 +367,15 @@ def response(
     Example: ./run.sh response scenes/start_from_rest.toml -o figures
     """
     from ..figures import waves as punch
-    from ..figures.files import Files
-    from ..scene.changes import from_words
-    from ..scene.read import read
 
-    files = Files(to, scene.stem, overwrite=overwrite, inputs=options.inputs(scene))
-    files.check(["response"])
-    checked = read(scene, from_words(changes, unset))
+    files = _files("response", scene, to, overwrite)
+    checked = options.read(scene, changes, unset)
     stiffnesses = punch.answers(checked, first, last, points)
     if ranks.is_root():
         for answer in stiffnesses:
             print(answer.words)
             print(*punch.table(checked, answer), sep="\n")
-        for drawn in files.write(iter([punch.response_drawing(stiffnesses)]), None):
-            print(f"{drawn.noun}: {drawn.path}")
+        _print_files(files.write(iter([punch.response_drawing(stiffnesses)]), None))
     return errors.GOOD
 
 

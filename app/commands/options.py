@@ -10,6 +10,7 @@ import click
 
 from galinx.postprocess.target import LOG, Target
 
+from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, short
 
@@ -68,6 +69,23 @@ def changes(command: Any) -> Any:
         "--set", "changes", multiple=True, metavar="KEY=VALUE",
         help="Another value, as in --set friction.mu_c=0.5; may be repeated.",
     )(with_unset)  # fmt: skip
+
+
+def read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
+    """The scene of a file with its changes, whose reader is imported where there are any.
+
+    Raises:
+        BadInput: the scene has a fault, or only one of several ranks could read it.
+    """
+    from ..scene.read import read
+
+    if ranks.size() > 1 and path.exists() and not (path.is_file() or path.is_dir()):
+        raise BadInput(f"only one of several ranks could read {path}; expected a file")
+    if not (changes or unset):
+        return read(path)
+    from ..scene.changes import from_words
+
+    return read(path, from_words(changes, unset))
 
 
 dimensionless = click.option(

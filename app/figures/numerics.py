@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from galinx.meshes.kind import edges, nodes
 from galinx.postprocess.quantities import Quantity, runs, states
+from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
 
 from ..plan.plan import make_plan
@@ -22,7 +23,7 @@ _SPEEDS = 6
 
 def has_degrees(of: Archive) -> bool:
     """Return True if an archive holds how its numbers converge with the polynomial degree."""
-    return of.has(runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE)
+    return of.has(runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE[FEM])
 
 
 def mesh(of: Archive) -> Drawing:
@@ -59,7 +60,7 @@ def degrees(of: Archive) -> Drawing:
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(shown)) - (len(shown) - 1) / 2.0) / max(1, len(shown) - 1)
     curves: list[Curve] = []
-    errors = [(states.ESTIMATE, "_")] + [(states.TRUE_ERROR, "x")] * of.has(states.TRUE_ERROR)
+    errors = [(states.ESTIMATE[FEM], "_")] + [(states.TRUE_ERROR, "x")] * of.has(states.TRUE_ERROR)
     for i, look, off in zip(shown, looks(len(shown), ordered=True), aside):
         computed = np.flatnonzero(change[i] > 0.0)
         label = labels.label(int(np.argmax(c_of == c[i])), [C]) if len(shown) > 1 else ""

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import Quantity, layers, stresses
+from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities.layers import ALONG_X
 from galinx.postprocess.quantities.quantity import (
     ALONG,
@@ -459,7 +459,7 @@ class Fields:
         """One quantity of a state, (rows, columns), in the figure's units."""
         if name in self._quantities:
             return self._scaled(self._quantities[name][method], state)
-        rows = (stresses.STRESSES_INSIDE | layers.STRESSES_INSIDE)[method]
+        rows = stresses.STRESSES_INSIDE[method]
         XX, YY, XY = (self._scaled(row, state) for row in rows)
         if name == "max_shear":
             return maximum_shear(XX, YY, XY)

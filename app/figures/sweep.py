@@ -52,7 +52,7 @@ def _names(*rows: Quantity) -> list[str]:
 #: Where answers do not hold, and the speed once more: drawn on request only.
 _LIMITS = set(_names(
     VELOCITY, validity.CROSSINGS, *validity.SLIP_REVERSED, *validity.STRAIN,
-    *(row for rows in validity.TENSION.values() for row in rows),
+    *validity.TENSION.values(), *validity.TENSION_X.values(),
 ))  # fmt: skip
 #: Largest shear at any interface, which is no column of its own.
 _INTERFACE_SHEAR = "interface_shear"
@@ -452,7 +452,7 @@ def _of_contacts(
         in_pa = body.load / (2.0 * h)
         X = surface_grid()
         X = X[np.abs(np.abs(X) - 1.0) >= nearest]
-        tension = in_pa * float(contact.σ_XX(X).max())
+        tension = in_pa * float(contact.on_surface(X)[0].max())
         pressure = in_pa * float(contact.largest()[0][0])
         return [length * h, of_pa * pressure, of_pa * tension, *contact.of("K_I")[0]]
 

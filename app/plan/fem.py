@@ -33,7 +33,7 @@ from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent
 from galinx.solvers.rays import NEAR
-from galinx.solvers.solids.solid import Response
+from galinx.solvers.solids.half_plane import HalfPlane
 
 from .. import ranks
 from ..errors import BadInput
@@ -48,7 +48,7 @@ _MOST_SHAPES, _ROUNDED = 48, 1e-13
 SMALL = 200_000
 
 
-def plan_fem(scene: Scene, responses: Sequence[Response], places: Places, g: NDArray) -> FemPlan:
+def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: NDArray) -> FemPlan:
     """Plan of the finite elements at the speeds of a scene; builds no mesh.
 
     Args:
@@ -113,7 +113,7 @@ _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requireme
 }
 
 
-def _shapes(scene: Scene, responses: Sequence[Response], g: NDArray) -> int:
+def _shapes(scene: Scene, responses: Sequence[HalfPlane], g: NDArray) -> int:
     """Number of polynomials whose sum is the profile of the punch under every contact.
 
     It depends on the widths of the contacts. The integral equation gives these at the slowest and the

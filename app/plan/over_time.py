@@ -324,8 +324,6 @@ def _of_layers(scene: Scene) -> list[str]:
 
 #: Shortest time over a/c_s of changing friction for which steps and cells are made.
 _QUICK = 1.0
-#: Seconds measured on cores of 3 GHz, by unknowns to a power and by symbols of the integral equation.
-_SET_UP, _STAGE, _SYMBOL = 3e-6, 3.5e-7, 0.12
 #: Lowest degree that resolves the moments from which K_I is recovered, highest degree, and largest
 #: innermost cell over a.
 _LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
@@ -491,20 +489,6 @@ class Starts:
                     "twice the step, on larger cells, measures the error"
                 )
         return lines
-
-    def seconds(self, solid: Solid) -> float:
-        """Estimated time [s] of all motions."""
-        total = 0.0
-        for c, of_speed in self.drives.items():
-            if FEM in self.methods:
-                for level in self.levels(solid, c):
-                    n = level.unknowns
-                    total += (
-                        _SET_UP * n**1.5 + len(of_speed) * _STAGE * 5 * self.steps / level.every * n**1.1
-                    )
-            if SIE in self.methods:
-                total += _SYMBOL * max(3.0 * self.ways[0].duration, self.ways[0].steps)
-        return total
 
     def response(self, solid: Solid, c: float) -> HalfPlane:
         """HalfPlane of the solid at a speed over c_s; of layers with lengths over a."""

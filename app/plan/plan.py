@@ -2,7 +2,7 @@
 
 :func:`make_plan` chooses methods and quantities. Checks refuse scenes whose outputs have no answer, and
 warn where an answer costs accuracy. :func:`lines` are the plan's steps in words, with their sizes, and
-:func:`expense` its time, memory and archive.
+:func:`expense` its memory and archive.
 """
 
 import json
@@ -17,10 +17,8 @@ from galinx.meshes import MESHES, store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
-    CLOSED_FORM,
     FEM,
     LOCAL,
-    SIE,
     SWEPT,
 )
 from galinx.solvers.contact import INTENSITIES, YIELD
@@ -34,9 +32,8 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.solution import FINITE, FLAT, FREE, GIVEN_ENDS, ONE_FREE, Contact, Places
+from galinx.solvers.contact.solution import FINITE, FLAT, GIVEN_ENDS, Contact, Places
 from galinx.solvers.contact.yielding_of_layers import places as yield_places
-from galinx.solvers.profiles import kinks
 from galinx.texts import counted
 
 from .. import ranks
@@ -47,7 +44,7 @@ from ..scene.scene import FRICTIONS, Scene, oddities
 from . import cost
 from .fem import check_assembler, memory, plan_fem
 from .over_time import starts
-from .states import enumerate_states, laws_followed, order, seconds_to_integrate
+from .states import enumerate_states, order
 from .task import CHUNK_NUMBERS, Plan, Tasks
 
 #: Largest distance of points inside over that of walls, and over a for meshes without walls.
@@ -316,12 +313,6 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
         )
 
 
-#: Seconds of a state that has a mesh of its own, and of the free ends of all states at a speed.
-_SECONDS_OF_OWN_MESH, _SECONDS_OF_ENDS = 1.5, 1.0
-#: Ladders of levels for a contact with free ends over layers, that of the contact itself among them.
-_MESHES_A_CONTACT = 3.0
-
-
 def lines(scene: Scene, plan: Plan) -> list[str]:
     """The plan in words, one step a line."""
     law, integrator = scene.friction.law.about, scene.friction.integrator
@@ -388,96 +379,23 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
 
 
 def expense(*plans: Plan) -> str:
-    """Estimated time and memory of plans of all variants of a scene, and the size of their archive."""
+    """Estimated memory of plans of all variants of a scene, and the size of their archive."""
     first = plans[0]
     positions = sum(len(values) for values in first.positions.values())
     numbers = sum(plan.states for plan in plans) * (first.numbers + len(first.quantities)) + positions
     archived = f"an archive of {_size(cost.bytes_archived(numbers, len(first.quantities)))}"
-    each = [_expense(plan) for plan in plans]
-    memory = max(of_plan for _, of_plan in each)
-    parts = {"start": cost.START if first.fem else cost.START_WITHOUT_FEM} | {
-        name: sum(seconds[name] for seconds, _ in each) for name in each[0][0]
-    }
-    total = f"about {sum(parts.values()):.2g} s"
-    if not first.fem:
-        return f"{total}, {_size(memory)} and {archived}"
-    by_part = ", ".join(f"{name} {seconds:.2g}" for name, seconds in parts.items() if seconds)
-    return f"{total} ({by_part}) on cores of 3 GHz, {_size(memory)} a rank and {archived}"
+    needed = _size(max(map(_bytes, plans)))
+    return f"about {needed}{' a rank' * bool(first.fem)} and {archived}"
 
 
-def _expense(plan: Plan) -> tuple[dict[str, float], float]:
-    """Estimated seconds of a plan's parts, but the start, and its memory [B]."""
-    together = plan.chunk * plan.numbers
-    if not plan.fem:
-        states = cost.seconds_of_states(
-            plan.strokes, len(plan.tasks), plan.states, len(plan.quantities), plan.numbers
-        )
-        seconds = plan.integrated + _inside(plan) + states + _in_time(plan) + _equations(plan)
-        return {"states": seconds}, cost.bytes_without_fem(plan.states, together)
-    fem = plan.fem
-    speeds = _seconds_of_levels(fem, plan.different) / ranks.size()
-    states = cost.STATE * plan.states + plan.integrated
-    sharing = 1 if fem.shared_speeds else ranks.size()
-    inside = _inside(plan) * sharing / ranks.size()
-    most = unknowns(fem.pattern, max(p * k for p, k in _levels(fem))) / sharing
-    numbers = max(CHUNK_NUMBERS, together)
-    memory = cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", numbers)
-    parts = {
-        "starts from rest": _in_time(plan),
-        "finite elements": speeds,
-        "states": states,
-        "stresses inside": inside,
-        "integral equations": _equations(plan),
-    }
-    return parts, memory
-
-
-def _in_time(plan: Plan) -> float:
-    """Seconds of motions in time."""
-    return plan.starts.seconds(plan.body.solid) if plan.starts else 0.0  # type: ignore[arg-type]
-
-
-def _equations(plan: Plan) -> float:
-    """Seconds of contacts over layers whose integral equations are solved one by one."""
-    kinked = bool(len(kinks(plan.body.profile)))
-    # Between few frictions others are interpolated under all other contacts.
-    if SIE not in plan.methods or not {FREE: kinked, ONE_FREE: True}.get(plan.body.ends):
-        return 0.0
-    return cost.seconds_of_equations(plan.states, kinked, plan.body.solid.layers[0].bottom is not None)
-
-
-def _inside(plan: Plan) -> float:
-    """Seconds to compute and archive stresses inside."""
-    shape = len(plan.places.points), len(plan.tasks), plan.different
-    pieces = max(len(plan.body.knots) - 1, 0)
-    by_fem, exact = (plan.asks(stresses.BELOW, method) for method in (FEM, CLOSED_FORM))
-    seconds = cost.seconds_inside(*shape, pieces, by_fem, exact)
-    if not plan.fem:
-        return seconds  # the law for states counts all their numbers
-    return seconds + cost.seconds_to_archive(plan.states * plan.numbers_inside)
-
-
-def _levels(fem: FemPlan) -> list[tuple[int, int]]:
-    """Degrees and cuts of all solutions, speed by speed."""
-    if fem.sweep:
-        degree = max(fem.degrees)
-        ladder = levels(degree, fem.cuts, fem.fixed)
-        return LADDERS * ladder + BESIDES * [(degree, fem.cuts)]
-    return [level for degree in fem.degrees for level in levels(degree, fem.cuts, fem.fixed)]
-
-
-def _seconds_of_levels(fem: FemPlan, states: int) -> float:
-    """Seconds of the levels of all speeds, one after the other."""
-    mesh, direct = fem.pattern, fem.solver == "direct"
-    if fem.mode == OWN_MESHES:
-        return _SECONDS_OF_OWN_MESH * states + _SECONDS_OF_ENDS * len(fem.degrees)
-    seconds = sum(
-        cost.seconds_of_level(len(mesh.cells) * k**2, p, unknowns(mesh, k * p), direct)
-        for p, k in _levels(fem)
-    )
-    return seconds * (
-        _MESHES_A_CONTACT * states / len(fem.degrees) if fem.mode == FREE_ON_LAYERS else 1.0
-    )
+def _bytes(plan: Plan) -> float:
+    """Estimated memory [B] of a plan, with finite elements of a rank."""
+    together, fem = plan.chunk * plan.numbers, plan.fem
+    if not fem:
+        return cost.bytes_without_fem(plan.states, together)
+    finest = max(p * k for p, k in levels(max(fem.degrees), fem.cuts, fem.fixed))
+    most = unknowns(fem.pattern, finest) / (1 if fem.shared_speeds else ranks.size())
+    return cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", max(CHUNK_NUMBERS, together))
 
 
 def _size(count: float) -> str:
@@ -544,8 +462,7 @@ def make_plan(
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
-        strokes=laws_followed(scene) * len(scene.legs), fem=fem, skipped=skipped,
-        warnings=tuple(warnings), integrated=seconds_to_integrate(scene),
+        fem=fem, skipped=skipped, warnings=tuple(warnings),
         starts=starts(scene, friction) if friction else None, friction=friction,
     )  # fmt: skip
     heavy = warnings_of_size(plan.chunk * plan.numbers)

@@ -22,7 +22,6 @@ from galinx.solvers.solids.solid import Solid
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene, oddities
-from . import cost
 
 
 @dataclass(frozen=True)
@@ -54,19 +53,26 @@ class Order:
         """Numbers of speeds, loads, laws and places."""
         return len(self.given), len(self.loads), self.laws, len(self.own)
 
+    @cached_property
+    def numbers(self) -> NDArray[np.int64]:
+        """Numbers of speed, load, law and place of every state, (4, states)."""
+        return np.indices(self.shape).reshape(4, -1)
+
+    @cached_property
+    def _met(self) -> NDArray[np.float64]:
+        """Speeds over c_s, (speeds, places)."""
+        return np.where(np.isnan(self.own), np.array(self.given)[:, None], self.own)
+
     @property
     def c(self) -> NDArray[np.float64]:
         """Speed of every state over c_s, (states,)."""
-        speeds = np.where(np.isnan(self.own), np.array(self.given)[:, None], self.own)
-        return np.repeat(speeds, self.shape[1] * self.laws, axis=0).ravel()
+        speed, _, _, place = self.numbers
+        return self._met[speed, place]
 
     @cached_property
     def speeds(self) -> tuple[float, ...]:
         """All speeds over c_s, each once, in the order of the first state with it."""
-        if self._given_alone:
-            return self.given
-        met = np.where(np.isnan(self.own), np.array(self.given)[:, None], self.own)
-        return tuple(dict.fromkeys(met.ravel().tolist()))
+        return self.given if self._given_alone else tuple(dict.fromkeys(self._met.ravel().tolist()))
 
     @property
     def _given_alone(self) -> bool:
@@ -89,8 +95,7 @@ class Order:
 
     def load(self, rows: slice) -> NDArray[np.float64]:
         """Load of the states of these rows [N/m], (rows,)."""
-        per_load = self.laws * len(self.own)
-        return np.array(self.loads)[np.arange(rows.start, rows.stop) // per_load % len(self.loads)]
+        return np.array(self.loads)[self.numbers[1, rows]]
 
 
 #: Positions on a stroke at which loops are archived, and most loops that are archived.
@@ -186,21 +191,6 @@ def laws_followed(scene: Scene) -> int:
     return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
 
 
-def seconds_to_integrate(scene: Scene) -> float:
-    """Time [s] to integrate laws that have no formula, 0 for others.
-
-    Raises:
-        BadInput: the law refuses its parameters.
-    """
-    try:
-        if _has_formula(next(scene.friction.laws())):
-            return 0.0
-    except ValueError as error:
-        raise BadInput(f"friction: {error}") from None
-    laws = laws_followed(scene)
-    return cost.seconds_to_integrate(laws * len(scene.legs), min(laws, INTEGRATED_LOOPS))
-
-
 def _has_formula(law: FrictionLaw) -> bool:
     return law.exact(law.rest(), 1, 1.0, np.zeros(1)) is not None
 
@@ -264,28 +254,22 @@ def _of_all(order: Order, values: NDArray) -> NDArray:
 
 def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     """Columns of all states by name as archived, each (states,); ``f`` is (states,), too."""
-    friction, (all_speeds, loads, laws, per_law) = scene.friction, order.shape
-    each, followed, c = [len(X) for X in scene.places], all_speeds * loads * laws, order.c
-    values = {
-        key: np.tile(np.repeat(column, per_law), all_speeds * loads)
-        for key, column in friction.columns().items()
-    }
-    of_load = np.tile(np.repeat(order.loads, laws * per_law), all_speeds)
-    given = np.repeat(np.multiply(order.given, scene.solid.c_s), order.states)
-    own = [np.nan if leg.speed is None else leg.speed for leg in scene.legs]
-    speed = np.tile(np.repeat(own, each), followed)
-    lengths = np.tile(np.repeat([leg.length for leg in scene.legs], each), followed)
+    friction, (speed, load, law, place), c = scene.friction, order.numbers, order.c
+    legs = np.repeat(np.arange(len(scene.legs)), [len(X) for X in scene.places])[place]
+    own = np.array([np.nan if leg.speed is None else leg.speed for leg in scene.legs])[legs]
+    lengths, N = np.array([leg.length for leg in scene.legs])[legs], np.array(order.loads)
+    half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
     return {
-        "motion": np.tile(np.repeat([leg.name for leg in scene.legs], each), followed),
-        "X_over_L": np.tile(_joined(list(scene.places)), followed),
+        "motion": np.array([leg.name for leg in scene.legs])[legs],
+        "X_over_L": _joined(list(scene.places))[place],
         "c": c,
-        **({"load": of_load} if loads > 1 else {}),
+        **({"load": N[load]} if len(N) > 1 else {}),
         **{key: np.full(f.size, value) for key, value in scene.swept.items()},
-        **values,
-        "speed": np.where(np.isnan(speed), given, speed),
+        **{key: column[law] for key, column in friction.columns().items()},
+        "speed": np.where(np.isnan(own), np.multiply(order.given, scene.solid.c_s)[speed], own),
         **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        "wave_crossings": _crossings(scene, lengths, _half_widths(scene, order), c),
+        "wave_crossings": _crossings(scene, lengths, half_widths[load], c),
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }
@@ -294,13 +278,6 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
 def _flutter(solid: Solid) -> list[float]:
     """Flutter thresholds of both signs of σ_XY/σ_YY; NaN for none, or of a solid without ``flutter``."""
     return [g if isfinite(g) else nan for g in getattr(solid, "flutter", (nan, nan))]
-
-
-def _half_widths(scene: Scene, order: Order) -> NDArray[np.float64]:
-    """Half-width [m] of the contact at rest without friction, under each state's load, (states,)."""
-    several = np.array(order.loads) if len(order.loads) > 1 else None
-    of_loads = np.broadcast_to(scene.body.loaded(several).half_width, len(order.loads))
-    return np.tile(np.repeat(of_loads, order.laws * len(order.own)), len(order.given))
 
 
 def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:

@@ -54,8 +54,6 @@ class Plan:
         quantities: evaluated from their solutions, in the order of the table.
         tasks: one a speed.
         tolerance: relative accuracy to reach.
-        strokes: number of strokes along which friction laws are computed.
-        integrated: seconds to integrate laws without a formula.
         starts: motions in time, None for none.
         friction: of all states, None where the plan does not depend on it.
         fem: plan of the finite elements, None without.
@@ -69,11 +67,9 @@ class Plan:
     quantities: tuple[Quantity, ...]
     tasks: Tasks
     tolerance: float
-    strokes: int
     fem: FemPlan | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
-    integrated: float = 0.0
     starts: Starts | None = None
     friction: States | None = None
 
@@ -146,12 +142,6 @@ class Plan:
         """Number of floating-point numbers of a state that methods give or evaluate."""
         around = 3 * len(self.places.around)
         return around + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
-
-    @property
-    def numbers_inside(self) -> int:
-        """Number of floating-point numbers of a state at points inside."""
-        inside = (quantity for quantity in self.quantities if INSIDE in quantity.over)
-        return sum(int(np.prod(self.shape(quantity))) for quantity in inside)
 
     def chunks(self, task: Task) -> list[slice]:
         """Rows of a task's states, at most :attr:`chunk` at a time."""

@@ -17,7 +17,6 @@ from galinx.texts import counted
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene
-from ..scene.sweep import words
 from .plan import check_states, interface_grid, lines, make_plan
 from .states import States, enumerate_states, order
 from .task import Plan
@@ -51,11 +50,6 @@ class Variant:
         """Rows of its speeds in the record of finite elements."""
         return slice(self.first[1], self.first[1] + len(self.plan.tasks))
 
-    @property
-    def words(self) -> str:
-        """Its swept numbers in words, "" without."""
-        return words(self.scene.swept)
-
 
 def make_variants(
     scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None
@@ -71,14 +65,12 @@ def make_variants(
     """
     scenes = scene.each
     check_states(sum(len(order(variant)) for variant in scenes))
-    plans = []
+    plans, along = [], positions_along(scene)
     for variant in scenes:
         try:
-            plans.append(make_plan(variant, done, positions_along(scene)))
+            plans.append(make_plan(variant, done, along))
         except BadInput as error:
-            raise BadInput(
-                f"with {words(variant.swept)}: {error}" if variant.swept else str(error)
-            ) from None
+            raise BadInput(f"with {variant.variant}: {error}" if variant.swept else str(error)) from None
     _check_alike(plans, scenes)
     variants: list[Variant] = []
     state = speed = 0
@@ -124,8 +116,8 @@ def _check_alike(plans: Sequence[Plan], scenes: Sequence[Scene]) -> None:
         if own != first or plan.states != plans[0].states:
             some = listed(sorted(own ^ first)[:3]) or "another number of states"
             raise BadInput(
-                f"sweep: with {words(scene.swept)} the contact is of another kind than with "
-                f"{words(scenes[0].swept)}: {some} is there for one of them only; make two scenes of it"
+                f"sweep: with {scene.variant} the contact is of another kind than with "
+                f"{scenes[0].variant}: {some} is there for one of them only; make two scenes of it"
             )
 
 

@@ -366,7 +366,7 @@ def _recomputed_faults(archive: reader.Archive, variants: Sequence[Variant]) -> 
     for variant in variants:
         view = archive if variant.alone else _View(archive, variant)
         for text in recomputed_faults(view, variant.scene, variant.plan):
-            yield text if variant.alone else f"with {variant.words}: {text}"
+            yield text if variant.alone else f"with {variant.scene.variant}: {text}"
 
 
 class _View:

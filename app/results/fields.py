@@ -465,5 +465,5 @@ def _error(exact: Contacts, points: NDArray, stresses: NDArray) -> NDArray[np.fl
     """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
     inside, error = _inside(points), np.full(len(points), np.nan)
     X, Y = points[inside].T
-    error[inside] = np.abs(stresses[:, inside] - exact.inside(X, Y)[:, 0]).max(axis=0)
+    error[inside] = np.abs(stresses[:, inside] - exact.stresses(X, Y)[:, 0]).max(axis=0)
     return error

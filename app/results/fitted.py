@@ -9,6 +9,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from galinx import files
 from galinx.postprocess.tables import Sheet
 from galinx.solvers.friction import LAWS, FrictionLaw
@@ -25,6 +27,8 @@ from .measured import Table, read
 
 #: Name that stands for every law.
 ALL = "all"
+#: Share of the work of friction from which on it drives the motion: less is noise.
+_DRIVES = 0.1
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,8 @@ class Fit:
     Attributes:
         model: name of the law.
         law: the law, for :mod:`galinx.solvers.friction`.
-        parameters: its parameters by key, in SI; what the data do not determine and may be 0 is 0.
+        parameters: its parameters by key, in SI, those that the data do not determine among them: with
+            other values of these the rest would be others, too.
         deviations: standard deviation by the name of each fitted number, as ``"mu_c"`` or ``"elements[2,
             1]"``, in SI; NaN or larger than the number where the data do not determine it.
         not_determined: names of these.
@@ -125,7 +130,8 @@ def fit(
         progress: shows the work.
 
     Raises:
-        BadInput: there is no such law, a table is none, or no law can be fitted to it.
+        BadInput: there is no such law, a table is none, its friction drives the motion, or no law can be
+            fitted to it.
     """
     sources = [data] if isinstance(data, (str, Path, Measured)) else list(data)
     if model != ALL and model not in LAWS:
@@ -133,6 +139,7 @@ def fit(
     names = [*LAWS] if model == ALL else [model]
     fixed, started = (_values(names, given or {}) for given in (fix, start))
     tables, speedless = _at_speeds([_table(source) for source in sources], speed)
+    _resists(tables)
     fits: list[Fit] = []
     failed: dict[str, str] = {}
     progress = progress or Progress(quiet=True)
@@ -158,6 +165,22 @@ def fit(
 
 def _table(source: str | Path | Measured) -> Table:
     return Table("arrays", source, True) if isinstance(source, Measured) else read(Path(source))
+
+
+def _resists(tables: Iterable[Table]) -> None:
+    """Friction takes work from the motion: it is positive forward.
+
+    Raises:
+        BadInput: in a table it does work on the whole.
+    """
+    for table in tables:
+        X, f = table.measured.X, table.measured.f
+        work = np.diff(X) * 0.5 * (f[1:] + f[:-1])
+        if np.nansum(work) < -_DRIVES * np.nansum(np.abs(work)):
+            raise BadInput(
+                f"{table.name}: found friction that drives the motion, f mostly negative where X "
+                "grows, expected it positive there; change the sign of f or of X"
+            )
 
 
 def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool]:
@@ -204,13 +227,9 @@ def _fit(
     result = solver.fit(kind, [table.measured for table in tables], fixed, started, rows, step)
     errors = dict(zip(result.names, result.deviations.tolist()))
     lost = tuple(key for key, known in zip(result.names, result.determined) if not known)
-    values = {
-        key: 0.0 if key in lost and 0.0 in declared[key].range and value < 1e-3 * errors[key] else value
-        for key, value in result.values.items()
-    }
     return Fit(
-        name, result.law, values, errors, lost, result.rms, result.aic, perf_counter() - begun, tables,
-        result,
+        name, result.law, result.values, errors, lost, result.rms, result.aic, perf_counter() - begun,
+        tables, result,
     )  # fmt: skip
 
 
@@ -285,12 +304,11 @@ def _section(one: Fit) -> str:
     ]
     for key, value in one.parameters.items():
         parameter = declared[key]
-        digits = 3 if key in one.not_determined else 9
         text: Any = value
         if parameter.columns:
             text = [[float(f"{number:.9g}") for number in row] for row in value]
         elif not isinstance(value, str):
-            number = f"{value:.{digits}g}"
+            number = f"{value:.9g}"
             text = f"{number} {parameter.unit}" if parameter.unit else float(number)
         lines.append(f"{key} = {json.dumps(text)}  # {_comment(one, parameter)}")
     return "\n".join(lines) + "\n"

@@ -141,13 +141,6 @@ class Nowhere:
 _FAILURES = 10
 
 
-def limits(scene: Scene, names: Iterable[str]) -> dict[str, float]:
-    """Largest values of a PASS by the names of rules; rules that are only reported are not among them."""
-    rules = {name: RULES[name] for name in names if RULES[name].mode in scene.modes}
-    allowed = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
-    return {name: limit for name, limit in allowed.items() if limit is not None}
-
-
 class Judge:
     """Verdict on parts of results, PASS or FAIL, with the worst value of every comparison.
 
@@ -165,7 +158,9 @@ class Judge:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
         self.validity = Validity(_steady(scene))
-        self._limits = limits(scene, names)
+        rules = {name: RULES[name] for name in names if RULES[name].mode in scene.modes}
+        #: Largest values of a PASS by name, None for rules that are only reported.
+        self._limits = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
         self._judged: dict[str, float] = {}
 
     def see(self, comparisons: list[Comparison]) -> None:
@@ -173,8 +168,9 @@ class Judge:
         for comparison in comparisons:
             value = float(np.max([self.worst.get(comparison.text, 0.0), comparison.value]))
             self.worst[comparison.text] = value
-            if comparison.name in self._limits:
-                self._judged[comparison.text] = self._limits[comparison.name]
+            limit = self._limits.get(comparison.name)
+            if limit is not None:
+                self._judged[comparison.text] = limit
 
     def verdict(self) -> tuple[str, list[str]]:
         """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
@@ -365,7 +361,7 @@ def compute(
         finished = collector.earlier()
         for variant in variants:
             if not variant.alone:
-                progress.say(variant.words)
+                progress.say(variant.scene.variant)
             for part in _parts(variant.plan, variant.states, finished[variant.rows], progress, clock):
                 collector.take(_placed(part, variant))
         collector.finish()
@@ -381,7 +377,7 @@ def _placed(part: Part, variant: Variant) -> Part:
     if record:
         record = record | {"speed": record["speed"] + speed}
         if "failure" in record:
-            record["failure"] = f"{record['failure']}, {variant.words}"
+            record["failure"] = f"{record['failure']}, {variant.scene.variant}"
     return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
 
 

@@ -20,7 +20,8 @@ from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.equation import ContactsAtSpeed
 from galinx.solvers.contact.pressure import Pressure
-from galinx.solvers.solids.solid import Response, Solid
+from galinx.solvers.solids.half_plane import HalfPlane
+from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.late_time import approach
 from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
 
@@ -203,7 +204,7 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
 
 
 def _along_surface(
-    course: Course, finer: int, response: Response, drive: Drive, starts: Starts
+    course: Course, finer: int, response: HalfPlane, drive: Drive, starts: Starts
 ) -> NDArray[np.float64]:
     """σ_XX, σ_YY and σ_XY along the surface at the outputs, (3, times, places); NaN after a turn."""
     assert course.surface is not None
@@ -223,7 +224,7 @@ def _until_the_end(values: NDArray, starts: Starts) -> NDArray[np.float64]:
 
 
 def _of_constant(
-    g: float, starts: Starts, punch: StartingPunch, response: Response
+    g: float, starts: Starts, punch: StartingPunch, response: HalfPlane
 ) -> tuple[Course, tuple[NDArray, ...]]:
     """Course under a constant friction, and its v₀, centre and K_I at both ends.
 

@@ -6,28 +6,29 @@ refuses without naming them, are named. Every text is checked for control charac
 refuse only when results are archived. Then each section checks its keys.
 """
 
-import csv
 import re
 import tomllib
 from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from math import isfinite
+from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from galinx import files
 from galinx.solvers.friction import LAWS
 from galinx.texts import unseen
 
 from ..console import program
-from ..errors import BadInput, excerpt, nearest, short
+from ..errors import BadInput, excerpt, listed, nearest, short
+from ..text_table import read_table
 from .library import LIBRARY
-from .scene import Scene, contradictions, usual_quantities
-from .sections import SECTIONS, Section
-from .sweep import read_sweep, with_values, words
-from .units import to_si
-from .values import Rows, Wrapped
+from .scene import Scene, contradictions, in_words, usual_quantities
+from .sections import SECTIONS, SWEPT, Section
+from .values import Number, Numbers, Rows, Wrapped
 
 _AT = re.compile(r"Cannot (?:overwrite a value|declare .* twice) \(at line (\d+),")
 _SECTION = re.compile(r"\s*\[+\s*([^\[\]]+?)\s*\]+")
@@ -109,12 +110,10 @@ def control_characters(tree: dict[str, Any]) -> Iterator[str]:
                 waiting.append((inside, entry))
 
 
-#: Most bytes of a file of rows, and most rows of it.
-_LARGEST_TABLE, _MOST = 10**7, 10_000
+#: Most rows of a file of them.
+_MOST = 10_000
 #: End of the names of such files.
 _NAMED = re.compile(r"\.csv[\"']", re.IGNORECASE)
-#: A column's head: its name, and its unit in brackets.
-_HEAD = re.compile(r"[^\[\]()]*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
 
 def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) -> str:
@@ -140,8 +139,8 @@ def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) 
     tables = {}
     for path, rows, file in _named(tree, sections):
         try:
-            tables[path] = _read(folder / file, rows.units)
-        except ValueError as error:
+            tables[path] = _rows(folder / file, rows.units)
+        except BadInput as error:
             raise BadInput(f"{name}, {path}: {error}") from None
     if not tables:
         return text
@@ -162,69 +161,16 @@ def _named(tree: Mapping[str, Any], sections: Mapping[str, Section]) -> Iterator
                 yield f"{section}.{key}", kind, file
 
 
-def _read(path: Path, units: tuple[str, ...]) -> list[list[float]]:
-    """Rows of a file of comma-separated values, in SI units.
+def _rows(path: Path, units: tuple[str, ...]) -> list[list[float]]:
+    """Rows of a file, in SI units.
 
     Raises:
-        ValueError: the message names the file and the line.
+        BadInput: it cannot be read, or is no table of so many columns; the message names file and line.
     """
-    try:
-        text = files.read(path, _LARGEST_TABLE + 1).decode("utf-8-sig")
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
-    except ValueError:  # a name with a zero in it
-        raise ValueError(f"found {excerpt(str(path))}, expected the name of a file") from None
-    rows = [
-        (n, row) for n, row in enumerate(csv.reader(text.splitlines()), 1) if any(map(str.strip, row))
-    ]
-    factors = [1.0] * len(units)
-    if rows and not any(map(_is_number, rows[0][1])):
-        factors = _factors(path, *rows.pop(0), units)
-    if len(text) > _LARGEST_TABLE or len(rows) > _MOST:
-        raise ValueError(f"{path} has more than {_MOST} rows, the most that a scene takes")
-    return [_numbers(path, line, row, factors) for line, row in rows]
-
-
-def _factors(path: Path, line: int, heads: list[str], units: tuple[str, ...]) -> list[float]:
-    """Factors that bring the columns' numbers to SI, from the units in their heads; (columns,)."""
-    if len(heads) != len(units):
-        raise ValueError(_wrong_width(path, line, heads, len(units)))
-    factors = []
-    for head, unit in zip(heads, units):
-        match = _HEAD.fullmatch(head)
-        if match is None:
-            raise ValueError(f"{path}, line {line}: found {excerpt(head)}, expected as in X [mm]")
-        given = match[1] or ""
-        try:
-            factors.append(1.0 if given in ("", "1") else to_si(f"1 {given}", unit))
-        except ValueError as error:
-            raise ValueError(f"{path}, line {line}, {head.strip()}: {error}") from None
-    return factors
-
-
-def _numbers(path: Path, line: int, row: list[str], factors: list[float]) -> list[float]:
-    if len(row) != len(factors):
-        raise ValueError(_wrong_width(path, line, row, len(factors)))
-    for cell in row:
-        if not _is_number(cell):
-            raise ValueError(f"{path}, line {line}: found {excerpt(cell)}, expected a finite number")
-    return [factor * float(cell) for factor, cell in zip(factors, row)]
-
-
-def _wrong_width(path: Path, line: int, row: list[str], columns: int) -> str:
-    return (
-        f"{path}, line {line}: found {len(row)} columns, {excerpt(','.join(row))}; expected {columns}, "
-        "separated by commas"
-    )
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        return isfinite(float(cell))
-    except ValueError:
-        return False
+    table = read_table(path, "X [mm]", len(units))
+    if len(table.rows) > _MOST:
+        raise BadInput(f"{path} has more than {_MOST} rows, the most that a scene takes")
+    return np.column_stack([table.numbers(i, unit) for i, unit in enumerate(units)]).tolist()
 
 
 #: Most bytes of a scene: a million speeds fit, and a file without an end is not read for ever.
@@ -302,21 +248,92 @@ def parse(text: str, name: str = "scene") -> Scene:
     raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
 
 
+#: Keys of a range, and most variants of a scene.
+_RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
+
+
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers, up to the first with faults."""
     _fill_in_material(tree)
     before = len(faults)
-    sweep = read_sweep(tree, faults)
+    swept = _swept(tree, faults)
     scenes: list[Scene] = []
-    for values in sweep if len(faults) == before else ():
-        own: list[str] = []
-        scene = _checked(with_values(tree, values), text, values, own)
-        of_variant = f"with {words(values)}: " if scenes else ""
+    for combination in product(*swept.values()) if len(faults) == before else ():
+        values, own = dict(zip(swept, combination)), list[str]()
+        scene = _checked(_with_values(tree, values), text, values, own)
+        of_variant = f"with {in_words(values)}: " if scenes else ""
         faults += [f"{of_variant}{fault}" for fault in own]
         if scene is None or faults:
             break
         scenes.append(scene)
     return scenes
+
+
+def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float, ...]]:
+    """Values in SI of numbers that fix the problem and are lists or ranges, by key; faults are added.
+
+    Speeds, loads and the parameters of friction laws have several values in any scene, and one solution
+    serves many of them. A number of a solid, a layer or a punch makes another problem: a scene with
+    several values of it stands for a scene for each combination. The last key changes fastest.
+
+    Args:
+        tree: the scene as TOML gives it, with the constants of materials.
+        faults: list to which messages are added.
+    """
+    values: dict[str, tuple[float, ...]] = {}
+    for path, table, keys in _tables(tree):
+        for key, given in table.items():
+            several = isinstance(given, list) or (isinstance(given, dict) and given.keys() & _RANGE)
+            if several and key in keys and type(number := keys[key].kind) is Number:
+                try:
+                    numbers = Numbers(number.unit, number.bounds)(given)
+                    values[f"{path}.{key}"] = tuple(dict.fromkeys(numbers))
+                except ValueError as error:
+                    faults.append(f"{path}.{key} ({keys[key].about}): {error}")
+    if (count := prod(map(len, values.values()))) > _MOST_VARIANTS:
+        faults.append(
+            f"{listed([*values])}: found {count} combinations, expected at most {_MOST_VARIANTS}"
+        )
+    if values and (other := [name for name in ("time", "slider") if name in tree]):
+        faults.append(
+            f"{listed([*values])}: found several values beside [{other[0]}], which is of a single solid "
+            "and punch; expected one value each"
+        )
+    motion = tree.get("motion")
+    if "friction.pre_sliding" in values and isinstance(motion, dict) and "path" in motion:
+        faults.append(
+            "friction.pre_sliding: found several values beside motion.path, whose positions are over it; "
+            "expected one value"
+        )
+    return values
+
+
+def _tables(tree: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], dict[str, Any]]]:
+    """Path of each table with numbers that may be swept, its values and its keys."""
+    for name, given in tree.items():
+        several = name == "layer" and isinstance(given, list)
+        tables = {f"layer[{i}]": table for i, table in enumerate(given)} if several else {name: given}
+        for path, table in tables.items() if name in SWEPT else ():
+            if isinstance(table, dict):
+                named = table.get("material")
+                material = LIBRARY.get(named) if isinstance(named, str) else None
+                kind = {"kind": material.kind} if material else {}
+                yield path, table, SECTIONS[name].keys(kind | table)
+
+
+def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
+    """A scene of one value of every swept number."""
+    variant = dict(tree)
+    for path, value in values.items():
+        section, _, key = path.partition(".")
+        name, bracket, number = section.partition("[")
+        if bracket:
+            tables = list(variant[name])
+            tables[int(number[:-1])] = tables[int(number[:-1])] | {key: value}
+            variant[name] = tables
+        else:
+            variant[name] = variant[name] | {key: value}
+    return variant
 
 
 def _checked(

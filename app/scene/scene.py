@@ -270,6 +270,11 @@ class Scene:
     variants: tuple["Scene", ...] = ()
 
     @property
+    def variant(self) -> str:
+        """Its swept numbers in words, "" without."""
+        return in_words(self.swept)
+
+    @property
     def each(self) -> tuple["Scene", ...]:
         """The variants, or the scene itself."""
         return self.variants or (self,)
@@ -314,6 +319,11 @@ class Scene:
     def sha256(self) -> str:
         """Hash of the scene's text."""
         return hashlib.sha256(self.text.encode()).hexdigest()
+
+
+def in_words(swept: Mapping[str, float]) -> str:
+    """Values of swept numbers in words, as ``solid.E = 2e+11``."""
+    return ", ".join(f"{key} = {value:g}" for key, value in swept.items())
 
 
 #: Names in output.quantities that need no contact.

@@ -32,6 +32,8 @@ from .scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (
     Choice,
     Choices,
+    Constants,
+    Depths,
     Kind,
     Map,
     Number,
@@ -256,42 +258,6 @@ MOST = 10
 _POSITIVE = Range(above=0.0)
 
 
-class Constants:
-    """Constants of a solid at a layer's lower face, `{ E = 2.5e9, nu = 0.3 }`; others are as on top."""
-
-    def __call__(self, value: Any) -> dict[str, Any]:
-        if not isinstance(value, dict) or not value:
-            raise ValueError(f"found {excerpt(value)}, expected constants, as in {{ E = 2.5e9 }}")
-        return value
-
-    def schema(self) -> dict[str, Any]:
-        return {"type": "object", "minProperties": 1}
-
-
-class Depths:
-    """Rows `[depth, E, nu, rho]` from the upper face, depth 0, downwards; linear between them."""
-
-    units = ("m", "Pa", "", "kg/m^3")
-
-    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
-        expected = "at least 2 rows [depth, E, nu, rho], depths rising from 0"
-        if not isinstance(value, list) or len(value) < 2:
-            raise ValueError(f"found {excerpt(value)}, expected {expected}")
-        for row in value:
-            if not isinstance(row, list) or len(row) != len(self.units):
-                raise ValueError(f"found {excerpt(row)} among the rows, expected {expected}")
-        kinds = [Number(unit) for unit in self.units]
-        rows = tuple(tuple(kind(entry) for kind, entry in zip(kinds, row)) for row in value)
-        depths = [row[0] for row in rows]
-        if depths[0] != 0.0 or any(low >= high for low, high in pairwise(depths)):
-            raise ValueError(f"found the depths {excerpt(depths)}, expected {expected}")
-        return rows
-
-    def schema(self) -> dict[str, Any]:
-        row = {"type": "array", "items": Number().schema(), "minItems": 4, "maxItems": 4}
-        return {"type": "array", "items": row, "minItems": 2}
-
-
 _YIELD_STRENGTH = Key(
     Number("Pa", _POSITIVE), "uniaxial yield strength", None,
     'for the quantity `"yield"`; stresses alone need none',
@@ -322,29 +288,15 @@ _KEYS = {
 }  # fmt: skip
 
 
-class LayerSections:
+class LayerSections(ModelSection):
     """Any number of tables [[layer]]."""
 
     heading = "[[{}]]"
 
     def __init__(self) -> None:
-        self._one = ModelSection(
+        super().__init__(
             "kind", "isotropic", SOLIDS, _layer, _KEYS, or_else=", or material, or properties"
         )
-
-    @property
-    def alternatives(self) -> dict[str, dict[str, Key]]:
-        """Keys that a layer can have, by kind of its solid."""
-        return self._one.alternatives
-
-    @property
-    def or_else(self) -> str:
-        """Alternative to a missing key, for messages."""
-        return self._one.or_else
-
-    def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
-        """Keys that a layer with these values can have."""
-        return self._one.keys(given)
 
     def read(self, name: str, given: Any, faults: list[str]) -> tuple[Layer, ...]:
         """The layers from the top down; their faults are added to ``faults``."""
@@ -372,21 +324,13 @@ class LayerSections:
         if material is not None and not of_library:  # its constants are not missing: one fault
             constants = next(iter(LIBRARY.values())).values
         kept = constants | given
-        layer = self._one.read(name, kept, faults)
-        if layer is None or layer.bottom is None:
-            strength = layer.yield_strength if layer else None
-            return [] if layer is None else [Layer(layer.thickness, layer.solid, yield_strength=strength)]
-        own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
-        bottom = self._one.read(f"{name}.to", own | layer.bottom, faults)
-        if bottom is None:
-            return []
+        layer = super().read(name, kept, faults)
+        if layer and layer["bottom"] is not None:
+            own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
+            bottom = super().read(f"{name}.to", own | layer["bottom"], faults)
+            layer = bottom and layer | {"bottom": bottom["solid"]}
         try:
-            return [
-                Layer(
-                    layer.thickness, layer.solid, bottom.solid, layer.grading, layer.exponent,
-                    layer.yield_strength,
-                )
-            ]  # fmt: skip
+            return [Layer(**layer)] if layer else []
         except ValueError as error:
             faults.append(f"{name}: {error}")
             return []
@@ -422,26 +366,18 @@ def _plane(given: Mapping[str, Any]) -> dict[str, Any]:
 def _layer(
     kind: type[Solid], values: dict[str, Any], thickness: float | None, material: str | None,
     to: Any, grading: str, exponent: float, properties: Any, yield_strength: float | None,
-) -> Any:  # fmt: skip
-    """A layer of one table [[layer]], whose constants at the lower face are still to be read."""
+) -> dict[str, Any]:  # fmt: skip
+    """Values of a layer by attribute; its constants at the lower face are still as TOML gives them."""
     if thickness is None:
         raise ValueError('missing thickness, as in thickness = "2 µm"')
     if to is None and (grading != "linear" or exponent != 1.0):
         raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
     if grading != "power" and exponent != 1.0:
         raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
-    return _Read(thickness, build_model(kind, values), to, grading, exponent, yield_strength)
-
-
-class _Read:
-    """A layer whose constants at the lower face are still as TOML gives them."""
-
-    def __init__(
-        self, thickness: float, solid: Solid, bottom: Any, grading: str, exponent: float,
-        yield_strength: float | None,
-    ) -> None:  # fmt: skip
-        self.thickness, self.solid, self.bottom = thickness, solid, bottom
-        self.grading, self.exponent, self.yield_strength = grading, exponent, yield_strength
+    return {
+        "thickness": thickness, "solid": build_model(kind, values), "bottom": to, "grading": grading,
+        "exponent": exponent, "yield_strength": yield_strength,
+    }  # fmt: skip
 
 
 #: Most times of a motion at which stresses along the surface are output.

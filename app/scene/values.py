@@ -4,9 +4,10 @@ There are single numbers and texts, numbers as a list or a range, and tables: ro
 of a law's parameters, strokes. Each kind also gives the JSON schema of its values.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import pairwise
 from typing import Any, Protocol
 
 from galinx.solvers.friction.motion import DIRECTION, Partial
@@ -91,8 +92,7 @@ class NumberList:
         return tuple(to_si(entry, self.unit) for entry in value)
 
     def schema(self) -> dict[str, Any]:
-        items = Number(self.unit).schema()
-        return {"type": "array", "items": items, "minItems": self.count, "maxItems": self.count}
+        return _array(Number(self.unit).schema(), self.count, self.count)
 
 
 @dataclass(frozen=True)
@@ -108,18 +108,6 @@ class Whole:
 
     def schema(self) -> dict[str, Any]:
         return {"type": "integer"} | _limits(self.bounds)
-
-
-class Text:
-    """A text."""
-
-    def __call__(self, value: Any) -> str:
-        if not isinstance(value, str):
-            raise ValueError(f"found {excerpt(value)}, expected a text")
-        return value
-
-    def schema(self) -> dict[str, Any]:
-        return dict(_TEXT)
 
 
 @dataclass(frozen=True)
@@ -161,9 +149,65 @@ def _one_of(options: Collection[str]) -> str:
     return " or ".join(filter(None, (", ".join(list(options)[:-1]), list(options)[-1])))
 
 
-def _pairs(count: int) -> dict[str, Any]:
-    pair = {"type": "array", "items": Number().schema(), "minItems": 2, "maxItems": 2}
-    return {"type": "array", "items": pair, "minItems": count}
+def _array(items: dict[str, Any], at_least: int = 0, at_most: int | None = None) -> dict[str, Any]:
+    """JSON schema of a list."""
+    most = {} if at_most is None else {"maxItems": at_most}
+    return {"type": "array", "items": items, "minItems": at_least} | most
+
+
+def _object(properties: dict[str, Any], required: Collection[str] = ()) -> dict[str, Any]:
+    """JSON schema of a table."""
+    needed = {"required": list(required)} if required else {}
+    return {"type": "object", "properties": properties} | needed | {"additionalProperties": False}
+
+
+def _rows(
+    value: Any, units: Sequence[str], at_least: int, expected: str
+) -> tuple[tuple[float, ...], ...]:
+    """Rows of numbers in units.
+
+    Raises:
+        ValueError: these are none; ``expected`` says what they should be.
+    """
+    if not isinstance(value, list) or len(value) < at_least:
+        raise ValueError(f"found {excerpt(value)}, expected {expected}")
+    for row in value:
+        if not isinstance(row, list) or len(row) != len(units):
+            raise ValueError(f"found {excerpt(row)} among the rows, expected {expected}")
+    return tuple(tuple(to_si(entry, unit) for entry, unit in zip(row, units)) for row in value)
+
+
+def _of_rows(columns: int, at_least: int) -> dict[str, Any]:
+    return _array(_array(Number().schema(), columns, columns), at_least)
+
+
+def _by_key(
+    given: Mapping[str, Any], kinds: Mapping[str, Kind], where: str, needed: str = "", form: str = ""
+) -> dict[str, Any]:
+    """Values of a table by key.
+
+    Args:
+        given: as TOML gives them.
+        kinds: of the values, by key.
+        where: the table in words.
+        needed: keys that it has to have, with blanks between them.
+        form: an example of the table, for messages.
+
+    Raises:
+        ValueError: a key is unknown or missing, or a value is refused.
+    """
+    if unknown := [key for key in given if key not in kinds]:
+        hint = nearest(unknown[0], [*kinds])
+        raise ValueError(f"found the key {excerpt(unknown[0])} in {where}{hint}")
+    if missing := [key for key in needed.split() if key not in given]:
+        raise ValueError(f"found {where} without {missing[0]}, expected {form}")
+    values = {}
+    for key, entry in given.items():
+        try:
+            values[key] = kinds[key](entry)
+        except ValueError as error:
+            raise ValueError(f"in {where}, {key}: {error}") from None
+    return values
 
 
 class Pressure:
@@ -172,13 +216,8 @@ class Pressure:
     def __call__(self, value: Any) -> Any:
         if value == "closed_form":
             return value
-        if not isinstance(value, list) or len(value) < 2:
-            raise ValueError(
-                f'found {excerpt(value)}, expected "closed_form" or a list of pairs [X/a, σ_YY/(N/2a)]'
-            )
-        if not all(isinstance(pair, list) and len(pair) == 2 for pair in value):
-            raise ValueError("expected a list of pairs [X/a, σ_YY/(N/2a)], dimensionless")
-        pairs = tuple((to_si(x, ""), to_si(σ, "")) for x, σ in value)
+        expected = '"closed_form" or a list of pairs [X/a, σ_YY/(N/2a)], dimensionless'
+        pairs = _rows(value, ("", ""), 2, expected)
         positions = [x for x, _ in pairs]
         if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
             raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
@@ -187,25 +226,52 @@ class Pressure:
         return pairs
 
     def schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"const": "closed_form"}, _pairs(2)]}
+        return {"anyOf": [{"const": "closed_form"}, _of_rows(2, 2)]}
 
 
-def _below(Y: float) -> float:
+def _below(Y: float) -> None:
     if Y >= 0.0:
         raise ValueError(f"found Y/a = {Y:g}, expected Y/a < 0: the solid lies below the punch")
-    return Y
 
 
 class Points:
     """Pairs [X/a, Y/a] below the surface."""
 
-    def __call__(self, value: Any) -> tuple[tuple[float, float], ...]:
-        if not isinstance(value, list) or not all(isinstance(p, list) and len(p) == 2 for p in value):
-            raise ValueError(f"found {excerpt(value)}, expected a list of pairs [X/a, Y/a]")
-        return tuple((to_si(X, ""), _below(to_si(Y, ""))) for X, Y in value)
+    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
+        pairs = _rows(value, ("", ""), 0, "a list of pairs [X/a, Y/a]")
+        for _, Y in pairs:
+            _below(Y)
+        return pairs
 
     def schema(self) -> dict[str, Any]:
-        return _pairs(0)
+        return _of_rows(2, 0)
+
+
+class Depths:
+    """Rows `[depth, E, nu, rho]` from the upper face, depth 0, downwards; linear between them."""
+
+    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
+        expected = "at least 2 rows [depth, E, nu, rho], depths rising from 0"
+        rows = _rows(value, ("m", "Pa", "", "kg/m^3"), 2, expected)
+        depths = [row[0] for row in rows]
+        if depths[0] != 0.0 or any(low >= high for low, high in pairwise(depths)):
+            raise ValueError(f"found the depths {excerpt(depths)}, expected {expected}")
+        return rows
+
+    def schema(self) -> dict[str, Any]:
+        return _of_rows(4, 2)
+
+
+class Constants:
+    """Constants of a solid at a layer's lower face, `{ E = 2.5e9, nu = 0.3 }`; others are as on top."""
+
+    def __call__(self, value: Any) -> dict[str, Any]:
+        if not isinstance(value, dict) or not value:
+            raise ValueError(f"found {excerpt(value)}, expected constants, as in {{ E = 2.5e9 }}")
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "object", "minProperties": 1}
 
 
 @dataclass(frozen=True)
@@ -242,13 +308,8 @@ class Map:
         return Spread(first, last, int(count))
 
     def schema(self) -> dict[str, Any]:
-        axis = {"type": "array", "items": Number().schema(), "minItems": 3, "maxItems": 3}
-        return {
-            "type": "object",
-            "properties": {"X": axis, "Y": axis},
-            "required": ["X", "Y"],
-            "additionalProperties": False,
-        }
+        axis = _array(Number().schema(), 3, 3)
+        return _object({"X": axis, "Y": axis}, ("X", "Y"))
 
 
 _FORM = '{from = …, to = …, number = …}, with spacing = "log" where ratios are to be equal'
@@ -276,13 +337,9 @@ class Numbers:
     def schema(self) -> dict[str, Any]:
         kind = Number(self.unit, self.bounds)
         single = kind.schema()
-        spread = {
-            "type": "object",
-            "properties": {key: value.schema() for key, value in _keys(kind).items()},
-            "required": ["from", "to", "number"],
-            "additionalProperties": False,
-        }
-        return {"anyOf": [*single["anyOf"], {"type": "array", "items": single, "minItems": 1}, spread]}
+        keys = {key: value.schema() for key, value in _keys(kind).items()}
+        spread = _object(keys, ("from", "to", "number"))
+        return {"anyOf": [*single["anyOf"], _array(single, 1), spread]}
 
 
 def _keys(end: Number) -> dict[str, Kind]:
@@ -292,19 +349,7 @@ def _keys(end: Number) -> dict[str, Kind]:
 
 def _spread(given: dict[str, Any], end: Number) -> tuple[float, ...]:
     """Numbers of a range, ends included; those between are within bounds where both ends are."""
-    keys = _keys(end)
-    values: dict[str, Any] = {"spacing": "linear"}
-    for key in given:
-        if key not in keys:
-            raise ValueError(f"found the key {excerpt(key)} in a range{nearest(key, [*keys])}")
-    for key, kind in keys.items():
-        if key in given:
-            try:
-                values[key] = kind(given[key])
-            except ValueError as error:
-                raise ValueError(f"{key}: {error}") from None
-        elif key not in values:
-            raise ValueError(f"found a range without {key}, expected {_FORM}")
+    values = {"spacing": "linear"} | _by_key(given, _keys(end), "a range", "from to number", _FORM)
     first, last, logarithmic = values["from"], values["to"], values["spacing"] == "log"
     if first == last:
         raise ValueError(f"found a range from {first:g} to {last:g}, expected two different ends")
@@ -333,23 +378,14 @@ class Rows:
     at_least: int = 1
 
     def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
-        wide = len(self.units)
         units = ", ".join(unit or "dimensionless" for unit in self.units)
-        expected = f"at least {self.at_least} rows of {wide} numbers ({units})"
+        expected = f"at least {self.at_least} rows of {len(self.units)} numbers ({units})"
         if isinstance(value, str):
             expected += "; or, where the scene is a file itself, a file of these whose name ends in .csv"
-        if not isinstance(value, list) or len(value) < self.at_least:
-            raise ValueError(f"found {excerpt(value)}, expected {expected}")
-        for row in value:
-            if not isinstance(row, list) or len(row) != wide:
-                raise ValueError(f"found {excerpt(row)} among the rows, expected {expected}")
-        columns = [Number(unit) for unit in self.units]
-        return tuple(tuple(kind(entry) for kind, entry in zip(columns, row)) for row in value)
+        return _rows(value, self.units, self.at_least, expected)
 
     def schema(self) -> dict[str, Any]:
-        wide = len(self.units)
-        row = {"type": "array", "items": Number().schema(), "minItems": wide, "maxItems": wide}
-        rows = {"type": "array", "items": row, "minItems": self.at_least}
+        rows = _of_rows(len(self.units), self.at_least)
         return {"anyOf": [rows, {"type": "string", "pattern": r"\.[cC][sS][vV]$"}]}
 
 
@@ -368,7 +404,7 @@ class OneOrMore:
 
     def schema(self) -> dict[str, Any]:
         single = self.one.schema()
-        return {"anyOf": [single, {"type": "array", "items": single, "minItems": 1}]}
+        return {"anyOf": [single, _array(single, 1)]}
 
 
 @dataclass(frozen=True)
@@ -398,24 +434,11 @@ class Variations:
             raise ValueError(
                 f"found {excerpt(value)}, expected tables [[friction.vary]] of parameters of the law"
             )
-        return tuple(self._table(f"table {number}", table) for number, table in enumerate(value, 1))
-
-    def _table(self, name: str, table: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
-        given = {}
-        for key, value in table.items():
-            if key not in self.kinds:
-                hint = nearest(key, [*self.kinds])
-                raise ValueError(f"found the key {excerpt(key)} in {name}{hint}")
-            try:
-                given[key] = self.kinds[key](value)
-            except ValueError as error:
-                raise ValueError(f"{key} of {name}: {error}") from None
-        return given
+        return tuple(_by_key(table, self.kinds, f"table {n}") for n, table in enumerate(value, 1))
 
     def schema(self) -> dict[str, Any]:
         properties = {key: {"$ref": f"#/properties/friction/properties/{key}"} for key in self.every}
-        table = {"type": "object", "properties": properties, "additionalProperties": False}
-        return {"type": "array", "items": table}
+        return {"type": "array", "items": _object(properties)}
 
 
 _STROKE_FORM = '{to = …}, with speed = "…" and rest = "…" where it has its own'
@@ -439,24 +462,8 @@ class Strokes:
     def _stroke(self, value: Any) -> str | Partial:
         if not isinstance(value, dict):
             return Choice(DIRECTION)(value)
-        if unknown := [key for key in value if key not in _KEYS]:
-            shown, hint = excerpt(unknown[0]), nearest(unknown[0], [*_KEYS])
-            raise ValueError(f"found the key {shown} in a stroke{hint}")
-        if "to" not in value:
-            raise ValueError(f"found a stroke without to, expected {_STROKE_FORM}")
-        given = {}
-        for key, entry in value.items():
-            try:
-                given[key] = _KEYS[key](entry)
-            except ValueError as error:
-                raise ValueError(f"{key} of a stroke: {error}") from None
-        return Partial(**given)
+        return Partial(**_by_key(value, _KEYS, "a stroke", "to", _STROKE_FORM))
 
     def schema(self) -> dict[str, Any]:
-        stroke = {
-            "type": "object",
-            "properties": {key: kind.schema() for key, kind in _KEYS.items()},
-            "required": ["to"],
-            "additionalProperties": False,
-        }
-        return {"type": "array", "items": {"anyOf": [Choice(DIRECTION).schema(), stroke]}, "minItems": 1}
+        stroke = _object({key: kind.schema() for key, kind in _KEYS.items()}, ("to",))
+        return _array({"anyOf": [Choice(DIRECTION).schema(), stroke]}, 1)

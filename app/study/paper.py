@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.compare import RULES
+from galinx.postprocess.compare import RULES, judged
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
@@ -25,7 +25,7 @@ from galinx.solvers.solids.isotropic import Isotropic
 
 from .. import ranks
 from ..console import Progress, colours, program, say
-from ..run.flow import Memory, compute, limits
+from ..run.flow import Memory, compute
 from ..scene import read as scenes
 from ..scene.library import SCENES
 from ..scene.scene import Scene
@@ -120,10 +120,7 @@ class Computed:
     @property
     def checks(self) -> list[Check]:
         """The archive's own verdict, line by line."""
-        rules, worst = (json.loads(self.attributes[name]) for name in ("rules", "comparisons"))
-        compared = [name for name in RULES if name in rules and RULES[name].text in worst]
-        allowed = limits(self.scene, compared)
-        return [Check(RULES[name].text, self.worst(name), limit) for name, limit in allowed.items()]
+        return [Check(text, *figures) for text, figures in judged(self.attributes).items()]
 
 
 def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:

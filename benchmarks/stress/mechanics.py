@@ -30,7 +30,7 @@ def speeds() -> Row:
     shares = [0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999]
     c = [0.0, 1e-12, 4.786e-7, 1e-3, *(share * c_R for share in shares)]
     data = solved(c=c)
-    true, estimate = (data[row.path].reshape(len(c), -1) for row in (of.TRUE_ERROR, of.ESTIMATE))
+    true, estimate = (data[row.path].reshape(len(c), -1) for row in (of.TRUE_ERROR, of.ESTIMATE[FEM]))
     σ_XX = _in_plane_error(data).reshape(len(c), -1).max(axis=1)
     v_X = np.array([_slope_error(κ, x, int(p)) for x, p in zip(c, data[RECORD["degree"].path])])
     verdicts = [
@@ -103,7 +103,7 @@ def solids() -> Row:
     for plane in ("strain", "stress"):
         runs = [solved(nu=float(value), plane=plane, c=_slow_and_fast(value, plane)) for value in ν]
         errors = np.array([run[of.TRUE_ERROR.path] for run in runs])
-        estimates = np.array([run[of.ESTIMATE.path] for run in runs])
+        estimates = np.array([run[of.ESTIMATE[FEM].path] for run in runs])
         lines |= {f"K_I, plane {plane}": errors.max(axis=1), f"estimate, {plane}": estimates.max(axis=1)}
         lines[f"σ_XX, {plane}"] = np.array([_in_plane_error(run).max() for run in runs])
         true.append(errors)
@@ -126,7 +126,7 @@ def frictions() -> Row:
     f = [1e-12, 1e-6, 1e-3, 0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0]
     data = solved(mu_c=f, stiffness=1e9, X_over_L=[0.0, 1.0], c=[0.0, 0.6, 0.9])
     g, true = np.abs(data[of.RATIO.path]), data[of.TRUE_ERROR.path]
-    estimate = data[of.ESTIMATE.path]
+    estimate = data[of.ESTIMATE[FEM].path]
     some = [np.isclose(g, value, rtol=1e-9, atol=0.0) for value in f]
     lines = {
         "K_I": np.array([true[at].max() for at in some]),

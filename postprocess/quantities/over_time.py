@@ -4,6 +4,8 @@ Indentation, centre of the pressure, K_I, load and friction over time; distance 
 and energies; and stresses on the surface, over time and at chosen times.
 """
 
+from typing import Any
+
 from galinx.solvers.parameters import Range
 
 from .quantity import (
@@ -16,6 +18,7 @@ from .quantity import (
     SIE,
     X_OVER_A,
     Quantity,
+    by_method,
 )
 
 #: Word of output.quantities.
@@ -24,74 +27,60 @@ TIME = "time"
 #: Dimensions: speeds with frictions, and times.
 START, INSTANT = "starts", "instants"
 
-_ANY, _NOT_NEGATIVE = Range(), Range(at_least=0.0)
+_NOT_NEGATIVE = Range(at_least=0.0)
 
 
-def _row(
-    name: str, unit: str, about: str, over: tuple[str, ...], range: Range = _ANY, **others: object
-) -> Quantity:
-    return Quantity(f"time/{name}", unit, about, over, asked_by=TIME, range=range, **others)  # type: ignore[arg-type]
+def _row(name: str, unit: str, about: str, over: tuple[str, ...], **others: Any) -> Quantity:
+    return Quantity(f"time/{name}", unit, about, over, asked_by=TIME, **others)
+
+
+def _by_method(
+    name: str, unit: str, about: str, over: tuple[str, ...] = (START, INSTANT), **others: Any
+) -> dict[str, Quantity]:
+    """Quantity by both methods; the integral equation has none from where the punch turns round."""
+    own = {
+        FEM: {"about": f"{about}, finite elements", "nan_allowed": NEVER},
+        SIE: {"about": f"{about}, integral equation", "nan_allowed": ANYWHERE},
+    }
+    own = {method: attributes | others for method, attributes in own.items()}
+    return by_method(f"time/{name}", unit, about, over, None, own, asked_by=TIME)
 
 
 SPEED = _row(
-    "c", "1", "speed of the start over shear wave speed", (START,), _NOT_NEGATIVE, scale=OVER_C_S
+    "c", "1", "speed of the start over shear wave speed", (START,), range=_NOT_NEGATIVE, scale=OVER_C_S
 )
 RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
 RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
 DIRECTION = _row("direction", "1", "direction of motion along X over time, 1 or -1", (START, INSTANT))
-TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), _NOT_NEGATIVE)
-LOAD = _row("load", "1", "load at that time over N", (INSTANT,), _NOT_NEGATIVE, scale=OVER_N)
+TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), range=_NOT_NEGATIVE)
+LOAD = _row("load", "1", "load at that time over N", (INSTANT,), range=_NOT_NEGATIVE, scale=OVER_N)
 STEADY_CENTRE = _row(
-    "steady_centre", "1",
-    "centre of the pressure in steady motion over the half-width",
-    (START,),
+    "steady_centre", "1", "centre of the pressure in steady motion over the half-width", (START,),
     scale=X_OVER_A,
 )  # fmt: skip
 CENTRES = _row(
     "steady_centres", "1",
     "centre of the pressure over the half-width in steady motion at each moment's friction",
-    (START, INSTANT),
-    scale=X_OVER_A,
+    (START, INSTANT), scale=X_OVER_A,
 )  # fmt: skip
 STEADY_K_I = _row(
-    "steady_K_I",
-    "1",
-    "stress intensity factor in steady motion, both ends, closed form; none over layers",
-    (START,),
+    "steady_K_I", "1",
+    "stress intensity factor in steady motion, both ends, closed form; none over layers", (START,),
     nan_allowed=ANYWHERE,
-)
+)  # fmt: skip
 
-
-def _by_method(
-    name: str, unit: str, about: str, nan_allowed: str | None = None, scale: str = ""
-) -> dict[str, Quantity]:
-    """Quantities of both methods; the integral equation has none from where the punch turns round."""
-    methods = {FEM: "finite elements", SIE: "integral equation"}
-    nan = {FEM: NEVER, SIE: ANYWHERE}
-    return {
-        method: _row(
-            f"{method}/{name}",
-            unit,
-            f"{about}, {words}",
-            (START, INSTANT),
-            method=method,
-            nan_allowed=nan_allowed or nan[method],
-            scale=scale,
-        )
-        for method, words in methods.items()
-    }
-
-
-V0 = _by_method("v0", "N/(2mu)", "indentation since the punch touched")
+V0 = _by_method("{method}/v0", "N/(2mu)", "indentation since the punch touched")
 CENTRE = _by_method(
-    "centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X", scale=X_OVER_A
-)
-K_I_LEFT = _by_method(
-    "K_I_left", "1", "stress intensity factor over time at X = -a by the final load", nan_allowed=ANYWHERE
-)
-K_I_RIGHT = _by_method(
-    "K_I_right", "1", "stress intensity factor over time at X = a by the final load", nan_allowed=ANYWHERE
-)
+    "{method}/centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X",
+    scale=X_OVER_A,
+)  # fmt: skip
+K_I_LEFT, K_I_RIGHT = (
+    _by_method(
+        f"{{method}}/K_I_{side}", "1", f"stress intensity factor over time at {at} by the final load",
+        nan_allowed=ANYWHERE,
+    )
+    for side, at in (("left", "X = -a"), ("right", "X = a"))
+)  # fmt: skip
 WORK = _row(
     "fem/work", "N^2/(4mu)", "work of the contact's forces by velocities seen from the punch",
     (START, INSTANT), method=FEM,
@@ -108,13 +97,13 @@ ABSORBED = _row(
 ESTIMATE = _row(
     "fem/estimate", "1",
     "estimated error over time of v0, centre times load, and K_I, over the largest of each",
-    (START,), _NOT_NEGATIVE, method=FEM, accuracy=True,
+    (START,), range=_NOT_NEGATIVE, method=FEM, accuracy=True,
 )  # fmt: skip
 RESIDUAL = _row(
     "sie/residual", "1",
     "residual of the integral equation over time where it is the only method, over the largest "
     "indentation, or of the pressure's resultant, over the largest load",
-    (START,), _NOT_NEGATIVE, method=SIE, accuracy=True,
+    (START,), range=_NOT_NEGATIVE, method=SIE, accuracy=True,
 )  # fmt: skip
 
 
@@ -123,61 +112,48 @@ SHARES = (0.1, 0.01, 0.001)
 #: Their dimension.
 SHARE = "10, 1 and 0.1 %"
 
-_HOW = {FEM: "finite elements", SIE: "integral equation"}
-
-OFF = {
-    method: Quantity(
-        f"time/{method}/off_steady", "1",
-        "distance from steady motion at the end, the largest difference of K_I, relative, and of the "
-        f"centre, over the half-width, {words}",
-        (START,), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
-    )
-    for method, words in _HOW.items()
-}  # fmt: skip
-WITHIN = {
-    method: Quantity(
-        f"time/{method}/steady_within", "a/c_s",
-        "time from which on off_steady is at most 0.1, 0.01 and 0.001; beyond /time/t by a decay like "
-        f"1/t, NaN where the second half of the motion does not show it, {words}",
-        (START, SHARE), asked_by=TIME, nan_allowed=ANYWHERE, range=_NOT_NEGATIVE, method=method,
-    )
-    for method, words in _HOW.items()
-}  # fmt: skip
-APPROACH = Quantity(
-    "time/steady_within_1_percent", "a/c_s",
+OFF = _by_method(
+    "{method}/off_steady", "1",
+    "distance from steady motion at the end, the largest difference of K_I, relative, and of the "
+    "centre, over the half-width", (START,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+)  # fmt: skip
+WITHIN = _by_method(
+    "{method}/steady_within", "a/c_s",
+    "time from which on off_steady is at most 0.1, 0.01 and 0.001; beyond /time/t by a decay like "
+    "1/t, NaN where the second half of the motion does not show it",
+    (START, SHARE), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+)  # fmt: skip
+APPROACH = _row(
+    "steady_within_1_percent", "a/c_s",
     "time from which on a start under a sudden load is within 1 % of steady motion, by the formula for "
     "late times; none over layers",
-    (START,), asked_by=TIME, range=_NOT_NEGATIVE, nan_allowed=ANYWHERE,
+    (START,), range=_NOT_NEGATIVE, nan_allowed=ANYWHERE,
 )  # fmt: skip
 
-
-def _work_by_method(name: str, unit: str, about: str) -> dict[str, Quantity]:
-    return {
-        method: Quantity(
-            f"time/{method}/{name}", unit, f"{about}, {words}", (START, INSTANT), asked_by=TIME,
-            method=method, nan_allowed=ANYWHERE,
-        )
-        for method, words in _HOW.items()
-    }  # fmt: skip
-
-
-OF_LOAD = _work_by_method("work_of_load", "N^2/(4mu)", "work of the load")
-OF_FRICTION = _work_by_method(
-    "work_of_friction", "N^2/(4mu)",
-    "work of friction on the surface, by velocities seen from the punch",
+OF_LOAD = _by_method(
+    "{method}/work_of_load", "N^2/(4mu)", "work of the load", nan_allowed=ANYWHERE
 )  # fmt: skip
-LEFT = _work_by_method("sigma_XX_left", "N/(2a)", "in-plane stress on the free surface at X = -1.05 a")
-RIGHT = _work_by_method("sigma_XX_right", "N/(2a)", "in-plane stress on the free surface at X = 1.05 a")
+OF_FRICTION = _by_method(
+    "{method}/work_of_friction", "N^2/(4mu)",
+    "work of friction on the surface, by velocities seen from the punch", nan_allowed=ANYWHERE,
+)  # fmt: skip
+LEFT, RIGHT = (
+    _by_method(
+        f"{{method}}/sigma_XX_{side}", "N/(2a)", f"in-plane stress on the free surface at X = {X} a",
+        nan_allowed=ANYWHERE,
+    )
+    for side, X in (("left", "-1.05"), ("right", "1.05"))
+)  # fmt: skip
 
 #: Dimension of places under the punch.
 PLACE = "places"
-PLACES = Quantity(
-    "time/X_over_a", "1", "positions under the punch over the half-width", (PLACE,), asked_by=TIME,
-    method=SIE, scale=X_OVER_A,
+PLACES = _row(
+    "X_over_a", "1", "positions under the punch over the half-width", (PLACE,), method=SIE,
+    scale=X_OVER_A,
 )  # fmt: skip
-PRESSURE = Quantity(
-    "time/sie/sigma_YY", "N/(2a)", "contact stress, integral equation", (START, INSTANT, PLACE),
-    asked_by=TIME, method=SIE, nan_allowed=ANYWHERE,
+PRESSURE = _row(
+    "sie/sigma_YY", "N/(2a)", "contact stress, integral equation", (START, INSTANT, PLACE), method=SIE,
+    nan_allowed=ANYWHERE,
 )  # fmt: skip
 
 #: In the order in which a course of the integral equation gives them.
@@ -189,16 +165,12 @@ _NEAR = "within 3 a of its middle and 2 a below it"
 
 
 def _energy_row(name: str, about: str) -> Quantity:
-    return Quantity(
-        f"time/fem/{name}", "N^2/(4mu)", f"{about}, since t = 0", (START, INSTANT), asked_by=TIME,
-        method=FEM,
-    )  # fmt: skip
+    return _row(f"fem/{name}", "N^2/(4mu)", f"{about}, since t = 0", (START, INSTANT), method=FEM)
 
 
-DISSIPATED = Quantity(
-    "time/dissipated", "N*a", "work that friction takes to first order, f V load over time",
-    (START, INSTANT), asked_by=TIME,
-)  # fmt: skip
+DISSIPATED = _row(
+    "dissipated", "N*a", "work that friction takes to first order, f V load over time", (START, INSTANT)
+)
 CARRIED = _energy_row(
     "work_of_carrying",
     "work of carrying the solid past the punch, V times the change of its momentum",
@@ -215,36 +187,26 @@ RADIATED = _energy_row(
 OUTPUT, SURFACE_PLACE = "chosen times", "places along the surface"
 
 
-SURFACE_TIMES = Quantity(
-    "time/surface/t", "a/c_s", "times of the stresses along the surface", (OUTPUT,),
-    asked_by=TIME, range=Range(at_least=0.0),
+SURFACE_TIMES = _row(
+    "surface/t", "a/c_s", "times of the stresses along the surface", (OUTPUT,), range=_NOT_NEGATIVE
+)
+SURFACE_PLACES = _row(
+    "surface/X_over_a", "1", "positions along the surface over the half-width", (SURFACE_PLACE,),
+    scale=X_OVER_A,
 )  # fmt: skip
-SURFACE_PLACES = Quantity(
-    "time/surface/X_over_a", "1", "positions along the surface over the half-width", (SURFACE_PLACE,),
-    asked_by=TIME, scale=X_OVER_A,
+SURFACE_IN_PLANE, SURFACE_PRESSURE, SURFACE_SHEAR = (
+    _by_method(
+        f"surface/{{method}}/sigma_{ij}", "N/(2a)", f"{what} over time", (START, OUTPUT, SURFACE_PLACE)
+    )
+    for ij, what in (
+        ("XX", "in-plane stress on the surface"), ("YY", "contact stress"), ("XY", "friction stress"),
+    )
 )  # fmt: skip
-
-
-def _surface_by_method(name: str, about: str) -> dict[str, Quantity]:
-    return {
-        method: Quantity(
-            f"time/surface/{method}/{name}", "N/(2a)", f"{about}, {words}",
-            (START, OUTPUT, SURFACE_PLACE),
-            asked_by=TIME, method=method, nan_allowed=NEVER if method == FEM else ANYWHERE,
-        )
-        for method, words in _HOW.items()
-    }  # fmt: skip
-
-
-SURFACE_IN_PLANE = _surface_by_method("sigma_XX", "in-plane stress on the surface over time")
-SURFACE_PRESSURE = _surface_by_method("sigma_YY", "contact stress over time")
-SURFACE_SHEAR = _surface_by_method("sigma_XY", "friction stress over time")
-
-SURFACE_ESTIMATE = Quantity(
-    "time/surface/fem/estimate", "1",
+SURFACE_ESTIMATE = _row(
+    "surface/fem/estimate", "1",
     "estimated error of sigma_XX and sigma_YY along the surface over time, further than 0.01 a from the "
     "edges, over the largest of each there",
-    (START,), asked_by=TIME, method=FEM, range=Range(at_least=0.0), accuracy=True,
+    (START,), method=FEM, range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -108,6 +108,24 @@ class Quantity:
         return self.of is not None or self.of_data is not None
 
 
+def by_method(
+    path: str, unit: str, about: str, over: tuple[str, ...],
+    of: Callable[[Any, Any], NDArray] | None, own: Mapping[str, Mapping[str, Any]], **options: Any,
+) -> dict[str, Quantity]:  # fmt: skip
+    """Quantity that several methods give, by method.
+
+    Args:
+        path, unit, about, over, of: as of a quantity; ``{method}`` in the path stands for the method.
+        own: what each method has of its own, other attributes by name, by method.
+        options: further attributes, the same for all methods.
+    """
+    common: dict[str, Any] = {"unit": unit, "about": about, "over": over, "of": of} | options
+    return {
+        method: Quantity(**common | {"path": path.format(method=method), "method": method, **attributes})
+        for method, attributes in own.items()
+    }
+
+
 class Table(Registry[Quantity]):
     """Quantities by their path."""
 

@@ -27,6 +27,7 @@ from .quantity import (
     SWEPT,
     X_OVER_A,
     Quantity,
+    by_method,
 )
 
 _CONTACT, _NOT_NEGATIVE = "contact", Range(at_least=0.0)
@@ -72,26 +73,21 @@ K_I_BOTH = Quantity(
     "normalised stress intensity factor, both ends of a flat punch (Eq 58)",
     (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, PUNCH), scale=EDGE,
 )  # fmt: skip
-K_I_LEFT = {
-    CLOSED_FORM: Quantity(
-        "states/closed_form/K_I_left", "1", "normalised stress intensity factor at X = -a", (STATE,),
-        lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED,), scale=EDGE,
-    ),
-    FEM: Quantity(
-        "states/fem/K_I_left", "1", "normalised stress intensity factor at X = -a, Jacobi moments",
-        (STATE,), lambda s, _: s.K_I[:, 0], FEM, _CONTACT, compared=("K_I",), scale=EDGE,
-    ),
-}  # fmt: skip
-K_I_RIGHT = {
-    CLOSED_FORM: Quantity(
-        "states/closed_form/K_I_right", "1", "normalised stress intensity factor at X = a", (STATE,),
-        lambda s, _: s.K_I[:, 1], CLOSED_FORM, requires=(SOLVED,), scale=EDGE,
-    ),
-    FEM: Quantity(
-        "states/fem/K_I_right", "1", "normalised stress intensity factor at X = a, Jacobi moments",
-        (STATE,), lambda s, _: s.K_I[:, 1], FEM, _CONTACT, compared=("K_I",), scale=EDGE,
-    ),
-}  # fmt: skip
+
+
+def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
+    about = f"normalised stress intensity factor at {at}"
+    return by_method(
+        f"states/{{method}}/K_I_{side}", "1", about, (STATE,), lambda s, _: s.K_I[:, i], {
+            CLOSED_FORM: {"requires": (SOLVED,)},
+            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments", "compared": ("K_I",)},
+            SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane",
+                  "compared": ("K_I of layers",)},
+        }, scale=EDGE,
+    )  # fmt: skip
+
+
+K_I_LEFT, K_I_RIGHT = _intensity("left", "X = -a", 0), _intensity("right", "X = a", 1)
 
 FITTED_ALPHA = Quantity(
     "states/fem/alpha", "1", "exponent of the pressure at X = a, fitted from the raw pressure", (STATE,),
@@ -115,11 +111,16 @@ INDENTATION = Quantity(
     "states/fem/v0", "m", "indentation relative to the surface far away", (STATE,),
     lambda s, body: s.v0 * body.displacement, FEM, _CONTACT,
 )  # fmt: skip
-ESTIMATE = Quantity(
-    "states/fem/estimate", "1",
+ESTIMATE = by_method(
+    "states/{method}/estimate", "1",
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
-    (STATE,), lambda s, _: s.estimates[INTENSITIES], FEM, _CONTACT, compared=("estimate",),
-    range=_NOT_NEGATIVE, accuracy=True,
+    (STATE,), lambda s, _: s.estimates[INTENSITIES], {
+        FEM: {"mode": _CONTACT, "compared": ("estimate",)},
+        SIE: {
+            "about": "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's "
+            "error", "compared": ("estimate of the integral equation",), "requires": (SOLVED,),
+        },
+    }, range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 FITTED = Quantity(
     "states/fem/fitted", "1",
@@ -133,13 +134,10 @@ def _of_free_contact(
 ) -> dict[str, Quantity]:
     """Quantity of contacts with free ends, by all methods."""
     rules = (compared, f"{compared} over layers") if compared else ()
-    return {
-        method: Quantity(
-            f"states/{method}/{name}", unit, about, (STATE,), lambda s, _: of(s), method, FREE_ENDS,
-            compared=rules * (method == FEM), **options,
-        )
-        for method in (CLOSED_FORM, SIE, FEM)
-    }  # fmt: skip
+    return by_method(
+        f"states/{{method}}/{name}", unit, about, (STATE,), lambda s, _: of(s),
+        {CLOSED_FORM: {}, SIE: {}, FEM: {"compared": rules}}, mode=FREE_ENDS, **options,
+    )  # fmt: skip
 
 
 HALF_WIDTH = _of_free_contact(
@@ -161,48 +159,44 @@ LARGEST_X = _of_free_contact(
 )  # fmt: skip
 
 #: Resultants of a prescribed pressure, by method.
-RESULTANT = {
-    method: Quantity(
-        f"states/{method}/normal_force", "N/m", "resultant of the prescribed pressure", (STATE,),
-        lambda s, body: s.normal_force * body.force, method, OWN_PRESSURE, compared=(rule,),
-        accuracy=True,
-    )
-    for method, rule in ((CLOSED_FORM, "resultant"), (SIE, "resultant over layers"))
-}  # fmt: skip
-
+RESULTANT = by_method(
+    "states/{method}/normal_force", "N/m", "resultant of the prescribed pressure", (STATE,),
+    lambda s, body: s.normal_force * body.force,
+    {CLOSED_FORM: {"compared": ("resultant",)}, SIE: {"compared": ("resultant over layers",)}},
+    mode=OWN_PRESSURE, accuracy=True,
+)  # fmt: skip
 
 #: Share of the larger intensity below which an error is over this share rather than over itself.
 _VANISHING = 0.1
 
 
-def K_I_error(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Larger relative error of both stress intensity factors against the integral equation, (states,)."""
-    fem, exact = (
-        np.array([data[side[method].path] for side in (K_I_LEFT, K_I_RIGHT)])
-        for method in (FEM, CLOSED_FORM)
-    )
+def off_by(fem: NDArray, exact: NDArray) -> NDArray[np.float64]:
+    """Larger relative error of the stress intensity factors at both ends, (2, states); (states,)."""
     # At a free end it is 0, and small where a tilted punch is about to lift off.
     size = np.maximum(np.abs(exact), _VANISHING * np.abs(exact).max(axis=0))
     return np.max(np.abs(fem - exact) / np.where(size > 0.0, size, 1.0), axis=0)
 
 
+def _true_error(data: Mapping[str, Any]) -> NDArray[np.float64]:
+    ends = K_I_LEFT, K_I_RIGHT
+    return off_by(*(np.array([data[row[by].path] for row in ends]) for by in (FEM, CLOSED_FORM)))
+
+
 TRUE_ERROR = Quantity(
     "states/fem/true_error", "1", "relative error of K_I against the closed form, larger end", (STATE,),
-    method=FEM, mode=_CONTACT, of_data=K_I_error,
-    needs=tuple(row.path for side in (K_I_LEFT, K_I_RIGHT) for row in side.values()),
+    method=FEM, mode=_CONTACT, of_data=_true_error,
+    needs=tuple(row[by].path for row in (K_I_LEFT, K_I_RIGHT) for by in (CLOSED_FORM, FEM)),
     range=_NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 #: Residuals of one method alone, by method.
-RESIDUAL = {
-    method: Quantity(
-        f"states/{method}/residual", "1",
-        "residual of the integral equation at the contact pressure, by a rule of its own, over the "
-        "pressure's part in it",
-        (STATE,), lambda s, _: s.residual, method, ALONE, compared=(rule,), range=_NOT_NEGATIVE,
-        accuracy=True, requires=(SOLVED,),
-    )
-    for method, rule in ((CLOSED_FORM, "residual"), (FEM, "residual of finite elements"))
-}  # fmt: skip
+RESIDUAL = by_method(
+    "states/{method}/residual", "1",
+    "residual of the integral equation at the contact pressure, by a rule of its own, over the "
+    "pressure's part in it",
+    (STATE,), lambda s, _: s.residual,
+    {CLOSED_FORM: {"compared": ("residual",)}, FEM: {"compared": ("residual of finite elements",)}},
+    mode=ALONE, range=_NOT_NEGATIVE, accuracy=True, requires=(SOLVED,),
+)  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",

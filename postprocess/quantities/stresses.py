@@ -20,9 +20,11 @@ from .quantity import (
     OVER_A,
     POINT,
     QUANTITIES,
+    SIE,
     STATE,
     X_OVER_A,
     Quantity,
+    by_method,
 )
 
 SURFACE_X = Quantity(
@@ -33,75 +35,91 @@ SURFACE_X = Quantity(
     asked_by=ON_SURFACE,
     scale=X_OVER_A,
 )
-PRESSURE = {
-    CLOSED_FORM: Quantity(
-        "surface/closed_form/sigma_YY", "N/(2a)", "contact stress, NaN outside the contact (Eq 55)",
-        (STATE, POINT), lambda s, _: s.surface.σ_YY, CLOSED_FORM, asked_by=ON_SURFACE, nan_allowed=BESIDE,
-    ),
-    FEM: Quantity(
-        "surface/fem/sigma_YY", "N/(2a)",
-        "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
-        (STATE, POINT), lambda s, _: s.surface.σ_YY, FEM, asked_by=ON_SURFACE, nan_allowed=BESIDE,
-        compared=("tension", "sigma_YY", "sigma_YY of found ends", "sigma_YY of found ends over layers"),
-    ),
-}  # fmt: skip
+PRESSURE = by_method(
+    "surface/{method}/sigma_YY", "N/(2a)", "contact stress", (STATE, POINT),
+    lambda s, _: s.surface.σ_YY, {
+        CLOSED_FORM: {"about": "contact stress, NaN outside the contact (Eq 55)"},
+        FEM: {
+            "about": "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
+            "compared": ("tension", "sigma_YY", "sigma_YY of found ends",
+                         "sigma_YY of found ends over layers"),
+        },
+        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane",
+              "compared": ("sigma_YY of layers",)},
+    }, asked_by=ON_SURFACE, nan_allowed=BESIDE,
+)  # fmt: skip
 RAW_PRESSURE = Quantity(
     "surface/fem/sigma_YY_raw", "N/(2a)",
     "contact stress from the nodal forces through the mass matrix, NaN outside the contact",
     (STATE, POINT), lambda s, _: s.surface.raw, FEM, "contact", ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
-IN_PLANE = {
-    CLOSED_FORM: Quantity(
-        "surface/closed_form/sigma_XX", "N/(2a)", "in-plane stress on the surface (Eq 32)",
-        (STATE, POINT), lambda s, _: s.surface.σ_XX, CLOSED_FORM, asked_by=ON_SURFACE,
-    ),
-    FEM: Quantity(
-        "surface/fem/sigma_XX", "N/(2a)", "in-plane stress on the surface",
-        (STATE, POINT), lambda s, _: s.surface.σ_XX, FEM, asked_by=ON_SURFACE, compared=("sigma_XX",),
-    ),
-}  # fmt: skip
+IN_PLANE = by_method(
+    "surface/{method}/sigma_XX", "N/(2a)", "in-plane stress on the surface", (STATE, POINT),
+    lambda s, _: s.surface.σ_XX, {
+        CLOSED_FORM: {"about": "in-plane stress on the surface (Eq 32)"},
+        FEM: {"compared": ("sigma_XX",)},
+        SIE: {"about": "in-plane stress on the surface, layered half-plane",
+              "compared": ("sigma_XX of layers",)},
+    }, asked_by=ON_SURFACE,
+)  # fmt: skip
+
+_METHODS = (CLOSED_FORM, FEM, SIE)
 
 
-def _extreme(method: str, end: str, sign: float, what: str) -> tuple[Quantity, Quantity]:
-    """Quantities of the highest or the lowest in-plane stress by a method, and of its place."""
-    value = Quantity(
-        f"states/{method}/sigma_XX_{end}", "N/(2a)",
+def _extreme(end: str, sign: float, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
+    """Quantities of the highest or the lowest in-plane stress, and of its place."""
+    path, rules = (
+        f"states/{{method}}/sigma_XX_{end}",
+        ("extremes of sigma_XX", "extremes of sigma_XX over layers"),
+    )
+    own: dict[str, Any] = {method: {} for method in _METHODS}
+    value = by_method(
+        path, "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], method, asked_by=ON_SURFACE,
-        compared=("extremes of sigma_XX", "extremes of sigma_XX over layers") * (method == FEM),
+        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], own | {FEM: {"compared": rules}},
+        asked_by=ON_SURFACE,
     )  # fmt: skip
-    place = Quantity(
-        f"{value.path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width",
-        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[1], method, asked_by=ON_SURFACE,
-        scale=X_OVER_A,
+    place = by_method(
+        f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
+        lambda s, body: extreme_in_plane(s, body, sign)[1], own, asked_by=ON_SURFACE, scale=X_OVER_A,
     )  # fmt: skip
     return value, place
 
 
-def extremes(method: str) -> tuple[Quantity, ...]:
-    """Quantities of the highest in-plane stress by a method, its place, the lowest and its place."""
-    return *_extreme(method, "max", 1.0, "highest"), *_extreme(method, "min", -1.0, "lowest")
+HIGHEST, HIGHEST_X = _extreme("max", 1.0, "highest")
+LOWEST, LOWEST_X = _extreme("min", -1.0, "lowest")
 
 
-_METHODS = (CLOSED_FORM, FEM)
-HIGHEST, HIGHEST_X, LOWEST, LOWEST_X = (
-    {method: extremes(method)[i] for method in _METHODS} for i in range(4)
-)
+def estimate(word: str, name: str, **own: tuple[str, str]) -> dict[str, Quantity]:
+    """Estimates of the error of the stresses that a word of output.quantities asks for, by method.
 
-ESTIMATE_IN_PLANE = Quantity(
-    "states/fem/estimate_sigma_XX", "1",
-    "estimated error of sigma_XX on the surface over the larger of itself and its largest value further "
-    "than 0.01 a from the edges, no closed form used",
-    (STATE,), lambda s, _: s.estimates[ON_SURFACE], FEM, asked_by=ON_SURFACE,
-    compared=("estimate of sigma_XX",), range=Range(at_least=0.0), accuracy=True,
+    Args:
+        word: the word.
+        name: end of the quantity's name.
+        own: what is estimated, in words, and the name of the rule, by method.
+    """
+    return by_method(
+        f"states/{{method}}/estimate_{name}", "1", "", (STATE,), lambda s, _: s.estimates[word],
+        {method: {"about": f"estimated error of {about}", "compared": (rule,)}
+         for method, (about, rule) in own.items()},
+        asked_by=word, range=Range(at_least=0.0), accuracy=True,
+    )  # fmt: skip
+
+
+ESTIMATE_IN_PLANE = estimate(
+    ON_SURFACE, "sigma_XX",
+    fem=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
+         "from the edges, no closed form used", "estimate of sigma_XX"),
+    sie=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
+         "from the edges, layered half-plane", "estimate of sigma_XX, sie"),
 )  # fmt: skip
-ESTIMATE_INSIDE = Quantity(
-    "states/fem/estimate_inside", "1",
-    "estimated error of stresses inside over the larger of the largest there and further than 0.01 a "
-    "from the edges, no closed form used",
-    (STATE,), lambda s, _: s.estimates[BELOW], FEM, asked_by=BELOW, compared=("estimate inside",),
-    range=Range(at_least=0.0), accuracy=True,
+ESTIMATE_INSIDE = estimate(
+    BELOW, "inside",
+    fem=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
+         "no closed form used", "estimate inside"),
+    sie=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
+         "layered half-plane", "estimate inside, sie"),
 )  # fmt: skip
 
 RESIDUAL_INSIDE = Quantity(
@@ -135,23 +153,15 @@ def _component(method: str, source: str, i: int, ij: str, what: str) -> Quantity
 
 
 _COMPONENTS = {
-    "XX": "in-plane normal stress along X",
-    "YY": "normal stress along Y",
-    "XY": "shear stress",
-}
-
-
-def components(method: str, source: str) -> tuple[Quantity, ...]:
-    """Quantities σ_XX, σ_YY, σ_XY inside by a method."""
-    return tuple(
-        _component(method, source, i, ij, what) for i, (ij, what) in enumerate(_COMPONENTS.items())
-    )
-
-
-#: Stresses inside, by method.
+    "XX": "in-plane normal stress along X", "YY": "normal stress along Y", "XY": "shear stress",
+}  # fmt: skip
+_SOURCES = {
+    CLOSED_FORM: "from the potentials", FEM: "from the displacement", SIE: "from the transform",
+}  # fmt: skip
+#: σ_XX, σ_YY, σ_XY inside, by method.
 STRESSES_INSIDE = {
-    CLOSED_FORM: components(CLOSED_FORM, "from the potentials"),
-    FEM: components(FEM, "from the displacement"),
+    method: tuple(_component(method, source, i, *ij) for i, ij in enumerate(_COMPONENTS.items()))
+    for method, source in _SOURCES.items()
 }
 
 
@@ -164,9 +174,9 @@ def _invariant(
     )  # fmt: skip
 
 
-def invariants(method: str) -> tuple[Quantity, ...]:
-    """Quantities of the principal stresses and von Mises inside by a method."""
-    return (
+#: Principal stresses and von Mises inside, by method.
+INVARIANTS_INSIDE = {
+    method: (
         _invariant(
             method, "sigma_1", "larger principal stress in the plane",
             lambda s, _: principal(*s.inside)[0],
@@ -180,10 +190,8 @@ def invariants(method: str) -> tuple[Quantity, ...]:
             lambda s, body: von_mises(s.inside[0], s.inside[1], s.inside[2], body.σ_ZZ_inside(s)),
             OUT_OF_PLANE,
         ),
-    )  # fmt: skip
-
-
-#: Invariants inside, by method.
-INVARIANTS_INSIDE = {method: invariants(method) for method in (CLOSED_FORM, FEM)}
+    )
+    for method in _METHODS
+}  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -1,10 +1,5 @@
 """Quantities of where the answers do not hold: limits of a steady, linear solution with friction."""
 
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
-
 from galinx.solvers.contact import ON_SURFACE
 from galinx.solvers.contact.solution import PUNCH
 from galinx.solvers.contact.stresses import tension
@@ -16,9 +11,11 @@ from .quantity import (
     FEM,
     OVER_A,
     QUANTITIES,
+    SIE,
     STATE,
     X_OVER_A,
     Quantity,
+    by_method,
 )
 
 _NOT_NEGATIVE = Range(at_least=0.0)
@@ -77,30 +74,17 @@ STRAIN = _within(
 )  # fmt: skip
 
 
-def tensions(method: str) -> tuple[Quantity, Quantity]:
-    """Quantities of the largest tension under the punch by a method, and of its place."""
-
-    def of(i: int) -> Any:
-        def values(s: Any, _: Any) -> NDArray[np.float64]:
-            return tension(s.surface)[i]
-
-        return values
-
-    return (
-        Quantity(
-            f"states/{method}/tension", "N/(2a)", "largest tension under the punch, 0 for none", (STATE,),
-            of(0), method, asked_by=ON_SURFACE, range=_NOT_NEGATIVE,
-        ),
-        Quantity(
-            f"states/{method}/tension_X_over_a", "1",
-            "place of the largest tension, over the half-width; NaN for none",
-            (STATE,), of(1), method, asked_by=ON_SURFACE, nan_allowed=ANYWHERE,
-            range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
-        ),
-    )  # fmt: skip
-
-
-#: Largest tension and its place, by method.
-TENSION = {method: tensions(method) for method in (CLOSED_FORM, FEM)}
+#: Largest tension under the punch, by method, and its place.
+TENSION = by_method(
+    "states/{method}/tension", "N/(2a)", "largest tension under the punch, 0 for none", (STATE,),
+    lambda s, _: tension(s.surface)[0], {CLOSED_FORM: {}, FEM: {}, SIE: {}}, asked_by=ON_SURFACE,
+    range=_NOT_NEGATIVE,
+)  # fmt: skip
+TENSION_X = by_method(
+    "states/{method}/tension_X_over_a", "1",
+    "place of the largest tension, over the half-width; NaN for none",
+    (STATE,), lambda s, _: tension(s.surface)[1], {CLOSED_FORM: {}, FEM: {}, SIE: {}},
+    asked_by=ON_SURFACE, nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
+)  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -21,6 +21,7 @@ from .quantity import (
     STATE,
     X_OVER_A,
     Quantity,
+    by_method,
 )
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
@@ -29,27 +30,18 @@ _BEYOND = "NaN beyond 10 a: no solid carries that"
 
 
 def _both(
-    name: str,
-    unit: str,
-    about: str,
-    of: Callable[[Any, Any], NDArray],
-    mode: str = "",
-    compared: str = "",
-    range: Range = _NOT_NEGATIVE,
-    requires: tuple[str, ...] = (UNIFORM,),
-    methods: tuple[str, ...] = (CLOSED_FORM, FEM),
-    scale: str = "",
-) -> dict[str, Quantity]:
+    name: str, unit: str, about: str, of: Callable[[Any, Any], NDArray], mode: str = "",
+    compared: str = "", requires: tuple[str, ...] = (UNIFORM,),
+    methods: tuple[str, ...] = (CLOSED_FORM, FEM), **options: Any,
+) -> dict[str, Quantity]:  # fmt: skip
     """Quantity of a state by several methods."""
-    return {
-        method: Quantity(
-            f"states/{method}/{name}", unit, about, (STATE,), of, method, mode, YIELD,
-            nan_allowed=ANYWHERE, range=range, requires=requires, scale=scale,
-            compared=(compared, f"{compared} over layers")[: 1 + (SIE in methods)]
-            * (method == FEM and bool(compared)),
-        )
-        for method in methods
-    }  # fmt: skip
+    rules = (compared, f"{compared} over layers")[: (1 + (SIE in methods)) * bool(compared)]
+    own = {method: {"compared": rules * (method == FEM)} for method in methods}
+    options = {"range": _NOT_NEGATIVE, "nan_allowed": ANYWHERE} | options
+    return by_method(
+        f"states/{{method}}/{name}", unit, about, (STATE,), of, own, mode=mode, asked_by=YIELD,
+        requires=requires, **options,
+    )  # fmt: skip
 
 
 def _largest(
@@ -121,23 +113,20 @@ ESTIMATE_YIELD = Quantity(
 
 def _of_layers(
     name: str, unit: str, about: str, of: Callable[[Any], NDArray], range: Range = _NOT_NEGATIVE,
-    requires: tuple[str, ...] = (), scale: str = "",
+    requires: tuple[str, ...] = (), compared: tuple[str, ...] = (), scale: str = "",
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity of each layer and the solid below, by both methods of layered solids."""
-    return {
-        method: Quantity(
-            f"layers/{method}/{name}", unit, about, (STATE, LAYER), lambda s, _: of(s), method, FINITE,
-            YIELD, nan_allowed=ANYWHERE, range=range, requires=(LAYERED, *requires), scale=scale,
-            compared=("largest stresses of layers",) * (method == FEM and name == "von_mises"),
-        )
-        for method in (SIE, FEM)
-    }  # fmt: skip
+    return by_method(
+        f"layers/{{method}}/{name}", unit, about, (STATE, LAYER), lambda s, _: of(s),
+        {SIE: {}, FEM: {"compared": compared}}, mode=FINITE, asked_by=YIELD, nan_allowed=ANYWHERE,
+        range=range, requires=(LAYERED, *requires), scale=scale,
+    )  # fmt: skip
 
 
 #: Largest von Mises stress of each layer and of the solid below, its place, and the stress over strength.
 OF_LAYERS = _of_layers(
     "von_mises", "N/(2a)", "largest von Mises stress in each layer and the solid below",
-    lambda s: s.strength.peaks.value,
+    lambda s: s.strength.peaks.value, compared=("largest stresses of layers",),
 )  # fmt: skip
 OF_LAYERS_X = _of_layers(
     "von_mises_X_over_a", "1",

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import log1p
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
 from .pressure import Pressure
 
@@ -28,47 +28,8 @@ from .pressure import Pressure
 _STEPS = 80
 
 
-class Loaded:
-    """Uniform half-plane under a contact pressure with friction, at one speed; all stresses are exact.
-
-    Attributes:
-        response: of the half-plane at that speed.
-        g: σ_XY/σ_YY under the punch; an array broadcasts against positions.
-        pressure: the pressure, with Cauchy's integral.
-    """
-
-    response: Response
-    g: Any
-    pressure: Any
-
-    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
-        """In-plane stress over N/(2a) on the whole surface Y = 0; NaN where it is infinite (Eq 32)."""
-        σ_YY = self.pressure.σ_YY(r)
-        return in_plane(self.response, self.g, σ_YY, self.pressure.hilbert(r))
-
-    def inside(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y < 0, (3, ...)."""
-        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
-
-    def stresses(self, X: ArrayLike, Y: ArrayLike) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points over a with Y <= 0, those of the surface among them."""
-        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
-        on, σ_YY = Y == 0.0, self.pressure.σ_YY(X)
-        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
-        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))
-
-
-@dataclass(frozen=True)
-class LoadedHalfPlane(Loaded):
-    """Uniform half-plane under a pressure, see :class:`Loaded`."""
-
-    response: Response
-    g: Any
-    pressure: Any
-
-
 def in_plane(
-    response: Response, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
+    response: HalfPlane, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
 ) -> NDArray[np.float64]:
     """In-plane stress over N/(2a) on the surface.
 
@@ -84,12 +45,12 @@ def in_plane(
 
 
 @dataclass(frozen=True)
-class FlatPunch(EdgeExponents, Pressure, Loaded):
-    """Pressure of a flat punch at one speed and friction, or at several frictions, and its stresses."""
+class FlatPunch(EdgeExponents, Pressure):
+    """Pressure of a flat punch at one speed and friction, or at several frictions."""
 
-    @property
-    def pressure(self) -> "FlatPunch":
-        return self
+    def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
+        """In-plane stress over N/(2a) on the whole surface; NaN where it is infinite (Eq 32)."""
+        return in_plane(self.response, self.g, self.σ_YY(r), self.hilbert(r))
 
     def series(self, r: NDArray) -> Any:
         """Amplitude of the contact stress over N/(2a) (Eq 55).

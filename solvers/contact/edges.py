@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 
 
 def under_punch(X: ArrayLike) -> NDArray[np.bool_]:
@@ -55,7 +55,7 @@ class EdgeExponents:
         g: σ_XY/σ_YY under the punch, dimensionless and signed; an array broadcasts against positions.
     """
 
-    response: Response
+    response: HalfPlane
     g: float | NDArray[np.float64]
 
     @property

@@ -16,8 +16,9 @@ from .closed_form import FlatPunch
 from .edges import Exponents
 from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
+from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Between, Surface, Task, Turns, all_between, solved_once
+from .solution import Surface, Task, Turns, solved_once, together
 from .uniform import Contacts, Group, contacts_of
 from .yielding import Strength
 
@@ -139,7 +140,7 @@ class ExactSolution:
             kinks = np.append(group.pressure.kinks, group.pressure.breaks)
             return of_field(
                 self.task.response, self._g[group.rows], (group.α, group.β), group.contact_stress,
-                lambda X, Y: self.contacts.inside_group(group, X[None], Y[None]),
+                lambda X, Y: self.contacts.stresses_of(group, X[None], Y[None]),
                 self.task.places.points, kinks,
             )  # fmt: skip
 
@@ -152,31 +153,29 @@ class ExactSolution:
         σ_XX, σ_YY = self.contacts.on_surface(places.X)
         turns = self._turns
         if self._body.knots:  # a prescribed pressure is that of all states
-            turns = turns_at_knots(self.contacts.groups[0].pressure, self._g, self.contacts.σ_XX)
+            turns = turns_at_knots(
+                self.contacts.groups[0].pressure, self._g, lambda X: self.contacts.on_surface(X)[0]
+            )
         return Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX, turns=turns).of(self._rows)
 
     @cached_property
     def _turns(self) -> Turns | None:
         """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
-        X = self.contacts.turns
-        if not X.shape[1]:
-            return None
-        on_surface = self.contacts.stresses(np.nan_to_num(X), np.zeros_like(X))
-        return Turns(X, np.where(np.isnan(X), np.nan, on_surface), self._between_kinks())
+        turns = together([self._turns_of(group) for group in self.contacts.groups])
+        return turns.of(self.contacts.order) if turns and turns.X.size else None
 
-    def _between_kinks(self) -> Between | None:
-        """Stresses between ends and kinks of contacts that have kinks; None where none has."""
-        each: list[Between | None] = [None] * len(self._g)
-        for group in self.contacts.groups:
-            kinks = group.pressure.bends
-            if len(kinks):
-                _, between = at_and_between(
-                    np.array([-1.0, *sorted(kinks), 1.0]), len(group.rows),
-                    lambda r: self.contacts.surface_of(group, r)[0],  # noqa: B023
-                )  # fmt: skip
-                for row, X, σ_XX in zip(group.rows.tolist(), between.X, between.σ_XX):
-                    each[row] = Between(X[None], between.x, σ_XX[None])
-        return all_between(each)
+    def _turns_of(self, group: Group) -> Turns:
+        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
+        X = np.concatenate([ENDS[ends], kinks])
+        σ_XX, σ_YY = self.contacts.surface_of(group, X)
+        between = None
+        if kinks:
+            places = np.array([-1.0, *kinks, 1.0])
+            _, between = at_and_between(
+                places, len(group.rows), lambda r: self.contacts.surface_of(group, r)[0]
+            )
+        σ = np.array([σ_XX, σ_YY, self._g[group.rows, None] * σ_YY])
+        return Turns(np.tile(X, (len(group.rows), 1)), σ, between)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
@@ -185,7 +184,7 @@ class ExactSolution:
         σ = np.empty((3, len(self._g), len(points)))
         for first in range(0, len(points), _TOGETHER):
             batch = slice(first, first + _TOGETHER)
-            σ[:, :, batch] = self.contacts.inside(*points[batch].T)
+            σ[:, :, batch] = self.contacts.stresses(*points[batch].T)
         return σ[:, self._rows]
 
     @cached_property
@@ -198,5 +197,6 @@ class ExactSolution:
             return each.contacts.stresses(points[..., 0], points[..., 1])
 
         return Strength(
-            field, task.body, task.response, self.g, self.local, self.half_width, each._turns, _NEAREST
-        )
+            field, task.body, task.response, self.g, self.local, self.half_width, each._turns,
+            _NEAREST,
+        )  # fmt: skip

@@ -18,7 +18,7 @@ from galinx.meshes.rings import QuadMesh, Refinement
 
 from ..rays import NEAR
 from ..solids import Solid
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS
 from .recovery import Stretch
 from .solution import Places
@@ -148,7 +148,7 @@ class Sweep:
     few: bool
 
 
-def swept(choice: str, responses: Sequence[Response], g: NDArray) -> Sweep | None:
+def swept(choice: str, responses: Sequence[HalfPlane], g: NDArray) -> Sweep | None:
     """The sweep over the speeds of a scene, None where each speed is to be solved.
 
     Args:
@@ -163,7 +163,7 @@ def swept(choice: str, responses: Sequence[Response], g: NDArray) -> Sweep | Non
     return Sweep(variable(responses), values if few else values[[0, -1]], few)
 
 
-def variable(responses: Sequence[Response]) -> NDArray[np.float64]:
+def variable(responses: Sequence[HalfPlane]) -> NDArray[np.float64]:
     """Speeds in the variable in which results are smoothest, (speeds,); like them it is analytic in c².
 
     The planes in which fields are analytic, and the mesh where it follows them, contract with a root of

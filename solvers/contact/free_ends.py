@@ -26,31 +26,30 @@ piecewise polynomial with these nodal forces is as accurate as the forces; towar
 the local analysis says.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 from ..profiles import check_reach
 from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
+from .panelled import Panels
 from .prescribed_pressure import LinearPressure
-from .pressure import Pressure
+from .pressure import Pressure, largest
 from .recovery import ContactFacets, jacobi_in_chebyshev, jacobi_norms
-from .solution import Between, Surface, Turns
+from .solution import Surface, Turns
 from .stresses import NEAR, NEAR_TIP
 
 #: Number of shapes: two determine the factors, the third measures their error.
 SHAPES = 3
 
-#: Gauss points of a panel; size of a panel over that of the next larger one; numbers of panels towards a
-#: kink and towards an end.
-_POINTS, _RATIO, _TO_KINK, _TO_END = 14, 0.2, 11, 3
+#: Longest panel of the quadrature of their conditions.
+_FINEST = 0.7
 
 #: First half-width tried [m].
 _FIRST = 1e-3
@@ -149,40 +148,9 @@ class EndConditions:
 
     def _rule(self, kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
         """Quadrature of both conditions, see :data:`.ends.Rule`."""
-        s, weights = _rule(kinks, self.α, self.β)
-        lifting, carrying = np.polynomial.chebyshev.chebval(s, self.factors.T) * weights
-        return s, lifting, 2.0 * carrying
-
-
-@lru_cache(maxsize=64)
-def _towards(exponent: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points in [0, 1] and weights of ∫ t^exponent F(t) dt on panels graded towards 0, (n,) each."""
-    τ, w = np.polynomial.legendre.leggauss(_POINTS)
-    x = (τ + 1.0) / 2.0
-    ends = _RATIO ** np.arange(panels + 1)
-    t = ends[1:, None] + (ends[:-1] - ends[1:])[:, None] * x
-    weights = (ends[:-1] - ends[1:])[:, None] * w / 2.0 * t**exponent
-    inner, of_inner = roots_jacobi(_POINTS, 0.0, exponent)
-    size = ends[-1]
-    t = np.append(t.ravel(), size * (inner + 1.0) / 2.0)
-    return t, np.append(weights.ravel(), of_inner * (size / 2.0) ** (exponent + 1.0))
-
-
-@lru_cache(maxsize=8)
-def _rule(at: tuple[float, ...], α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and weights, (n,) each, of ∫ (1 - s)^β (1 + s)^α F(s) ds, F smooth between places ``at``."""
-    places = np.concatenate([[-1.0], np.unique(at), [1.0]])
-    last, s, weights = len(places) - 2, [], []
-    for i, half in enumerate(np.diff(places) / 2.0):
-        for x, sign, exponent in ((places[i], 1.0, α * (i == 0)), (places[i + 1], -1.0, β * (i == last))):
-            t, w = _towards(exponent, _TO_END if exponent else _TO_KINK)
-            points = x + sign * half * t
-            w = w * half ** (exponent + 1.0)
-            factor_right = 1.0 if exponent and sign < 0.0 else (1.0 - points) ** β
-            factor_left = 1.0 if exponent and sign > 0.0 else (1.0 + points) ** α
-            s.append(points)
-            weights.append(w * factor_left * factor_right)
-    return np.concatenate(s), np.concatenate(weights)
+        panels = Panels(self.β, self.α, _FINEST, kinks)
+        lifting, carrying = np.polynomial.chebyshev.chebval(panels.t, self.factors.T) * panels.weights
+        return panels.t, lifting, 2.0 * carrying
 
 
 #: Distances from an end, over that of the nearest kink, between which the pressure is sampled; number of
@@ -366,7 +334,7 @@ def turns_at_ends(surface: Surface, local: Any) -> Turns:
 
 #: log(d/d') between two knots at the distances d and d': at a few places that show where the stress is
 #: highest, and at the many between which it is interpolated.
-_COARSE, _GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
+_COARSE, GRADED = np.array([-2.0, 0.0, 2.0]), np.linspace(-14.0, 14.0, 85)
 #: Number of the highest, and of the lowest, of the few places next to which the many are evaluated.
 _TOPS = 4
 
@@ -394,8 +362,10 @@ def at_and_between(
     states: int,
     σ_XX: Callable[[NDArray], NDArray[np.float64]],
     infinite: NDArray | tuple[bool, bool] = (False, False),
-) -> tuple[NDArray[np.float64], Between]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """In-plane stress over N/(2a) at places where its slope is infinite, (states, places), and between.
+
+    The second is as in :class:`galinx.solvers.contact.solution.Turns`.
 
     Args:
         places: rising positions over a from -1 to 1, (places,).
@@ -411,8 +381,8 @@ def at_and_between(
     # A place belongs to the intervals on both sides of it.
     intervals = np.unique(np.concatenate([tops // per, (tops - 1) // per]))
     intervals = intervals[(intervals >= 0) & (intervals < len(places) - 1)]
-    graded = np.tile(_between(places, _GRADED)[intervals], (states, 1, 1))
-    return each[:, ::per], Between(graded, _GRADED, σ_XX(graded[0].ravel()).reshape(graded.shape))
+    graded = np.tile(_between(places, GRADED)[intervals], (states, 1, 1))
+    return each[:, ::per], np.array([graded, σ_XX(graded[0].ravel()).reshape(graded.shape)])
 
 
 def _between(places: NDArray, x: NDArray) -> NDArray[np.float64]:
@@ -466,6 +436,8 @@ def slopes_towards_ends(
 #: Most tops of the samples that are refined; samples that a polynomial goes through; places between the
 #: neighbours of a top at which it is evaluated.
 _TOPS_BETWEEN, _THROUGH, _BETWEEN = 3, 8, 65
+#: Relative difference of heights, and distance over a of places, up to which they are the same.
+_SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 
 
 def extreme_in_plane(
@@ -473,7 +445,8 @@ def extreme_in_plane(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Highest (1) or lowest (-1) in-plane stress of states over N/(2a), and its place over a, (states,).
 
-    At a free end the place is that end, exactly.
+    At a free end the place is that end, exactly. Of places that are as high, as both ends are without
+    friction, it is the left one.
 
     Args:
         solution: states solved by any method, see :class:`galinx.solvers.contact.solution.Solution`.
@@ -487,29 +460,37 @@ def extreme_in_plane(
     values = np.where(_finite(X, infinite), sign * σ_XX, -np.inf)
     limits = np.where(np.isnan(limits) | ~_finite(at, infinite), -np.inf, sign * limits)
     pieces = (X[:, None] > np.nan_to_num(at, nan=np.inf)[:, None, :]).sum(axis=-1)
-    i, j = values.argmax(axis=1)[:, None], limits.argmax(axis=1)[:, None]
+    i, j = (
+        _as_high(curves, curves.max(axis=1)[:, None]).argmax(axis=1)[:, None]
+        for curves in (values, limits)
+    )
     tops = [
         (np.take_along_axis(values, i, 1)[:, 0], X[i[:, 0]]),
         (np.take_along_axis(limits, j, 1)[:, 0], np.take_along_axis(at, j, 1)[:, 0]),
     ]
     u = np.where(np.abs(X) > 1.0, np.sign(X) * np.arccosh(np.maximum(np.abs(X), 1.0)), 0.0)
     u = u + np.arcsin(np.clip(X, -1.0, 1.0))
-    between = surface.turns and surface.turns.between
-    if between:
-        graded = np.isfinite(between.X).any(axis=(1, 2))[:, None]
+    between = surface.turns.between if surface.turns else None
+    if between is not None:
+        graded = np.isfinite(between[0]).any(axis=(1, 2))[:, None]
         values = np.where(graded & (np.abs(X) < 1.0), -np.inf, values)
-    top, at_u = _largest(u, values, pieces)
-    beyond = np.maximum(np.abs(at_u) - np.pi / 2.0, 0.0)
-    tops.append((top, np.where(beyond > 0.0, np.sign(at_u) * np.cosh(beyond), np.sin(at_u))))
-    intervals = () if not between else zip(np.moveaxis(between.X, 1, 0), np.moveaxis(between.σ_XX, 1, 0))
-    for X, σ in intervals:
+    for top, at_u in _tops_between(u, values, pieces):
+        beyond = np.maximum(np.abs(at_u) - np.pi / 2.0, 0.0)
+        tops.append((top, np.where(beyond > 0.0, np.sign(at_u) * np.cosh(beyond), np.sin(at_u))))
+    for X, σ in () if between is None else np.moveaxis(between, 2, 0):
         values = np.where(np.isfinite(σ) & _finite(X, infinite), sign * σ, -np.inf)
-        top, at_x = _largest(between.x, values, np.zeros(values.shape))
-        tops.append((top, np.array([np.interp(x, between.x, row) for x, row in zip(at_x, X)])))
-    largest_, places = (np.array(column) for column in zip(*tops))
-    best = largest_.argmax(axis=0)[None]
-    value, place = (np.take_along_axis(of, best, 0)[0] for of in (largest_, places))
+        for top, at_x in _tops_between(GRADED, values, np.zeros(values.shape)):
+            tops.append((top, np.array([np.interp(x, GRADED, row) for x, row in zip(at_x, X)])))
+    heights, places = (np.array(column) for column in zip(*tops))
+    left = np.where(_as_high(heights, heights.max(axis=0)), places, np.inf).min(axis=0)
+    best = np.where(places <= left + _SAME_TOP, heights, -np.inf).argmax(axis=0)[None]
+    value, place = (np.take_along_axis(of, best, 0)[0] for of in (heights, places))
     return sign * value, place
+
+
+def _as_high(heights: NDArray, top: NDArray) -> NDArray[np.bool_]:
+    """Mask of heights that are the highest one, ``top``, up to rounding."""
+    return np.asarray(heights >= top - _SAME_HEIGHT * np.abs(top))
 
 
 def _finite(X: NDArray, infinite: list[tuple[NDArray, float]]) -> NDArray[np.bool_]:
@@ -535,18 +516,17 @@ def _infinite(solution: Any, body: Any) -> list[tuple[NDArray[np.float64], float
     return ends + [((tip - solution.centre) / solution.half_width, NEAR_TIP) for tip in body.tips]
 
 
-def _largest(
+def _tops_between(
     u: NDArray, values: NDArray, pieces: NDArray
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest of curves and its place, (states,), by polynomials through samples around their tops.
+) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Highest tops of curves and their places, (states,) each, by polynomials through samples.
 
     Args:
         u: rising coordinate in which the curves are smooth, (n,).
         values: values of the curves, -inf where they do not count, (states, n).
         pieces: number of the smooth piece of its curve to which a sample belongs, (states, n).
     """
-    rows, best = np.arange(len(values))[:, None], values.max(axis=1)
-    place = u[values.argmax(axis=1)]
+    rows = np.arange(len(values))[:, None]
     inner = values[:, 1:-1]
     top = (inner >= values[:, :-2]) & (inner >= values[:, 2:]) & np.isfinite(inner)
     order = np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_TOPS_BETWEEN]
@@ -561,13 +541,11 @@ def _largest(
         usable = same & np.isfinite(values[rows, window]).all(axis=1) & (np.diff(window) == 1).all(axis=1)
         usable &= top[rows[:, 0], column]
         if usable.any():
-            rows_of_top = usable.nonzero()[0]
-            refined, at = _vertex(
-                u, values[rows_of_top[:, None], window[rows_of_top]], window[rows_of_top], i[rows_of_top]
+            height, place = np.full(len(values), -np.inf), np.full(len(values), np.nan)
+            height[usable], place[usable] = _vertex(
+                u, values[rows[usable], window[usable]], window[usable], i[usable]
             )
-            place[rows_of_top] = np.where(refined > best[rows_of_top], at, place[rows_of_top])
-            best[rows_of_top] = np.maximum(best[rows_of_top], refined)
-    return best, place
+            yield height, place
 
 
 def _vertex(
@@ -594,9 +572,8 @@ def _vertex(
     return np.where(inside, vertex, curve.max(axis=1)), place
 
 
-#: Most tops of a pressure that are refined; places evaluated at a time; distance between them over a at
-#: which refinement ends; and distance within which two places are one.
-_KINKED_TOPS, _PLACES_AT_A_TIME, _STEP, _SAME = 4, 41, 2e-5, 1e-14
+#: Distance over a within which two places are one.
+_SAME = 1e-14
 
 
 def gaps_of(kinks: NDArray) -> tuple[float, float]:
@@ -674,10 +651,7 @@ class KinkedPressure(Pressure):
         return (σ / ((1.0 - r) ** self.α * (1.0 + r) ** self.β))[None]
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each.
-
-        It is refined around the best nodes.
-        """
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each."""
         if self._infinite:
             return np.full(1, np.nan), np.full(1, np.nan)
         facets = self._facets
@@ -685,26 +659,10 @@ class KinkedPressure(Pressure):
         r = np.unique(np.concatenate([self._chart.surface_position(nodes.ravel()), self.kinks]))
         # Facets have their common node a rounding apart: with both places no top would reach past it.
         r = r[under_punch(r) & (np.diff(r, prepend=-2.0) > _SAME)]
-        p = -self.σ_YY(r)[0]
-        tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
-        tops = tops[np.argsort(-p[tops], kind="stable")][:_KINKED_TOPS]
-        peaks = [self._nearer(*r[[i - 1, i + 1]]) for i in tops.tolist()]
+        top = largest(lambda r: -self.σ_YY(r)[0], self.kinks, places=r)
         if self._exponent:
-            peaks += [(-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)]
-        value, place = np.array(max(peaks))[:, None]
-        return value, place
-
-    def _nearer(self, low: float, high: float) -> tuple[float, float]:
-        """Largest pressure over N/(2a) between two positions over a, and its place over a."""
-        step = 1.0
-        while step > _STEP:
-            # At a kink the pressure may have a cusp, which no grid meets.
-            r = np.linspace(low, high, _PLACES_AT_A_TIME)
-            r = np.unique(np.append(r, self.kinks[(self.kinks > r[0]) & (self.kinks < r[-1])]))
-            p = -self.σ_YY(r)[0]
-            i, step = int(p.argmax()), (high - low) / (_PLACES_AT_A_TIME - 1)
-            low, high = max(r[i] - 2.0 * step, low), min(r[i] + 2.0 * step, high)
-        return float(p[i]), float(r[i])
+            top = max(top, *((-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)))
+        return np.array(top[:1]), np.array(top[1:])
 
     def at_kink(self, number: int) -> float:
         """Contact stress σ_YY over N/(2a) at a kink."""

@@ -29,13 +29,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import SolveError
 from ..layers.kernel import REACH, Kernel, Scaled
 from ..layers.layered import Layered
 from ..profiles import check_reach, cusp, jumps, kinks
 from ..profiles.flat import Flat
-from .closed_form import FlatPunch
-from .edges import Exponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import (
     Contacts,
@@ -54,7 +51,6 @@ from .panelled import Panels
 from .panels import FreeEnds
 from .pressure import Expansion, Pressure
 from .uniform import contacts, off_tips, panels_of
-from .uniform import local_exponents as of_the_surface
 
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
@@ -404,31 +400,24 @@ class FreeContactsAtSpeed(ContactsAtSpeed):
         return _contact(pressure, h, m, (side == 0, side == 1))
 
 
-def local_exponents(
-    response: Any, g: NDArray, profile: Any, unit: float, compression: NDArray
-) -> Exponents | FlatPunch:
-    """Exponents at both ends by local analysis: those of the surface's solid, plus 1 at free ends.
+def free_edges(
+    response: Any, g: float, profile: Any, unit: float, compression: float
+) -> tuple[bool, bool]:
+    """True where the left and the right edge of a tilted punch is free.
 
     Args:
         response: of the layers at a speed.
-        g: σ_XY/σ_YY, (states,).
+        g: σ_XY/σ_YY.
         profile: of the punch.
-        unit: unit of length, where the equation has to be solved [m].
-        compression: N/μ, one for all states or one for each [m].
+        unit: unit of length [m].
+        compression: N/μ [m].
+
+    Raises:
+        SolveError: no contact carries the load.
     """
-    if not (isinstance(profile, Flat) and profile.rise):
-        return of_the_surface(response, g, profile, compression)
-    flat, free = FlatPunch(response, g), np.zeros((len(g), 2))
-    each = np.broadcast_to(compression, g.shape)
-    for N in np.unique(each).tolist():
-        punch, rows = Punch(profile, unit, N), each == N
-        speed = FreeContactsAtSpeed(response, response.stack(unit), np.zeros_like, _OF_ENDS, punch)
-        try:
-            free[rows] = [speed.contact(value).free for value in g[rows].tolist()]
-        except SolveError:
-            continue  # reported by the method that solves
-    free_left, free_right = free.T
-    return Exponents(flat.α + free_right, flat.β + free_left)
+    punch = Punch(profile, unit, compression)
+    speed = FreeContactsAtSpeed(response, response.stack(unit), np.zeros_like, _OF_ENDS, punch)
+    return speed.contact(g).free
 
 
 @lru_cache(maxsize=256)

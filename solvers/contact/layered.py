@@ -11,7 +11,7 @@ so that two frictions give those of all states.
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, cast
 
 import numpy as np
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..layers.kernel import Level
 from ..layers.layered import LayersAtSpeed
 from ..layers.stiffness import Medium
-from ..profiles import cusp, jumps, kinks
+from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch, in_plane
 from .edges import Exponents, under_punch, weights_hilbert
@@ -29,7 +29,7 @@ from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
 from .prescribed_pressure import COARSE, FINE, LinearPressure
-from .pressure import ENDS, Pressure, largest, largest_smooth
+from .pressure import ENDS, Pressure, largest
 from .solution import Places, Surface, Task, Turns, together
 from .yielding_of_layers import StrengthOfLayers
 
@@ -398,27 +398,17 @@ class LayeredSolution:
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        profile = self.at.task.body.profile
         finite = self.free.all(axis=1) & np.isinf(self.tips).all(axis=1)
-        if not finite.any():
-            value, place = np.full((2, len(self.g)), np.nan)
-        elif not len(kinks(profile)) or not finite.all():
-            value, place = largest_smooth(self._pressure, lambda i, r: self._pressure(r, i)[0])
-        else:
-            of_kinks = [
-                largest(
-                    lambda r: self._pressure(r, i)[0], self._kinks(i).tolist(), cusp(profile)  # noqa: B023
-                )
-                for i in range(len(self.g))
-            ]  # fmt: skip
-            value, place = np.array(of_kinks).T
-        return np.where(finite, value, np.nan), np.where(finite, place, np.nan)
+        value, place = np.full((2, len(self.g)), np.nan)
+        for i in np.flatnonzero(finite).tolist():
+            of_state = partial(self._pressure, i)
+            value[i], place[i] = largest(of_state, self._kinks(i))
+        return value, place
 
-    def _pressure(self, r: NDArray, i: int | None = None) -> NDArray[np.float64]:
-        """Pressure over N/(2a) at r over a, (states, n), of state ``i`` alone or of all states."""
-        rows = slice(None) if i is None else slice(i, i + 1)
-        p = self._by_nodes[rows] @ self.at.nodes.read(lambda pressure: pressure.series(r))
-        α, β = (exponent[rows] for exponent in self._exponents)
+    def _pressure(self, i: int, r: NDArray) -> NDArray[np.float64]:
+        """Pressure of a state over N/(2a) at r over a, (n,)."""
+        p = self._by_nodes[i] @ self.at.nodes.read(lambda pressure: pressure.series(r))
+        α, β = (exponent[i] for exponent in self._exponents)
         return np.asarray(-p * (1.0 - r) ** α * (1.0 + r) ** β)
 
 

@@ -275,7 +275,8 @@ class FreeEnds(Pressure):
         f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
         slope: function that gives μ v,X over N/(2h) at any positions in the contact.
         n, Q: n + g n₁₂ and g q of the half-plane.
-        kinks, tips, cusp: see :class:`galinx.solvers.contact.pressure.Pressure`.
+        kinks, tips: see :class:`galinx.solvers.contact.pressure.Pressure`.
+        cusp: exponent below 1 of the pressure's change by the distance from a kink; 0 for none.
     """
 
     panels: Panels

@@ -2,7 +2,7 @@
 
 A piece from x₀ to x₁ has its middle at m, its half-width h and its own coordinate w = (z - m)/h. With
 L = log((w - 1)/(w + 1)) its part of ∫ σ/(t - z) dt is σ(w) L + σ₁ - σ₀. Where two pieces meet their
-logarithms cancel; far away L and σ(w) L + ... are sums of powers of 1/w, in which nothing does.
+logarithms cancel; far away Gauss's rule serves, in which nothing does.
 """
 
 import functools
@@ -17,8 +17,8 @@ from scipy.special import log1p
 from .edges import from_edge
 from .pressure import Pressure
 
-#: |w| from which powers of 1/w serve, and their number: 4^-27 is below rounding.
-_FAR, _POWERS = 2.0, 27
+#: |w| from which Gauss's rule serves, and that rule: its error there is below rounding.
+_FAR, (_t, _w) = 2.0, np.polynomial.legendre.leggauss(15)
 
 #: A point nearer to a knot than this is moved to this distance, over a: the logarithms of two pieces
 #: cancel there, but infinite ones would not.
@@ -165,10 +165,8 @@ class _Pieces:
         """Integrals ∫ σ/(t - z) dt, (pieces, ...)."""
         ratio = self._right / self._left
         L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
-        v = 1.0 / np.where(self._far, self._w, np.inf)
-        mean, slope = self._mean, self._slope
-        far = -2.0 * v * (mean * _series(v**2, 1)[0] + slope * v * _series(v**2, 3)[0])
-        return np.where(self._far, far, self._pressure * L + 2.0 * slope)
+        far = self._summed(lambda t: 1.0 / (t - self._w))
+        return np.where(self._far, far, self._pressure * L + 2.0 * self._slope)
 
     def change(self, step: NDArray, share: complex) -> NDArray[np.complex128]:
         """Change of the integrals for a step share·step of the points, over share, (pieces, ...)."""
@@ -179,12 +177,13 @@ class _Pieces:
             growth = log1p(share * growth) / share  # of L
         near = self._pressure * growth + self._slope * d * np.log(from_right / from_left)
         far = self._far & (abs(self._w + share * d) > _FAR)
-        w = np.where(far, self._w, np.inf)
-        v, moved = 1.0 / w, 1.0 / (w + share * d)
-        δ = -d * v * moved * (v + moved)  # of v²
-        T, by_v2 = _series(v**2, 3, moved**2)
-        by_series = self._mean * growth - 2.0 * self._slope * δ * (T + moved**2 * by_v2)
-        return np.where(far, by_series, near)
+        by_rule = self._summed(lambda t: d / ((t - self._w) * (t - self._w - share * d)))
+        return np.where(far, by_rule, near)
+
+    def _summed(self, kernel: Callable[[float], NDArray]) -> NDArray[Any]:
+        """∫ σ kernel dt over the pieces by Gauss's rule, for points that are far."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return sum(w * (self._mean + t * self._slope) * kernel(t) for t, w in zip(_t, _w))
 
     @property
     def _mean(self) -> NDArray[np.float64]:
@@ -203,12 +202,3 @@ class _Pieces:
 
 def _moved(distance: NDArray) -> NDArray[Any]:
     return np.where(abs(distance) < _NEXT_TO_KNOT, _NEXT_TO_KNOT, distance)
-
-
-def _series(q: NDArray, first: int, other: Any = 0.0) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Series S = Σ q^k/(2k + first), and (S(other) - S(q))/(other - q), by Horner's rule."""
-    S, divided = np.zeros_like(q), np.zeros_like(q)
-    for k in reversed(range(_POWERS)):
-        divided = divided * other + S
-        S = S * q + 1.0 / (2 * k + first)
-    return S, divided

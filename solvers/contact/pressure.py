@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from .edges import weights_hilbert
 
-#: Distance over a from a cusp of the pressure at which it is sampled, on both sides.
-_CUSP, _BOTH_SIDES = 1e-5, np.array([-1.0, 1.0])
-#: Places at which the pressure is sampled for its largest value, and places about kinks; number of tops
-#: that are refined, places between their neighbours, and rounds of refinement.
+#: Places at which the pressure is sampled for its largest value, and places about kinks; most tops that
+#: are refined. Where there is a kink: places between a top's neighbours, and least distance of these.
 _SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
 _BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
-_TOPS, _BETWEEN, _ROUNDS = 5, 21, 8
+_TOPS, _BETWEEN, _AT_KINK = 5, 21, 1e-6
+#: Rounds of refinement by parabolas through three places, factor of each, and least distance of these.
+_HALVINGS, _NEARER, _NEAREST, _THREE = 6, 8.0, 3e-5, np.array([-1.0, 0.0, 1.0])
 
 #: Both ends of a contact, over its half-width.
 ENDS = np.array([-1.0, 1.0])
@@ -36,7 +36,6 @@ class Pressure:
         α, β: exponents at the right and the left end.
         kinks: places inside at which the pressure is not smooth.
         tips: places inside at which it is infinite.
-        cusp: exponent below 1 of its change by the distance from a kink; 0 for none.
         breaks: ends of pieces in which it is linear; none for other pressures.
         resultant: ∫ σ_YY d(X/a) over N/(2a); -2 under a punch.
         near: |r| up to which p can be evaluated.
@@ -46,7 +45,6 @@ class Pressure:
     β: Any
     kinks: Sequence[float] | NDArray = ()
     tips: Sequence[float] = ()
-    cusp: float = 0.0
     breaks: Sequence[float] | NDArray = ()
     resultant: float = -2.0
     near: float = 1.0
@@ -89,7 +87,7 @@ class Pressure:
         """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
         if not self.finite:
             return np.full(1, np.nan), np.full(1, np.nan)
-        top, at = largest(lambda r: -self.σ_YY(r), self.kinks, self.cusp)
+        top, at = largest(lambda r: -self.σ_YY(r), self.kinks)
         return np.array([top]), np.array([at])
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
@@ -167,8 +165,12 @@ class Expansion(Pressure):
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a) and its place, NaN where it is infinite, (states,) each."""
-        top = largest_smooth(lambda r: -self.σ_YY(r), lambda i, r: -self.σ_YY(r)[i])
-        value, place = np.where(np.ravel(np.minimum(self.α, self.β)) < 0.0, np.nan, top)
+        c = np.atleast_2d(self.c)
+        exponents = (
+            np.broadcast_to(np.ravel(exponent), len(c)).tolist() for exponent in (self.α, self.β)
+        )
+        each = [Pressure.largest(replace(self, α=α, β=β, c=row)) for α, β, row in zip(*exponents, c)]
+        value, place = np.concatenate(each, axis=1)
         return value, place
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
@@ -200,91 +202,53 @@ class Expansion(Pressure):
 
 
 def largest(
-    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] | NDArray = (), cusp: float = 0.0
+    pressure: Callable[[NDArray], NDArray],
+    kinks: Sequence[float] | NDArray = (),
+    places: NDArray = _SAMPLES,
 ) -> tuple[float, float]:
-    """Largest pressure under a punch and its place, by ever finer samples about several tops.
+    """Largest pressure of a state under a punch and its place, by a search about several tops.
 
     Args:
         pressure: at r in (-1, 1), (points,).
         kinks: places at which it is not smooth.
-        cusp: exponent of its change by the distance from them; 0 where that is d log d.
+        places: places at which it is sampled besides, (n,).
     """
     beside = np.ravel(np.add.outer(np.array(kinks, dtype=float), _BESIDE_KINKS))
-    r = np.unique(np.concatenate([_SAMPLES, beside[np.abs(beside) < 1.0]]))
+    r = np.unique(np.concatenate([places, beside[np.abs(beside) < 1.0]]))
     p = pressure(r)
     tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
+    if not len(tops):  # nearer to an end than all samples
+        tops = np.clip([p.argmax()], 1, len(p) - 2)
     tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    maxima = [_nearer(pressure, r[i - 1], r[i + 1], kinks) for i in tops.tolist()]
-    if cusp:  # which no grid meets: p(d) = p(0) + C d^exponent, the mean of both sides
-        for at in kinks:
-            near, far = (float(pressure(at + d * _BOTH_SIDES).mean()) for d in (_CUSP, 2.0 * _CUSP))
-            maxima.append((near + (near - far) / (2.0**cusp - 1.0), float(at)))
-    return max(maxima)
+    return max(_nearer(pressure, r[i - 1 : i + 2], np.asarray(kinks)) for i in tops.tolist())
 
 
 def _nearer(
-    pressure: Callable[[NDArray], NDArray], low: float, high: float, kinks: Sequence[float] | NDArray
+    pressure: Callable[[NDArray], NDArray], three: NDArray, kinks: NDArray
 ) -> tuple[float, float]:
-    """Largest pressure between two places, and its place; by a parabola at last, if there is no kink."""
-    for _ in range(_ROUNDS):
-        r = np.linspace(low, high, _BETWEEN)
+    """Largest pressure about the middle one of three places, and its place.
+
+    It is that of ever closer parabolas; as long as there is a kink about, of ever finer samples.
+    """
+    while len(inside := kinks[(kinks >= three[0]) & (kinks <= three[2])]):
+        step = (three[2] - three[0]) / (_BETWEEN - 1)
+        r = np.union1d(np.linspace(three[0], three[2], _BETWEEN), inside)
         p = pressure(r)
         i = int(np.clip(np.argmax(p), 1, len(r) - 2))
-        step = r[1] - r[0]
-        low, high = r[i] - step, r[i] + step
-        if step < 1e-6:  # next to a kink the largest pressure may have a cusp
-            break
-    if any(low <= at <= high for at in kinks):
-        return float(p.max()), float(r[p.argmax()])
-    p_left, p_middle, p_right = p[i - 1 : i + 2]
-    bend = p_left - 2.0 * p_middle + p_right
-    u = float(np.clip((p_left - p_right) / (2.0 * bend), -1.0, 1.0)) if bend < 0.0 else 0.0
-    top = p_middle + (p_right - p_left) * u / 2.0 + bend * u**2 / 2.0
-    return max((float(p.max()), float(r[p.argmax()])), (float(top), float(r[i] + u * step)))
-
-
-#: Positions over a at which the search for the largest pressure starts, rounds of refinement, factor of
-#: each, and least distance between places.
-_STARTS = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 201))[1:-1]
-_HALVINGS, _NEARER, _NEAREST = 6, 8.0, 1e-4
-#: Most tops that are refined, and three places around each.
-_SMOOTH_TOPS, _THREE = 3, np.array([-1.0, 0.0, 1.0])
-
-
-def largest_smooth(
-    pressure: Callable[[NDArray], NDArray], of_state: Callable[[int, NDArray], NDArray]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest value of a smooth pressure and its place over a, (states,) each.
-
-    Args:
-        pressure: function of positions over a, (n,), that gives the pressure of all states, (states, n).
-        of_state: function of a state's number and positions (n,), that gives its pressure, (n,).
-    """
-    p = pressure(_STARTS)
-    inner = p[:, 1:-1]
-    top = (inner >= p[:, :-2]) & (inner >= p[:, 2:])
-    best = 1 + np.argsort(np.where(top, -inner, np.inf), axis=1, kind="stable")[:, :_SMOOTH_TOPS]
-    values, places = zip(*(_top_of_each(of_state, i) for i in best.T))
-    first, rows = np.argmax(values, axis=0), np.arange(len(p))
-    return np.array(values)[first, rows], np.array(places)[first, rows]
-
-
-def _top_of_each(
-    of_state: Callable[[int, NDArray], NDArray], i: NDArray
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest value and its place between the neighbours of position i of each state, (states,) each."""
-    places = _STARTS[i[:, None] + [-1, 0, 1]]
+        three = r[i - 1 : i + 2]
+        if step < _AT_KINK:  # where the largest pressure may have a cusp
+            return float(p.max()), float(r[p.argmax()])
+    low, high = three[[0, 2]]
+    half = (high - low) / 2.0
+    least = min(_NEAREST, half)
     for _ in range(_HALVINGS):
-        three = np.stack([of_state(k, x) for k, x in enumerate(places)])
-        half = (places[:, 2] - places[:, 0]) / 2.0
-        divided = (three[:, 1:] - three[:, :-1]) / np.diff(places)
-        bend = (divided[:, 1] - divided[:, 0]) / (places[:, 2] - places[:, 0])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            top = (places[:, 0] + places[:, 1]) / 2.0 - divided[:, 0] / (2.0 * bend)
-        round_ = (bend < 0.0) & (top > places[:, 0]) & (top < places[:, 2])
-        top = np.where(round_, top, places[np.arange(len(i)), three.argmax(axis=1)])
-        to_left, to_middle = top - places[:, 0], top - places[:, 1]
-        value = three[:, 0] + divided[:, 0] * to_left + bend * to_left * to_middle
-        half = np.maximum(half / _NEARER, _NEAREST)
-        places = np.clip(top, -1.0 + 2.0 * half, 1.0 - 2.0 * half)[:, None] + half[:, None] * _THREE
-    return value, top
+        p = pressure(three)
+        slopes = np.diff(p) / np.diff(three)
+        bend = (slopes[1] - slopes[0]) / (three[2] - three[0])
+        top = (three[0] + three[1]) / 2.0 - slopes[0] / (2.0 * bend) if bend < 0.0 else np.nan
+        if not three[0] < top < three[2]:
+            top = three[p.argmax()]
+        value = p[0] + slopes[0] * (top - three[0]) + bend * (top - three[0]) * (top - three[1])
+        half = max(half / _NEARER, least)
+        three = np.clip(top, low + half, high - half) + half * _THREE
+    return float(value), float(top)

@@ -22,8 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..layers.kernel import Kernel, Scaled
-from ..solids.half_plane import DATUM
-from ..solids.solid import Response
+from ..solids.half_plane import DATUM, HalfPlane
 from .closed_form import Weighted
 
 #: Panels' ends off all kinks: beyond |x| = 12 all is powers of e^x, beyond 300 it is negligible.
@@ -89,7 +88,7 @@ def _smooth(pressure: Stress, r: NDArray, α: NDArray, β: NDArray) -> NDArray[n
 
 
 def of_pressure(
-    response: Response,
+    response: HalfPlane,
     g: NDArray,
     exponents: tuple[NDArray, NDArray],
     slope: Stress,
@@ -138,7 +137,7 @@ def of_pressure(
 
 
 def of_contact(
-    response: Response,
+    response: HalfPlane,
     g: NDArray,
     local: Any,
     body: Any,
@@ -254,7 +253,7 @@ def places() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return np.tanh(u), step * np.pi / 2.0 * np.cosh(t) / np.cosh(u) ** 2
 
 
-def indentation(response: Response, g: NDArray, σ_YY: NDArray, height: Any) -> NDArray[np.float64]:
+def indentation(response: HalfPlane, g: NDArray, σ_YY: NDArray, height: Any) -> NDArray[np.float64]:
     """Indentation v₀ of the punch's lowest point over N/(2μ), (states,), to about 2e-5 of it.
 
     NaN where the pressure is so singular that the rule misses much of the load.

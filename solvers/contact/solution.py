@@ -6,6 +6,7 @@ change with a power of the distance, and the largest may lie between samples: a 
 limits there, :class:`Turns`.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
@@ -13,11 +14,12 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import SolveError
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, YIELD
-from .edges import under_punch
+from .edges import EdgeExponents, Exponents, under_punch
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
 
@@ -152,7 +154,7 @@ class Contact:
         layers = self.solid.layers if self.layered else ()  # type: ignore[attr-defined]
         return (*(layer.yield_strength for layer in layers), self.yield_strength)
 
-    def response(self, c: float) -> Response:
+    def response(self, c: float) -> HalfPlane:
         """Response of the half-plane at a speed over its wave speed, dimensionless.
 
         Raises:
@@ -173,7 +175,7 @@ class Contact:
         """Normal stress out of the plane at a solution's points inside, over N/(2a), (states, m)."""
         return solution.σ_ZZ if self.layered else self.solid.σ_ZZ(*solution.inside)
 
-    def local_exponents(self, response: Response, g: NDArray, load: Any = None) -> Any:
+    def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Exponents of the pressure at the ends of states.
 
         Args:
@@ -181,14 +183,18 @@ class Contact:
             g: σ_XY/σ_YY under the punch, (states,).
             load: of each state [N/m], (states,); None for this contact's.
         """
-        compression = self.loaded(load).compression
-        if self.layered:
-            from . import free_on_layers as layers  # SciPy's special functions, a slow import
+        edges = EdgeExponents(response, g)
+        free_left, free_right = self._free_ends(response, g, self.loaded(load).compression).T
+        return Exponents(edges.α + free_right, edges.β + free_left)
 
-            return layers.local_exponents(response, g, self.profile, self.half_width, compression)
-        from .uniform import local_exponents
+    def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
+        """True where the left and the right end of states are free, (states, 2).
 
-        return local_exponents(response, g, self.profile, compression)
+        Args:
+            response, g: as in :meth:`local_exponents`.
+            compression: N/μ [m], a number or (states,).
+        """
+        return np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
 
     @property
     def layered(self) -> bool:
@@ -218,7 +224,7 @@ class Contact:
         """
         return np.column_stack([local.β, local.α]) < 0.0
 
-    def known_pressure(self, response: Response, g: NDArray) -> Pressure | None:
+    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure | None:
         """Pressure without an equation to solve, over a uniform half-plane; None where there is one.
 
         Args:
@@ -297,7 +303,7 @@ class SharpContact(Contact):
     def growth_exponent(self) -> float | None:
         return 0.0 if self.flat else None
 
-    def known_pressure(self, response: Response, g: NDArray) -> Pressure | None:
+    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure | None:
         from .closed_form import FlatPunch  # SciPy's special functions, a slow import
 
         return FlatPunch(response, g) if self.flat else None
@@ -320,7 +326,7 @@ class PrescribedContact(SharpContact):
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         return np.tile(self.pressure.values[[0, -1]] != 0.0, (len(local.α), 1))
 
-    def known_pressure(self, response: Response, g: NDArray) -> Pressure:
+    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure:
         return self.pressure
 
 
@@ -381,6 +387,22 @@ class OneFreeContact(FreeEndContact):
 
     ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
 
+    def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
+        free = super()._free_ends(response, g, compression)
+        if not self.layered:
+            from .uniform import contacts  # SciPy's special functions, a slow import
+
+            with suppress(SolveError):  # the method that solves reports it
+                of = contacts(response, g, self.profile, compression).of
+                free = np.column_stack([of("β"), of("α")]) > 0.0
+            return free
+        from .free_on_layers import free_edges
+
+        for i, N in enumerate(np.broadcast_to(compression, g.shape).tolist()):
+            with suppress(SolveError):
+                free[i] = free_edges(response, float(g[i]), self.profile, self.half_width, N)
+        return free
+
 
 class FreeContact(FreeEndContact):
     """Contact between two free ends, of a convex punch."""
@@ -434,7 +456,7 @@ class Task:
 
     number: int
     body: Contact
-    response: Response
+    response: HalfPlane
     places: Places
     runs: tuple[slice, ...]
     loads: tuple[float, ...]
@@ -442,6 +464,20 @@ class Task:
     def of(self, values: NDArray) -> NDArray:
         """Rows of the task's states, of values of all states, (states, …)."""
         return np.concatenate([values[run] for run in self.runs])
+
+    def probes(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """Frictions and loads of states that stand for all: at both ends of the loads, unless similar.
+
+        Args:
+            g: frictions, (n,).
+
+        Returns:
+            Frictions, and loads [N/m], None for the task's, (states,) each.
+        """
+        if self.body.alike:
+            return g, None
+        ends = sorted({min(self.loads), max(self.loads)})
+        return np.tile(g, len(ends)), np.repeat(ends, len(g))
 
 
 def solved_once(
@@ -476,82 +512,55 @@ class Turns:
     Attributes:
         X: places over a, NaN for none, (states, k).
         σ: σ_XX, σ_YY, σ_XY over N/(2a) at these places, NaN for none, (3, states, k).
-        between: in-plane stress between the places, where samples of the surface are too far from them;
-            None where samples are near enough.
+        between: positions over a in intervals between neighbouring kinks, near both of which σ_XX has a
+            logarithm of the distance, and σ_XX there, NaN for none, (2, states, intervals, n); positions
+            are at :data:`galinx.solvers.contact.free_ends.GRADED`. None without kinks.
     """
 
     X: NDArray[np.float64]
     σ: NDArray[np.float64]
-    between: "Between | None" = None
+    between: NDArray[np.float64] | None = None
 
     def of(self, rows: NDArray) -> "Turns":
         """Turns of the states with these numbers, which may repeat."""
-        between = self.between and Between(
-            self.between.X[rows], self.between.x, self.between.σ_XX[rows]
-        )  # fmt: skip
+        between = None if self.between is None else self.between[:, rows]
         return Turns(self.X[rows], self.σ[:, rows], between)
 
     def joined(self, other: "Turns") -> "Turns":
         """Turns at these places and at other places of the same states."""
         σ = np.concatenate([self.σ, other.σ], axis=2)
-        return Turns(np.concatenate([self.X, other.X], axis=1), σ, self.between or other.between)
-
-
-@dataclass(frozen=True)
-class Between:
-    """In-plane stress between neighbouring kinks, near both of which it has a logarithm of the distance.
-
-    Attributes:
-        X: positions over a, in intervals between kinks, NaN for none, (states, intervals, n).
-        x: logarithm of the ratio of a position's distances from both kinks, in which stresses are
-            smooth, (n,).
-        σ_XX: in-plane stress over N/(2a) at these positions, NaN for none, (states, intervals, n).
-    """
-
-    X: NDArray[np.float64]
-    x: NDArray[np.float64]
-    σ_XX: NDArray[np.float64]
+        between = other.between if self.between is None else self.between
+        return Turns(np.concatenate([self.X, other.X], axis=1), σ, between)
 
 
 def together(each: list[Turns]) -> Turns | None:
-    """Turns of all states from those of each, padded with NaN where a state has fewer places than others.
+    """Turns of all states from those of some, padded with NaN where these have fewer places than others.
 
     Args:
-        each: turns of a single state.
+        each: turns of one or several states.
 
     Returns:
         Turns of as many states; None where the list is empty.
     """
     if not each:
         return None
-    σ = np.array([_padded([turns.σ[i] for turns in each]) for i in range(3)])
-    return Turns(_padded([turns.X for turns in each]), σ, all_between([turns.between for turns in each]))
-
-
-def all_between(each: list[Between | None]) -> Between | None:
-    """Stresses between kinks of all states from those of each, padded with NaN; None where none has any.
-
-    Args:
-        each: stresses of a single state, None where it has none.
-    """
-    x = next((between.x for between in each if between), None)
-    if x is None:
-        return None
-    none = Between(np.empty((1, 0, len(x))), x, np.empty((1, 0, len(x))))
-    betweens = [between or none for between in each]
-    X, σ_XX = (_padded([getattr(between, name) for between in betweens]) for name in ("X", "σ_XX"))
-    return Between(X, x, σ_XX)
+    X, σ = _padded([turns.X[None] for turns in each])[0], _padded([turns.σ for turns in each])
+    n = {turns.between.shape[-1] for turns in each if turns.between is not None}
+    between = [
+        np.empty((2, len(turns.X), 0, *n)) if turns.between is None else turns.between for turns in each
+    ]
+    return Turns(X, σ, _padded(between) if n else None)
 
 
 def _padded(each: list[NDArray]) -> NDArray[np.float64]:
-    """Arrays (1, k, ...) of states one after the other, padded with NaN to the largest k."""
-    most = max(values.shape[1] for values in each)
+    """Arrays (components, states, k, ...), one after the other, padded with NaN to the largest k."""
+    most = max(values.shape[2] for values in each)
 
     def whole(values: NDArray) -> NDArray[np.float64]:
-        widths = [(0, (most - values.shape[1]) * (axis == 1)) for axis in range(values.ndim)]
+        widths = [(0, (most - values.shape[2]) * (axis == 2)) for axis in range(values.ndim)]
         return np.pad(np.asarray(values, dtype=float), widths, constant_values=np.nan)
 
-    return np.concatenate([whole(values) for values in each])
+    return np.concatenate([whole(values) for values in each], axis=1)
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ The ends of a contact with two free ends and any convex profile P meet two condi
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -24,9 +25,8 @@ from ..errors import SolveError
 from ..profiles import check_reach, cusp, jumps
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .closed_form import FlatPunch, Weighted, in_plane
-from .edges import Exponents
 from .ends import Punch, Rule, free_ends
 from .panels import FreeEnds, Panels, ends_of_panels
 from .pressure import Pressure
@@ -74,10 +74,6 @@ class Group:
         stress = self.pressure.σ_YY(r)
         return np.broadcast_to(stress, (len(self.rows), stress.shape[-1]))
 
-    def off_tips(self, r: NDArray) -> NDArray[np.float64]:
-        """Positions r over the half-width, moved off the places of infinite pressure."""
-        return off_tips(r, self.pressure.tips)
-
 
 def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:
     """Positions r over the half-width, moved off tips, where the pressure is infinite."""
@@ -97,7 +93,7 @@ class Contacts:
         groups: all states by the kind of their pressure.
     """
 
-    response: Response
+    response: HalfPlane
     g: NDArray[np.float64]
     groups: tuple[Group, ...]
 
@@ -105,98 +101,56 @@ class Contacts:
         """Attribute of every state by its name: ``α``, ``β``, ``half_width``, ``centre``, ``K_I``."""
         return self.joined(lambda group: getattr(group, name))
 
-    def joined(self, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
-        """Values of all states, (states, ...), from those of every group, (rows, ...)."""
+    def joined(self, values: Callable[[Group], NDArray], axis: int = 0) -> NDArray[np.float64]:
+        """Values of all states from those of every group, along an axis of states."""
         if len(self.groups) == 1:
             return values(self.groups[0])
-        each = [values(group) for group in self.groups]
-        of_states = np.empty((len(self.g), *each[0].shape[1:]))
-        for group, of_group in zip(self.groups, each):
-            of_states[group.rows] = of_group
-        return of_states
+        each = np.concatenate([values(group) for group in self.groups], axis=axis)
+        return each.take(self.order, axis)
 
-    def σ_XX(self, r: NDArray) -> NDArray[np.float64]:
-        """In-plane stress on the whole surface, off the ends, (states, points)."""
-        return self.on_surface(r)[0]
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """Number of each state among those of all groups, one group after the other, (states,)."""
+        return np.argsort(np.concatenate([group.rows for group in self.groups]))
 
-    def on_surface(self, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """σ_XX and σ_YY, 0 beside the contact, on the whole surface, off the ends, (states, points)."""
-        each = {id(group): self.surface_of(group, r) for group in self.groups}
-        σ_XX, σ_YY = (self.joined(lambda group: each[id(group)][i]) for i in (0, 1))  # noqa: B023
-        return σ_XX, σ_YY
+    def on_surface(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY, 0 beside the contact, on the surface off the ends, (2, states, points)."""
+        return self.joined(lambda group: self.surface_of(group, r), 1)
 
-    def surface_of(self, group: Group, r: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (rows, points) each."""
-        r, g = group.off_tips(r), self.g[group.rows, None]
+    def surface_of(self, group: Group, r: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (2, rows, points)."""
+        r, g = off_tips(r, group.pressure.tips), self.g[group.rows, None]
         σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
         σ_XX = in_plane(self.response, g, σ_YY, group.pressure.hilbert(r))
-        return σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)
-
-    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY below the surface, at points (n,) or of each state (states, n)."""
-        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
-        if len(self.groups) == 1:
-            return self.inside_group(self.groups[0], X, Y)
-        stresses = np.empty((3, len(self.g), X.shape[1]))
-        for group in self.groups:
-            of_each = group.rows if len(X) > 1 else [0]
-            stresses[:, group.rows] = self.inside_group(group, X[of_each], Y[of_each])
-        return stresses
-
-    def inside_group(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY of a group below the surface, at points (1, n) or (rows, n): (3, rows, n)."""
-        return self.response.inside(group.pressure, self.g[group.rows, None], X, Y)
+        return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at points with Y <= 0, on the surface, too, (3, states, n)."""
-        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
-        on, stresses = Y == 0.0, self.inside(X, np.where(Y == 0.0, -1.0, Y))
-        columns = np.flatnonzero(on.any(axis=0))
-        for group in self.groups if len(columns) else ():
-            of_each = group.rows if len(X) > 1 else np.zeros(1, dtype=int)
-            places = np.ix_(group.rows, columns)
-            σ_XX, σ_YY = self.surface_of(group, X[np.ix_(of_each, columns)])
-            surface = np.array([σ_XX, σ_YY, self.g[group.rows, None] * σ_YY])
-            below = stresses[:, places[0], places[1]]
-            stresses[:, places[0], places[1]] = np.where(on[np.ix_(of_each, columns)], surface, below)
-        return stresses
+        """σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points with Y <= 0, on the surface, too.
 
-    @property
-    def turns(self) -> NDArray[np.float64]:
-        """Free ends and kinks over the half-width, (states, k); NaN for none.
-
-        Stresses are finite there, and go with a power of the distance.
+        Points are (n,), or of each state (states, n).
         """
-        each: list[list[float]] = [[] for _ in self.g]
-        for group in self.groups:
-            kinks = list(group.pressure.bends)
-            for row, α, β in zip(group.rows.tolist(), group.α, group.β):
-                each[row] = [-1.0] * bool(β > 0.0) + [1.0] * bool(α > 0.0) + kinks
-        positions = np.full((len(each), max(map(len, each))), np.nan)
-        for row, places in zip(positions, each):
-            row[: len(places)] = places
-        return positions
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
 
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (states,) each."""
-        value, place = np.empty((2, len(self.g)))
-        for group in self.groups:
-            value[group.rows], place[group.rows] = group.pressure.largest()
-        return value, place
+        def of_group(group: Group) -> NDArray[np.float64]:
+            return self.stresses_of(group, *(x[group.rows] if len(x) > 1 else x for x in (X, Y)))
 
+        return self.joined(of_group, 1)
 
-def local_exponents(response: Response, g: NDArray, profile: Any, load: Any) -> Exponents | FlatPunch:
-    """Exponents by the local analysis: those of a flat punch at sharp ends, one more at free ends."""
-    flat, sharp = FlatPunch(response, g), getattr(profile, "sharp", (True, True))
-    if all(sharp):
-        return flat
-    try:
-        exact = contacts(response, g, profile, load) if isinstance(profile, Flat) else None
-    except SolveError:
-        exact = None  # the method that solves reports it
-    if exact:
-        return Exponents(exact.of("α"), exact.of("β"))
-    return Exponents(flat.α + (not sharp[1]), flat.β + (not sharp[0]))
+    def stresses_of(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY of a group at points (1, n) or (rows, n): (3, rows, n)."""
+        on, g = Y == 0.0, self.g[group.rows, None]
+        σ = self.response.inside(group.pressure, g, X, np.where(on, -1.0, Y))
+        columns = on.any(axis=0)
+        if columns.any():
+            σ_XX, σ_YY = self.surface_of(group, X[:, columns])
+            σ[..., columns] = np.where(on[:, columns], [σ_XX, σ_YY, g * σ_YY], σ[..., columns])
+        return σ
+
+    def largest(self) -> NDArray[np.float64]:
+        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (2, states)."""
+        return self.joined(
+            lambda group: np.broadcast_to(group.pressure.largest(), (2, len(group.rows))), 1
+        )
 
 
 def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
@@ -213,7 +167,7 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
 
 
-def contacts_of(body: Any, response: Response, g: NDArray) -> Contacts:
+def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
     """Contacts of a body, prescribed, with free ends or sharp.
 
     Args:
@@ -239,7 +193,7 @@ def _fixed(rows: NDArray, pressure: Pressure, half_width: float) -> Group:
     return Group(rows, pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
 
 
-def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contacts:
+def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:
     """Contacts of a punch with free ends.
 
     Args:
@@ -265,7 +219,7 @@ def contacts(response: Response, g: NDArray, profile: Any, load: Any) -> Contact
     return Contacts(response, g, tuple(_by_quadrature(response, g, n, profile, load)))
 
 
-def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
+def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
     flat = FlatPunch(response, g)
     a, b = 1.0 + flat.α, 1.0 + flat.β
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
@@ -275,7 +229,7 @@ def _parabolas(response: Response, g: NDArray, n: NDArray, profile: Parabolic, l
 
 
 def _tilted(
-    response: Response, g: NDArray, n: NDArray, profile: Flat, load: NDArray
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Flat, load: NDArray
 ) -> tuple[Group, ...]:
     """Contacts of a tilted flat punch: both edges in contact, or one lifted off."""
     flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
@@ -302,7 +256,7 @@ def _tilted(
 
 
 def _by_quadrature(
-    response: Response, g: NDArray, n: NDArray, profile: Any, load: NDArray
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Any, load: NDArray
 ) -> Sequence[Group]:
     """Contacts of any convex profile, state after state; equal states are solved once."""
     a, groups = 1.0 + FlatPunch(response, g).α, []
@@ -338,7 +292,7 @@ def rule_of_ends(profile: Any, a: float, n: float) -> Rule:
     return rule
 
 
-def pressure_of(punch: Punch, a: float, response: Response, g: float, m: float, h: float) -> FreeEnds:
+def pressure_of(punch: Punch, a: float, response: HalfPlane, g: float, m: float, h: float) -> FreeEnds:
     """Pressure of a contact with given ends.
 
     Args:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..profiles import exponent
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .solution import Contact, Turns
 from .stresses import maximum_shear, von_mises
 
@@ -534,7 +534,7 @@ class Strength:
         self,
         field: Field,
         body: Contact,
-        response: Response,
+        response: HalfPlane,
         g: NDArray,
         local: Any,
         half_width: NDArray | None = None,

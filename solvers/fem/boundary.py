@@ -20,7 +20,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .linear import times
 from .space import Space
 
@@ -62,7 +62,7 @@ class FarBoundary:
         fields: displacements, once they are solved for.
     """
 
-    def __init__(self, space: Space, response: Response, A: PETSc.Mat) -> None:
+    def __init__(self, space: Space, response: HalfPlane, A: PETSc.Mat) -> None:
         self.fields: list[PETSc.Vec] = []
         moved = np.empty((2 * len(space.far_nodes), 0))
         if space.terms:

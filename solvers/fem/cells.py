@@ -1,7 +1,7 @@
 """Quadrilateral cells: places, shape functions and derivatives in a cell, its chart, congruent cells.
 
 A cell is the bilinear image of the unit square; its vertices come in dolfinx's order 00, 10, 01, 11. Its
-shape functions are products of Lagrange polynomials (:class:`Shapes`).
+shape functions are products of Lagrange polynomials.
 
 :class:`Contracted` is the chart in which a mesh is drawn, as speed contracts it.
 
@@ -17,13 +17,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from galinx.meshes.charts import Chart
 
 from ..approximation import lagrange
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 
 
 @dataclass(frozen=True)
@@ -221,7 +220,7 @@ def _largest(corners: NDArray, kinds: NDArray) -> tuple[NDArray[np.int64], NDArr
 
 
 def model_cells(
-    corners: NDArray, response: Response, constants: Sequence[str], gather: Gather = lambda part: [part]
+    corners: NDArray, response: HalfPlane, constants: Sequence[str], gather: Gather = lambda part: [part]
 ) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
     """Model cells, whose matrices are those of all cells in a plane, and the cells that have each matrix.
 
@@ -242,48 +241,3 @@ def model_cells(
     # A cell of a graded solid is like no other.
     own = np.flatnonzero(graded)
     return np.concatenate([models, corners[own]]), [*members[: len(models)], *own[:, None]]
-
-
-@dataclass(frozen=True)
-class Shapes:
-    """Shape functions of the unit square at points of Gauss's rule, exact for products on parallelograms.
-
-    Attributes:
-        t: points, (points, 2).
-        weights: of the points, (points,).
-        values: of the shape functions, (points, nodes).
-        slopes: their derivatives along both directions of the square, (2, points, nodes).
-    """
-
-    t: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    values: NDArray[np.float64]
-    slopes: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, reference: NDArray) -> "Shapes":
-        """Shape functions of nodes at places in the unit square, (nodes, 2)."""
-        grid, nodes = tensor_order(reference)
-        x, w = leggauss(len(nodes) + 1)
-        x, w = (x + 1.0) / 2.0, w / 2.0
-        value, slope = lagrange(nodes, x)
-        t = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-        place = np.argsort(grid.ravel())
-        φ, along, across = (
-            np.einsum("qi,rj->qrij", a, b).reshape(len(t), -1)[:, place]
-            for a, b in ((value, value), (slope, value), (value, slope))
-        )
-        return cls(t, np.outer(w, w).ravel(), φ, np.array([along, across]))
-
-    def on(self, corners: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Weights of the points in a cell, and its inverse Jacobians there.
-
-        Args:
-            corners: of the cell, (4, 2).
-
-        Returns:
-            Arrays (points,) and [point, direction, axis].
-        """
-        J = jacobian(corners, self.t)
-        weights = np.asarray(self.weights * np.abs(np.linalg.det(J)), dtype=np.float64)
-        return weights, np.asarray(np.linalg.inv(J), dtype=np.float64)

@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 from ..approximation import interpolation
 from ..contact.edges import EdgeTraction
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import versions
 from .cells import image
 from .element import size_of_cells
@@ -79,7 +79,7 @@ class DolfinxSpace(Space):
         compiled = [[self._compiled(form) for form in row] for row in forms]
         return compiled if self.mixed else compiled[0][0]
 
-    def _form_of(self, response: Response) -> Any:
+    def _form_of(self, response: HalfPlane) -> Any:
         """The compiled weak form with the constants of a response."""
         p = self.contracted(response).p
         for constant, value in zip(self._plane, (p.real, p.imag)):
@@ -100,13 +100,13 @@ class DolfinxSpace(Space):
         with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
             return versions.form(form, options)
 
-    def assemble(self, response: Response) -> PETSc.Mat:
+    def assemble(self, response: HalfPlane) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions."""
         form = self._form_of(response)
         with self.clock("assembly"):
             return versions.matrix(form, [])
 
-    def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
+    def held(self, A: PETSc.Mat, response: HalfPlane, parts: Sequence[str]) -> PETSc.Mat:
         """Matrix with Dirichlet conditions: "far" on the far boundary, "contact" for v under a punch.
 
         Args:
@@ -154,7 +154,7 @@ class DolfinxSpace(Space):
         return NodalForces(self.contact.numbers, self.contact.s[self.contact.owned], forces)
 
     def cell_values(
-        self, fields: Sequence[PETSc.Vec], response: Response, cells: NDArray[np.int64]
+        self, fields: Sequence[PETSc.Vec], response: HalfPlane, cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
         """Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields).
 

@@ -31,9 +31,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
 from ..approximation import lagrange
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import cells, versions
-from .cells import Shapes
 from .element import Element
 from .forms import carried_density, momentum_density
 from .space import Space
@@ -88,6 +87,51 @@ def _weights(corners: NDArray, sharp: bool) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
+class Shapes:
+    """Shape functions of the unit square at points of Gauss's rule, exact for products on parallelograms.
+
+    Attributes:
+        t: points, (points, 2).
+        weights: of the points, (points,).
+        values: of the shape functions, (points, nodes).
+        slopes: their derivatives along both directions of the square, (2, points, nodes).
+    """
+
+    t: NDArray[np.float64]
+    weights: NDArray[np.float64]
+    values: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, reference: NDArray) -> "Shapes":
+        """Shape functions of nodes at places in the unit square, (nodes, 2)."""
+        grid, nodes = cells.tensor_order(reference)
+        x, w = leggauss(len(nodes) + 1)
+        x, w = (x + 1.0) / 2.0, w / 2.0
+        value, slope = lagrange(nodes, x)
+        t = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
+        place = np.argsort(grid.ravel())
+        φ, along, across = (
+            np.einsum("qi,rj->qrij", a, b).reshape(len(t), -1)[:, place]
+            for a, b in ((value, value), (slope, value), (value, slope))
+        )
+        return cls(t, np.outer(w, w).ravel(), φ, np.array([along, across]))
+
+    def on(self, corners: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Weights of the points in cells, and inverse Jacobians there.
+
+        Args:
+            corners: of the cells, (cells, 4, 2).
+
+        Returns:
+            Arrays (cells, points) and [cell, point, direction, axis].
+        """
+        J = cells.jacobian(corners[:, None], self.t)
+        weights = np.asarray(self.weights * np.abs(np.linalg.det(J)), dtype=np.float64)
+        return weights, np.asarray(np.linalg.inv(J), dtype=np.float64)
+
+
+@dataclass(frozen=True)
 class Motion:
     """Equations M ü + (D - 2c B) u̇ + K u = forces of a space on one rank, in the physical chart.
 
@@ -100,7 +144,7 @@ class Motion:
     """
 
     space: Space
-    response: Response
+    response: HalfPlane
     sharp: bool = False
 
     @cached_property
@@ -174,8 +218,7 @@ class Motion:
     def _products(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """∫ φ_a φ_b, (cells, 1, a, b), and ∫ φ_a ∂φ_b, by the two axes, (cells, 2, a, b)."""
         shapes, mass, gradient = Shapes.of(self.space.reference_nodes), [], []
-        for corners in self.space.vertices[:, :, :2]:
-            weights, inverse = shapes.on(corners)
+        for weights, inverse in zip(*shapes.on(self.space.vertices[:, :, :2])):
             weighted = shapes.values * weights[:, None]
             slopes = np.einsum("dqn,qdx->xqn", shapes.slopes, inverse)
             mass.append([weighted.T @ shapes.values])
@@ -225,9 +268,8 @@ class Products:
         dofs = versions.cell_nodes(space.V)[:, grid]
         self._dofs = 2 * dofs[:, None].astype(np.int64) + np.arange(2)[:, None, None]
         m, q, self._size = len(corners), len(x), motion.size
-        by_cell = [shapes.on(cell) for cell in corners]
-        weights = np.array([weights for weights, _ in by_cell]).reshape(m, q, q)
-        inverse = np.array([inverse for _, inverse in by_cell]).reshape(m, q, q, 2, 2)
+        weights, inverse = shapes.on(corners)
+        weights, inverse = weights.reshape(m, q, q), inverse.reshape(m, q, q, 2, 2)
         # By direction of the cell and axis, (direction, axis, cells, 1, first, second).
         self._to_axes = np.ascontiguousarray(np.moveaxis(inverse, (3, 4), (0, 1)))[:, :, :, None]
         self._weights = weights[:, None]
@@ -286,27 +328,6 @@ BOX = 3.0, 2.0
 _TOGETHER = 64
 
 
-@dataclass(frozen=True)
-class _Cells:
-    """Rules of some cells.
-
-    Attributes:
-        weights: of the points, (cells, points).
-        inverse: inverse Jacobians, (cells, points, direction, axis).
-    """
-
-    weights: NDArray[np.float64]
-    inverse: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, shapes: Shapes, vertices: NDArray) -> "_Cells":
-        """Rules of cells with given vertices, (cells, 4, 2)."""
-        rules = [shapes.on(corners) for corners in vertices]
-        return cls(
-            np.array([weights for weights, _ in rules]), np.array([inverse for _, inverse in rules])
-        )
-
-
 class Energies:
     """Energies and momentum of displacements and velocities.
 
@@ -320,14 +341,14 @@ class Energies:
         self._nodes = versions.cell_nodes(space.V)
         self._shapes = Shapes.of(space.reference_nodes)
         vertices = space.vertices[:, :, :2]
-        self._all = _Cells.of(self._shapes, vertices)
+        self._all = self._shapes.on(vertices)
         low, high = vertices.min(axis=1), vertices.max(axis=1)
         lowest, highest = np.array([-BOX[0], -BOX[1]]), np.array([BOX[0], 0.0])
         inside = np.all((low >= lowest - 1e-12) & (high <= highest + 1e-12), axis=1)
         touched = np.all((np.minimum(high, highest) - np.maximum(low, lowest)) > 1e-12, axis=1)
         self._inside, self._cut = np.flatnonzero(inside), np.flatnonzero(touched & ~inside)
         parts = [np.array([np.maximum(low[i], lowest), np.minimum(high[i], highest)]) for i in self._cut]
-        self._parts = _Cells.of(self._shapes, _rectangles(parts))
+        self._parts = self._shapes.on(_rectangles(parts))
         self._onto = np.array([
             self._restricted(space.reference_nodes, vertices[i], part)
             for i, part in zip(self._cut, parts)
@@ -348,21 +369,24 @@ class Energies:
         total = whole.sum(axis=0)
         return np.array([near[0], near[1], total[0], total[1], total[2]])
 
-    def _of(self, of: _Cells, fields: NDArray, way: int, which: NDArray) -> NDArray[np.float64]:
+    def _of(
+        self, rule: tuple[NDArray, NDArray], fields: NDArray, way: int, which: NDArray
+    ) -> NDArray[np.float64]:
         """Strain and kinetic energy and momentum of each cell, (cells, 3).
 
         Args:
-            of: the cells.
+            rule: weights of the points of the cells, and inverse Jacobians, see :meth:`Shapes.on`.
             fields: displacements and velocities at their nodes, (cells, nodes, component, 2).
             way: direction of the punch, ±1.
             which: numbers of these cells in the mesh, or of those whose parts they are, (cells,).
         """
+        weights, inverse = rule
         energies = np.empty((len(fields), 3))
         for start in range(0, len(fields), _TOGETHER):
             batch = slice(start, start + _TOGETHER)
             u, w = fields[batch, ..., 0], fields[batch, ..., 1]
             by_cell = np.einsum("dqn,mnc->mqcd", self._shapes.slopes, u, optimize=True)
-            slopes = np.einsum("mqcd,mqdx->mqcx", by_cell, of.inverse[batch])
+            slopes = np.einsum("mqcd,mqdx->mqcx", by_cell, inverse[batch])
             u_X = slopes[..., 0]
             moving = self._shapes.values @ w - way * self._c * u_X
             gradients = slopes.reshape(*slopes.shape[:2], 4)
@@ -371,7 +395,7 @@ class Energies:
             momentum, kinetic = -ρ * (moving * u_X).sum(axis=-1), ρ * (moving**2).sum(axis=-1)
             densities = strain / 2.0, kinetic / 2.0, momentum
             energies[batch] = np.stack(
-                [(density * of.weights[batch]).sum(axis=1) for density in densities], axis=-1
+                [(density * weights[batch]).sum(axis=1) for density in densities], axis=-1
             )
         return energies
 

@@ -20,7 +20,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import versions
 from .cells import Contracted, gradients_in_plane, image, pull_back, reference_values, tensor_order
 from .space import Space
@@ -59,7 +59,7 @@ def in_quads(count: int) -> NDArray[np.int64]:
 
 def in_physical_plane(
     space: Space,
-    response: Response,
+    response: HalfPlane,
     fields: Sequence[PETSc.Vec],
     weights: NDArray,
     length: float,
@@ -137,7 +137,7 @@ class SampledField:
 
 def sample(
     space: Space,
-    response: Response,
+    response: HalfPlane,
     fields: Sequence[PETSc.Vec],
     weights: NDArray,
     extent: float,

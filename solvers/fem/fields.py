@@ -14,7 +14,7 @@ from petsc4py import PETSc
 
 from ..approximation import lagrange
 from ..errors import MeshError
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .cells import gradients_in_plane, pull_back, tensor_order
 from .space import Space
 
@@ -132,7 +132,7 @@ class KeptValues:
         fields: displacements over N/(2μ), condensed.
     """
 
-    def __init__(self, space: Space, response: Response, fields: Sequence[PETSc.Vec]) -> None:
+    def __init__(self, space: Space, response: HalfPlane, fields: Sequence[PETSc.Vec]) -> None:
         self._compute = lambda cells: space.cell_values(fields, response, cells)
         self._kept: dict[int, NDArray] = {}
 
@@ -208,7 +208,7 @@ class InteriorGradients(Gradients):
     """
 
     def __init__(
-        self, space: Space, response: Response, values: Values, points: NDArray, side: int = 1
+        self, space: Space, response: HalfPlane, values: Values, points: NDArray, side: int = 1
     ) -> None:
         self._count = len(points)
         self._batches = [
@@ -263,7 +263,7 @@ class _Batch:
         MeshError: a point lies outside the mesh.
     """
 
-    def __init__(self, space: Space, response: Response, points: NDArray, side: int) -> None:
+    def __init__(self, space: Space, response: HalfPlane, points: NDArray, side: int) -> None:
         self._chart, self._comm = space.contracted(response), space.comm
         self._points, self._vertices = points, space.vertices[..., :2]
         cell, point, t = _located(self._vertices, self._chart.from_physical(points))

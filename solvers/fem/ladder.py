@@ -434,10 +434,7 @@ def climb(ladder: Ladder, g: NDArray, share: float = 1.0) -> "MeasuredError":
     for degree, cuts in levels(ladder.degree, plan.cuts, plan.fixed):
         ladder.add(g, degree, cuts)
     probes = g[np.unique(np.linspace(0, len(g) - 1, PROBES).astype(int))]
-    loads = None
-    if not ladder.task.body.alike:
-        ends = min(ladder.task.loads), max(ladder.task.loads)
-        loads, probes = np.repeat(sorted(set(ends)), len(probes)), np.tile(probes, len(set(ends)))
+    probes, loads = ladder.task.probes(probes)
     error = MeasuredError(ladder, probes, loads, share)
     changes = dict(error.changes)
     while not plan.fixed and ladder.degree < DEGREES[1] and error.of_degree:

@@ -266,8 +266,8 @@ class EndsBetweenKinks(Ends):
                 places = np.array([-1.0, *X, 1.0])
                 _, between = at_and_between(places, 1, in_plane)
                 # Nearer to ends and kinks the limits there stand for the stress.
-                away = np.abs(between.X[..., None] - places).min(axis=-1) >= self.nearest(pressure)
-                between = replace(between, σ_XX=np.where(away, between.σ_XX, np.nan))
+                near = np.abs(between[0][..., None] - places).min(axis=-1) < self.nearest(pressure)
+                between[1, near] = np.nan
             ends = turns_at_ends(surface, states.local)
             return ends.joined(Turns(X[None], under[:, None], between))
 

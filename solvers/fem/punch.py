@@ -33,7 +33,7 @@ from scipy.linalg import schur
 
 from ..approximation import barycentric
 from ..errors import SolveError
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .boundary import FarBoundary, held_forces
 from .fields import Slopes
 from .linear import LinearSolver, times, vector
@@ -111,6 +111,22 @@ class KrylovSpace:
         self.forces[len(self.fields) :] = forces
         self.fields += fields
         self.rough = []
+
+    def reduce(self, y: NDArray) -> None:
+        """Keep of the unsettled loads what answers need: fewer fields are refined and differentiated.
+
+        Args:
+            y: coefficients of the contact forces of every friction, (states, m).
+        """
+        if len(self.fields) > 1 or len(self.rough) < self.applied:
+            return
+        # The first load is that of the equations.
+        _, size, rows = np.linalg.svd(y[:, 1:] / np.linalg.norm(y, axis=1)[:, None], full_matrices=False)
+        Q = np.zeros((self.applied, 1 + int((size > LEAST).sum())))
+        Q[0, 0], Q[1:, 1:] = 1.0, rows[: Q.shape[1] - 1].T
+        self._V = self._V @ Q
+        self.rough = list(Q.T @ np.array(self.rough))
+        self.forces = np.concatenate([self.forces[:1], np.tensordot(Q.T, self.forces[1:], 1)])
 
     def converged(self, g: NDArray) -> NDArray[np.float64] | None:
         """Coefficients y of R = V y for every g, (states, m); None where more loads are waiting.
@@ -246,7 +262,7 @@ class Punch:
     """
 
     space: Space
-    response: Response
+    response: HalfPlane
     fields: Any
 
     def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
@@ -318,7 +334,7 @@ class SlidingPunch(Punch):
     def __init__(
         self,
         space: Space,
-        response: Response,
+        response: HalfPlane,
         solver: str = "direct",
         negligible: float = 0.0,
         heights: NDArray[np.float64] | None = None,
@@ -360,7 +376,7 @@ class SlidingPunch(Punch):
         frictions a punch is the mirror image, with which rounding is estimated.
         """
         spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
-        self._contact_forces(self._spaces, np.concatenate([spread, -spread]))
+        self._contact_forces(self._spaces, np.concatenate([spread, -spread]), reduces=True)
         for space in self._spaces:
             space.complete = True
 
@@ -417,11 +433,12 @@ class SlidingPunch(Punch):
         return spaces
 
     def _contact_forces(
-        self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64]
+        self, spaces: Sequence[KrylovSpace], g: NDArray[np.float64], reduces: bool = False
     ) -> list[NDArray[np.float64]]:
         """Coefficients y of R = V y for every g, (states, m), in each Krylov space.
 
-        Spaces grow as they need, together where several do: one pass over the factor serves them.
+        Spaces grow as they need, together where several do: one pass over the factor serves them. Where
+        no other g will come they are reduced to what these need.
         """
         if not np.any(g):
             return [np.zeros((len(g), 0)) for _ in spaces]
@@ -430,9 +447,12 @@ class SlidingPunch(Punch):
             short = [space for space, y in zip(spaces, coefficients) if y is None]
             if short:
                 self._extend(short, g)
-            elif unsettled := [space for space in spaces if space.unsettled.size]:
-                for space in unsettled:
-                    self._settle(space)
+            elif any(space.unsettled.size for space in spaces):
+                for space, y in zip(spaces, coefficients):
+                    if space.unsettled.size:
+                        if reduces and y is not None:
+                            space.reduce(y)
+                        self._settle(space)
             else:
                 return [y for y in coefficients if y is not None]
 
@@ -639,7 +659,7 @@ class FittedPunch(Punch):
         samples: the parts there.
     """
 
-    def __init__(self, space: Space, response: Response, at: Frictions, samples: Sampled) -> None:
+    def __init__(self, space: Space, response: HalfPlane, at: Frictions, samples: Sampled) -> None:
         self.space, self.response = space, response
         self._at, self._samples = at, samples
         each = np.concatenate(list(samples.fields))

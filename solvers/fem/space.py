@@ -22,7 +22,7 @@ from galinx.meshes.rings import QuadMesh
 
 from ..approximation import interpolation, lagrange
 from ..errors import MeshError
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from . import versions
 from .cells import Contracted, model_cells
 from .element import CellMatrices
@@ -260,11 +260,11 @@ class Space:
         owned = rank_of[start : start + len(s)]
         return SurfaceNodes(np.sort(everyone), owned, self.numbers[blocks])
 
-    def contracted(self, response: Response) -> Contracted:
+    def contracted(self, response: HalfPlane) -> Contracted:
         """The chart as the plane is contracted at a response's speed."""
         return Contracted(self.chart, response.contraction if self.chart.contracts else 1j)
 
-    def rigid_motions(self, response: Response) -> NDArray[np.float64]:
+    def rigid_motions(self, response: HalfPlane) -> NDArray[np.float64]:
         """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
         mine, owned = self._owned_nodes, len(self._owned_nodes)
         X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
@@ -289,7 +289,7 @@ class Space:
         """Global numbers of the owned unknowns that a punch holds: v under it, and the far boundary."""
         return np.concatenate([self.contact.dofs(1), self.far_dofs])
 
-    def assemble(self, response: Response) -> PETSc.Mat:
+    def assemble(self, response: HalfPlane) -> PETSc.Mat:
         """Matrix of the moving-frame form without boundary conditions, inner unknowns condensed."""
         blocks = self.outer_numbers // 2
         with self.clock("assembly"):
@@ -301,7 +301,7 @@ class Space:
             A.assemble()
         return A
 
-    def _matrices(self, response: Response) -> Iterator[tuple[NDArray, NDArray]]:
+    def _matrices(self, response: HalfPlane) -> Iterator[tuple[NDArray, NDArray]]:
         """Condensed matrices, and the numbers of this rank's cells that have each; collective."""
         if not self.chart.similar:
             cells = np.arange(len(self.vertices))[:, None]
@@ -330,7 +330,7 @@ class Space:
         return u
 
     def cell_values(
-        self, fields: Sequence[PETSc.Vec], response: Response, cells: NDArray[np.int64]
+        self, fields: Sequence[PETSc.Vec], response: HalfPlane, cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
         """Values of condensed fields at all nodes of some of this rank's cells.
 
@@ -343,7 +343,7 @@ class Space:
         return self.extended(self.fetch(fields, self.outer_numbers[cells]), response, cells)
 
     def extended(
-        self, outer: NDArray, response: Response, cells: NDArray[np.int64]
+        self, outer: NDArray, response: HalfPlane, cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
         """Values at all nodes of some of this rank's cells from the outer ones.
 
@@ -404,12 +404,12 @@ class Space:
         step = self.kernel.at_once
         return (slice(start, start + step) for start in range(0, count, step))
 
-    def condensed(self, response: Response, cells: Any) -> NDArray[np.float64]:
+    def condensed(self, response: HalfPlane, cells: Any) -> NDArray[np.float64]:
         """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
         return self._cells(self.kernel.condense, response, self.vertices[cells])
 
     def _cells(
-        self, part: Callable[..., NDArray], response: Response, corners: NDArray
+        self, part: Callable[..., NDArray], response: HalfPlane, corners: NDArray
     ) -> NDArray[np.float64]:
         return part(self.densities(response, corners), self.contracted(response), corners)
 
@@ -441,7 +441,7 @@ class Space:
         forces = consistent_forces(facets.s, self.chart, ends, σ_YY, knots)
         return NodalForces(self.numbers[facets.nodes.ravel()], facets.s.ravel(), forces.ravel())
 
-    def held(self, A: PETSc.Mat, response: Response, parts: Sequence[str]) -> PETSc.Mat:
+    def held(self, A: PETSc.Mat, response: HalfPlane, parts: Sequence[str]) -> PETSc.Mat:
         """The matrix with displacements held: "far" on the far boundary, "contact" for v under a punch.
 
         Args:
@@ -453,7 +453,7 @@ class Space:
         A.zeroRowsColumns(np.concatenate([dofs[part] for part in parts]), 1.0)
         return A
 
-    def densities(self, response: Response, corners: NDArray) -> NDArray[np.float64]:
+    def densities(self, response: HalfPlane, corners: NDArray) -> NDArray[np.float64]:
         """The form at unit gradients: one for all cells, for each cell, or for each point of quadrature.
 
         Arrays (4, 4) or (5, 5), (cells, 4, 4), (cells, 4, 4, points, points).

@@ -371,11 +371,8 @@ class _Training:
         self._lost, self.allowed = lost, _REGRET * sum(self._alone)
         self._work, self._tasks, self._sweep = work, tasks, sweep
         self._say, self._degree = say, degree
-        body = tasks[0].body
-        ends = {min(tasks[0].loads), max(tasks[0].loads)}
         probes = sweep.g if sweep.few else np.linspace(sweep.g[0], sweep.g[-1], PROBES)
-        self._loads = None if body.alike else np.repeat(sorted(ends), len(probes))
-        self._probes = probes if body.alike else np.tile(probes, len(ends))
+        self._probes, self._loads = tasks[0].probes(probes)
         self._estimates = Estimates(np.unique(probes))
         self._fit: Fit | None = None
 

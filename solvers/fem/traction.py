@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from ..rays import NEAR, rays
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .boundary import FarBoundary
 from .fields import InteriorGradients
 from .linear import LinearSolver, vector
@@ -36,7 +36,7 @@ class LoadedHalfPlane:
         resultants: ∫ σ_YY d(X/a) over N/(2a) of each load.
     """
 
-    def __init__(self, space: Space, response: Response) -> None:
+    def __init__(self, space: Space, response: HalfPlane) -> None:
         self.space, self.response = space, response
         A = space.assemble(response)
         self._far = FarBoundary(space, response, A)
@@ -136,7 +136,7 @@ class LinearLoads:
         factor: of the linear system, freed; its counts of solves and residuals remain.
     """
 
-    def __init__(self, space: Space, response: Response) -> None:
+    def __init__(self, space: Space, response: HalfPlane) -> None:
         self.space, self.response = space, response
         loaded = LoadedHalfPlane(space, response)
         try:

@@ -110,9 +110,6 @@ class Solid(Protocol):
         """The solid in a sentence's middle, with units."""
 
 
-#: Name of half-planes in the solvers that take them.
-Response = HalfPlane
-
 #: Solids by the name that scenes use; every solid adds itself.
 SOLIDS: Registry[type[Solid]] = Registry("kind of solid", kind=Solid)
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solids.solid import Response
+from ..solids.half_plane import HalfPlane
 from .march import Radau
 from .transform import Basis, Transformed
 
@@ -29,7 +29,9 @@ class Residual:
         way: ±1, in which the punch moves along X.
     """
 
-    def __init__(self, response: Response, rayleigh: float, t: NDArray, terms: int, way: int = 1) -> None:
+    def __init__(
+        self, response: HalfPlane, rayleigh: float, t: NDArray, terms: int, way: int = 1
+    ) -> None:
         self._response, self._t, self._terms = response, np.append(0.0, t), terms
         self._scheme = Radau(float(t[-1]), max(round(_STEPS * len(t)), 1))
         self._transformed = Transformed(response, rayleigh, self._scheme.s, terms, way=way)

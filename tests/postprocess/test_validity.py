@@ -107,6 +107,16 @@ def test_tension_and_its_place_are_told():
     assert warning.startswith("the punch would have to pull, by up to 0.25 N/(2a), at X/a = 0.5")
 
 
+def test_a_state_is_pulled_once_whichever_methods_say_so():
+    nan, two = np.array([np.nan, 0.1]), np.array([0.0, 0.2])
+    for methods in (["sie"], ["sie", "fem"], ["closed_form", "fem"]):
+        validity = Validity()
+        tension = {f"states/{method}/tension": two for method in methods}
+        validity.see(tension | {f"states/{method}/tension_X_over_a": nan for method in methods})
+        (text,) = validity.words()
+        assert "by up to 0.2 N/(2a), at X/a = 0.1, in 1 state:" in text
+
+
 def test_nothing_is_said_of_what_holds_or_is_not_known():
     validity = Validity()
     nan = np.full(3, np.nan)

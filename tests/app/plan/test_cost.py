@@ -1,7 +1,6 @@
 """Memory that is planned, and the solver that goes with it."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,7 +22,7 @@ def test_planned_memory_covers_what_runs_took(degree, cuts, measured, monkeypatc
     monkeypatch.setattr(cost, "free_memory", lambda: 64e9)
     mesh = {"solve.degree": degree, "solve.cuts": cuts, "output.quantities": ["sif"]}
     scene = template("tables4_5", mesh | {"solve.tolerance": 1e-4, "motion.c": 0.0})
-    planned = float(re.search(r", (\S+) GB a rank", expense(make_plan(scene)))[1]) * 1e9
+    planned = float(re.search(r"about (\S+) GB a rank", expense(make_plan(scene)))[1]) * 1e9
     assert 0.95 * measured < planned < 1.6 * measured
 
 
@@ -31,16 +30,16 @@ BOTH, EXACT = ["closed_form", "fem"], ["closed_form"]
 
 
 @pytest.mark.parametrize(
-    "positions, states, methods, pressure, seconds, memory",
+    "positions, states, methods, pressure, memory",
     [
-        (500, 1, BOTH, 0, 4.2, 0.283e9), (500, 6, BOTH, 0, 8.0, 0.296e9),
-        (2000, 1, BOTH, 0, 31.0, 1.03e9), (500, 6, EXACT, 0, 2.2, 0.156e9),
-        (2000, 1, EXACT, 0, 7.0, 0.517e9),
-        (300, 1, BOTH, 3, 4.0, 0.28e9), (300, 1, BOTH, 9, 5.0, 0.247e9),
+        (500, 1, BOTH, 0, 0.283e9), (500, 6, BOTH, 0, 0.296e9),
+        (2000, 1, BOTH, 0, 1.03e9), (500, 6, EXACT, 0, 0.156e9),
+        (2000, 1, EXACT, 0, 0.517e9),
+        (300, 1, BOTH, 3, 0.28e9), (300, 1, BOTH, 9, 0.247e9),
     ],
 )  # fmt: skip
-def test_a_map_is_planned_as_what_it_takes(positions, states, methods, pressure, seconds, memory):
-    """Processor time and largest resident sets of runs with maps of positions x positions."""
+def test_a_map_is_planned_as_what_it_takes(positions, states, methods, pressure, memory):
+    """Largest resident sets of runs with maps of positions x positions."""
     knots = [[x, -1.0 - 0.5 * x * (i % 2)] for i, x in enumerate(np.linspace(-1.0, 1.0, pressure))]
     changes = {
         "motion.c": 0.6, "motion.strokes": ["forward"],
@@ -51,8 +50,7 @@ def test_a_map_is_planned_as_what_it_takes(positions, states, methods, pressure,
     if knots:
         changes |= {"solve.mode": "traction", "solve.pressure": knots}
     told = expense(make_plan(template("tables4_5", changes)))
-    assert 0.5 < float(re.search(r"about (\S+) s", told)[1]) / seconds < 2.0
-    size, unit = re.search(r", (\S+) ([GM])B(?: a rank)? and", told).groups()
+    size, unit = re.search(r"about (\S+) ([GM])B(?: a rank)? and", told).groups()
     assert 0.95 * memory < float(size) * {"G": 1e9, "M": 1e6}[unit] < 1.6 * memory
     archived = re.search(r"archive of (\S+) ([GM])B", told)
     numbers = (2 + 6 * len(methods) * states) * positions**2
@@ -67,38 +65,6 @@ def test_a_map_that_memory_does_not_hold_is_warned_of(monkeypatch):
     monkeypatch.setattr(cost, "free_memory", lambda: 0.2e9)
     (warning,) = make_plan(template("tables4_5", changes | grid)).warnings
     assert "need about 0.43 GB, of which this machine has 0.2 GB free: ask for fewer points" in warning
-
-
-SIF, SURFACE = ["friction", "sif"], ["friction", "sif", "surface"]
-
-
-@pytest.mark.parametrize(
-    "quantities, speeds, laws, positions, strokes, seconds",
-    [
-        (["friction"], 5000, 1, 2, 3, 0.27), (["friction"], 1, 20000, 1, 1, 0.88),
-        (["friction"], 10, 100, 100, 1, 0.47), (["friction"], 1000, 1, 1000, 1, 1.64),
-        (SIF, 5000, 1, 2, 3, 0.90), (SIF, 10000, 1, 2, 3, 1.68), (SIF, 10, 100, 100, 1, 0.78),
-        (SIF, 1, 20000, 1, 1, 1.10), (SIF, 1000, 1, 1000, 1, 4.25),
-        (SURFACE, 5000, 1, 2, 3, 3.15), (SURFACE, 10, 100, 20, 1, 0.95),
-    ],
-)  # fmt: skip
-def test_planned_seconds_are_within_a_factor_2_of_what_runs_took(
-    quantities, speeds, laws, positions, strokes, seconds
-):
-    """Processor time of runs without finite elements, on one core; run.sh takes another 0.1 s."""
-    scene = template("tables4_5", {"output.quantities": quantities})
-    motion = replace(
-        scene.motion, c=tuple(np.linspace(0.01, 0.9, speeds)), strokes=("forward",) * strokes,
-        X_over_L=tuple(np.linspace(0.1, 0.9, positions)),
-    )  # fmt: skip
-    values = scene.friction.parameters | {"mu_c": tuple(np.linspace(0.1, 1.0, laws))}
-    methods = ("closed_form",) * (len(quantities) > 1)
-    scene = replace(
-        scene, motion=motion, friction=replace(scene.friction, parameters=values),
-        solve=replace(scene.solve, methods=methods),
-    )  # fmt: skip
-    planned = float(re.search(r"about (\S+) s", expense(make_plan(scene)))[1])
-    assert 0.5 < planned / (seconds + 0.1) < 2.0
 
 
 def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):

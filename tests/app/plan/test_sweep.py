@@ -5,7 +5,7 @@ import pytest
 from random_solids import random_solid
 
 from galinx import template
-from galinx.app.plan.plan import expense, lines, make_plan
+from galinx.app.plan.plan import lines, make_plan
 from galinx.solvers.contact.fem_plan import LEAST, swept, variable
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
@@ -66,5 +66,3 @@ def test_a_plan_says_what_it_will_do():
     (told,) = [line for line in lines(template("tables4_5", speeds), few) if "give the others" in line]
     assert "40 speeds, c = 0 to 0.9" in told
     assert not any("give the others" in line for line in lines(template("tables4_5", speeds), each))
-    seconds = [float(expense(plan).split()[1]) for plan in (few, each)]
-    assert seconds[0] < 0.6 * seconds[1]

@@ -22,14 +22,14 @@ LUGRE = {
 }  # fmt: skip
 
 
-def swing(name, parameters, samples=300, speed=2e-3, seed=1):
-    """A sinusoidal motion of 0.1 mm, and a law's friction along it with noise of 0.003."""
+def swing(name, parameters, samples=300, speed=2e-3, seed=1, noise=3e-3):
+    """A sinusoidal motion of 0.1 mm, and a law's friction along it with noise."""
     t = np.linspace(0.0, 2e-4 * np.pi / speed, samples)
     X = 5e-5 * (1.0 - np.cos(speed / 5e-5 * t))
     kind = LAWS[name]
     f = friction(build_model(kind, parameters), moves(t, X, kind.depends_on_speed), samples)
     f[0] = 0.0
-    return galinx.Measured(t, X, f + 3e-3 * np.random.default_rng(seed).standard_normal(samples))
+    return galinx.Measured(t, X, f + noise * np.random.default_rng(seed).standard_normal(samples))
 
 
 def strokes(name, parameters, seed=1):
@@ -67,6 +67,22 @@ def test_what_the_data_do_not_determine_is_called_so():
         if found.parameters[key] == 0.0:
             assert '"0 s/m"' in line
     assert parse(section + REST).friction.count == 1
+
+
+def test_the_section_of_a_scene_is_the_law_of_the_stated_rms():
+    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 1.5e4}, samples=748, noise=1e-3)
+    found = galinx.fit(data, "lugre")
+    assert found.not_determined
+    (law,) = parse(REST + found.scene()).friction.laws()
+    f = friction(law, moves(data.t, data.X, law.depends_on_speed), len(data.t))
+    assert np.sqrt(np.nanmean((f - data.f)[1:] ** 2)) == pytest.approx(found.rms, rel=1e-4)
+
+
+def test_friction_that_drives_the_motion_has_the_wrong_sign():
+    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 3e4})
+    with pytest.raises(BadInput, match="drives the motion"):
+        galinx.fit(galinx.Measured(data.t, data.X, -data.f), "dahl")
+    assert galinx.fit(galinx.Measured(data.t, -data.X, -data.f), "dahl").model == "dahl"
 
 
 def test_several_measurements_have_one_set_of_parameters():

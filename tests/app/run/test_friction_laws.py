@@ -141,7 +141,7 @@ def test_a_motion_may_be_given_point_by_point():
     "motion, said",
     [
         ("speed = 1, strokes = [{to = 0}]", "stroke 1 goes to 0 L, where it begins"),
-        ("speed = 1, strokes = [{to = 1.5}]", "to of a stroke: found 1.5"),
+        ("speed = 1, strokes = [{to = 1.5}]", "in a stroke, to: found 1.5"),
         ("speed = 1, strokes = [{two = 1}]", "found the key 'two' in a stroke"),
         ("speed = 1, strokes = [{speed = 1}]", "found a stroke without to"),
         ("speed = 1, strokes = [{to = 0.1}], X_over_L = 0.5", "no position that a stroke passes"),
@@ -250,18 +250,16 @@ def test_faults_of_sliders_are_told(words, slider, said):
         parse(text + slider)
 
 
-def test_what_a_law_refuses_is_bad_input_and_integration_has_its_price(monkeypatch):
+def test_what_a_law_refuses_is_bad_input_and_few_loops_are_integrated(monkeypatch):
     from galinx.app.plan import states
-    from galinx.app.plan.plan import make_plan
+    from galinx.app.plan.variants import make_variants
 
     wrong = scene("table", {"shape": [[1e-6, 0.1], [2e-6, 0.2]]})
     with pytest.raises(BadInput, match="friction: shape: found the slips"):
-        make_plan(wrong)
+        make_variants(wrong)
     law = {"mu_c": [0.3, 0.4, 0.5], "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma0_over_load": 2e4}
-    assert make_plan(scene("lugre", law)).integrated == 0.0
     for name in ("exact", "work"):  # as a law of one's own that has no formula
         monkeypatch.setattr(LAWS["elasto_plastic"], name, getattr(FrictionLaw, name))
-    assert make_plan(scene("elasto_plastic", law)).integrated > 0.5
     monkeypatch.setattr(states, "INTEGRATED_LOOPS", 2)
     data = galinx.compute(scene("elasto_plastic", law)).data
     assert data["loops/f"].shape == (2, 505)

@@ -58,7 +58,7 @@ def test_no_sample_is_larger_and_some_come_near(thickness):
     data = result.data
     depth = data[layers.INTERFACE_DEPTH_IN_M.path][0] / data[HALF_WIDTH["sie"].path]
     Y = data[stresses.INSIDE_Y.path]
-    mises = next(row for row in layers.INVARIANTS_INSIDE["sie"] if "von_mises" in row.path)
+    mises = next(row for row in stresses.INVARIANTS_INSIDE["sie"] if "von_mises" in row.path)
     inside, held = data[mises.path], data[yielding.OF_LAYERS["sie"].path]
     for state, H in enumerate(depth):
         below = Y < -H

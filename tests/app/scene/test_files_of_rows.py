@@ -28,6 +28,14 @@ def scene_beside(folder, csv, text=BESIDE, name="punch.csv"):
         "\ufeff" + CSV.replace("\n", "\r\n"),
         "X(m),P(m)\n-2e-3,20e-6\n-1e-3,6e-6\n0,0\n1e-3,3e-6\n2e-3,15e-6",
         "-2e-3,20e-6\n-1e-3,6e-6\n0,0\n1e-3,3e-6\n2e-3,15e-6\n",
+        "# measured\n"
+        + CSV.replace(",", ";")
+        .replace("[mm]", "[µm]")
+        .replace("0,0", "0;0")
+        .replace("-2;", "-2000,0;")
+        .replace("-1;", "-1000;")
+        .replace("\n1;", "\n1000;")
+        .replace("\n2;", "\n2000;"),
     ],
 )
 def test_a_file_is_as_good_as_its_rows(tmp_path, csv):
@@ -63,11 +71,11 @@ def test_friction_and_motion_may_be_in_files_as_well(tmp_path):
     "csv, message",
     [
         (None, r"scene\.toml, punch.shape: cannot read .*punch.csv"),
-        ("X [mm],P [µm]\n0,1\n1,2,3\n", r"punch.csv, line 3: found 3 columns, '1,2,3'; expected 2"),
+        ("X [mm],P [µm]\n0,1\n1,2,3\n", r"punch.csv, line 3: found 3 columns, '1,2,3', expected 2"),
         ("X [mm]\n0\n", "line 1: found 1 columns"),
-        ("X [mm],P [µm]\n0,1\n\n1,o\n", "line 4: found 'o', expected a finite number"),
+        ("X [mm],P [µm]\n0,1\n\n1,o\n", "line 4, p: found 'o', expected a finite number"),
         ("0,1\n1,inf\n", "line 2: found 'inf', expected a finite number"),
-        ("X [mm],P [MPa]\n0,1\n", r"line 1, P \[MPa\]"),
+        ("X [mm],P [MPa]\n0,1\n", r"line 1, p: found .1 MPa. of dimension"),
         ("X [mm,P [µm]\n0,1\n", r"line 1: found 'X \[mm', expected as in X \[mm\]"),
         (b"X,P\n0,\xff\n", "is not UTF-8"),
         ("", "at least 1 rows of 2 numbers"),

@@ -64,8 +64,8 @@ def test_texts_vary_and_rows_of_numbers_stay():
     [
         ("[[friction.vary]]\nmu = 0.3", "found the key 'mu' in table 1; did you mean mu_c?"),
         ("[[friction.vary]]\n[[friction.vary]]\nsign = 'eq25'", "'sign' in table 2; valid: mu_c"),
-        ("[[friction.vary]]\nmu_c = [0.1, -3]", "mu_c of table 1: found -3, expected > 0"),
-        ("[[friction.vary]]\nmu_c = []", "mu_c of table 1: found an empty list"),
+        ("[[friction.vary]]\nmu_c = [0.1, -3]", "in table 1, mu_c: found -3, expected > 0"),
+        ("[[friction.vary]]\nmu_c = []", "in table 1, mu_c: found an empty list"),
         ("vary = 3", "found 3, expected tables [[friction.vary]]"),
         (
             "[[friction.vary]]\nmu_c = {from = 0.1, to = 1, number = 500}\n"

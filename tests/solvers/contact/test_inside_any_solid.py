@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from line_loads_reference import FreeContact, Lines, Rule
+from loaded import LoadedHalfPlane
 from random_solids import anisotropic, cubic, orthotropic, stiffness
 from support import THOROUGH
 
-from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.profiles.flat import Flat
@@ -66,7 +66,7 @@ def solved(seed):
         return solution.inside(X, Y), lines.stresses(rule, σ, X, Y)
     profile = make(rng)
     contact = contacts(response, np.array([g]), profile, load)
-    found = contact.inside(X, Y)[:, 0]
+    found = contact.stresses(X, Y)[:, 0]
     a = np.arctan2(lines.n, lines.Q) / np.pi  # of the right end if free
     if make in FREE:
         start = float(contact.of("centre")[0]), float(contact.of("half_width")[0])

@@ -6,8 +6,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 from isotropic_field import field
+from loaded import LoadedHalfPlane
 
-from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.solids.isotropic import MovingFrame
 

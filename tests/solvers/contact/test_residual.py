@@ -32,7 +32,7 @@ def left(contact, pressure=None, inside=None):
     found, slope, kinks = contact
     exponents, pressure = (found.of("α"), found.of("β")), pressure or found.groups[0].contact_stress
     of_pressure = residual.of_pressure(found.response, found.g, exponents, slope, pressure, kinks)
-    field = inside or found.inside
+    field = inside or found.stresses
     return of_pressure, residual.of_field(
         found.response, found.g, exponents, pressure, field, POINTS, kinks
     )
@@ -53,8 +53,8 @@ def test_a_wrong_pressure_is_seen(contact, ε):
 
 def test_a_wrong_field_is_seen(contact):
     found = contact[0]
-    at_a_point = left(contact, inside=lambda X, Y: found.inside(X, Y) * (1.0 + 1e-5 * (X == 0.9)))[1]
-    at_a_depth = left(contact, inside=lambda X, Y: found.inside(X, Y) * (1.0 + 1e-5 * (len(X) > 9)))[1]
+    at_a_point = left(contact, inside=lambda X, Y: found.stresses(X, Y) * (1.0 + 1e-5 * (X == 0.9)))[1]
+    at_a_depth = left(contact, inside=lambda X, Y: found.stresses(X, Y) * (1.0 + 1e-5 * (len(X) > 9)))[1]
     assert at_a_point.min() >= 1e-7 and at_a_depth.min() >= 1e-6
 
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from layers_cases import COAT, SUBSTRATE, constants, equation
 from layers_reference import system
+from loaded import under
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.equation import converged_pressure
@@ -19,7 +20,7 @@ def test_layers_of_one_solid_have_the_field_of_the_half_plane(depth):
     solid = Layered((Layer(0.3, COAT), Layer(0.4, COAT)), COAT)
     one = equation(solid, 0.9, -0.4)
     pressure = converged_pressure(one, 1e-10).pressure
-    exact = FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), -0.4).inside(X, -depth + 0.0 * X)
+    exact = under(FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), -0.4)).inside(X, -depth + 0.0 * X)
     level = Level(one.kernel.stack, depth, 4.0, 1e-9)
     u_X, σ_YY, σ_XY = level.read(*pressure.points(depth), -0.4, X)
     σ_XX = level.media[1].response.σ_XX(u_X, σ_YY, σ_XY)

@@ -10,7 +10,8 @@ from layers_reference import admittance
 from support import THOROUGH
 
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, local_exponents
+from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed
+from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
@@ -157,7 +158,8 @@ def test_an_edge_lifts_off_beyond_the_tilt_that_leaves_it_no_intensity():
         one, _, unit = found(COATED, flat(1.0, tilt), -0.4)
         free.append(one.free[1])
         sizes.append(one.half_width * unit)
-        local = local_exponents(response, np.array([-0.4]), flat(1.0, tilt), unit, LOAD)
+        body = make_contact(COATED, flat(1.0, tilt), LOAD * COATED.μ)
+        local = body.local_exponents(response, np.array([-0.4]))
         assert (local.α[0] > 0.0) == one.free[1] and local.β[0] < 0.0
         assert one.centre * unit == pytest.approx(sizes[-1] - 1.0)
     assert not free[0] and free[-1] and sorted(free) == free

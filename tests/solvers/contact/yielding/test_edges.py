@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from loaded import under
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import make_contact
@@ -16,7 +17,7 @@ SOLID = Isotropic(193e9, 0.25, 7860.0)
 def flat(g, c, strength):
     """Yield below flat punches; the strength is over N/(2a)."""
     g, response = np.asarray(g, dtype=float), SOLID.response(c)
-    exact = FlatPunch(response, g[:, None])
+    exact = under(FlatPunch(response, g[:, None]))
     body = make_contact(SOLID, Flat(1e-3), 2e6, None, strength * 1e9)
     field = lambda points: exact.stresses(points[..., 0], points[..., 1])  # noqa: E731
     return Strength(field, body, response, g, FlatPunch(response, g))
@@ -46,7 +47,7 @@ def test_a_weak_load_is_known_by_its_power(g, c):
 @pytest.mark.parametrize("g, c, strength", [(0.4, 0.0, 3.0), (-0.3, 0.6, 1.0), (0.6, 0.3, 2.0)])
 def test_no_place_of_a_fine_grid_yields_farther(g, c, strength):
     X, Y = np.meshgrid(np.linspace(-4.0, 4.0, 1601), -np.linspace(0.0, 4.0, 801))
-    σ = FlatPunch(SOLID.response(c), g).stresses(X, Y)
+    σ = under(FlatPunch(SOLID.response(c), g)).stresses(X, Y)
     passed = von_mises(*σ, SOLID.σ_ZZ(*σ)) >= strength
     found = flat([g], c, strength)
     np.testing.assert_allclose(found.depth, -Y[passed].min(), atol=8e-3)

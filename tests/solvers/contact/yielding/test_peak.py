@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from loaded import LoadedHalfPlane
 from scipy.optimize import brentq
 
-from galinx.solvers.contact.closed_form import LoadedHalfPlane
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises

@@ -1,0 +1,37 @@
+"""Uniform half-planes under any contact pressure: stresses by its Hilbert transform and potential."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from galinx.solvers.contact.closed_form import in_plane
+
+
+@dataclass(frozen=True)
+class LoadedHalfPlane:
+    """Half-plane at a speed under a pressure and friction g; stresses over N/(2a), positions over a."""
+
+    response: Any
+    g: Any
+    pressure: Any
+
+    def σ_XX(self, r):
+        """In-plane stress on the surface."""
+        return in_plane(self.response, self.g, self.pressure.σ_YY(r), self.pressure.hilbert(r))
+
+    def inside(self, X, Y):
+        """σ_XX, σ_YY, σ_XY at points with Y < 0."""
+        return self.response.inside(self.pressure, self.g, np.asarray(X), np.asarray(Y))
+
+    def stresses(self, X, Y):
+        """σ_XX, σ_YY, σ_XY at points with Y <= 0, those of the surface among them."""
+        X, Y = np.asarray(X, dtype=float), np.asarray(Y, dtype=float)
+        on, σ_YY = Y == 0.0, self.pressure.σ_YY(X)
+        surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
+        return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))
+
+
+def under(punch):
+    """The half-plane under a flat punch."""
+    return LoadedHalfPlane(punch.response, punch.g, punch)

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support import FEW_DEGREES, HOME, SCENE, clean_environment, command, here
+from support import FEW_DEGREES, HOME, SCENE, THOROUGH, clean_environment, command, here
 
 from galinx import load
 
@@ -23,12 +23,13 @@ def test_one_and_two_ranks_agree(archives):
         np.testing.assert_allclose(b, a, rtol=1e-6, atol=1e-8)
 
 
-def test_more_ranks_than_speeds_agree_with_one(tmp_path):
+@pytest.mark.parametrize("scene", ["tables4_5", "traction"] if THOROUGH else ["tables4_5"])
+def test_more_ranks_than_speeds_agree_with_one(tmp_path, scene):
     """They share a mesh of so few cells that not every rank has a node of the far boundary."""
     values = []
     for run, ranks in ((here, ()), (command, ("-n", 3))):
         path = tmp_path / f"{len(ranks)}.h5"
-        done = run(*ranks, "run", SCENE, "-o", path, *FEW_DEGREES)
+        done = run(*ranks, "run", f"scenes/{scene}.toml", "-o", path, *FEW_DEGREES)
         assert done.returncode == 0, done.stderr
         with h5py.File(path) as file:
             values.append(file["surface/fem/sigma_XX"][()])

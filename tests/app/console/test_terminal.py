@@ -52,7 +52,7 @@ def test_output_fits_80_columns_without_colours(archive, arguments):
     assert done.returncode == 0 and widest(done.stdout) <= 80 and "\x1b" not in done.stdout
 
 
-@pytest.mark.parametrize("columns", ["0", "-5", "many", "39"])
+@pytest.mark.parametrize("columns", ["0", "1", "-5", "many", "39"])
 def test_a_width_that_holds_nothing_is_another(archive, columns):
     for words in (("show", archive), ("plan", SCENE)):
         done = here(*words, COLUMNS=columns)

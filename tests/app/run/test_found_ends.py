@@ -13,6 +13,7 @@ import galinx
 from galinx import PROFILES, parameter
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
+from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.meshes.kind import Refinement, check_cells, with_kinks
 from galinx.solvers.errors import SolveError
@@ -405,6 +406,23 @@ def test_the_error_of_the_pressure_at_a_cusp_is_in_the_estimate(exponent, tolera
     largest = [result.data[f"states/{method}/largest_pressure"][0] for method in ("fem", "closed_form")]
     error = abs(largest[0] / largest[1] - 1.0)
     assert error <= result.data["states/fem/estimate"][0] <= tolerance
+
+
+@pytest.mark.parametrize("name", KINKED if THOROUGH else ["rounded"])
+def test_every_profile_has_an_archive(name, tmp_path):
+    solve = {"solve.methods": ["closed_form"], "output.quantities": ["sif", "surface", "interior"]}
+    result = computed("tables4_5", KINKED[name] | solve | {"output.points": [[0.2, -0.5]]})
+    assert result.verdict == "PASS"
+    assert (result.data["states/closed_form/half_width"] > 0.0).all()
+    σ = result.data["surface/closed_form/sigma_YY"]
+    X = result.data["surface/X_over_a"]
+    assert np.nanmax(σ) < 0.0 and np.isfinite(σ[:, np.abs(X) < 1.0]).all()
+    result.save(tmp_path / "a.h5")
+    again = galinx.load(tmp_path / "a.h5")
+    assert not faults(tmp_path / "a.h5")
+    again.report(tmp_path / "r.html")
+    assert "half-width [" in (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert len(list(again.drawings())) >= 2
 
 
 def test_what_cannot_be_is_refused():

@@ -33,7 +33,7 @@ SAID = re.compile(
 SWEEP = {
     "motion.c": [0.0, 0.2, 0.4, 0.6],
     "motion.X_over_L": [round(n / 339, 6) for n in range(340)],
-    "solve.tolerance": 1e-3,
+    "solve.tolerance": 1e-4,
 }
 
 
@@ -113,7 +113,7 @@ def processes(target):
 #: Number of ranks, who of them is hit, by which signal, after how many parts.
 HITS = [
     (1, "galinx", signal.SIGHUP, 1), (1, "galinx", signal.SIGKILL, 3), (2, "mpirun", signal.SIGTERM, 2),
-    (2, "0", signal.SIGKILL, 2),
+    (2, "1", signal.SIGINT, 2), (2, "0", signal.SIGKILL, 2),
 ]  # fmt: skip
 if THOROUGH:
     draw = random.Random(3)

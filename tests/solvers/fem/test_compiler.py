@@ -69,12 +69,19 @@ def exchanged(path, change):
 
 DAMAGES = {
     "cut": lambda folder: exchanged(folder / "form.so", lambda data: data[: len(data) // 2]),
+    "empty": lambda folder: exchanged(folder / "form.so", lambda data: b""),
+    "zeros": lambda folder: exchanged(
+        folder / "form.so", lambda data: data[:99] + bytes(200) + data[299:]
+    ),
     "lost": lambda folder: (folder / "form.so").unlink(),
     "unreadable": lambda folder: fifo(folder / "form.so"),
     "no source": lambda folder: (folder / "form.c").unlink(),
+    "no object": lambda folder: (folder / "form.o").unlink(),
+    "not ready": lambda folder: (folder / "form.c.cached").unlink(),
     "another file": lambda folder: (folder / "other.so").write_bytes(b""),
     "no digest": lambda folder: (folder / "digest").unlink(),
     "digest cut": lambda folder: exchanged(folder / "digest", lambda data: data[:-1]),
+    "digest unreadable": lambda folder: fifo(folder / "digest"),
     "only a file": lambda folder: (folder.rename(folder.with_suffix(".x")), folder.write_bytes(b"")),
 }
 

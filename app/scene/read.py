@@ -9,7 +9,7 @@ refuse only when results are archived. Then each section checks its keys.
 import re
 import tomllib
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from math import prod
@@ -28,8 +28,8 @@ from ..errors import BadInput, excerpt, listed, nearest, short
 from ..text_table import read_table
 from .library import LIBRARY
 from .scene import ADVECTED, Scene, contradictions, in_words, usual_quantities
-from .sections import SECTIONS, SWEPT, Section
-from .values import Number, Numbers, Rows, Wrapped
+from .sections import SECTIONS, SWEPT, Key
+from .values import Number, Numbers, Or, Rows, Wrapped
 
 _AT = re.compile(r"Cannot (?:overwrite a value|declare .* twice) \(at line (\d+),")
 _SECTION = re.compile(r"\s*\[+\s*([^\[\]]+?)\s*\]+")
@@ -117,14 +117,13 @@ _MOST = 10_000
 _NAMED = re.compile(r"\.csv[\"']", re.IGNORECASE)
 
 
-def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) -> str:
+def filled(text: str, folder: Path, name: str) -> str:
     """A scene's text with rows of numbers in place of the names of files that hold them.
 
     So the scene, and the archive that keeps it, needs no other file any more.
 
     Args:
         text: TOML; returned unchanged where it names no file, and where it is no TOML.
-        sections: of scenes, by name.
         folder: from which names of files are resolved.
         name: of the scene, for messages.
 
@@ -138,7 +137,7 @@ def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) 
     except (ValueError, RecursionError):
         return text  # the scene's reader reports it
     tables = {}
-    for path, rows, file in _named(tree, sections):
+    for path, rows, file in _named(tree):
         try:
             tables[path] = _rows(folder / file, rows.units)
         except BadInput as error:
@@ -150,16 +149,15 @@ def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) 
     return changed(text, tables, name)
 
 
-def _named(tree: Mapping[str, Any], sections: Mapping[str, Section]) -> Iterator[tuple[str, Rows, str]]:
+def _named(tree: Mapping[str, Any]) -> Iterator[tuple[str, Rows, str]]:
     """Keys whose rows are in a file, each with its kind and the file's name."""
-    for section, given in tree.items():
-        if section not in sections or not isinstance(given, dict):
-            continue
-        for key, entry in sections[section].keys(given).items():
-            kind = entry.kind.kind if isinstance(entry.kind, Wrapped) else entry.kind
-            file = given.get(key)
+    for path, table, keys in _tables(tree, SECTIONS):
+        for key, file in table.items():
+            kind = keys[key].kind if key in keys else None
+            if isinstance(kind, Wrapped | Or):
+                kind = kind.kind
             if isinstance(kind, Rows) and isinstance(file, str) and _NAMED.search(f'{file}"'):
-                yield f"{section}.{key}", kind, file
+                yield f"{path}.{key}", kind, file
 
 
 def _rows(path: Path, units: tuple[str, ...]) -> list[list[float]]:
@@ -215,7 +213,7 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         from .changes import changed  # an import that only changes pay for
 
         text = changed(text, changes, str(path))
-    text = filled(text, SECTIONS, path.parent, str(path))
+    text = filled(text, path.parent, str(path))
     return parse(text, str(path))
 
 
@@ -255,7 +253,7 @@ _RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers, up to the first with faults."""
-    _fill_in_material(tree)
+    _fill_in_materials(tree)
     before = len(faults)
     swept = _swept(tree, faults)
     scenes: list[Scene] = []
@@ -282,7 +280,7 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
         faults: list to which messages are added.
     """
     values: dict[str, tuple[float, ...]] = {}
-    for path, table, keys in _tables(tree):
+    for path, table, keys in _tables(tree, SWEPT):
         for key, given in table.items():
             several = isinstance(given, list) or (isinstance(given, dict) and given.keys() & _RANGE)
             if several and key in keys and type(number := keys[key].kind) is Number:
@@ -309,17 +307,17 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
     return values
 
 
-def _tables(tree: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], dict[str, Any]]]:
-    """Path of each table with numbers that may be swept, its values and its keys."""
-    for name, given in tree.items():
+def _tables(
+    tree: Mapping[str, Any], names: Collection[str]
+) -> Iterator[tuple[str, dict[str, Any], dict[str, Key]]]:
+    """Path of each table of these sections, its values and its keys."""
+    for name in (name for name in tree if name in names):
+        given = tree[name]
         several = name == "layer" and isinstance(given, list)
         tables = {f"layer[{i}]": table for i, table in enumerate(given)} if several else {name: given}
-        for path, table in tables.items() if name in SWEPT else ():
+        for path, table in tables.items():
             if isinstance(table, dict):
-                named = table.get("material")
-                material = LIBRARY.get(named) if isinstance(named, str) else None
-                kind = {"kind": material.kind} if material else {}
-                yield path, table, SECTIONS[name].keys(kind | table)
+                yield path, table, SECTIONS[name].keys(table)
 
 
 def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
@@ -368,15 +366,19 @@ def _checked(
     return None if len(faults) > before else scene
 
 
-def _fill_in_material(tree: dict[str, Any]) -> None:
-    """Fill in the constants of the material that a scene names; those that the scene gives stay."""
-    solid = tree.get("solid")
-    if isinstance(solid, dict):
-        name = solid.get("material")
-        if isinstance(name, str):
-            # An unknown name is one fault, which its key reports: no constant shall be missing besides.
-            material = LIBRARY.get(name) or next(iter(LIBRARY.values()))
-            tree["solid"] = material.constants | solid
+def _fill_in_materials(tree: dict[str, Any]) -> None:
+    """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
+    if "solid" in tree:
+        tree["solid"] = _with_constants(tree["solid"])
+    if isinstance(tree.get("layer"), list):
+        tree["layer"] = [_with_constants(table) for table in tree["layer"]]
+
+
+def _with_constants(table: Any) -> Any:
+    if not isinstance(table, dict) or not isinstance(table.get("material"), str) or "properties" in table:
+        return table
+    # An unknown name is one fault, which its key reports: no constant shall be missing besides.
+    return (LIBRARY.get(table["material"]) or next(iter(LIBRARY.values()))).constants | table
 
 
 def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:

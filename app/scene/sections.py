@@ -30,20 +30,20 @@ from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
 from .scene import STATES_ALONG, UNIFORM_STATE, Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (
-    Along,
+    ALONG,
+    DEPTHS,
+    POINTS,
+    PRESSURE,
     Choice,
     Choices,
     Constants,
-    Depths,
     Kind,
     Map,
     Number,
     NumberList,
     Numbers,
     OneOrMore,
-    OrAuto,
-    Points,
-    Pressure,
+    Or,
     Rows,
     Strokes,
     Variations,
@@ -283,8 +283,9 @@ _KEYS = {
         Number("", Range(at_least=1.0, at_most=10.0)), 'of `grading = "power"`', 1.0,
     ),
     "properties": Key(
-        Depths(), "constants by depth, `[[depth, E, nu, rho], …]`", None,
-        "instead of `thickness`, constants and `to`; isotropic, linear between the rows",
+        DEPTHS, "constants by depth, `[[depth, E, nu, rho], …]`", None,
+        "from the upper face, depth 0, downwards, instead of `thickness`, constants and `to`; isotropic, "
+        "linear between the rows",
     ),
 }  # fmt: skip
 
@@ -319,15 +320,9 @@ class LayerSections(ModelSection):
     def _read(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
         if isinstance(given.get("properties"), list):
             return self._tabulated(name, given, faults)
-        material = given.get("material")
-        of_library = LIBRARY.get(material) if isinstance(material, str) else None
-        constants = of_library.constants if of_library else {}
-        if material is not None and not of_library:  # its constants are not missing: one fault
-            constants = next(iter(LIBRARY.values())).values
-        kept = constants | given
-        layer = super().read(name, kept, faults)
+        layer = super().read(name, given, faults)
         if layer and layer["bottom"] is not None:
-            own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
+            own = {key: value for key, value in given.items() if key not in _KEYS or key == "thickness"}
             bottom = super().read(f"{name}.to", own | layer["bottom"], faults)
             layer = bottom and layer | {"bottom": bottom["solid"]}
         try:
@@ -467,7 +462,7 @@ _FRICTION_KEYS = {
         stands_for="sigma0_over_load",
     ),
     "along": Key(
-        Along(), "f along the contact, pairs [X/a, f]", None,
+        ALONG, "f along the contact, pairs [X/a, f]", None,
         "linear between the pairs, from X/a = -1 to 1, instead of a law; see "
         "[Friction along the contact](howto_friction.md#friction-along-the-contact)",
         stands_for="mu_c",
@@ -557,8 +552,9 @@ _SOLVE_KEYS = {
         "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
     ),
     "pressure": Key(
-        Pressure(), "σ_YY of the traction mode", "closed_form",
-        "for the mode traction; linear between the pairs, of any resultant",
+        Or("closed_form", PRESSURE), "σ_YY of the traction mode", "closed_form",
+        "for the mode traction; rows are pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1, linear between "
+        "them, of any resultant",
     ),
 }  # fmt: skip
 
@@ -580,8 +576,8 @@ _TIME_KEYS = {
         "what a flat punch does until then, of every state, or of every law",
     ),
     "step": Key(
-        OrAuto(Number("", Range(at_least=1e-3, at_most=1.0))), "step of the finite elements over a/c_s",
-        "auto", '`"auto"`: by solve.tolerance and load_ramp',
+        Or("auto", Number("", Range(at_least=1e-3, at_most=1.0))),
+        "step of the finite elements over a/c_s", "auto", '`"auto"`: by solve.tolerance and load_ramp',
     ),
     "load_ramp": Key(
         Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
@@ -616,7 +612,7 @@ _OUTPUT_KEYS = {
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
     ),
     "points": Key(
-        Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
+        POINTS, "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
     ),
     "map": Key(
         Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'

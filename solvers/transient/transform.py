@@ -11,12 +11,13 @@ from itertools import pairwise
 from math import ceil, exp, lgamma, log, pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
+from ..contact.edges import EdgeExponents
+from ..contact.equation import gauss, jacobi
 from ..solids.half_plane import HalfPlane
-from .line_load import Side, both_sides
+from .line_load import Side, both_sides, interpolation
 
 #: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
 #: shifted contacts.
@@ -37,7 +38,7 @@ class Weighted:
 
     def polynomials(self, X: NDArray) -> NDArray[np.float64]:
         """Polynomials without the weight, orthonormal with it, (..., terms)."""
-        return _jacobi(np.asarray(X, dtype=float), self.α, self.β, self.terms) / self._norms
+        return np.ascontiguousarray(jacobi(self.terms, self.α, self.β, X)) / self._norms
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
         """Polynomials times their weight, |X| < 1, (n, terms)."""
@@ -46,11 +47,7 @@ class Weighted:
 
     def rule(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Gauss's points and weights, with the weight in them."""
-        with np.errstate(
-            invalid="ignore", divide="ignore"
-        ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
-            X, w = roots_jacobi(points, self.α, self.β)
-        return X, w
+        return gauss(points, self.α, self.β)
 
     def tested(self, others: "Weighted") -> NDArray[np.float64]:
         """∫ w P_j P'_i dX of polynomials P_j with their weight w and others P'_i, (others, terms)."""
@@ -74,8 +71,7 @@ class Basis:
 
     def __init__(self, response: HalfPlane, g: float, terms: int) -> None:
         self.g = g
-        cot = g * response.q / (response.n + g * response.n12)
-        α = -0.5 - float(np.arctan(cot)) / pi
+        α = float(EdgeExponents(response, g).α)
         self.pressure = Weighted(α, -1.0 - α, terms)
         self.tests = Weighted(-1.0 - α, α, terms)
 
@@ -99,7 +95,7 @@ def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]
         (2, x, tests, trials).
     """
     terms = max(tests.terms, trials.terms)
-    d, e, weights = _overlap(2.0 - x, _STEPS * max(terms, _FOR) // _FOR)
+    d, e, weights = double_exponential(2.0 - x, _STEPS * max(terms, _FOR) // _FOR)
     x = x[:, None]
     products = []
     for from_right, from_left, trial_from_right, trial_from_left in (
@@ -114,20 +110,6 @@ def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]
     return np.array(products)
 
 
-def _jacobi(X: NDArray, α: float, β: float, terms: int) -> NDArray[np.float64]:
-    """Jacobi's polynomials by their recurrence, α + β = -1, (..., terms), terms > 1."""
-    P = np.empty((*X.shape, terms))
-    P[..., 0] = 1.0
-    P[..., 1] = (α + 1.0) + (X - 1.0) / 2.0
-    for j in range(2, terms):
-        by_X = (2.0 * j - 2.0) * ((2.0 * j - 1.0) * (2.0 * j - 3.0) * X + (β - α))
-        back = 2.0 * (j + α - 1.0) * (j + β - 1.0) * (2.0 * j - 1.0)
-        P[..., j] = (by_X * P[..., j - 1] - back * P[..., j - 2]) / (
-            2.0 * j * (j - 1.0) * (2.0 * j - 3.0)
-        )
-    return P
-
-
 def _norm(j: int, α: float, β: float) -> float:
     """Root of the weighted square of Jacobi's polynomial where α + β = -1."""
     if j == 0:
@@ -136,11 +118,11 @@ def _norm(j: int, α: float, β: float) -> float:
     return exp(0.5 * (square - log(2.0 * j)))
 
 
-def _overlap(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
+def double_exponential(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
     """Double exponential rule on intervals: distances from both ends and weights, (n, steps) each."""
     u = np.linspace(-_LENGTH, _LENGTH, steps)
-    grown = pi / 2.0 * np.sinh(u)
-    d, e = 1.0 / (1.0 + np.exp(-2.0 * grown)), 1.0 / (1.0 + np.exp(2.0 * grown))
+    grown = pi * np.sinh(u)
+    d, e = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
     weights = (u[1] - u[0]) * pi * np.cosh(u) * d * e
     return length[:, None] * d, length[:, None] * e, length[:, None] * weights
 
@@ -178,8 +160,6 @@ _EVEN = 0.125
 _SAMPLES = 24
 #: Points of the pressure in its effect beside the contact.
 _FEW = 96
-#: More polynomials than there are.
-_ALL = 10**6
 
 
 class Transformed:
@@ -206,16 +186,14 @@ class Transformed:
         """Polynomials of the pressure where σ_XY = g σ_YY."""
         return Basis(self._response, g, self._terms)
 
-    def answers(
-        self, basis: Basis, terms: tuple[int, ...] = (_ALL,)
-    ) -> tuple[NDArray[np.complex128], ...]:
-        """Pressure and indentation by a load N̂ for every s, by all polynomials or the first of them.
+    def answers(self, basis: Basis, terms: tuple[int, ...] = ()) -> tuple[NDArray[np.complex128], ...]:
+        """Pressure and indentation by a load N̂ for every s, by so many polynomials, or by all.
 
         Returns:
             Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), (n, count + 1), for each of ``terms``.
         """
         matrices, solutions = self.sinking(basis, basis.tests), []
-        for count in (min(number, self._terms) for number in terms):
+        for count in terms or (self._terms,):
             whole = np.zeros((len(self.s), count + 1, count + 1), dtype=complex)
             whole[:, :-1, :-1] = matrices[:, :count, :count]
             whole[:, 0, -1] = basis.tests.integral
@@ -315,9 +293,9 @@ class Transformed:
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
         t, _ = leggauss(_SAMPLES)
-        order, middle, half = _SAMPLES - 1, 2.0 - _EVEN / 2.0, _EVEN / 2.0
+        middle, half = 2.0 - _EVEN / 2.0, _EVEN / 2.0
         short = self._x > 2.0 - 0.5 * _EVEN
-        between = legvander((self._x[short] - middle) / half, order) @ np.linalg.inv(legvander(t, order))
+        between = interpolation(_SAMPLES, (self._x[short] - middle) / half)
         x, values = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
             sampled = np.array([response_at(kernel, x, s) for s in self.s])

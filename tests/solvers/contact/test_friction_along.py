@@ -12,9 +12,9 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.uniform import contacts_of
 from galinx.solvers.friction.along import advected, tabulated
-from galinx.solvers.friction.coulomb import Coulomb
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.maxwell_slip import MaxwellSlip
+from galinx.solvers.friction.stribeck import Coulomb
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.isotropic import Isotropic
 

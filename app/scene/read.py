@@ -254,7 +254,11 @@ _RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers, up to the first with faults."""
-    _fill_in_material(tree)
+    punch = tree.get("punch")
+    if isinstance(punch, dict) and "solid" in punch:  # a section of its own
+        tree["punch.solid"] = punch.pop("solid") or {"kind": "isotropic"}
+    for name in ("solid", "punch.solid"):
+        _fill_in_material(tree, name)
     before = len(faults)
     swept = _swept(tree, faults)
     scenes: list[Scene] = []
@@ -325,7 +329,7 @@ def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str,
     """A scene of one value of every swept number."""
     variant = dict(tree)
     for path, value in values.items():
-        section, _, key = path.partition(".")
+        section, _, key = path.rpartition(".")
         name, bracket, number = section.partition("[")
         if bracket:
             tables = list(variant[name])
@@ -358,7 +362,7 @@ def _checked(
         return None
     scene = Scene(
         title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
-        swept=swept, **read,
+        swept=swept, elastic_punch=read.pop("punch.solid"), **read,
     )  # fmt: skip
     if steady and not named and scene.solve.methods:
         scene = replace(scene, output=replace(scene.output, quantities=usual_quantities(scene)))
@@ -366,15 +370,17 @@ def _checked(
     return None if len(faults) > before else scene
 
 
-def _fill_in_material(tree: dict[str, Any]) -> None:
-    """Fill in the constants of the material that a scene names; those that the scene gives stay."""
-    solid = tree.get("solid")
+def _fill_in_material(tree: dict[str, Any], section: str) -> None:
+    """Fill in the constants of the material that a section names; those that it gives stay."""
+    solid = tree.get(section)
     if isinstance(solid, dict):
         name = solid.get("material")
         if isinstance(name, str):
             # An unknown name is one fault, which its key reports: no constant shall be missing besides.
             material = LIBRARY.get(name) or next(iter(LIBRARY.values()))
-            tree["solid"] = material.constants | solid
+            own = SECTIONS[section].keys(material.constants)
+            given = {key: value for key, value in material.constants.items() if key in own}
+            tree[section] = given | solid
 
 
 def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:

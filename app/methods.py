@@ -120,8 +120,8 @@ def fem_mode(scene: Any) -> str:
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
     lacks = _LACKING.get(mode, {})
-    if scene.elastic_punch:
-        return "the punch is elastic; closed_form takes two elastic bodies"
+    if scene.elastic_punch and body.solid.nearly_incompressible:
+        return "one of two elastic bodies is nearly incompressible; closed_form takes such bodies"
     if scene.layers:
         if body.solid.nearly_incompressible:
             return "a solid is nearly incompressible; the integral equation takes such layers"

@@ -44,7 +44,7 @@ from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, of_pressure, solved_to_tolerance
-from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
+from .punch import ContactStates, FittedPunch, Part, Punch, combined, sliding_punch
 from .solution import Solution, SolvedStates, solution_of
 from .space import Space
 
@@ -300,7 +300,7 @@ class PunchLevel(Level):
         least, single = negligible(work), self.ends.single
         # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
         friction_rest = 0.0 if work.stresses or single else least
-        solved = SlidingPunch(
+        solved = sliding_punch(
             space, task.response, self.plan.solver, least, self.ends.heights(self), friction_rest
         )
         self.punch, self.factor = solved, solved.factor

@@ -251,7 +251,9 @@ class HalfPlane:
         Args:
             names: names of the constants in the form.
         """
-        return [np.array([[float(getattr(self, name)) for name in names]])]
+        stiffness = dict(zip(("c11", "c12", "c16", "c22", "c26"), self.surface.C[np.triu_indices(3)]))
+        values = [stiffness[name] if name in stiffness else getattr(self, name) for name in names]
+        return [np.array([values], dtype=float)]
 
     def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
         """Numbers of the solids at heights over a, of the shape of ``Y``; ``side`` as in stresses_at."""

@@ -99,7 +99,7 @@ class Pair(Solid):
 
     @property
     def form(self) -> str:
-        return self.plate.form
+        return self.plate.form if self.plate.form == self.punch.form else "anisotropic"
 
     @property
     def nearly_incompressible(self) -> bool:

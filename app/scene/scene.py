@@ -427,6 +427,8 @@ def _of_elastic_punch(scene: Scene, solid: Solid) -> Iterator[str]:
     """Faults of section [punch.solid], one sentence each."""
     if solid.plane != scene.half_plane.solid.plane:
         yield f'punch.solid.plane: found "{solid.plane}", expected that of [solid], "{scene.solid.plane}"'
+    if scene.solve.mode == "traction":
+        yield 'solve.mode: found "traction" with an elastic punch, expected "contact"'
     for name, other in (("layer", scene.layers), ("time", scene.time)):
         if other:
             yield (

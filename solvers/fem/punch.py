@@ -649,9 +649,7 @@ class ElasticPunch(SlidingPunch):
                 self.factor.check(b, x, residuals)
             x += self._corrections(residuals)
             fields = [vector(self.factor.A, column) for column in x.T]
-            forces = np.array(
-                [self._boundary.follow(*pair) for pair in zip(self._reactions(x), fields)]
-            )
+            forces = np.array([self._boundary.follow(*pair) for pair in zip(self._reactions(x), fields)])
             for field, along in zip(fields, basis[:, :n] @ units):
                 field.setArray(field.array_r + along)
             self._bases.append(basis)

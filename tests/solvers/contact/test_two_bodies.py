@@ -95,7 +95,7 @@ def test_a_stiff_punch_is_a_rigid_one(plate, profile):
     if profile == "flat":
         X = np.linspace(-1.5, 1.5, 31)
         now, expected = (FlatPunch(of, -0.5) for of in (pair, rigid))
-        assert now.K_I == pytest.approx(expected.K_I, rel=1e-10)
+        assert abs(now.K_I - expected.K_I) < 1e-10 * expected.K_I
         np.testing.assert_allclose(now.σ_XX(X), expected.σ_XX(X), rtol=1e-10)
         return
     punch = PROFILES["parabolic"](10e-3)

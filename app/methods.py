@@ -1,7 +1,7 @@
 """Methods that solve the contact, by the name that scenes use: titles, and what they do not give.
 
-Scenes and plans need nothing else of methods; :mod:`galinx.app.run.make` makes them. What a contact has
-not, whatever the method, it says itself: :attr:`galinx.solvers.contact.solution.Contact.lacks`.
+Each is made for a plan, and imports its own libraries only then. What a contact has not, whatever the
+method, it says itself: :attr:`galinx.solvers.contact.solution.Contact.lacks`.
 """
 
 from collections.abc import Callable
@@ -14,6 +14,7 @@ from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
+from galinx.solvers.contact.method import Method
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,
@@ -25,6 +26,8 @@ from galinx.solvers.contact.solution import (
     Contact,
 )
 from galinx.solvers.profiles import smooth
+
+from .errors import finite_elements_installed
 
 #: Methods of galinx itself, the default of scenes: each solves what it can.
 OWN_METHODS = (CLOSED_FORM, SIE, FEM)
@@ -38,8 +41,8 @@ class MethodKind:
 
     Attributes:
         about: title in a plan.
-        made: makes a :class:`galinx.solvers.contact.method.Method` for a plan, a progress and a clock;
-            None for the methods of galinx itself, which :func:`galinx.app.run.make.make` makes.
+        made: makes a :class:`galinx.solvers.contact.method.Method` for a plan, a progress and a clock.
+            MachineFailure says that a library is missing.
         refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
             quantity None the reason why it gives no quantity at all.
         loads: True where its solvers take states under several loads; else each load has its own solver.
@@ -47,7 +50,7 @@ class MethodKind:
     """
 
     about: str
-    made: Callable[[Any, Any, Any], Any] | None = None
+    made: Callable[[Any, Any, Any], Method]
     refusal: Callable[[Any, Contact, Quantity | None], str] = lambda scene, body, quantity: ""
     loads: bool = False
     of_layers: bool = False
@@ -141,12 +144,35 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
     return _refusal(quantity, body, lacks)
 
 
+def _closed_form(plan: Any, progress: Any, clock: Any) -> Method:
+    from galinx.solvers.contact.exact import ClosedForm, ExactSolution
+
+    return ClosedForm(ExactSolution)
+
+
+def _layers(plan: Any, progress: Any, clock: Any) -> Method:
+    from galinx.solvers.contact.layered import Layers
+
+    return Layers(plan.tolerance)
+
+
+def _finite_elements(plan: Any, progress: Any, clock: Any) -> Method:
+    with clock("import of dolfinx"), finite_elements_installed():
+        from galinx.solvers.fem.method import FiniteElements
+
+        return FiniteElements(plan, progress, clock)
+
+
 METHODS: Registry[MethodKind] = Registry(
     "method",
     {
-        CLOSED_FORM: MethodKind("closed form", refusal=_closed_form_refusal, loads=True),
-        SIE: MethodKind("singular integral equation of layers", refusal=_layers_refusal, of_layers=True),
-        FEM: MethodKind("mesh and finite elements", refusal=_finite_elements_refusal, loads=True),
+        CLOSED_FORM: MethodKind("closed form", _closed_form, refusal=_closed_form_refusal, loads=True),
+        SIE: MethodKind(
+            "singular integral equation of layers", _layers, refusal=_layers_refusal, of_layers=True
+        ),
+        FEM: MethodKind(
+            "mesh and finite elements", _finite_elements, refusal=_finite_elements_refusal, loads=True
+        ),
     },
     MethodKind,
 )

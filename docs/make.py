@@ -484,6 +484,8 @@ def _limit(rule: Any) -> str:
 
 def _value(kind: Any) -> str:
     """What kind of value a key wants."""
+    if word := getattr(kind, "word", ""):
+        return f'`"{word}"` or {_value(kind.kind)}'
     kind = getattr(kind, "kind", kind)  # of a value that all laws share
     text = _plain(type(kind).__doc__ or "").replace("``", "`").rstrip(".")
     unit = getattr(kind, "unit", None)

@@ -26,6 +26,15 @@ def counted(count: int, thing: str, things: str = "") -> str:
     return f"{count} {thing if count == 1 else things or thing + 's'}"
 
 
+def bytes_in_words(count: float, digits: int = 3) -> str:
+    """A number of bytes with so many digits, as ``1.2 GB``."""
+    for unit in ("bytes", "kB", "MB"):
+        if count < 999.5:
+            return f"{float(f'{count:.{digits}g}'):g} {unit}"
+        count /= 1000.0
+    return f"{float(f'{count:.{digits}g}'):g} GB"
+
+
 #: Beyond these numbers are written with a power of ten.
 _SMALL, _LARGE = 1e-3, 1e6
 

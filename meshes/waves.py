@@ -2,9 +2,6 @@
 
 Waves that go farther do not come back to the punch before the end, so that the far boundary may be held
 there. Waves that are too short for the cells out there have to be damped.
-
-:class:`Even` meshes are for waves of prescribed tractions, whose fields have no singularity: squares of
-one size.
 """
 
 from dataclasses import dataclass
@@ -96,32 +93,3 @@ class Reached:
         lines = self._lines(first, last, around, before)
         more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
         return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
-
-
-@dataclass(frozen=True)
-class Even:
-    """A rectangle below the surface, of cells that do not cross X = -a and X = a.
-
-    Attributes:
-        half_width, depth: over a, more than 1 and 0.
-        size: largest side of a cell over a.
-    """
-
-    half_width: float
-    depth: float
-    size: float
-
-    def drawn(self) -> QuadMesh:
-        """The mesh."""
-        under = np.linspace(-1.0, 1.0, ceil(2.0 / self.size) + 1)
-        beside = _even(1.0, self.half_width, self.size)
-        X = np.concatenate([-beside[:0:-1], under, beside[1:]])
-        Y = _even(-self.depth, 0.0, self.size)
-        X0, Y0 = (grid.ravel() for grid in np.meshgrid(X[:-1], Y[:-1]))
-        X1, Y1 = (grid.ravel() for grid in np.meshgrid(X[1:], Y[1:]))
-        quads = np.array([[X0, Y0], [X1, Y0], [X1, Y1], [X0, Y1]])
-        return tagged(np.moveaxis(quads, 2, 0), float(X[-1]))
-
-
-def _even(first: float, last: float, size: float) -> NDArray[np.float64]:
-    return np.linspace(first, last, max(ceil((last - first) / size), 1) + 1)

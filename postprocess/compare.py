@@ -138,13 +138,13 @@ def _of(rows: Iterable[_Rows], method: str) -> list[Quantity]:
     return [one for entry in each for one in (entry if isinstance(entry, tuple) else (entry,))]
 
 
-def _against(
+def against(
     other: str,
     measure: Callable[[list[NDArray], list[NDArray], dict[str, Any], Any], float | None],
     text: str,
     *rows: _Rows,
     beside: tuple[Quantity, ...] = (),
-    tolerances: float = 1.0,
+    tolerances: float | None = 1.0,
     own_pressure: bool = False,
 ) -> Rule:
     """Rule that compares finite elements with another method.
@@ -156,7 +156,7 @@ def _against(
         text: meaning of the figure in words.
         rows: the quantities that are compared, by method.
         beside: further quantities that the measure needs.
-        tolerances: largest value of a PASS over the scene's tolerance.
+        tolerances: largest value of a PASS over the scene's tolerance; None where it is not judged.
         own_pressure: True where the rule is applied under a prescribed pressure, too.
     """
     of_fem, of_other = _of(rows, FEM), _of(rows, other)
@@ -306,13 +306,13 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
     return 1.0 if not_finite(data) else None
 
 
-def _largest(row: Quantity, text: str, tolerances: float | None = 1.0, **options: Any) -> Rule:
+def largest(row: Quantity, text: str, tolerances: float | None = 1.0, **options: Any) -> Rule:
     """Rule on the largest value of a quantity over all states."""
     return Rule(text, (row,), largest_of(row), tolerances=tolerances, **options)
 
 
 def _estimate(row: Quantity, what: str, own_pressure: bool = True) -> Rule:
-    return _largest(row, f"estimated error of {what}, relative", own_pressure=own_pressure)
+    return largest(row, f"estimated error of {what}, relative", own_pressure=own_pressure)
 
 
 #: Name of the rule that applies to every quantity.
@@ -344,51 +344,51 @@ RULES: Registry[Rule] = Registry(
             "values that are not finite where they have to be: 1 for some",
             (), _not_finite, limit=0.0, own_pressure=True,
         ),
-        "residual": _largest(
+        "residual": largest(
             of.RESIDUAL[CLOSED_FORM],
             "residual of the integral equation at the closed form's pressure, relative", None, limit=1e-8,
         ),
-        "residual of finite elements": _largest(
+        "residual of finite elements": largest(
             of.RESIDUAL[FEM],
             "residual of the integral equation at the finite elements' pressure, relative", 10.0,
         ),
-        "residual inside": _largest(
+        "residual inside": largest(
             at.RESIDUAL_INSIDE, "stresses inside against line loads and equilibrium, over the largest",
             None, limit=1e-8, own_pressure=True,
         ),
-        "K_I": _against(
+        "K_I": against(
             CLOSED_FORM, _intensities, "K_I at both ends, relative", of.K_I_LEFT, of.K_I_RIGHT
         ),
         "estimate": _estimate(of.ESTIMATE[FEM], "K_I and moments", False),
-        "K_I of layers": _against(
+        "K_I of layers": against(
             SIE, _intensities, f"K_I at both ends{_SIE}, relative", of.K_I_LEFT, of.K_I_RIGHT
         ),
-        "sigma_YY of layers": _against(
+        "sigma_YY of layers": against(
             SIE, _pressure, f"σ_YY{_SIE}, relative to itself or a tenth of the mean",
             at.PRESSURE, beside=(at.SURFACE_X,),
         ),
         # As on uniform solids under contacts with free ends.
-        "sigma_YY of found ends over layers": _against(
+        "sigma_YY of found ends over layers": against(
             SIE, _pressure_between_free_ends,
             f"σ_YY of contacts with free ends{_SIE}, over the largest",
             at.PRESSURE, beside=(at.SURFACE_X, of.LARGEST[SIE]), tolerances=10.0,
         ),
-        "sigma_XX of layers": _against(
+        "sigma_XX of layers": against(
             SIE, _in_plane, f"σ_XX{_SIE}, relative to itself or the largest",
             at.IN_PLANE, beside=(at.SURFACE_X,), own_pressure=True,
         ),
-        "extremes of sigma_XX over layers": _against(
+        "extremes of sigma_XX over layers": against(
             SIE, _over_larger, f"highest and lowest σ_XX{_SIE}, over the larger of them",
             at.HIGHEST, at.LOWEST, own_pressure=True,
         ),
         "estimate of the integral equation": _estimate(
             of.ESTIMATE[SIE], "the integral equation over layers", False
         ),
-        "stresses at interfaces": _against(
+        "stresses at interfaces": against(
             SIE, _at_interfaces, f"stresses at interfaces{_SIE}, over the largest along each",
             on_layers.INTERFACES, own_pressure=True,
         ),
-        "stresses inside layers": _against(
+        "stresses inside layers": against(
             SIE, _inside, f"stresses inside{_SIE}, relative to themselves or the largest",
             at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True,
         ),
@@ -405,8 +405,8 @@ RULES: Registry[Rule] = Registry(
             at.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation over layers"
         ),
         **{
-            f"{name}{layers}": _against(other, measure, text.format(against), *rows)
-            for other, layers, against in ((CLOSED_FORM, "", ""), (SIE, " over layers", _SIE))
+            f"{name}{layers}": against(other, measure, text.format(by), *rows)
+            for other, layers, by in ((CLOSED_FORM, "", ""), (SIE, " over layers", _SIE))
             for name, measure, text, rows in (
                 ("ends", _over_half_width, "ends of the contact{}, over its half-width",
                  (of.HALF_WIDTH, of.CENTRE)),
@@ -422,54 +422,54 @@ RULES: Registry[Rule] = Registry(
             (at.PRESSURE[FEM],), _tension, limit=0.0, own_pressure=True,
         ),
         # Under a prescribed pressure there is no raw one, and nothing to compare.
-        "sigma_YY": _against(
+        "sigma_YY": against(
             CLOSED_FORM, _pressure, "σ_YY pointwise, relative",
             at.PRESSURE, beside=(at.RAW_PRESSURE, at.SURFACE_X),
         ),
         # For free ends, where no exponent is assumed; at a sharp edge sigma_YY is the stricter rule.
-        "sigma_YY of found ends": _against(
+        "sigma_YY of found ends": against(
             CLOSED_FORM, _pressure_between_free_ends,
             "σ_YY of contacts with free ends, over the largest further than 0.02 a from a tip",
             at.PRESSURE, beside=(at.SURFACE_X, of.LARGEST[CLOSED_FORM]), tolerances=10.0,
         ),
-        "sigma_XX": _against(
+        "sigma_XX": against(
             CLOSED_FORM, _in_plane, "σ_XX pointwise, relative to itself or the largest",
             at.IN_PLANE, beside=(at.SURFACE_X,), own_pressure=True,
         ),
-        "extremes of sigma_XX": _against(
+        "extremes of sigma_XX": against(
             CLOSED_FORM, _over_larger, "highest and lowest σ_XX, over the larger of them",
             at.HIGHEST, at.LOWEST, own_pressure=True,
         ),
         "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
-        "stresses inside": _against(
+        "stresses inside": against(
             CLOSED_FORM, _inside, "stresses inside, relative to themselves or the largest",
             at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True,
         ),
         "estimate inside": _estimate(at.ESTIMATE_INSIDE[FEM], "stresses inside"),
-        "largest stresses": _against(
+        "largest stresses": against(
             CLOSED_FORM, _relative, "largest von Mises and shear stress, relative",
             to.VON_MISES, to.SHEAR, own_pressure=True,
         ),
-        "largest stresses over layers": _against(
+        "largest stresses over layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress{_SIE}, relative", to.VON_MISES
         ),
-        "largest stresses of layers": _against(
+        "largest stresses of layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress of each layer{_SIE}, relative",
             to.OF_LAYERS,
         ),
-        "yielded zone": _against(
+        "yielded zone": against(
             CLOSED_FORM, _yielded_zone,
             "distance from the edges within which yield is passed, as a stress, relative",
             to.REACH_LEFT, to.REACH_RIGHT, beside=(of.ALPHA, of.BETA),
         ),
-        "depth of yield": _against(
+        "depth of yield": against(
             CLOSED_FORM, _depth, "depth of the yielded zone, as a stress, relative",
             to.DEPTH, own_pressure=True,
         ),
         "estimate of yield": _estimate(to.ESTIMATE_YIELD, "stresses from which yield is computed"),
         # In the traction mode v,X under the punch has to vanish. It is a derivative of the displacement,
         # with about half the digits of the moments to which the tolerance refers.
-        "slope under the punch": _largest(
+        "slope under the punch": largest(
             of.SLOPE, "v,X under the punch over that beside it", 10.0, mode="traction"
         ),
     },

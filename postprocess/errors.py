@@ -4,6 +4,8 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
+from galinx.texts import bytes_in_words
+
 
 class UnreadableArchive(Exception):
     """A file is no archive, or an archive that is damaged, changed or of a newer layout.
@@ -40,15 +42,7 @@ def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchiv
         The exception, to be raised by the caller.
     """
     reason = getattr(error, "strerror", None) or str(error)
-    space = f"; it needs {_size(needed)}" if needed else ""
+    space = f"; it needs {bytes_in_words(needed)}" if needed else ""
     with suppress(OSError):
-        space += f"; {_size(shutil.disk_usage(target.parent).free)} are free"
+        space += f"; {bytes_in_words(shutil.disk_usage(target.parent).free)} are free"
     return UnwritableArchive(f"cannot write {target}: {reason}{space}")
-
-
-def _size(count: float) -> str:
-    for unit in ("bytes", "kB", "MB"):
-        if count < 999.5:
-            return f"{count:.3g} {unit}"
-        count /= 1000.0
-    return f"{count:.3g} GB"

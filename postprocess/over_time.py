@@ -13,15 +13,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import eval_jacobi, gammaln, roots_jacobi, xlogy
+from scipy.special import xlogy
 
 from galinx.solvers.contact.edges import from_edge
 from galinx.solvers.transient.punch import ON_SURFACE
+from galinx.solvers.transient.transform import Weighted
 
-from .compare import RULES, Rule, largest_of
+from .compare import RULES, Rule, against, largest
 from .quantities import over_time as rows
 from .quantities.over_time import SHARES
-from .quantities.quantity import FEM, SIE, Quantity
+from .quantities.quantity import FEM, SIE
 
 #: Moments of the pressure that elements give, over their degree: elements have to represent the
 #: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
@@ -61,37 +62,21 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
     """
     moments = ceil(_MOMENTS * degree)
     polynomials = moments - _FEWER
-    a = forces @ _tests(X, α, β, moments)
-    with np.errstate(
-        invalid="ignore", divide="ignore"
-    ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
-        r, w = roots_jacobi(_POINTS, α, β)
-    basis = np.column_stack([np.eye(moments, polynomials), _tests(r, α, β, moments).T @ (w * _logs(r)).T])
+    tests = Weighted(α, β, moments)
+    a, (r, w) = forces @ tests.polynomials(X), tests.rule(_POINTS)
+    basis = np.column_stack([np.eye(moments, polynomials), tests.polynomials(r).T @ (w * _logs(r)).T])
     factors = np.linalg.lstsq(basis, a.T, rcond=None)[0]
     ends = np.array([-1.0, 1.0])
-    K_left, K_right = -0.5 * np.column_stack([_tests(ends, α, β, polynomials), _logs(ends).T]) @ factors
+    K_left, K_right = (
+        -0.5 * np.column_stack([tests.polynomials(ends)[:, :polynomials], _logs(ends).T]) @ factors
+    )
     total = forces.sum(axis=1)
     return ContactNumbers(-total / 2.0, (forces @ X) / total, K_left, K_right)
-
-
-def _tests(X: NDArray, α: float, β: float, count: int) -> NDArray[np.float64]:
-    """Jacobi's polynomials with unit weighted squares, (points, count)."""
-    return np.asarray(
-        eval_jacobi(np.arange(count), α, β, X[:, None]) / np.exp(0.5 * _squares(α, β, count))
-    )
 
 
 def _logs(X: NDArray) -> NDArray[np.float64]:
     """Terms r log r of the distances from both ends, (2, points), which inertia adds to the pressure."""
     return np.array([xlogy(r, r) for r in (1.0 + X, 1.0 - X)])
-
-
-def _squares(α: float, β: float, count: int) -> NDArray[np.float64]:
-    """Logarithm of ∫ w P_j² for α + β = -1, (count,)."""
-    j = np.arange(1, count)
-    first = gammaln(α + 1.0) + gammaln(β + 1.0)
-    rest = gammaln(j + α + 1.0) + gammaln(j + β + 1.0) - gammaln(j + 1.0) - gammaln(j) - np.log(2.0 * j)
-    return np.concatenate([[first], rest])
 
 
 #: Names of rules: for both methods, for finite elements, and for the integral equation alone.
@@ -130,12 +115,12 @@ def largest_change(
     return float(np.nanmax(np.array(off) / np.array(sizes)))
 
 
-def _both(data: Mapping[str, Any], _: Any) -> float:
+def _both(fem: list[NDArray], sie: list[NDArray], data: Mapping[str, Any], _: Any) -> float:
     """Largest difference of both methods at times at which the integral equation has a solution."""
-    solved = np.isfinite(data[rows.V0[SIE].path]).all(axis=0)
+    solved = np.isfinite(sie[0]).all(axis=0)
     if not solved.any():
         return np.inf
-    fem, sie = ([data[row[method].path][:, solved] for row in COMPARED] for method in (FEM, SIE))
+    fem, sie = ([values[:, solved] for values in method] for method in (fem, sie))
     return largest_change(fem, sie, data[rows.LOAD.path][solved], lean_of_steady(data)[:, solved])
 
 
@@ -146,35 +131,6 @@ def lean_of_steady(data: Mapping[str, Any]) -> NDArray[np.float64]:
     """
     changing = np.ptp(data[rows.RATIOS.path], axis=-1) > 0.0
     return np.asarray(np.where(changing[:, None], data[rows.CENTRES.path], 0.0))
-
-
-RULES.register(
-    BOTH,
-    Rule(
-        "v₀, centre times load and K_I over time against the integral equation, over the largest",
-        (
-            rows.LOAD, rows.RATIOS, rows.CENTRES,
-            *(row[method] for row in COMPARED for method in (FEM, SIE)),
-        ),
-        _both, tolerances=1.0,
-    ),
-)  # fmt: skip
-RULES.register(
-    OF_FEM,
-    Rule(
-        "estimated error over time, over the largest",
-        (rows.ESTIMATE,),
-        largest_of(rows.ESTIMATE),
-        tolerances=1.0,
-    ),
-)
-RULES.register(
-    OF_SIE,
-    Rule(
-        "residual of the integral equation and of the load over time, relative",
-        (rows.RESIDUAL,), largest_of(rows.RESIDUAL), tolerances=1.0,
-    ),
-)  # fmt: skip
 
 
 #: Largest relative change of distance times time, over the second half of a motion, that counts as an
@@ -256,45 +212,18 @@ def _balance(data: Mapping[str, Any], _: Any) -> float:
     return float(np.abs(energy_imbalance(data)).max())
 
 
-def _works(data: Mapping[str, Any], _: Any) -> float | None:
-    return off_until_turn(data, (rows.OF_LOAD, rows.OF_FRICTION))
+def _until_turn(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
+    """Largest difference of histories up to the first turn, over a motion's largest of all of them.
 
-
-def off_until_turn(data: Mapping[str, Any], of: tuple[dict[str, Quantity], ...]) -> float | None:
-    """Largest difference of both methods' histories up to the first turn, over a motion's largest.
-
-    Args:
-        data: datasets by path.
-        of: quantities by method whose histories are compared, (motions, times) each.
-
-    Returns:
-        Dimensionless difference; None where the integral equation has no solution.
+    None where the integral equation has no solution.
     """
-    fem, sie = (np.array([data[row[method].path] for row in of]) for method in (FEM, SIE))
     solved = np.isfinite(sie).all(axis=(0, 1))
     if not solved.any():
         return None
-    off, size = (np.abs(values[..., solved]).max(axis=(0, 2)) for values in (fem - sie, sie))
+    off, size = (
+        np.abs(values[..., solved]).max(axis=(0, 2)) for values in (np.subtract(fem, sie), np.array(sie))
+    )
     return float((off / size).max())
-
-
-RULES.register(
-    WORKS,
-    Rule(
-        "works of load and friction over time against the integral equation, over the largest",
-        tuple(row[method] for row in (rows.OF_LOAD, rows.OF_FRICTION) for method in (FEM, SIE)), _works,
-        tolerances=1.0,
-    ),
-)  # fmt: skip
-RULES.register(
-    BALANCE,
-    Rule(
-        "work without its energy over time, over the largest work",
-        (*_DONE, *_HELD),
-        _balance,
-        tolerances=1.0,
-    ),
-)
 
 
 #: Distance over a from the edges, where stresses are infinite; stresses further away are compared.
@@ -354,49 +283,47 @@ def place_datasets(t: NDArray) -> dict[str, NDArray]:
     return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
 
 
-def _along(data: Mapping[str, Any], _: Any) -> float | None:
+def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
     """Largest difference of both methods up to the first turn; None without output before it."""
-    solved = np.isfinite(data[SURFACE[0][SIE].path]).all(axis=(0, 2))
+    solved = np.isfinite(sie[0]).all(axis=(0, 2))
     if not solved.any():
         return None
-    return largest_surface_change(
-        *([data[row[method].path][:, solved] for row in SURFACE] for method in (FEM, SIE))
-    )
-
-
-def _beside(data: Mapping[str, Any], _: Any) -> float | None:
-    """Largest difference of both methods' σ_XX beside the ends, over the largest at either end."""
-    return off_until_turn(data, ENDS)
+    return largest_surface_change(*([values[:, solved] for values in method] for method in (fem, sie)))
 
 
 #: Names of rules: for the surface by both methods, for finite elements, and for places beside both ends.
 ALONG, OF_SURFACE, AT_ENDS = "surface over time", "estimate on the surface over time", "ends over time"
-#: σ_XX beside both ends; its difference is reported, not judged: waves ahead of a fast punch are short.
-ENDS = rows.LEFT, rows.RIGHT
+_AGAINST = "over time against the integral equation, over the largest"
+_FAR = "further than 0.01 a from the edges"
 
-RULES.register(
-    ALONG,
-    Rule(
-        "σ_XX and σ_YY along the surface over time against the integral equation, over the largest "
-        "further than 0.01 a from the edges",
-        tuple(row[method] for row in SURFACE for method in (FEM, SIE)), _along, tolerances=1.0,
+for _name, _rule in {
+    BOTH: against(
+        SIE, _both, f"v₀, centre times load and K_I {_AGAINST}", *COMPARED,
+        beside=(rows.LOAD, rows.RATIOS, rows.CENTRES),
     ),
-)  # fmt: skip
-RULES.register(
-    OF_SURFACE,
-    Rule(
-        "estimated error of σ_XX and σ_YY along the surface over time, over the largest further than "
-        "0.01 a from the edges",
-        (rows.SURFACE_ESTIMATE,), largest_of(rows.SURFACE_ESTIMATE), tolerances=1.0,
+    OF_FEM: largest(rows.ESTIMATE, "estimated error over time, over the largest"),
+    OF_SIE: largest(
+        rows.RESIDUAL, "residual of the integral equation and of the load over time, relative"
     ),
-)  # fmt: skip
-RULES.register(
-    AT_ENDS,
-    Rule(
-        "σ_XX 0.05 a beside both ends over time against the integral equation, over the largest",
-        tuple(row[method] for row in ENDS for method in (FEM, SIE)), _beside,
+    WORKS: against(
+        SIE, _until_turn, f"works of load and friction {_AGAINST}", rows.OF_LOAD, rows.OF_FRICTION
     ),
-)  # fmt: skip
+    BALANCE: Rule(
+        "work without its energy over time, over the largest work", (*_DONE, *_HELD), _balance,
+        tolerances=1.0,
+    ),
+    ALONG: against(SIE, _along, f"σ_XX and σ_YY along the surface {_AGAINST} {_FAR}", *SURFACE),
+    OF_SURFACE: largest(
+        rows.SURFACE_ESTIMATE,
+        f"estimated error of σ_XX and σ_YY along the surface over time, over the largest {_FAR}",
+    ),
+    # Its difference is reported, not judged: waves ahead of a fast punch are short.
+    AT_ENDS: against(
+        SIE, _until_turn, f"σ_XX 0.05 a beside both ends {_AGAINST}", rows.LEFT, rows.RIGHT,
+        tolerances=None,
+    ),
+}.items():  # fmt: skip
+    RULES.register(_name, _rule)
 
 
 #: Names of all rules of motions in time.

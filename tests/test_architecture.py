@@ -14,7 +14,7 @@ ONE_PLACE = {
     "ufl": {"solvers/fem/forms.py", "solvers/fem/versions.py"},
     "matplotlib": {"app/figures/"},
     "jinja2": {"postprocess/page/"},
-    "xarray": {"postprocess/named.py", "app/results/result.py"},
+    "xarray": {"app/results/result.py"},
     "tomlkit": {"app/scene/changes.py"},
     "pint": {"app/scene/units.py"},
     "rich": {"app/console.py"},

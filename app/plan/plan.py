@@ -9,11 +9,13 @@ import json
 from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
-from math import inf
+from math import inf, log2
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from galinx.meshes import MESHES, store
+from galinx.meshes import MESHES, Requirements, store
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
@@ -21,28 +23,55 @@ from galinx.postprocess.quantities.quantity import (
     LOCAL,
     SWEPT,
 )
-from galinx.solvers.contact import INTENSITIES, YIELD
+from galinx.postprocess.quantities.runs import SLIDER
+from galinx.solvers.contact import FREE_ENDS, INTENSITIES, YIELD
+from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
     BESIDES,
     DOLFINX,
+    FITTED,
     FREE_ON_LAYERS,
     LADDERS,
+    NEAR_FREE_END,
     OWN_MESHES,
     FemPlan,
+    kind_of,
+    largest_level,
     levels,
+    no_nearer,
+    pressure_moments,
+    required_of_free_ends,
+    required_of_pieces,
+    required_over_layers,
+    requirements,
+    size_of,
+    swept,
     unknowns,
 )
-from galinx.solvers.contact.solution import FINITE, FLAT, GIVEN_ENDS, Contact, Places
+from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
+from galinx.solvers.contact.solution import (
+    FINITE,
+    FLAT,
+    FREE,
+    GIVEN_ENDS,
+    ONE_FREE,
+    PRESCRIBED,
+    SHARP,
+    Contact,
+    Places,
+)
+from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.contact.yielding_of_layers import places as yield_places
-from galinx.texts import counted
+from galinx.solvers.errors import SolveError
+from galinx.solvers.profiles import exponent
+from galinx.solvers.rays import NEAR
+from galinx.solvers.solids.half_plane import HalfPlane
+from galinx.texts import bytes_in_words, counted
 
 from .. import ranks
 from ..errors import BadInput, listed
-from ..methods import METHODS, OWN_METHODS
-from ..run.slider import check_sliders
+from ..methods import METHODS, OWN_METHODS, fem_mode
 from ..scene.scene import FRICTIONS, Scene, oddities
-from . import cost
-from .fem import check_assembler, memory, plan_fem
 from .over_time import starts
 from .states import enumerate_states, order
 from .task import CHUNK_NUMBERS, Plan, Tasks
@@ -53,8 +82,45 @@ _INNER, _OUTERMOST = 0.6, 1e6
 #: Most knots of a prescribed pressure over layers, and their least distance over a.
 _KNOTS, _APART = 12, 0.02
 
+#: Most sliders of a scene.
+_SLIDERS = 200
+
 #: Narrowest piece of a prescribed pressure, over a, within which positions have enough digits.
 _NARROWEST = 1e-9
+
+
+#: Bytes of a number of the states that are computed together, and of a number in an archive.
+_HELD, _ARCHIVED = 18, 8
+#: Bytes of an archive without results, and of a dataset without numbers.
+_EMPTY, _DATASET = 7e4, 1.5e3
+#: Bytes of a program without finite elements, of a state's friction, of the libraries of finite elements.
+_PROGRAM, _FRICTION, _LIBRARIES = 130e6, 300.0, 170e6
+#: Numbers of element matrices that are computed at once.
+_AT_ONCE = 2e6
+
+
+def free_memory() -> float:
+    """Free memory [B] of this machine."""
+    try:
+        text = Path("/proc/meminfo").read_text(encoding="ascii")
+    except OSError:  # not on Linux: ask for no more than any machine has
+        return 2e9
+    return 1024.0 * float(text.split("MemAvailable:")[1].split()[0])
+
+
+def memory(unknowns: float, direct: bool) -> float:
+    """Memory [B] of matrices, a factor or multigrid, and fields, on all ranks together.
+
+    Measured at degree 2 with that many unknowns on the finest level; a fourth less at degree 8.
+    """
+    return unknowns * (980.0 + 48.0 * log2(max(unknowns, 2)) if direct else 1400.0)
+
+
+def lacking(needed: float) -> str:
+    """Memory [B] that is needed and free, for a message; "" where enough is free."""
+    if needed <= (free := free_memory()):
+        return ""
+    return f"about {needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free"
 
 
 def check_size(body: Contact, methods: Collection[str]) -> None:
@@ -142,12 +208,24 @@ def check_states(states: int) -> None:
     Raises:
         BadInput: it does not.
     """
-    needed, free = cost.bytes_of_states(states), cost.free_memory()
-    if needed > free:
+    if lack := lacking(_FRICTION * states):
         raise BadInput(
-            f"the scene's lists multiply to {states:.3g} states, whose friction needs about "
-            f"{needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free: shorten them, "
-            "or make several scenes"
+            f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
+            "them, or make several scenes"
+        )
+
+
+def check_sliders(scene: Scene) -> None:
+    """Check the number of sliders of a scene.
+
+    Raises:
+        BadInput: a scene has more sliders than are followed.
+    """
+    count = scene.friction.count * len(scene.punch.loads)
+    if SLIDER in scene.output.quantities and count > _SLIDERS:
+        raise BadInput(
+            f"the scene's lists multiply to {count} friction laws and loads, expected at most {_SLIDERS} "
+            "with a slider each: shorten them, or make several scenes"
         )
 
 
@@ -292,13 +370,139 @@ def farthest_inside(scene: Scene) -> float:
     return _INNER * walls if walls else _OUTERMOST
 
 
-def warnings_of_size(numbers: int) -> Iterator[str]:
-    """Warning where memory does not hold the numbers of the states that are computed together."""
-    needed, free = cost.bytes_of_chunk(numbers), cost.free_memory()
-    if needed > free:
-        yield (
-            f"the stresses of a single state need about {needed / 1e9:.2g} GB, of which this machine has "
-            f"{free / 1e9:.2g} GB free: ask for fewer points"
+#: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
+#: that is rounding.
+_MOST_SHAPES, _ROUNDED = 48, 1e-13
+#: Most unknowns of a speed that one rank solves faster than two ranks together.
+SMALL = 200_000
+
+
+def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: NDArray) -> FemPlan:
+    """Plan of the finite elements at the speeds of a scene; builds no mesh.
+
+    Args:
+        scene: the scene.
+        responses: of its solid, one a speed.
+        places: points where stresses are output.
+        g: all values of σ_XY/σ_YY.
+
+    Raises:
+        BadInput: the weak form does not allow the scene's degree or solver.
+    """
+    solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
+    mode = fem_mode(scene)
+    if scene.layers:
+        depths = scene.solid.depths / scene.body.half_width
+        kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
+    _check_degree_and_solver(scene)
+    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    exponent = min(
+        -0.5 - abs(EdgeExponents(response, end).α + 0.5) for response in responses for end in ends
+    )
+    spread = max(response.spread for response in responses)
+    planes = [response.contraction for response in responses]
+    required = requirements(solve.tolerance, places, exponent, spread, planes)
+    if required_of_kind := _REQUIRED.get((scene.body.ends, bool(scene.layers))):
+        required = required_of_kind(required, scene, mode)
+    refinement = kind.refinement(required)
+    degrees = tuple(
+        solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
+    )
+    largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
+    drawn = kind.drawn(required)
+    size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
+    shared = shares_speeds(size, len(responses))
+    solver = solve.solver
+    if mixed or solver == "auto":
+        needed = memory(size, direct=True) * (ranks.size() if shared else 1)
+        solver = "direct" if mixed or needed < 0.8 * free_memory() else "multigrid"
+    return FemPlan(
+        mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
+        assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
+        wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
+        tests=pressure_moments(scene.solid, kind, required),
+        sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
+        shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
+    )  # fmt: skip
+
+
+#: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
+_REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
+    (SHARP, True): lambda required, scene, _: required_over_layers(required, scene.solid),
+    (PRESCRIBED, False): lambda required, scene, _: required_of_pieces(
+        required, np.array(scene.body.knots)
+    ),
+    # Next to knots stresses are continued.
+    (PRESCRIBED, True): lambda required, *_: no_nearer(required, NEAR),
+    # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
+    (FREE, False): lambda required, _, mode: replace(
+        required_of_free_ends(required), bends=mode == FREE_ENDS
+    ),
+    (FREE, True): lambda required, *_: no_nearer(required, NEAR_FREE_END),
+}
+
+
+def _shapes(scene: Scene, responses: Sequence[HalfPlane], g: NDArray) -> int:
+    """Number of polynomials whose sum is the profile of the punch under every contact.
+
+    It depends on the widths of the contacts. The integral equation gives these at the slowest and the
+    fastest speed, and at the least and the largest load and friction.
+    """
+    profile, most = scene.punch.profile, 0
+    if scene.body.ends == ONE_FREE:
+        return 1  # a tilted base
+    if exponent(profile) == 2.0:
+        return 2
+    ends = [max(responses, key=lambda r: r.margin), min(responses, key=lambda r: r.margin)]
+    loads = np.repeat([min(scene.punch.loads), max(scene.punch.loads)], 3)
+    frictions = np.tile([g.min(), 0.0, g.max()], 2)
+    for response in ends:
+        try:
+            solved = contacts(response, frictions, profile, loads / scene.solid.μ)
+        except SolveError:
+            return SHAPES  # finite elements report it where they solve the contact
+        for m, h in zip(solved.of("centre").tolist(), solved.of("half_width").tolist()):
+            size = np.abs(slopes_of_shapes(profile, m, h, 2 * _MOST_SHAPES))
+            most = max(most, int(np.flatnonzero(size > _ROUNDED * size.max())[-1]) + 1)
+    return int(np.clip(most, SHAPES, _MOST_SHAPES))
+
+
+def shares_speeds(unknowns: int, speeds: int) -> bool:
+    """True where ranks take whole speeds: small systems gain nothing from being cut in pieces."""
+    return 1 < ranks.size() <= speeds and unknowns < SMALL
+
+
+def _check_degree_and_solver(scene: Scene) -> None:
+    solve, mixed = scene.solve, scene.solid.nearly_incompressible
+    if mixed and solve.degree and solve.degree < 3:
+        raise BadInput(
+            f"solve.degree: found {solve.degree} with {scene.solid.words()}, expected at least 3: "
+            "the pressure, an unknown of its own there, has two degrees less"
+        )
+    if mixed and solve.solver in ("boomeramg", "gamg"):
+        raise BadInput(
+            f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
+            "with an unknown pressure the matrix is indefinite"
+        )
+
+
+def check_assembler(scene: Scene) -> None:
+    """Check that dolfinx's assembler serves the scene, where it is chosen.
+
+    Raises:
+        BadInput: the scene has a prescribed pressure or a motion in time.
+    """
+    if scene.solve.assembler != DOLFINX or FEM not in scene.solve.methods:
+        return
+    if scene.solve.own_pressure:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": its '
+            "pieces are put together from the deformation of condensed cells"
+        )
+    if scene.time is not None:
+        raise BadInput(
+            'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
+            "matrices of their own"
         )
 
 
@@ -310,12 +514,9 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
             f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "
             f'friction), more than the tolerance {fem.tolerance:g}; use mesh = "confocal" or "graded"'
         )
-    needed, free = memory(fem), cost.free_memory()
-    if needed > free:
-        yield (
-            f"the finite elements need about {needed / 1e9:.2g} GB, of which this machine has "
-            f"{free / 1e9:.2g} GB free: use fewer cuts, a larger tolerance, or more machines"
-        )
+    systems = ranks.size() if fem.shared_speeds else 1
+    if lack := lacking(systems * memory(fem.size, fem.solver == "direct")):
+        yield f"the finite elements need {lack}: use fewer cuts, a larger tolerance, or more machines"
 
 
 def lines(scene: Scene, plan: Plan) -> list[str]:
@@ -386,29 +587,24 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
 def expense(*plans: Plan) -> str:
     """Estimated memory of plans of all variants of a scene, and the size of their archive."""
     first = plans[0]
-    positions = sum(len(values) for values in first.positions.values())
-    numbers = sum(plan.states for plan in plans) * (first.numbers + len(first.quantities)) + positions
-    archived = f"an archive of {_size(cost.bytes_archived(numbers, len(first.quantities)))}"
-    needed = _size(max(map(_bytes, plans)))
-    return f"about {needed}{' a rank' * bool(first.fem)} and {archived}"
+    datasets, positions = len(first.quantities), sum(map(len, first.positions.values()))
+    numbers = sum(plan.states for plan in plans) * (first.numbers + datasets) + positions
+    archive = _EMPTY + _DATASET * datasets + _ARCHIVED * numbers
+    needed = bytes_in_words(max(map(_bytes, plans)), 2)
+    return f"about {needed}{' a rank' * bool(first.fem)} and an archive of {bytes_in_words(archive, 2)}"
 
 
 def _bytes(plan: Plan) -> float:
     """Estimated memory [B] of a plan, with finite elements of a rank."""
     together, fem = plan.chunk * plan.numbers, plan.fem
     if not fem:
-        return cost.bytes_without_fem(plan.states, together)
-    finest = max(p * k for p, k in levels(max(fem.degrees), fem.cuts, fem.fixed))
+        return _PROGRAM + _FRICTION * plan.states + _HELD * together
+    degree = max(fem.degrees)
+    finest = max(p * k for p, k in levels(degree, fem.cuts, fem.fixed))
     most = unknowns(fem.pattern, finest) / (1 if fem.shared_speeds else ranks.size())
-    return cost.bytes_of(most, max(fem.degrees), fem.solver == "direct", max(CHUNK_NUMBERS, together))
-
-
-def _size(count: float) -> str:
-    """A number of bytes in words, as ``1.2 GB``."""
-    for unit, size in (("GB", 1e9), ("MB", 1e6)):
-        if count >= 0.1 * size:
-            return f"{count / size:.2g} {unit}"
-    return f"{count / 1e3:.2g} kB"
+    dense = 3 * 8 * max(_AT_ONCE, 16 * (2 * (degree + 1) ** 2) ** 2)
+    of_levels = memory(most, fem.solver == "direct")
+    return _LIBRARIES + of_levels + dense + _HELD * max(CHUNK_NUMBERS, together)
 
 
 #: Descriptions of names in output.quantities, for a plan in words.
@@ -470,8 +666,9 @@ def make_plan(
         fem=fem, skipped=skipped, warnings=tuple(warnings),
         starts=starts(scene, friction) if friction else None, friction=friction,
     )  # fmt: skip
-    heavy = warnings_of_size(plan.chunk * plan.numbers)
-    return replace(plan, warnings=(*plan.warnings, *heavy))
+    if lack := lacking(_HELD * plan.chunk * plan.numbers):
+        warnings.append(f"the stresses of a single state need {lack}: ask for fewer points")
+    return replace(plan, warnings=tuple(warnings))
 
 
 def _contact(scene: Scene) -> bool:

@@ -49,7 +49,6 @@ from ..methods import METHODS
 from ..plan.task import Plan
 from ..plan.variants import Variant, joined_positions, joined_states, make_variants, restricted
 from ..run.flow import Judge, scene_attributes
-from ..run.make import make
 from ..run.solve import Work
 from ..scene import read as scenes
 from ..scene.scene import Scene
@@ -202,7 +201,7 @@ def _computed(
     """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
-    made = {name: make(name, alone, Progress(), Clock()) for name in methods}
+    made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
     work = Work(alone, data[states.RATIO.path], made, Clock(), np.zeros(plan.states, dtype=bool))
     for task, rows in _tasks(plan, selected):
         if f"c = {task.response.c:g}" not in failed:
@@ -311,7 +310,7 @@ def _of_invariants(archive: Archive, plan: Plan, selected: NDArray[np.int64]) ->
 def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
     """Indentations v₀ that differ from those of the closed form's pressure."""
     looked_at = replace(plan, places=Places(places()[0], np.empty((0, 2))))
-    method = make(CLOSED_FORM, looked_at, Progress(), Clock())
+    method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
     held, g = data[states.INDENTATION.path], data[states.RATIO.path]
     for task, rows in _tasks(looked_at, selected):
         load = np.concatenate([plan.load(slice(row, row + 1)) for row in rows.tolist()])

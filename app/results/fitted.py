@@ -288,7 +288,7 @@ def _with_law(path: Path, section: str) -> str:
 
     scenes.read(path)
     text = with_law(files.read(path).decode("utf-8-sig"), section, str(path))
-    scenes.parse(scenes.filled(text, scenes.SECTIONS, path.parent, str(path)), f"{path} with this law")
+    scenes.parse(scenes.filled(text, path.parent, str(path)), f"{path} with this law")
     return text
 
 

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from galinx.postprocess.compare import checked, failed
-from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.tables import Column, state_columns, states_sheet
+from galinx.postprocess.quantities import of_states, runs, states, table
+from galinx.postprocess.quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, LAYER, POINT, STATE
+from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
+from galinx.postprocess.tables import Column, parameters, state_columns, states_sheet
 from galinx.postprocess.target import FIELDS, PAGE, Target
 from galinx.postprocess.units import Units
 
@@ -23,6 +25,16 @@ from ..run.flow import compute as compute_into
 from ..scene import read as scenes
 from ..scene.scene import Scene
 
+#: Names of an xarray.Dataset's dimensions, and of the positions along them.
+_DIMENSIONS = {
+    STATE: "state", POINT: "X_over_a", INSIDE: "point", INNER: "inner",
+    INTERFACE: "interface", ALONG: "along", LAYER: "layer",
+}  # fmt: skip
+_POSITIONS = {
+    SURFACE_X.path: "X_over_a",
+    INSIDE_X.path: "inside_X_over_a",
+    INSIDE_Y.path: "inside_Y_over_a",
+}
 _COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
 
 
@@ -97,17 +109,38 @@ class Result:
 
     @cached_property
     def dataset(self) -> Any:
-        """An xarray.Dataset over the dimension ``state``, with units and long names."""
-        from galinx.postprocess.named import dataset
+        """An xarray.Dataset over the dimension ``state``, with units and long names.
 
-        return dataset(self.data, self.attributes)
+        Variables are named like the paths of an archive, with ``_`` for ``/`` and without ``states``. The
+        parameters that differ between states are coordinates.
+        """
+        import xarray  # slow to import
+
+        rows, apart = table(), parameters(self.data)
+        variables: dict[str, Any] = {}
+        coordinates: dict[str, Any] = dict.fromkeys(path.rpartition("/")[2] for path in apart)
+        for path, values in self.data.items():
+            row = rows.get(path)
+            if not row or not of_states(path) or not row.over or not set(row.over) <= _DIMENSIONS.keys():
+                continue
+            dims = tuple(_DIMENSIONS[dimension] for dimension in row.over)
+            named = dims, values, {"units": row.unit, "long_name": row.about}
+            section, *rest = path.split("/")
+            if path in _POSITIONS:
+                coordinates[_POSITIONS[path]] = named
+            elif path in apart:
+                coordinates[rest[0]] = named
+            else:
+                variables["_".join(rest if section == "states" else (section, *rest))] = named
+        kept = {name: self.attributes[name] for name in ("title", "version", "verdict")}
+        return xarray.Dataset(variables, coordinates, kept)
 
     @cached_property
     def grid(self) -> Any:
         """xarray.Dataset over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
-        from galinx.postprocess.named import over_parameters
-
-        return over_parameters(self.dataset)
+        flat = self.dataset
+        apart = [name for name in flat.coords if flat[name].dims == ("state",)]
+        return flat.set_index(state=apart).unstack("state")
 
     def units(self, dimensionless: bool = False) -> Units:
         """Units of all quantities: SI with prefixes, or as archived over N/(2a), a and c_s."""

@@ -2,17 +2,18 @@
 
 :func:`compute` is the run as a program. Its parts: the attributes of an archive, in SI, that describe the
 scene and the versions with which results were computed (:func:`scene_attributes`, :func:`libraries`);
-sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); and the
-collector, which judges finished parts and writes them (:class:`Collector`).
+sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); the
+collector, which judges finished parts and writes them (:class:`Collector`); and motions of sliders
+(:func:`slide`).
 """
 
 import json
 import platform
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import chain
+from itertools import chain, product
 from math import inf
 from time import perf_counter
 from typing import Any, Protocol
@@ -28,6 +29,7 @@ from galinx.postprocess.quantities import column, declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.errors import SolveError
+from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids import SOLIDS, Solid
@@ -35,6 +37,8 @@ from galinx.solvers.transient.late_time import approach
 
 from .. import ranks
 from ..console import Progress
+from ..errors import BadInput
+from ..methods import METHODS
 from ..plan.states import States
 from ..plan.task import Plan
 from ..plan.variants import (
@@ -45,9 +49,7 @@ from ..plan.variants import (
     make_variants,
 )
 from ..scene.scene import Scene
-from .make import make
 from .over_time import solve_motions
-from .slider import slide
 from .solve import Work
 
 
@@ -316,6 +318,51 @@ class Collector:
             self._sink.put(CHANGES.path, np.array(padded))
 
 
+#: Archived times of a slider, and times of its last cycle.
+_TIMES, _STEPS = 4001, 1001
+
+
+def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None) -> dict[str, NDArray]:
+    """Motions of a scene's slider under each of its loads and laws: datasets by path.
+
+    Args:
+        scene: the scene.
+        done: takes the number of motions done, the one under way by its share, and the number of all.
+
+    Raises:
+        BadInput: a motion could not be followed.
+    """
+    slider, motions = scene.slider, list[dict[str, Any]]()
+    assert slider is not None
+    times, of = np.linspace(0.0, slider.duration, _TIMES), len(scene.punch.loads) * scene.friction.count
+    for n, (load, law) in enumerate(product(scene.punch.loads, scene.friction.laws())):
+        try:
+            ride = pull(slider, law, load, lambda share, n=n: done(n + share, of))  # type: ignore[misc]
+        except ValueError as error:
+            raise BadInput(f"slider: {error}") from None
+        last, (x, v, f) = cycle(ride, slider.drive_speed), ride.at(times)
+        cycle_v, cycle_f = np.full((2, _STEPS), np.nan)
+        if np.isfinite(last.period):
+            _, cycle_v, cycle_f = ride.at(_close(ride))
+        motions.append({
+            runs.POSITION.path: x, runs.VELOCITY.path: v, runs.FRICTION.path: f,
+            runs.CYCLE_VELOCITY.path: cycle_v, runs.CYCLE_FRICTION.path: cycle_f,
+            runs.OUTCOME.path: outcome(ride, slider.drive_speed),
+            runs.PERIOD.path: last.period, runs.SLIP.path: last.slip,
+            runs.PEAK.path: last.peak, runs.LEAST.path: last.least,
+        })  # fmt: skip
+    return {runs.TIMES.path: times} | {
+        path: np.array([motion[path] for motion in motions]) for path in motions[0]
+    }  # fmt: skip
+
+
+def _close(ride: Ride) -> NDArray[np.float64]:
+    """Times in the last cycle [s], (times,), dense where the integration took small steps."""
+    assert ride.cycle is not None
+    t = ride.t[ride.cycle]
+    return np.interp(np.linspace(0.0, len(t) - 1.0, _STEPS), np.arange(len(t)), t)
+
+
 def compute(
     scene: Scene,
     sink: Sink | None = None,
@@ -411,7 +458,7 @@ def _parts(
     plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
-    methods = {name: make(name, plan, progress, clock) for name in plan.methods}
+    methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
     if ranks.size() > 1 and plan.fem:
         from .share import same_on_all, shared_out
 

@@ -174,15 +174,12 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
         motions = []
         for drive in starts.drives[c]:
             punch = punches[drive.way]
-            if drive.constant is None:
-                g = np.vectorize(drive, otypes=[float])
-                course = punch.course_along(g, starts.load, starts.steady)
-                values: tuple[NDArray, ...] = course.v0, course.centre, course.K_left, course.K_right
-            else:
-                course, values = _of_constant(drive.constant, starts, punch, response)
-            if not starts.tells_K_I:
-                values = (*values[:2], *np.full((2, len(course.t)), np.nan))
-            datasets = _named(SIE, values)
+            g = np.vectorize(drive, otypes=[float]) if drive.constant is None else drive.constant
+            course = punch.course(g, starts.load, starts.steady)
+            K_I = np.array([course.K_left, course.K_right])
+            datasets = _named(
+                SIE, (course.v0, course.centre, *(K_I if starts.tells_K_I else np.nan * K_I))
+            )
             if not starts.steady:
                 works = (
                     course.work_of_load, course.work_of_friction, course.σ_YY, course.σ_XX_left,
@@ -221,22 +218,6 @@ def _until_the_end(values: NDArray, starts: Starts) -> NDArray[np.float64]:
     padded = np.full((starts.steps, *values.shape[1:]), np.nan)
     padded[: len(values)] = values
     return padded
-
-
-def _of_constant(
-    g: float, starts: Starts, punch: StartingPunch, response: HalfPlane
-) -> tuple[Course, tuple[NDArray, ...]]:
-    """Course under a constant friction, and its v₀, centre and K_I at both ends.
-
-    The load after t = 0 adds its course from rest to the steady motion under the load at t = 0.
-    """
-    first, steady = float(starts.load(0.0)), FlatPunch(response, g)
-    course = punch.course(g, lambda t: starts.load(t) - first)
-    with np.errstate(invalid="ignore"):
-        leaning = np.where(course.load == 0.0, 0.0, course.load * course.centre)
-    centre = (first * (steady.β - steady.α) + leaning) / (first + course.load)
-    K = first * steady.K_I
-    return course, (course.v0, centre, K + course.K_left, K + course.K_right)
 
 
 def _named(method: str, values: Any) -> _Datasets:

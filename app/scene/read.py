@@ -9,7 +9,7 @@ refuse only when results are archived. Then each section checks its keys.
 import re
 import tomllib
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from math import prod
@@ -27,8 +27,8 @@ from ..errors import BadInput, excerpt, listed, nearest, short
 from ..text_table import read_table
 from .library import LIBRARY
 from .scene import Scene, contradictions, in_words, usual_quantities
-from .sections import SECTIONS, SWEPT, Section
-from .values import Number, Numbers, Rows, Wrapped
+from .sections import SECTIONS, SWEPT, Key
+from .values import Number, Numbers, Or, Rows, Wrapped
 
 _AT = re.compile(r"Cannot (?:overwrite a value|declare .* twice) \(at line (\d+),")
 _SECTION = re.compile(r"\s*\[+\s*([^\[\]]+?)\s*\]+")
@@ -116,14 +116,13 @@ _MOST = 10_000
 _NAMED = re.compile(r"\.csv[\"']", re.IGNORECASE)
 
 
-def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) -> str:
+def filled(text: str, folder: Path, name: str) -> str:
     """A scene's text with rows of numbers in place of the names of files that hold them.
 
     So the scene, and the archive that keeps it, needs no other file any more.
 
     Args:
         text: TOML; returned unchanged where it names no file, and where it is no TOML.
-        sections: of scenes, by name.
         folder: from which names of files are resolved.
         name: of the scene, for messages.
 
@@ -137,7 +136,7 @@ def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) 
     except (ValueError, RecursionError):
         return text  # the scene's reader reports it
     tables = {}
-    for path, rows, file in _named(tree, sections):
+    for path, rows, file in _named(tree):
         try:
             tables[path] = _rows(folder / file, rows.units)
         except BadInput as error:
@@ -149,16 +148,15 @@ def filled(text: str, sections: Mapping[str, Section], folder: Path, name: str) 
     return changed(text, tables, name)
 
 
-def _named(tree: Mapping[str, Any], sections: Mapping[str, Section]) -> Iterator[tuple[str, Rows, str]]:
+def _named(tree: Mapping[str, Any]) -> Iterator[tuple[str, Rows, str]]:
     """Keys whose rows are in a file, each with its kind and the file's name."""
-    for section, given in tree.items():
-        if section not in sections or not isinstance(given, dict):
-            continue
-        for key, entry in sections[section].keys(given).items():
-            kind = entry.kind.kind if isinstance(entry.kind, Wrapped) else entry.kind
-            file = given.get(key)
+    for path, table, keys in _tables(tree, SECTIONS):
+        for key, file in table.items():
+            kind = keys[key].kind if key in keys else None
+            if isinstance(kind, Wrapped | Or):
+                kind = kind.kind
             if isinstance(kind, Rows) and isinstance(file, str) and _NAMED.search(f'{file}"'):
-                yield f"{section}.{key}", kind, file
+                yield f"{path}.{key}", kind, file
 
 
 def _rows(path: Path, units: tuple[str, ...]) -> list[list[float]]:
@@ -214,7 +212,7 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
         from .changes import changed  # an import that only changes pay for
 
         text = changed(text, changes, str(path))
-    text = filled(text, SECTIONS, path.parent, str(path))
+    text = filled(text, path.parent, str(path))
     return parse(text, str(path))
 
 
@@ -285,7 +283,7 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
         faults: list to which messages are added.
     """
     values: dict[str, tuple[float, ...]] = {}
-    for path, table, keys in _tables(tree):
+    for path, table, keys in _tables(tree, SWEPT):
         for key, given in table.items():
             several = isinstance(given, list) or (isinstance(given, dict) and given.keys() & _RANGE)
             if several and key in keys and type(number := keys[key].kind) is Number:
@@ -312,12 +310,15 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
     return values
 
 
-def _tables(tree: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], dict[str, Any]]]:
-    """Path of each table with numbers that may be swept, its values and its keys."""
-    for name, given in tree.items():
+def _tables(
+    tree: Mapping[str, Any], names: Collection[str]
+) -> Iterator[tuple[str, dict[str, Any], dict[str, Key]]]:
+    """Path of each table of these sections, its values and its keys."""
+    for name in (name for name in tree if name in names):
+        given = tree[name]
         several = name == "layer" and isinstance(given, list)
         tables = {f"layer[{i}]": table for i, table in enumerate(given)} if several else {name: given}
-        for path, table in tables.items() if name in SWEPT else ():
+        for path, table in tables.items():
             if isinstance(table, dict):
                 named = table.get("material")
                 material = LIBRARY.get(named) if isinstance(named, str) else None

@@ -30,19 +30,19 @@ from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
 from .scene import ElasticPunch, Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (
+    DEPTHS,
+    POINTS,
+    PRESSURE,
     Choice,
     Choices,
     Constants,
-    Depths,
     Kind,
     Map,
     Number,
     NumberList,
     Numbers,
     OneOrMore,
-    OrAuto,
-    Points,
-    Pressure,
+    Or,
     Rows,
     Strokes,
     Variations,
@@ -282,8 +282,9 @@ _KEYS = {
         Number("", Range(at_least=1.0, at_most=10.0)), 'of `grading = "power"`', 1.0,
     ),
     "properties": Key(
-        Depths(), "constants by depth, `[[depth, E, nu, rho], …]`", None,
-        "instead of `thickness`, constants and `to`; isotropic, linear between the rows",
+        DEPTHS, "constants by depth, `[[depth, E, nu, rho], …]`", None,
+        "from the upper face, depth 0, downwards, instead of `thickness`, constants and `to`; isotropic, "
+        "linear between the rows",
     ),
 }  # fmt: skip
 
@@ -566,8 +567,9 @@ _SOLVE_KEYS = {
         "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
     ),
     "pressure": Key(
-        Pressure(), "σ_YY of the traction mode", "closed_form",
-        "for the mode traction; linear between the pairs, of any resultant",
+        Or("closed_form", PRESSURE), "σ_YY of the traction mode", "closed_form",
+        "for the mode traction; rows are pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1, linear between "
+        "them, of any resultant",
     ),
 }  # fmt: skip
 
@@ -589,8 +591,8 @@ _TIME_KEYS = {
         "what a flat punch does until then, of every state, or of every law",
     ),
     "step": Key(
-        OrAuto(Number("", Range(at_least=1e-3, at_most=1.0))), "step of the finite elements over a/c_s",
-        "auto", '`"auto"`: by solve.tolerance and load_ramp',
+        Or("auto", Number("", Range(at_least=1e-3, at_most=1.0))),
+        "step of the finite elements over a/c_s", "auto", '`"auto"`: by solve.tolerance and load_ramp',
     ),
     "load_ramp": Key(
         Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
@@ -625,7 +627,7 @@ _OUTPUT_KEYS = {
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
     ),
     "points": Key(
-        Points(), "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
+        POINTS, "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
     ),
     "map": Key(
         Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'

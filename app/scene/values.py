@@ -4,7 +4,7 @@ There are single numbers and texts, numbers as a list or a range, and tables: ro
 of a law's parameters, strokes. Each kind also gives the JSON schema of its values.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from itertools import pairwise
@@ -67,16 +67,17 @@ class Number:
 
 
 @dataclass(frozen=True)
-class OrAuto:
-    """A number, or ``"auto"``."""
+class Or:
+    """A word, or a value of another kind."""
 
-    number: Number
+    word: str
+    kind: Kind
 
     def __call__(self, value: Any) -> Any:
-        return value if value == "auto" else self.number(value)
+        return value if value == self.word else self.kind(value)
 
     def schema(self) -> dict[str, Any]:
-        return self.number.schema()
+        return {"anyOf": [{"const": self.word}, self.kind.schema()]}
 
 
 @dataclass(frozen=True)
@@ -161,24 +162,33 @@ def _object(properties: dict[str, Any], required: Collection[str] = ()) -> dict[
     return {"type": "object", "properties": properties} | needed | {"additionalProperties": False}
 
 
-def _rows(
-    value: Any, units: Sequence[str], at_least: int, expected: str
-) -> tuple[tuple[float, ...], ...]:
-    """Rows of numbers in units.
+@dataclass(frozen=True)
+class Rows:
+    """Rows of numbers, as [[1, 2], [3, 4]]; a scene in a file may name a file of them, `"rows.csv"`."""
 
-    Raises:
-        ValueError: these are none; ``expected`` says what they should be.
-    """
-    if not isinstance(value, list) or len(value) < at_least:
-        raise ValueError(f"found {excerpt(value)}, expected {expected}")
-    for row in value:
-        if not isinstance(row, list) or len(row) != len(units):
-            raise ValueError(f"found {excerpt(row)} among the rows, expected {expected}")
-    return tuple(tuple(to_si(entry, unit) for entry, unit in zip(row, units)) for row in value)
+    units: tuple[str, ...]
+    at_least: int = 1
+    #: The rows in words, for messages, and a check that raises ValueError.
+    form: str = ""
+    check: Callable[[Sequence[Sequence[float]]], None] = lambda rows: None
 
+    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
+        units = ", ".join(unit or "dimensionless" for unit in self.units)
+        expected = self.form or f"at least {self.at_least} rows of {len(self.units)} numbers ({units})"
+        if isinstance(value, str):
+            expected += "; or, where the scene is a file itself, a file of these whose name ends in .csv"
+        if not isinstance(value, list) or len(value) < self.at_least:
+            raise ValueError(f"found {excerpt(value)}, expected {expected}")
+        for row in value:
+            if not isinstance(row, list) or len(row) != len(self.units):
+                raise ValueError(f"found {excerpt(row)} among the rows, expected {expected}")
+        rows = tuple(tuple(to_si(entry, unit) for entry, unit in zip(row, self.units)) for row in value)
+        self.check(rows)
+        return rows
 
-def _of_rows(columns: int, at_least: int) -> dict[str, Any]:
-    return _array(_array(Number().schema(), columns, columns), at_least)
+    def schema(self) -> dict[str, Any]:
+        rows = _array(_array(Number().schema(), len(self.units), len(self.units)), self.at_least)
+        return {"anyOf": [rows, {"type": "string", "pattern": r"\.[cC][sS][vV]$"}]}
 
 
 def _by_key(
@@ -210,23 +220,17 @@ def _by_key(
     return values
 
 
-class Pressure:
-    """``"closed_form"`` or pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1."""
+def _check_pressure(pairs: Sequence[Sequence[float]]) -> None:
+    positions = [x for x, _ in pairs]
+    if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
+        raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
+    if not any(σ for _, σ in pairs):
+        raise ValueError("found no pressure but 0, expected a σ_YY/(N/2a) below 0")
 
-    def __call__(self, value: Any) -> Any:
-        if value == "closed_form":
-            return value
-        expected = '"closed_form" or a list of pairs [X/a, σ_YY/(N/2a)], dimensionless'
-        pairs = _rows(value, ("", ""), 2, expected)
-        positions = [x for x, _ in pairs]
-        if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
-            raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
-        if not any(σ for _, σ in pairs):
-            raise ValueError("found no pressure but 0, expected a σ_YY/(N/2a) below 0")
-        return pairs
 
-    def schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"const": "closed_form"}, _of_rows(2, 2)]}
+def _check_points(pairs: Sequence[Sequence[float]]) -> None:
+    for _, Y in pairs:
+        _below(Y)
 
 
 def _below(Y: float) -> None:
@@ -234,32 +238,21 @@ def _below(Y: float) -> None:
         raise ValueError(f"found Y/a = {Y:g}, expected Y/a < 0: the solid lies below the punch")
 
 
-class Points:
-    """Pairs [X/a, Y/a] below the surface."""
-
-    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
-        pairs = _rows(value, ("", ""), 0, "a list of pairs [X/a, Y/a]")
-        for _, Y in pairs:
-            _below(Y)
-        return pairs
-
-    def schema(self) -> dict[str, Any]:
-        return _of_rows(2, 0)
+_BY_DEPTH = "at least 2 rows [depth, E, nu, rho], depths rising from 0"
 
 
-class Depths:
-    """Rows `[depth, E, nu, rho]` from the upper face, depth 0, downwards; linear between them."""
+def _check_depths(rows: Sequence[Sequence[float]]) -> None:
+    depths = [row[0] for row in rows]
+    if depths[0] != 0.0 or any(low >= high for low, high in pairwise(depths)):
+        raise ValueError(f"found the depths {excerpt(depths)}, expected {_BY_DEPTH}")
 
-    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
-        expected = "at least 2 rows [depth, E, nu, rho], depths rising from 0"
-        rows = _rows(value, ("m", "Pa", "", "kg/m^3"), 2, expected)
-        depths = [row[0] for row in rows]
-        if depths[0] != 0.0 or any(low >= high for low, high in pairwise(depths)):
-            raise ValueError(f"found the depths {excerpt(depths)}, expected {expected}")
-        return rows
 
-    def schema(self) -> dict[str, Any]:
-        return _of_rows(4, 2)
+#: A pressure by its positions, points below the surface, and constants of a solid by depth.
+PRESSURE = Rows(
+    ("", ""), 2, '"closed_form" or a list of pairs [X/a, σ_YY/(N/2a)], dimensionless', _check_pressure
+)
+POINTS = Rows(("", ""), 0, "a list of pairs [X/a, Y/a]", _check_points)
+DEPTHS = Rows(("m", "Pa", "", "kg/m^3"), 2, _BY_DEPTH, _check_depths)
 
 
 class Constants:
@@ -368,25 +361,6 @@ def _between(first: float, last: float, number: int, logarithmic: bool) -> Itera
     for i in range(1, number - 1):
         at = (low * (number - 1 - i) + high * i) / (number - 1)
         yield float(at.exp() if logarithmic else at)
-
-
-@dataclass(frozen=True)
-class Rows:
-    """Rows of numbers, as [[1, 2], [3, 4]]; a scene in a file may name a file of them, `"rows.csv"`."""
-
-    units: tuple[str, ...]
-    at_least: int = 1
-
-    def __call__(self, value: Any) -> tuple[tuple[float, ...], ...]:
-        units = ", ".join(unit or "dimensionless" for unit in self.units)
-        expected = f"at least {self.at_least} rows of {len(self.units)} numbers ({units})"
-        if isinstance(value, str):
-            expected += "; or, where the scene is a file itself, a file of these whose name ends in .csv"
-        return _rows(value, self.units, self.at_least, expected)
-
-    def schema(self) -> dict[str, Any]:
-        rows = _of_rows(len(self.units), self.at_least)
-        return {"anyOf": [rows, {"type": "string", "pattern": r"\.[cC][sS][vV]$"}]}
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from row import Row, Verdict, scene
 from scipy.stats import binom
 
 from galinx.app.console import Progress
+from galinx.app.methods import METHODS
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
-from galinx.app.run.make import make
 from galinx.app.scene.read import parse
 from galinx.app.scene.scene import Scene
 from galinx.clock import Clock
@@ -170,8 +170,8 @@ def known(asked: Scene) -> Truth:
     plan, g = make_plan(asked), enumerate_states(asked).g
     (task,) = plan.tasks
     with (
-        make(FEM, plan, Progress(), Clock()).at(task, g) as elements,
-        make(CLOSED_FORM, plan, Progress(), Clock()).at(task, g) as formula,
+        METHODS[FEM].made(plan, Progress(), Clock()).at(task, g) as elements,
+        METHODS[CLOSED_FORM].made(plan, Progress(), Clock()).at(task, g) as formula,
     ):
         found: Any = elements.states(g)
         exact: Any = formula.states(g)

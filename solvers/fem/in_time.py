@@ -1,4 +1,4 @@
-"""Finite elements in time: a flat punch that slides, or prescribed tractions, on a half-plane.
+"""Finite elements in time: a flat punch that slides on a half-plane.
 
 In the frame of the punch M ü + (D - 2c B) u̇ + K u are the forces of the contact. Velocities w = u̇ are
 stepped by a diagonally implicit Runge-Kutta scheme of order four whose stages are of second order
@@ -17,9 +17,6 @@ where ρ are those to b. The fields of these forces and of η are solved for onc
 **A punch that is pressed on and slides** from rest or steady motion on (:class:`SlidingInTime`). Where
 the punch turns round, what is carried along changes sign. The solid goes on as it did, so that the
 velocities seen from the punch jump, M Δw = Δc B u.
-
-**Prescribed tractions on a half-plane at rest**, applied suddenly or not (:class:`LoadedInTime`). Seen
-from the load M ü - 2c B u̇ + K u = (share of the load) f, by the same steps without a contact problem.
 
 On the surface, strains and the pressure between nodes follow from displacements and nodal forces
 (:class:`SurfaceInTime`).
@@ -41,7 +38,6 @@ from ..approximation import lagrange
 from .dynamic import Motion, Products, of_both
 from .fields import SurfaceTrace
 from .linear import ArraySolver
-from .space import Traction, consistent_forces
 
 #: On the diagonal, so that one matrix serves all stages.
 γ = 0.25
@@ -402,103 +398,3 @@ class SlidingInTime:
         """Free the factors."""
         for punch in self._punches.values():
             punch.destroy()
-
-
-@dataclass(frozen=True)
-class SurfaceMotion:
-    """Motion of the surface; lengths over a, displacements over N/(2μ).
-
-    Attributes:
-        t: times over a/c_s, (steps,).
-        X: positions of its nodes from left to right, (nodes,).
-        u: displacements of the nodes, (steps, nodes, 2).
-    """
-
-    t: NDArray[np.float64]
-    X: NDArray[np.float64]
-    u: NDArray[np.float64]
-
-
-class LoadedInTime:
-    """Motions under prescribed tractions at one speed with one step size.
-
-    Args:
-        motion: the equations.
-        h: the step over a/c_s.
-        clock: takes the time of what is done.
-
-    Raises:
-        SolveError: the equations could not be solved.
-    """
-
-    def __init__(self, motion: Motion, h: float, clock: Clock | None = None) -> None:
-        self._motion, self._h = motion, h
-        with (clock := clock or Clock())("assembly"):
-            carried = motion.M - 2.0 * motion.response.c * γ * h * motion.B
-            S = kron(carried, identity(2)) + (γ * h) ** 2 * motion.K
-        held = np.zeros(motion.size, dtype=bool)
-        held[2 * motion.far] = held[2 * motion.far + 1] = True
-        self._free = np.flatnonzero(~held)
-        self.factor = ArraySolver(S.tocsr()[self._free][:, self._free].tocsr(), clock)
-        space = motion.space
-        nodes = np.unique(np.concatenate([space.nodes_on(part) for part in ("contact", "free surface")]))
-        self._surface = nodes[np.argsort(space.coordinates[nodes, 0])]
-
-    def run(
-        self,
-        steps: int,
-        σ_YY: Traction,
-        g: float,
-        load: Callable[[float], float],
-        knots: tuple[float, ...] = (),
-    ) -> SurfaceMotion:
-        """March from rest.
-
-        Args:
-            steps: number of steps.
-            σ_YY: full pressure on the contact over N/(2a).
-            g: σ_XY/σ_YY.
-            load: share of the pressure at a time, smooth from t = 0 on, where it may jump.
-            knots: positions X over a between which the pressure is smooth.
-        """
-        h, f, products = self._h, self._forces(σ_YY, g, knots), Products(self._motion)
-
-        def stage(u: NDArray, w: NDArray, at: float) -> NDArray[np.float64]:
-            b = products.momentum(w) + γ * h * (load(at) * f - products.stiffness(u))
-            return self._solved(self.factor, b)
-
-        state = np.zeros(len(f)), np.zeros(len(f)), self._at_once(f * load(0.0))
-        displacements = np.zeros((steps, len(self._surface), 2))
-        for n in range(steps):
-            state = after_step(state, h, n * h, stage)
-            displacements[n] = state[0].reshape(-1, 2)[self._surface]
-        X = self._motion.space.coordinates[self._surface, 0]
-        return SurfaceMotion(np.arange(1.0, steps + 1.0) * h, X, displacements)
-
-    def _at_once(self, f: NDArray) -> NDArray[np.float64]:
-        """Accelerations at rest under forces that are applied suddenly."""
-        if not f.any():
-            return np.zeros(len(f))
-        M = kron(self._motion.M, identity(2)).tocsr()
-        factor = ArraySolver(M[self._free][:, self._free].tocsr(), Clock())
-        a = self._solved(factor, f)
-        factor.destroy()
-        return a
-
-    def _solved(self, factor: ArraySolver, b: NDArray) -> NDArray[np.float64]:
-        """Solution for forces b, 0 far away."""
-        x = np.zeros(len(b))
-        x[self._free] = factor.solve(b[self._free])
-        return x
-
-    def _forces(self, σ_YY: Traction, g: float, knots: tuple[float, ...]) -> NDArray[np.float64]:
-        space = self._motion.space
-        facets, ends = space.surface_facets(("contact",)), space.contact.s[[0, -1]]
-        by_node = consistent_forces(facets.s, space.chart, ends, σ_YY, knots).ravel()
-        f = np.zeros((self._motion.size // 2, 2))
-        np.add.at(f, facets.nodes.ravel(), np.column_stack([g * by_node, by_node]))
-        return f.ravel()
-
-    def destroy(self) -> None:
-        """Free the factor."""
-        self.factor.destroy()

@@ -91,9 +91,9 @@ class FittedLaw:
         covariance: covariance of the fitted numbers, (m, m); NaN where the data do not determine them.
         sizes: deviation of each number from which on the data do not determine it, (m,).
         f: friction of the law at the samples of each measurement, NaN before the first motion.
-        samples: number of samples in motion that it is fitted to.
+        samples: number of samples in motion.
         rms: root mean square of the residuals of f at these.
-        every: step between the samples, 1 unless there are too many.
+        every: step between the samples that it is fitted to, 1 unless there are too many.
     """
 
     law: FrictionLaw
@@ -238,10 +238,10 @@ def fit(
     covariance = spread * _inverse(J) * np.outer(stretch, stretch)
     with np.errstate(all="ignore"):
         f = friction(law, whole.motion, len(whole.f))
+    rms = float(np.sqrt(np.mean((f - whole.f)[whole.used] ** 2)))
     return FittedLaw(
         law, search.values(θ), search.names, search.numbers(θ), covariance, search.sizes(θ),
-        np.split(f, np.cumsum([len(one.t) for one in measured])[:-1]), len(residuals),
-        float(np.sqrt(np.mean(residuals**2))), every,
+        np.split(f, np.cumsum([len(one.t) for one in measured])[:-1]), used, rms, every,
     )  # fmt: skip
 
 

@@ -15,10 +15,9 @@ the latter relative to K_I. At rest N̂' = 0, and the next term remains, a bend 
 """
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import sqrt
 
-import numpy as np
-
+from ..contact.edges import EdgeExponents
 from ..solids.solid import Solid
 
 #: Step of differences in c, at which half of the digits of a second difference remain.
@@ -60,11 +59,10 @@ def approach(solid: Solid, c: float, g: float) -> Approach:
         response = solid.response(abs(c))  # even in c
         return response.n + g * response.n12
 
-    steady = solid.response(c)
     change = (N(c + h) - N(c - h)) / (2.0 * h) / N(c)
     bend = (N(_STEP) - 2.0 * N(0.0) + N(-_STEP)) / _STEP**2 / N(0.0)
-    α = -0.5 - np.arctan(g * steady.q / N(c)) / pi
-    β = -1.0 - α
+    edges = EdgeExponents(solid.response(c), g)
+    α, β = float(edges.α), float(edges.β)
     return Approach(
         2.0 * change * (1.0 + α) * (1.0 + β), -2.0 * change * (1.0 + β), 2.0 * change * (1.0 + α),
         abs(bend) / 4.0,

@@ -51,7 +51,7 @@ _DIRECTIONS = np.arange(0.6, 1.7, 0.3)
 #: First panel along a way over the distance of the nearest singularity.
 _FIRST = 0.1
 #: Panels between two speeds at which 𝐘 is not analytic: at first, halvings at most, and accuracy.
-_PANELS, _HALVINGS, _ACCURACY = 3, 12, 1e-10
+_PANELS, _HALVINGS, _ACCURACY = 3, 14, 1e-10
 #: Radians of the exponential in a panel at most.
 _TURN = 5.0
 #: Places of a panel, -1 to 1, at which its polynomial is compared with the function.
@@ -174,7 +174,7 @@ class Kernel:
             finer = ((2.0 * cuts + 1.0 + t) / 2**halvings - 1.0).ravel()
             which, start, length, values = self._panels
             ζ, _ = self._between(which[:, None], start[:, None] + length[:, None] * (1.0 + finer) / 2.0)
-            weighted = values @ (_interpolation(finer) * np.tile(w, 2**halvings)[:, None]).T
+            weighted = values @ (interpolation(_POINTS, finer) * np.tile(w, 2**halvings)[:, None]).T
             weighted = weighted * (1j / (2.0 * pi) * length / 2.0 ** (halvings + 1))[:, None, None]
             self._refined[halvings] = ζ.ravel(), weighted.swapaxes(0, 1).reshape(4, -1)
         return self._refined[halvings]
@@ -204,7 +204,7 @@ class Kernel:
                 ζ, slope = self._between(np.array(n), start + length * (1.0 + at) / 2.0)
                 values = self._rows(ζ) * slope
                 at_gauss, between = values[:, : len(t)], values[:, len(t) :]
-                off = np.abs(at_gauss @ _interpolation(_BETWEEN).T - between).max()
+                off = np.abs(at_gauss @ interpolation(_POINTS, _BETWEEN).T - between).max()
                 if off > _ACCURACY * np.abs(values).max() and halvings < _HALVINGS:
                     again += [(n, start, length / 2.0), (n, start + length / 2.0, length / 2.0)]
                 else:
@@ -214,10 +214,10 @@ class Kernel:
         return which, starts, lengths, values
 
 
-def _interpolation(at: NDArray) -> NDArray[np.float64]:
-    """Matrix from values at Gauss's points of a panel to values at other places, (places, points)."""
-    t, _ = leggauss(_POINTS)
-    return np.asarray(np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(at, _POINTS - 1).T).T)
+def interpolation(points: int, at: NDArray) -> NDArray[np.float64]:
+    """Matrix from values at Gauss's points to values at other places from -1 to 1, (places, points)."""
+    t, _ = leggauss(points)
+    return np.asarray(np.linalg.solve(legvander(t, points - 1).T, legvander(at, points - 1).T).T)
 
 
 def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:
@@ -242,12 +242,8 @@ def _distances(first: float, panels: int) -> tuple[NDArray[np.float64], NDArray[
     return np.append(near, v.ravel()), np.append(weights, (v * _WIDTH / 2.0 * w).ravel())
 
 
-#: Decay after which an integrand is negligible; wavenumbers at which the decay is computed.
-_LAYERS_GONE, _WAVENUMBERS = 34.0, np.geomspace(1e-3, 1e5, 161)
-#: Gauss's points of a panel of wavenumbers, its radians at most, halvings at most, and accuracy.
-_LAYERS_POINTS, _LAYERS_TURN, _LAYERS_HALVINGS, _LAYERS_ACCURACY = 12, 5.0, 14, 1e-10
-#: Panels at first at least, and places of a panel at which its polynomial is compared.
-_FEWEST, _LAYERS_BETWEEN = 8, np.linspace(-0.9, 0.9, 4)
+#: Decay after which echoes are negligible, wavenumbers at which it is computed; panels of these at least.
+_ECHOES_GONE, _WAVENUMBERS, _FEWEST = 34.0, np.geomspace(1e-3, 1e5, 161), 8
 #: Wavenumbers whose exponentials are computed at once.
 _TOGETHER = 512
 
@@ -338,21 +334,19 @@ class Echoes:
         """Displacements by all k < 0, or their slopes, (4, n)."""
         if (last := self._last(s)) == 0.0:
             return np.zeros((4, len(x)), dtype=complex)
-        t, w = leggauss(_LAYERS_POINTS)
-        interpolate = np.linalg.solve(
-            legvander(t, _LAYERS_POINTS - 1).T, legvander(_LAYERS_BETWEEN, _LAYERS_POINTS - 1).T
-        ).T
-        count = max(_FEWEST, ceil(last * float(x.max()) / _LAYERS_TURN))
+        t, w = leggauss(_POINTS)
+        interpolate = interpolation(_POINTS, _BETWEEN)
+        count = max(_FEWEST, ceil(last * float(x.max()) / _TURN))
         starts, length, most = np.arange(count) * (last / count), last / count, 0.0
         displacements = np.zeros((4, len(x)), dtype=complex)
-        for halvings in range(_LAYERS_HALVINGS + 1):
-            κ = starts[:, None] + length * (1.0 + np.append(t, _LAYERS_BETWEEN)) / 2.0
+        for halvings in range(_HALVINGS + 1):
+            κ = starts[:, None] + length * (1.0 + np.append(t, _BETWEEN)) / 2.0
             values = self._values(-κ.ravel(), s).reshape(4, *κ.shape)
-            at_gauss, between = values[..., :_LAYERS_POINTS], values[..., _LAYERS_POINTS:]
+            at_gauss, between = values[..., :_POINTS], values[..., _POINTS:]
             most = max(most, float(np.abs(values).max()))
             off = np.abs(at_gauss @ interpolate.T - between).max(axis=(0, 2))
-            fine = (off <= _LAYERS_ACCURACY * most) | (halvings == _LAYERS_HALVINGS)
-            k = -κ[fine, :_LAYERS_POINTS].ravel()
+            fine = (off <= _ACCURACY * most) | (halvings == _HALVINGS)
+            k = -κ[fine, :_POINTS].ravel()
             factor = np.tile(length / 2.0 * w, int(fine.sum())) * ((1j * k) if slopes else 1.0)
             weighted = at_gauss[:, fine].reshape(4, -1) * factor
             for block in (slice(n, n + _TOGETHER) for n in range(0, len(k), _TOGETHER)):
@@ -371,7 +365,7 @@ class Echoes:
     def _last(self, s: complex) -> float:
         """Wavenumber beyond which the echoes are negligible; 0 if they always are."""
         k = -_WAVENUMBERS
-        not_decayed = np.flatnonzero(self.sheets.decay(k, self.c + 1j * s / k) < _LAYERS_GONE)
+        not_decayed = np.flatnonzero(self.sheets.decay(k, self.c + 1j * s / k) < _ECHOES_GONE)
         return float(_WAVENUMBERS[min(not_decayed[-1] + 1, len(k) - 1)]) if len(not_decayed) else 0.0
 
 

@@ -1,8 +1,7 @@
 """A flat punch that is pressed on and slides from rest at constant speed: integral equation in time.
 
 The equation is a convolution in time, so that Laplace's transform of the response is all that is needed.
-Where friction is constant, so are pressure and indentation by a unit load at each s; where it changes the
-convolution is solved step after step.
+It is solved step after step.
 
 Strain along the surface, under the punch and beside it, is by Laplace's transform, too. At small
 distances from a line load it is that of steady motion and a logarithm::
@@ -14,24 +13,23 @@ each s once, whatever the friction, and is smooth in each panel of distances but
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
-from numpy.typing import ArrayLike, NDArray
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
 
 from ..solids.half_plane import HalfPlane
-from .line_load import both_sides
-from .march import FrictionInterpolation, Radau, march
-from .residual import Residual
-from .transform import Basis, Transformed, Weighted, divided, response_at
+from .line_load import both_sides, interpolation
+from .march import FrictionInterpolation, Radau, Residual, march
+from .transform import Basis, Transformed, Weighted, divided, double_exponential, response_at
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.125, 10
-#: Steps and half-length of the double exponential rule along the contact, or its part on one side.
-_STEPS, _LENGTH = 161, 3.4
+#: Steps of the double exponential rule along the contact, or its part on one side.
+_STEPS = 161
 #: Points of the pressure in its effect beside the contact.
 _FEW = 128
 
@@ -82,7 +80,7 @@ class AlongSurface:
         for n, X in enumerate(sign * self._X):
             if X > -1.0:
                 last, beyond = min(X, 1.0), max(X - 1.0, 0.0)
-                near, far, w = _both_ends(last + 1.0)
+                near, far, w = (of[0] for of in double_exponential(np.array([last + 1.0]), _STEPS))
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
                 sums[:, n] = self._interpolation(beyond + near).T @ (
@@ -94,9 +92,9 @@ class AlongSurface:
         """Matrix from values at the tabulated distances to values at x, (x, distances)."""
         edges = self._edges
         panel = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
-        t, _ = leggauss(_POINTS)
-        local = 2.0 * (x - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
-        by_point = np.linalg.solve(legvander(t, _POINTS - 1).T, legvander(local, _POINTS - 1).T).T
+        by_point = interpolation(
+            _POINTS, 2.0 * (x - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
+        )
         weights = np.zeros((len(x), len(edges) - 1, _POINTS))
         weights[np.arange(len(x)), panel] = by_point
         return weights.reshape(len(x), -1)
@@ -146,15 +144,6 @@ def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]
     return np.asarray(transform / pi)
 
 
-def _both_ends(length: float) -> tuple[NDArray, NDArray, NDArray]:
-    """Double exponential rule: distances from the right and the left end, and weights, (steps,) each."""
-    u = np.linspace(-_LENGTH, _LENGTH, _STEPS)
-    grown = pi * np.sinh(u)
-    from_right, from_left = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
-    weights = (u[1] - u[0]) * pi * np.cosh(u) * from_right * from_left
-    return length * from_right, length * from_left, length * weights
-
-
 #: Distance over a beyond the ends of the contact at which σ_XX is computed: it is infinite at them.
 BESIDE = 0.05
 #: Places X over a under the punch at which the pressure is computed, closer towards the ends.
@@ -192,7 +181,7 @@ class Course:
         σ_XX_left, σ_XX_right: in-plane stress on the free surface at ``BESIDE`` beyond both ends.
         surface: σ_XX, σ_YY and σ_XY at ``ON_SURFACE``, (3, times, places), less the stresses before
             t = 0; None where they are not computed.
-        residual: larger one of that of :class:`.residual.Residual` and of the load's, over its largest,
+        residual: larger one of that of :class:`.march.Residual` and of the load's, over its largest,
             dimensionless; NaN where it is not computed.
     """
 
@@ -231,83 +220,44 @@ class StartingPunch:
     ) -> None:  # fmt: skip
         self._response, self._terms = response, terms
         self._scheme = Radau(end, steps)
-        s = self._scheme.s
+        s, t = self._scheme.s, self._scheme.times[:, -1]
         self._transformed = Transformed(response, rayleigh, s, terms, way=way)
         self._along = AlongSurface(response, rayleigh, s, ON_SURFACE, way) if surface else None
-        self._residual = Residual(response, rayleigh, self._t, terms, way) if checked else None
-
-    def course(self, g: float, load: Law) -> Course:
-        """Motion where σ_XY = g σ_YY under the punch and N grows by the share ``load(t)``."""
-        basis, n = self._transformed.basis(g), self._terms
-        (answers,) = self._transformed.answers(basis)
-        pressure = answers[:, :-1, None]
-        dragged = self._transformed.dragging(basis, basis.pressure) @ pressure
-        strains = self._strains(basis) @ pressure
-        histories = self._scheme.convolved(np.hstack([answers, dragged[..., 0], strains[..., 0]]), load)
-        a, v0, u, u_X = np.split(histories, [n, n + 1, 2 * n + 1], axis=1)
-        by_friction = _work(self._t, g * a, u, np.zeros(n))
-        course = self._course([basis] * len(a), a, v0[:, 0], load, by_friction, u_X)
-        return self._checked(course, [basis], a, load)
-
-    def _checked(self, course: Course, bases: list[Basis], a: NDArray, load: Law) -> Course:
-        """The motion with its residual, by coefficients in σ_YY, less those before t = 0."""
-        if self._residual is None:
-            return course
-        due = load(course.t)
-        off = np.abs(course.load - due).max() / max(np.abs(due).max(), np.finfo(float).tiny)
-        return replace(course, residual=max(self._residual.of(bases, a, course.v0), float(off)))
+        self._residual = Residual(response, rayleigh, t, terms, way) if checked else None
 
     def _strains(self, basis: Basis) -> NDArray[np.complex128]:
         """û,X of polynomials beyond both ends, then at ``ON_SURFACE`` if any, (s, places, terms)."""
         beside = self._transformed.strains(basis, BESIDE)
         return beside if self._along is None else np.hstack([beside, self._along.strains(basis)])
 
-    def course_along(self, g: Law, load: Law, steady: bool = False) -> Course:
-        """Motion where friction changes, σ_XY = g(t) σ_YY, and N is present by the share ``load(t)``.
+    def course(self, g: Law | float, load: Law, steady: bool = False) -> Course:
+        """Motion where σ_XY = g(t) σ_YY, and N is present by the share ``load(t)``.
 
         Args:
-            g: σ_XY/σ_YY at times over a/c_s.
+            g: σ_XY/σ_YY at times over a/c_s, or a number where it is constant.
             load: share of N at times; from rest load(0) = 0.
             steady: True for steady motion before t = 0 at the load and friction of t = 0. Indentation,
                 works and σ_XX are then differences from t = 0.
         """
         scheme, transformed = self._scheme, self._transformed
-        ratios = g(scheme.times)
-        occurring = np.append(ratios, g(np.zeros(())))
+        ratio = g if callable(g) else lambda t: np.full(np.shape(t), g)
+        t, ratios, first = scheme.times[:, -1], ratio(scheme.times), float(ratio(np.zeros(())))
+        occurring = np.append(ratios, first)
         between = FrictionInterpolation(self._response, occurring.min(), occurring.max(), self._terms)
-        marched = march(transformed, scheme, between, g, load, steady)
-        held = between.middle.pressure
+        marched = march(transformed, scheme, between, ratio, load, steady)
+        held, added, a = between.middle.pressure, marched.shares - marched.begun, marched.a
         rows = [np.hstack([transformed.dragging(of, held), self._strains(of)]) for of in between.bases]
-        moved = scheme.answered(np.concatenate(rows, axis=2), marched.shares - marched.begun)
-        u, u_X = np.split(moved, [self._terms], axis=1)
+        u, u_X = np.split(scheme.answered(np.concatenate(rows, axis=2), added), [self._terms], axis=1)
         shared = np.hstack([basis.pressure.tested(held) for basis in between.bases])
         forces = ratios[:, -1:] * (marched.shares[:, -1] @ shared.T)
-        by_friction = _work(self._t, forces, u, occurring[-1] * (shared @ marched.begun))
-        bases = [Basis(self._response, ratio, self._terms) for ratio in ratios[:, -1]]
-        under = ON_SURFACE[_UNDER]
-        begun = marched.begun @ np.vstack([basis.pressure(under).T for basis in between.bases])
-        before = begun, occurring[-1] * begun
-        course = self._course(bases, marched.a, marched.v0, load, by_friction, u_X, before)
-        return self._checked(course, between.bases, marched.shares[:, -1] - marched.begun, load)
-
-    @property
-    def _t(self) -> NDArray[np.float64]:
-        """Ends of the steps."""
-        return self._scheme.times[:, -1]
-
-    def _course(
-        self, bases: list[Basis], a: NDArray, v0: NDArray, load: Law, by_friction: NDArray, u_X: NDArray,
-        begun: tuple[ArrayLike, ArrayLike] = (0.0, 0.0),
-    ) -> Course:  # fmt: skip
-        """Motion from the polynomials' coefficients a (times, terms) and strains u,X (times, places).
-
-        ``begun`` are σ_YY and σ_XY before t = 0 at ``ON_SURFACE`` under the punch.
-        """
-        t, beside, along = self._t, u_X[:, :2], u_X[:, 2:]
+        different = {ratio: Basis(self._response, ratio, self._terms) for ratio in set(ratios[:, -1])}
+        bases = [different[ratio] for ratio in ratios[:, -1]]
+        beside, along = u_X[:, :2], u_X[:, 2:]
         σ_XX = self._response.σ_XX(beside, np.zeros_like(beside), np.zeros_like(beside))
-        first = np.array([2.0 * float(load(np.zeros(())))])
-        by_load = _work(t, 2.0 * load(t)[:, None], v0[:, None], first)
+        due = load(t)
+        by_load = _work(t, 2.0 * due[:, None], marched.v0[:, None], 2.0 * load(np.zeros(1)))
         normal = np.array([coefficients @ basis.moments for coefficients, basis in zip(a, bases)])
+        carried = -normal[:, 0] / 2.0
         ends = np.array([basis.ends for basis in bases])
         # Inertia adds r log r to the polynomials at a distance r from an end, so that their sum there
         # converges with the square of their number; half of them give the constant.
@@ -315,23 +265,39 @@ class StartingPunch:
             np.einsum("nj,nej->en", a[:, :n], ends[..., :n]) for n in (self._terms, self._terms // 2)
         )
         K_left, K_right = -(whole + (whole - half) / 3.0) / 2.0
-        σ_YY = np.array([basis.pressure(PLACES) @ coefficients for coefficients, basis in zip(a, bases)])
+        surface, residual = None, np.nan
+        if self._along is not None:
+            under = ON_SURFACE[_UNDER]
+            begun = marched.begun @ np.vstack([basis.pressure(under).T for basis in between.bases])
+            surface = self._on_surface(bases, a, along, begun, first)
+        if self._residual is not None:
+            off = np.abs(carried - due).max() / max(np.abs(due).max(), np.finfo(float).tiny)
+            residual = max(self._residual.of(between.bases, added[:, -1], marched.v0), float(off))
         return Course(
-            t, v0, -normal[:, 0] / 2.0, normal[:, 1] / normal[:, 0], K_left, K_right,
-            by_load, by_friction, σ_YY, σ_XX[:, 0], σ_XX[:, 1],
-            None if self._along is None else self._on_surface(bases, a, along, begun),
+            t, marched.v0, carried, normal[:, 1] / normal[:, 0], K_left, K_right, by_load,
+            _work(t, forces, u, first * (shared @ marched.begun)),
+            np.array([basis.pressure(PLACES) @ coefficients for coefficients, basis in zip(a, bases)]),
+            σ_XX[:, 0], σ_XX[:, 1], surface, residual,
         )  # fmt: skip
 
     def _on_surface(
-        self, bases: list[Basis], a: NDArray, u_X: NDArray, begun: tuple[ArrayLike, ArrayLike]
+        self, bases: list[Basis], a: NDArray, u_X: NDArray, begun: NDArray, ratio: float
     ) -> NDArray[np.float64]:
-        """σ_XX, σ_YY and σ_XY at ``ON_SURFACE`` less those before t = 0, (3, times, places)."""
+        """σ_XX, σ_YY and σ_XY at ``ON_SURFACE`` less those before t = 0, (3, times, places).
+
+        Args:
+            bases: polynomials of the pressure at each time.
+            a: their coefficients, (times, terms).
+            u_X: strain less that before t = 0, (times, places).
+            begun: σ_YY under the punch before t = 0, (places under it,).
+            ratio: σ_XY/σ_YY then.
+        """
         σ_YY, σ_XY = np.zeros((2, *u_X.shape))
         for n, (coefficients, basis) in enumerate(zip(a, bases)):
             σ_YY[n, _UNDER] = basis.pressure(ON_SURFACE[_UNDER]) @ coefficients
             σ_XY[n] = basis.g * σ_YY[n]
-        σ_YY[:, _UNDER] -= begun[0]
-        σ_XY[:, _UNDER] -= begun[1]
+        σ_YY[:, _UNDER] -= begun
+        σ_XY[:, _UNDER] -= ratio * begun
         return np.array([self._response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
 

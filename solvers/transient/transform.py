@@ -11,12 +11,13 @@ from itertools import pairwise
 from math import ceil, exp, lgamma, log, pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
+from ..contact.edges import EdgeExponents
 from ..solids.half_plane import HalfPlane
-from .line_load import Side, both_sides
+from .line_load import Side, both_sides, interpolation
 
 #: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
 #: shifted contacts.
@@ -74,8 +75,7 @@ class Basis:
 
     def __init__(self, response: HalfPlane, g: float, terms: int) -> None:
         self.g = g
-        cot = g * response.q / (response.n + g * response.n12)
-        α = -0.5 - float(np.arctan(cot)) / pi
+        α = float(EdgeExponents(response, g).α)
         self.pressure = Weighted(α, -1.0 - α, terms)
         self.tests = Weighted(-1.0 - α, α, terms)
 
@@ -99,7 +99,7 @@ def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]
         (2, x, tests, trials).
     """
     terms = max(tests.terms, trials.terms)
-    d, e, weights = _overlap(2.0 - x, _STEPS * max(terms, _FOR) // _FOR)
+    d, e, weights = double_exponential(2.0 - x, _STEPS * max(terms, _FOR) // _FOR)
     x = x[:, None]
     products = []
     for from_right, from_left, trial_from_right, trial_from_left in (
@@ -136,11 +136,11 @@ def _norm(j: int, α: float, β: float) -> float:
     return exp(0.5 * (square - log(2.0 * j)))
 
 
-def _overlap(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
+def double_exponential(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
     """Double exponential rule on intervals: distances from both ends and weights, (n, steps) each."""
     u = np.linspace(-_LENGTH, _LENGTH, steps)
-    grown = pi / 2.0 * np.sinh(u)
-    d, e = 1.0 / (1.0 + np.exp(-2.0 * grown)), 1.0 / (1.0 + np.exp(2.0 * grown))
+    grown = pi * np.sinh(u)
+    d, e = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
     weights = (u[1] - u[0]) * pi * np.cosh(u) * d * e
     return length[:, None] * d, length[:, None] * e, length[:, None] * weights
 
@@ -315,9 +315,9 @@ class Transformed:
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
         t, _ = leggauss(_SAMPLES)
-        order, middle, half = _SAMPLES - 1, 2.0 - _EVEN / 2.0, _EVEN / 2.0
+        middle, half = 2.0 - _EVEN / 2.0, _EVEN / 2.0
         short = self._x > 2.0 - 0.5 * _EVEN
-        between = legvander((self._x[short] - middle) / half, order) @ np.linalg.inv(legvander(t, order))
+        between = interpolation(_SAMPLES, (self._x[short] - middle) / half)
         x, values = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
             sampled = np.array([response_at(kernel, x, s) for s in self.s])

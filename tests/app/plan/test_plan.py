@@ -9,8 +9,9 @@ from support import HOME
 
 from galinx import template
 from galinx.app.errors import BadInput
-from galinx.app.plan import cost, task
+from galinx.app.plan import plan as planning
 from galinx.app.plan import states as states_of
+from galinx.app.plan import task
 from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import enumerate_states, speeds
 from galinx.app.scene.read import read
@@ -190,7 +191,7 @@ def test_friction_holds_no_more_than_its_states(monkeypatch):
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     kept = sum(column.nbytes for column in states.columns.values()) + states.loops.nbytes
-    assert peak < 3 * kept and peak < cost.bytes_of_states(len(states)) + 2 * states.loops.nbytes
+    assert peak < 3 * kept and peak < planning._FRICTION * len(states) + 2 * states.loops.nbytes
     assert told == [(500 * i, 2000) for i in range(1, 5)]
 
 

@@ -67,6 +67,19 @@ def test_friction_and_motion_may_be_in_files_as_well(tmp_path):
     assert law.shape[2] == pytest.approx((20e-6, 0.3), rel=1e-15)
 
 
+def test_points_pressures_and_depths_may_be_in_files(tmp_path):
+    layer = '[[layer]]\nproperties = "depths.csv"\n'
+    solve = '[solve]\nmode = "traction"\npressure = "pressure.csv"\n'
+    text = REST.replace('["sif"]', '["interior"]\npoints = "points.csv"')
+    (tmp_path / "depths.csv").write_text("0,1e9,0.3,1e3\n2e-3,2e9,0.3,1e3\n", encoding="utf-8")
+    (tmp_path / "pressure.csv").write_text("X,p\n-1,0\n0,-2\n1,0\n", encoding="utf-8")
+    scene = read(
+        scene_beside(tmp_path, "X,Y\n0,-0.5\n1,-2\n", FRICTION + layer + solve + text, "points.csv")
+    )
+    assert scene.output.points == ((0.0, -0.5), (1.0, -2.0)) and scene.solve.pressure[1] == (0.0, -2.0)
+    assert scene.layers[0].thickness == 2e-3
+
+
 @pytest.mark.parametrize(
     "csv, message",
     [

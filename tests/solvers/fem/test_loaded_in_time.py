@@ -5,14 +5,14 @@ import os
 import numpy as np
 import pytest
 from lamb_reference import Lamb
+from loaded_in_time import Even, LoadedInTime
 from mpi4py import MPI
 from scipy.integrate import quad
 
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
-from galinx.meshes.waves import Even, Reached
+from galinx.meshes.waves import Reached
 from galinx.solvers.fem.dynamic import Motion
-from galinx.solvers.fem.in_time import LoadedInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
 from galinx.solvers.transient.punch import smooth

@@ -32,6 +32,7 @@ SHOWN = {
     "inside": ("inside", "Stresses below the punch, slow and fast, on one scale."),
     "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
     "cylinder": ("surface", "A cylinder: the pressure ends at 0, and friction moves the contact back."),
+    "elastic_punch": ("surface", "A steel cylinder on aluminium: both deform, at rest and at speed."),
     "shoulders": ("surface", "A flat base with rounded shoulders, on which the contact ends."),
     "coating": ("interfaces", "What a hard coating hands down; tension in it at the trailing edge."),
     "minor_loops": ("friction", "Springs with sliders close small loops and remember where they turned."),
@@ -46,7 +47,7 @@ SHOWN = {
 #: Figure of each scene of recipes.md, or of a scene by its name in scenes/.
 RECIPES = {
     "cylinder": "surface", "coated": "parameters", "crystal": "parameters", "wedge": "surface",
-    "loop": "surface", "start": "time", "stick_slip": "slider", "fast": "parameters",
+    "elastic": "parameters", "loop": "surface", "start": "time", "stick_slip": "slider", "fast": "parameters",
 }  # fmt: skip
 _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 

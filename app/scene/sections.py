@@ -461,7 +461,7 @@ _SOLID_KEYS = {
 }  # fmt: skip
 
 _PUNCH_SOLID_KEYS = {
-    "material": _SOLID_KEYS["material"],
+    "material": _KEYS["material"],
     "speed": Key(
         Number("m/s", Range(at_least=0.0)), "speed of the punch's solid over the contact", 0.0,
         "at rest in the frame of the contact it slides; with a speed of its own it rolls",

@@ -47,7 +47,8 @@ SHOWN = {
 #: Figure of each scene of recipes.md, or of a scene by its name in scenes/.
 RECIPES = {
     "cylinder": "surface", "coated": "parameters", "crystal": "parameters", "wedge": "surface",
-    "elastic": "parameters", "loop": "surface", "start": "time", "stick_slip": "slider", "fast": "parameters",
+    "elastic": "parameters", "loop": "surface", "start": "time", "stick_slip": "slider",
+    "fast": "parameters",
 }  # fmt: skip
 _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 

@@ -93,8 +93,9 @@ c = 0.3                          # over the shear wave speed
   `c` changes most slowly, then the load, the law's parameters in the order of their rows, stroke,
   position.
 - Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
-  too: `radius = ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these numbers, whose
-  states follow each other in one archive; the number that stands last changes fastest of them.
+  too: `radius = ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these
+  numbers, whose states follow each other in one archive; the number that stands last changes fastest of
+  them.
 - Each table `[[friction.vary]]` is such a product of its own; it takes what it leaves out from
   [friction]. These are 4 laws, since 0.5 with 25 000 /m is in both tables:
 

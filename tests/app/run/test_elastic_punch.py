@@ -45,8 +45,8 @@ def _solid(random):
     if random.uniform() < 0.5:
         return f"E = {E}\nnu = {random.uniform(0.05, 0.45)}\nrho = 2700"
     return (
-        f'kind = "orthotropic"\nE1 = {E}\nE2 = {E * random.uniform(0.2, 1.0)}\nE3 = {0.3 * E}\nnu12 = 0.2\n'
-        f"nu13 = 0.2\nnu23 = 0.2\nG12 = {E * random.uniform(0.1, 0.4)}\nrho = 1600\n"
+        f'kind = "orthotropic"\nE1 = {E}\nE2 = {E * random.uniform(0.2, 1.0)}\nE3 = {0.3 * E}\n'
+        f"nu12 = 0.2\nnu13 = 0.2\nnu23 = 0.2\nG12 = {E * random.uniform(0.1, 0.4)}\nrho = 1600\n"
         f"angle = {random.uniform(-90.0, 90.0)}"
     )
 

@@ -264,12 +264,9 @@ def scene_page() -> str:
 
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
-    from galinx.postprocess.quantities import swept, table
+    from galinx.postprocess.quantities import table
     from galinx.postprocess.schema import ATTRIBUTES, RULES
-    from galinx.solvers.profiles import PROFILES
-    from galinx.solvers.solids import SOLIDS
 
-    numbers = swept.columns(tuple(SOLIDS.values()), tuple(PROFILES.values()))
     parts, known = [_ARCHIVE, _WHOLE], table()
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
     parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
@@ -277,7 +274,7 @@ def archive_page() -> str:
         rows = [
             row
             for path, row in known.items()
-            if path.startswith(f"{group}/") and not _laws(row) and path not in numbers
+            if path.startswith(f"{group}/") and not _laws(row) and "." not in path
         ]
         (word, *others) = {row.asked_by for row in rows}
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()

@@ -255,8 +255,7 @@ def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     punch = tree.get("punch")
     if isinstance(punch, dict) and "solid" in punch:  # a section of its own
         tree["punch.solid"] = punch.pop("solid") or {"kind": "isotropic"}
-    for name in ("solid", "punch.solid"):
-        _fill_in_material(tree, name)
+    _fill_in_materials(tree)
     before = len(faults)
     swept = _swept(tree, faults)
     scenes: list[Scene] = []
@@ -320,10 +319,7 @@ def _tables(
         tables = {f"layer[{i}]": table for i, table in enumerate(given)} if several else {name: given}
         for path, table in tables.items():
             if isinstance(table, dict):
-                named = table.get("material")
-                material = LIBRARY.get(named) if isinstance(named, str) else None
-                kind = {"kind": material.kind} if material else {}
-                yield path, table, SECTIONS[name].keys(kind | table)
+                yield path, table, SECTIONS[name].keys(table)
 
 
 def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
@@ -371,17 +367,22 @@ def _checked(
     return None if len(faults) > before else scene
 
 
-def _fill_in_material(tree: dict[str, Any], section: str) -> None:
-    """Fill in the constants of the material that a section names; those that it gives stay."""
-    solid = tree.get(section)
-    if isinstance(solid, dict):
-        name = solid.get("material")
-        if isinstance(name, str):
-            # An unknown name is one fault, which its key reports: no constant shall be missing besides.
-            material = LIBRARY.get(name) or next(iter(LIBRARY.values()))
-            own = SECTIONS[section].keys(material.constants)
-            given = {key: value for key, value in material.constants.items() if key in own}
-            tree[section] = given | solid
+def _fill_in_materials(tree: dict[str, Any]) -> None:
+    """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
+    if "solid" in tree:
+        tree["solid"] = _with_constants(tree["solid"])
+    if isinstance(own := tree.get("punch.solid"), dict):  # nothing asks where the punch yields
+        every = _with_constants(own)
+        tree["punch.solid"] = {k: v for k, v in every.items() if k != "yield_strength" or k in own}
+    if isinstance(tree.get("layer"), list):
+        tree["layer"] = [_with_constants(table) for table in tree["layer"]]
+
+
+def _with_constants(table: Any) -> Any:
+    if not isinstance(table, dict) or not isinstance(table.get("material"), str) or "properties" in table:
+        return table
+    # An unknown name is one fault, which its key reports: no constant shall be missing besides.
+    return (LIBRARY.get(table["material"]) or next(iter(LIBRARY.values()))).constants | table
 
 
 def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:

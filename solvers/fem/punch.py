@@ -585,14 +585,9 @@ class ElasticPunch(SlidingPunch):
     response: PairAtSpeed
 
     def __init__(
-        self,
-        space: Space,
-        response: PairAtSpeed,
-        solver: str = "direct",
-        negligible: float = 0.0,
-        heights: NDArray[np.float64] | None = None,
-        left: float = 0.0,
-    ) -> None:
+        self, space: Space, response: PairAtSpeed, solver: str = "direct", negligible: float = 0.0,
+        heights: NDArray[np.float64] | None = None, left: float = 0.0,
+    ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
         # motion, which is large, spoils no digits of the rest.

@@ -58,11 +58,14 @@ def _limit(solid):
 
 @pytest.mark.parametrize("seed", range(20 if THOROUGH else 3))
 def test_both_methods_on_random_pairs_at_speed(seed):
-    """The verdict compares them with the tolerance, and estimates with the differences."""
+    """The verdict compares them with the tolerance, and estimates with the differences.
+
+    With hardly any friction the highest σ_XX is that of a free end, under a rigid punch to 1e-6 too.
+    """
     random = np.random.default_rng(seed)
     plate, solid = _solid(random), _solid(random)
     values = {
-        "plate": plate, "solid": solid, "punch": PUNCHES[seed % 4], "mu": random.uniform(0.0, 0.8),
+        "plate": plate, "solid": solid, "punch": PUNCHES[seed % 4], "mu": random.uniform(0.1, 0.8),
         "c": random.uniform(0.0, 0.8) * _limit(plate)[0],
         "speed": random.choice([0.0, 0.7]) * random.uniform() * _limit(solid)[1],
         "methods": '["closed_form", "fem"]', "sign": "physical",

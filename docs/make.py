@@ -92,9 +92,10 @@ c = 0.3                          # over the shear wave speed
   All combinations are computed, each on all `strokes`. Each combination is a state, numbered from 0.
   `c` changes most slowly, then the load, the law's parameters in the order of their rows, stroke,
   position.
-- Any other number of [solid], [[layer]], [punch] and [friction] may be a list or a range, too: `radius =
-  ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these numbers, whose
-  states follow each other in one archive; the number that stands last changes fastest of them.
+- Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
+  too: `radius = ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these
+  numbers, whose states follow each other in one archive; the number that stands last changes fastest of
+  them.
 - Each table `[[friction.vary]]` is such a product of its own; it takes what it leaves out from
   [friction]. These are 4 laws, since 0.5 with 25 000 /m is in both tables:
 
@@ -336,11 +337,9 @@ def _section(section: Any) -> list[str]:
     first = own[next(iter(own))]
     common = {k: known for k, known in keys.items() if k not in first and not known.stands_for}
     parts = [_table(heads, rows(common))]
-    if section is SECTIONS["layer"]:
-        return [
-            *parts,
-            "The constants are those of [[solid]](#solid): required, or material, or properties.\n",
-        ]
+    if section is SECTIONS["layer"] or section is SECTIONS["punch.solid"]:
+        constants = f"The constants are those of [[solid]](#solid): required{section.or_else}.\n"
+        return [*parts, constants]
     merged: dict[tuple[str, ...], list[str]] = {}
     for model, keys in alternatives.items():
         for row in rows({k: v for k, v in keys.items() if k in own[model] or v.stands_for}):

@@ -55,8 +55,6 @@ FIGURES = {
     "pressures": _Figure(motion.pressures, motion.has_pressures),
     "stresses": _Figure(motion.stresses, motion.has_surface),
     "energies": _Figure(motion.energies, motion.has_energies),
-    "angles": _Figure(sweep.angles, sweep.has_angles),
-    "thicknesses": _Figure(sweep.thicknesses, sweep.has_thicknesses),
     "degrees": _Figure(numerics.degrees, numerics.has_degrees),
     "mesh": _Figure(numerics.mesh, lambda of: bool(make_plan(of.scene).fem)),
     FILM: _Figure(_no_figure, film.has_film, _STRESSES),

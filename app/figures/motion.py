@@ -16,7 +16,7 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.texts import number
+from galinx.texts import number, plain
 
 from ..scene.scene import Time
 from .choice import Archive, Drawing, both, explained, named
@@ -106,8 +106,6 @@ def time(of: Archive) -> Drawing:
 
 def drive_text(c: float, g: float, way: float) -> str:
     """Speed, friction and way of a motion as plain text."""
-    from galinx.texts import plain
-
     return plain(drive_label(c, g, way))
 
 

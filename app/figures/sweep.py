@@ -13,10 +13,9 @@ from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 from galinx.texts import plain
 
 from ..errors import BadInput
-from .choice import Archive, Drawing, both, explained, named, require_one_of
-from .render import Map, Panel, render
+from .choice import Archive, Drawing, both, explained, named, require_one_of, short_name
+from .render import Map, Panel, Size, render
 from .states import PLACE, C, N, StateLabels, not_shown, spread
-from .stresses import short_name
 from .style import COLUMN, looks
 
 #: Values of a parameter that make a curve, and those of two that make a map; curves that can be told
@@ -117,8 +116,6 @@ def parameters(of: Archive) -> Drawing:
     methods = {method for name in sweep.drawn for method in columns[name].values}
     size = of.size
     if size is None and len(panels) == 1:
-        from .render import Size
-
         size = Size(COLUMN)
     figure = render(panels, size, notes=[] if grid else explained(methods), high=0.72)
     at = f" at {of.labels.text(int(sweep.states[0]), list(sweep.fixed))}" if sweep.fixed else ""

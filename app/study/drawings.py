@@ -19,10 +19,11 @@ from galinx.texts import number, plain
 
 from ..figures.choice import Archive, Choice, Drawing
 from ..figures.friction import Loops, loop_panel, loops_figure
-from ..figures.render import LINE, MARKERS, Curve, Panel, handle, marked, render, spaced
-from ..figures.sketches import mesh_figure, problem_figure, procedure_figure
+from ..figures.numerics import mesh_figure
+from ..figures.render import MARKERS, Curve, Panel, handle, marked, render
+from ..figures.sketches import problem_figure, procedure_figure
 from ..figures.states import PLACE, STROKE, C, StateLabels
-from ..figures.stresses import _BESIDE, along, broken, limits
+from ..figures.stresses import _BESIDE, along, broken, limits, surface_curves
 from ..figures.style import COLOURS, GREY, LINES, Look, looks
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states
@@ -266,13 +267,13 @@ class _Stressed:
 
     Attributes:
         label, look: name in the legend, and look of line and markers.
-        line, markers: σ_YY and σ_XX, (2, points); None for none.
+        line, markers: σ_YY and σ_XX, (2, points); no markers by default.
         width: of the line [pt].
     """
 
     label: str
     look: Look
-    line: NDArray | None = None
+    line: NDArray
     markers: NDArray | None = None
     width: float = 1.0
 
@@ -296,15 +297,13 @@ def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, name
     every = [values for of in rows for curve in of.curves for values in (curve.line, curve.markers)]
     shown = np.array([values[column] for values in every if values is not None])
     half = along(X, shown)
-    inside, curves = np.abs(X) <= half, []
+    curves: list[Curve] = []
     for n, curve in enumerate(row.curves):
-        label = curve.label if named else ""
-        if curve.line is not None:
-            curves.append(Curve(*broken(X, curve.line[column]), curve.look, label, LINE, curve.width))
+        values = {CLOSED_FORM: curve.line[column]}
         if curve.markers is not None:
-            label = label * (curve.line is None)
-            at = spaced(np.where(inside, X, np.nan), n / len(row.curves))
-            curves.append(Curve(X[at], curve.markers[column][at], curve.look, label, MARKERS))
+            values[FEM] = curve.markers[column]
+        drawn = surface_curves(X, values, curve.look, curve.label if named else "", n / len(row.curves))
+        curves += [replace(one, width=curve.width) for one in drawn]
     return Panel(
         "position on the surface $X/a$", _AXES[column], curves=curves, title=row.title,
         xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,),

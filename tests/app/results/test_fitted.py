@@ -8,8 +8,7 @@ import pytest
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.results.fitted import ALL
-from galinx.app.results.measured import read
+from galinx.app.results.fitted import ALL, read
 from galinx.app.scene.read import parse
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.fit import friction, moves

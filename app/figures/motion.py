@@ -96,17 +96,12 @@ def time(of: Archive) -> Drawing:
         f"{', and K_I at both ends by the full load' * with_K_I}, over time. {_history(settings)}"
     )
     if len(shown) == 1:
-        caption += f" At {drive_text(c[0], g[0], way[0])}."
+        caption += f" At {plain(drive_label(c[0], g[0], way[0]))}."
     missing = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
     columns = 2 if not of.size or of.size.width > 3.0 else 1
     return Drawing(
         "time", caption, render(panels, of.size, columns, explained(methods)), left_out=missing
     )
-
-
-def drive_text(c: float, g: float, way: float) -> str:
-    """Speed, friction and way of a motion as plain text."""
-    return plain(drive_label(c, g, way))
 
 
 def _history(settings: Time) -> str:

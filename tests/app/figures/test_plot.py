@@ -176,7 +176,7 @@ def test_films_are_made_of_strokes(strokes, tmp_path):
 
 
 def test_a_film_goes_along_every_stroke_in_the_order_of_travel(strokes):
-    from galinx.app.figures.film import film as made
+    from galinx.app.figures.archive import film as made
 
     shown, _ = made(Archive(strokes.data, strokes.scene, Choice()))
     places = []

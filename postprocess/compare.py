@@ -492,7 +492,7 @@ def judged(attributes: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
 
 
 def checked(attributes: Mapping[str, Any]) -> str:
-    """How well numbers were checked, in one line: the worst of all figures of a kind."""
+    """Quality of checked numbers in one line: the worst of all figures of a kind."""
     figures = judged(attributes)
     kinds: dict[str, list[float]] = {"two methods agree to": [], "estimated error": [], "residual": []}
     for text, (value, _) in figures.items():
@@ -510,7 +510,7 @@ def checked(attributes: Mapping[str, Any]) -> str:
 
 
 def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
-    """What failed, by how much, where, and what to do; none for another verdict than FAIL.
+    """Failures: by how much, where, and what to do; none for another verdict than FAIL.
 
     Args:
         data: datasets by path; where stresses along the surface are not among them, no state is named.

@@ -28,8 +28,6 @@ from .quantities.quantity import FEM, SIE
 #: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
 #: a wave that runs little faster than the punch is short under it.
 _MOMENTS, _FEWER = 2.5, 4
-#: Points of the quadrature of moments of r log r.
-_POINTS = 400
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
     moments = ceil(_MOMENTS * degree)
     polynomials = moments - _FEWER
     tests = Weighted(α, β, moments)
-    a, (r, w) = forces @ tests.polynomials(X), tests.rule(_POINTS)
+    a, (r, w) = forces @ tests.polynomials(X), tests.rule(400)  # of r log r
     basis = np.column_stack([np.eye(moments, polynomials), tests.polynomials(r).T @ (w * _logs(r)).T])
     factors = np.linalg.lstsq(basis, a.T, rcond=None)[0]
     ends = np.array([-1.0, 1.0])
@@ -255,32 +253,16 @@ def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict
     Returns:
         A dataset by path, relative to the largest stress; empty where a solution has no stresses.
     """
-    of_both = [
-        [of[row[FEM].path] for row in SURFACE] for of in (before, now) if SURFACE[0][FEM].path in of
-    ]
-    return (
-        {rows.SURFACE_ESTIMATE.path: np.array(largest_surface_change(*of_both))}
-        if len(of_both) == 2
-        else {}
-    )
+    if any(SURFACE[0][FEM].path not in of for of in (before, now)):
+        return {}
+    of_both = ([of[row[FEM].path] for row in SURFACE] for of in (before, now))
+    return {rows.SURFACE_ESTIMATE.path: np.array(largest_surface_change(*of_both))}
 
 
 def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
     """Datasets by path of a method's σ_XX, σ_YY and σ_XY over N/(2a), (3, times, places)."""
-    return dict(
-        zip(
-            (
-                row[method].path
-                for row in (rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE, rows.SURFACE_SHEAR)
-            ),
-            stresses,
-        )
-    )
-
-
-def place_datasets(t: NDArray) -> dict[str, NDArray]:
-    """Datasets by path of the times t over a/c_s, (times,), and places of stresses along the surface."""
-    return {rows.SURFACE_TIMES.path: t, rows.SURFACE_PLACES.path: ON_SURFACE}
+    of = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE, rows.SURFACE_SHEAR
+    return {row[method].path: values for row, values in zip(of, stresses)}
 
 
 def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:

@@ -6,7 +6,7 @@ parameters: speed, load, the law's constants, motion and position.
 
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
@@ -95,7 +95,7 @@ class Column:
 
     @property
     def label(self) -> str:
-        """What it is, with its unit."""
+        """Head with the unit."""
         return self.head + ("" if self.unit in ("1", "none") else f" [{self.unit}]")
 
     @property
@@ -111,7 +111,7 @@ class Column:
         return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
 
     def words(self, i: int) -> str:
-        """What state ``i`` has, with its unit."""
+        """Cell of state ``i`` with its unit."""
         text = self.texts()[i]
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
@@ -306,7 +306,7 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 
 def _share(share: float) -> str:
-    """Whether a solid yields under a share of what it bears, in words; "" for NaN."""
+    """Yes or no to yield under a share of the strength, with the share; "" for NaN."""
     return "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
 
 
@@ -328,7 +328,9 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     return [Column("yields", words, unit, "yields"), *loads]
 
 
-def layout(title: str, labels: Sequence[str], columns: Sequence[Column], width: int = 0) -> Sheet:
+def layout(
+    title: str, labels: Sequence[str], columns: Sequence[Column], width: int = 0, noun: str = "state"
+) -> Sheet:
     """Table of columns that suits a width: lines for one row, few rows side by side, else as they are.
 
     Args:
@@ -336,22 +338,22 @@ def layout(title: str, labels: Sequence[str], columns: Sequence[Column], width: 
         labels: of the rows.
         columns: of the table.
         width: characters of a line; 0 for rows below each other in any case.
+        noun: what a row is of.
     """
-    shown = columns
     if width and len(labels) == 1:
         lines: list[list[str]] = []
-        for column in shown:
+        for column in columns:
             if column.place and lines:
                 lines[-1][1] += f"{' ' if ' at ' not in lines[-1][1] else ', '}{_at(column)}"
             elif column.texts()[0]:
                 lines.append([column.head, column.words(0)])
         return Sheet(title, ["", ""], lines)
-    texts = [column.texts(len(labels)) for column in shown]
-    heads = [f"  {column.label}" if column.place else column.label for column in shown]
+    texts = [column.texts(len(labels)) for column in columns]
+    heads = [f"  {column.label}" if column.place else column.label for column in columns]
     if width and len(labels) <= BESIDE:
-        return Sheet(title, ["state", *labels], [[head, *row] for head, row in zip(heads, texts)])
-    heads = [_folded(column) if width else column.label for column in shown]
-    return Sheet(title, ["state", *heads], [[label, *row] for label, *row in zip(labels, *texts)])
+        return Sheet(title, [noun, *labels], [[head, *row] for head, row in zip(heads, texts)])
+    heads = [_folded(column) if width else column.label for column in columns]
+    return Sheet(title, [noun, *heads], [[label, *row] for label, *row in zip(labels, *texts)])
 
 
 def _folded(column: Column) -> str:
@@ -390,16 +392,12 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
     if told:
         notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in told)}")
     notes += _notes(data, units, shown)
-    return Sheet(
-        **{
-            **vars(layout(title or "States", [*map(str, range(min(count, LIMIT)))], shown, width)),
-            "notes": notes,
-        }
-    )
+    labels = [*map(str, range(min(count, LIMIT)))]
+    return replace(layout(title or "States", labels, shown, width), notes=notes)
 
 
 def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
-    """What has to be known of some columns, and how to ask for those that are not there."""
+    """Notes on columns, and on how to ask for those that are not there."""
     heads = {column.head for column in columns}
     if "K_I, right" in heads:
         if "largest tension σ_XX" in heads:
@@ -471,8 +469,8 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if of.LOAD.path in data:
         load = units.scale(of.LOAD.unit)
         note += f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
-    sheet = layout("Friction loops", [*map(str, range(min(count, LIMIT)))], columns, width)
-    return Sheet(sheet.title, ["loop" if c == "state" else c for c in sheet.columns], sheet.rows, [note])
+    sheet = layout("Friction loops", [*map(str, range(min(count, LIMIT)))], columns, width, "loop")
+    return replace(sheet, notes=[note])
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
@@ -510,8 +508,8 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
             columns.append(
                 Column(head, scaled.of(data[row.path]), scaled.unit, scaled.name, row.path, digits=6)
             )
-    sheet = layout("Motion of the slider", [*map(str, range(min(len(outcomes), LIMIT)))], columns, width)
-    return Sheet(sheet.title, ["law" if c == "state" else c for c in sheet.columns], sheet.rows)
+    labels = [*map(str, range(min(len(outcomes), LIMIT)))]
+    return layout("Motion of the slider", labels, columns, width, "law")
 
 
 def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
@@ -549,15 +547,13 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if np.isfinite(by_formula).any():
         columns.append(Column("by formula", [_rounded(t, time) for t in by_formula], "none"))
     labels = [*map(str, range(min(len(when), LIMIT)))]
-    sheet = layout(title, labels, columns, width)
     notes = [
         f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X",
         "off: largest relative difference of K_I, or of the centre over a, from steady motion",
         "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
         "K_I: dimensionless, by the final load",
     ]
-    heads = ["start" if c == "state" else c for c in sheet.columns]
-    return Sheet(title, heads, sheet.rows, notes)
+    return replace(layout(title, labels, columns, width, "start"), notes=notes)
 
 
 def _when(time: float, end: float, scaled: Scaled) -> str:

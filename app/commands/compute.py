@@ -135,7 +135,7 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
 
 
 def _folded(skipped: Iterable[str]) -> list[str]:
-    """What is skipped, one line for each reason."""
+    """Skipped work, one line for each reason."""
     by_reason: dict[str, list[str]] = {}
     for text in skipped:
         what, _, reason = text.partition(": ")

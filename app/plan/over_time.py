@@ -5,11 +5,11 @@
 lists the motions of a scene, and :class:`Starts` plans their finite elements.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
 from math import ceil, log10, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -33,8 +33,6 @@ from .states import States
 
 #: Positions on a stroke between which friction is interpolated; fewest steps of a stroke.
 _PLACES, _OF_STROKE = 801, 12
-#: Points of the quadrature of work in a step.
-_RULE = 4
 #: Number of short steps in place of one after a turn.
 _FINELY = 8
 
@@ -105,44 +103,29 @@ class Drive:
 
     Attributes:
         way: ±1, direction of the first stroke along X.
+        constant: σ_XY/σ_YY where it is constant, None where it changes.
         starts: times at which strokes begin over a/c_s.
-        along: σ_XY/σ_YY of each stroke, by the time since its beginning over a/c_s.
+        along: σ_XY/σ_YY of each stroke where it changes, a polynomial by pieces of the time since its
+            beginning over a/c_s.
     """
 
     way: int
-    starts: tuple[float, ...]
-    along: tuple[Callable[[float], float], ...]
+    constant: float | None = None
+    starts: tuple[float, ...] = ()
+    along: tuple[Any, ...] = ()
 
     def __call__(self, t: float) -> float:
         """σ_XY/σ_YY at a time over a/c_s; where a stroke ends, that at its end."""
+        if self.constant is not None:
+            return self.constant
         at = max(int(np.searchsorted(self.starts, t - 1e-9 * (1.0 + t), side="left")) - 1, 0)
         return float(self.along[at](t - self.starts[at]))
 
     @cached_property
-    def constant(self) -> float | None:
-        """σ_XY/σ_YY where it is constant, None where it changes."""
-        return self.along[0](0.0) if isinstance(self.along[0], _Constant) else None
-
-    @cached_property
     def shortest(self) -> float:
         """Inverse of the largest rate of σ_XY/σ_YY, a time over a/c_s; infinite where it is constant."""
-        from scipy.interpolate import PchipInterpolator  # a slow import
-
-        slopes = [float(np.abs(g(g.x, 1)).max()) for g in self.along if isinstance(g, PchipInterpolator)]
+        slopes = [float(np.abs(g(g.x, 1)).max()) for g in self.along]
         return 1.0 / max(*slopes, 0.0) if any(slopes) else np.inf
-
-
-@dataclass(frozen=True)
-class _Constant:
-    value: float
-
-    def __call__(self, _: float) -> float:
-        return self.value
-
-
-def constant(way: int, g: float) -> Drive:
-    """Drive in one direction under constant friction."""
-    return Drive(way, (0.0,), (_Constant(g),))
 
 
 def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
@@ -223,7 +206,7 @@ def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
     Raises:
         BadInput: the law refuses its parameters.
     """
-    from scipy.interpolate import PchipInterpolator
+    from scipy.interpolate import PchipInterpolator  # a slow import
 
     friction, length, V = scene.friction, scene.friction.pre_sliding, c * scene.solid.c_s
     shares = np.linspace(0.0, 1.0, _PLACES)
@@ -239,7 +222,7 @@ def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
                 PchipInterpolator(shares * duration, friction.stress_ratio * stroke.f)
                 for stroke, duration in zip(strokes, durations)
             ]
-            drives.append(Drive(way, starts, tuple(along)))
+            drives.append(Drive(way, None, starts, tuple(along)))
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
     return tuple(drives)
@@ -253,7 +236,7 @@ def work_of_friction(ways: tuple[Way, ...], load: Load, drive: Drive) -> NDArray
         load: of the punch over time.
         drive: of the punch.
     """
-    x, w = leggauss(_RULE)
+    x, w = leggauss(4)
     work, t0 = [], 0.0
     for way in ways:
         h = way.duration / way.steps
@@ -604,7 +587,7 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
     else:
         different = np.unique(np.column_stack([c, states.g, headings(scene, states.directions)]), axis=0)
         for speed, ratio, way in different.tolist():
-            drives[speed] = (*drives.get(speed, ()), constant(round(way), ratio))
+            drives[speed] = (*drives.get(speed, ()), Drive(round(way), ratio))
     if (many := sum(map(len, drives.values()))) > MOST:
         raise BadInput(
             f"time: the scene has {many} states of different speed or friction, expected at most "

@@ -1,4 +1,7 @@
-"""Friction laws fitted to measured friction: parameters, a comparison of laws, a section of a scene."""
+"""Friction laws fitted to measured friction: parameters, a comparison of laws, a section of a scene.
+
+Measured friction comes as arrays, or from tables (:func:`read`).
+"""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -214,7 +217,7 @@ class Fit:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was assumed and left out, in sentences."""
+        """Sentences on assumptions and samples left out."""
         samples = sum(len(table.measured.t) for table in self.tables)
         said = [note for table in self.tables for note in table.notes]
         if self.result.every > 1:

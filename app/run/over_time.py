@@ -1,11 +1,10 @@
 """Motions in time of a scene: both methods, speed by speed.
 
-Beside each motion stands the steady motion with the friction of every moment (:class:`QuasiSteady`).
+Beside each motion stands the steady motion with the friction of every moment.
 Finite elements in time are in a module of their own, so that nothing else imports dolfinx.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,45 +28,21 @@ from .. import ranks
 from ..errors import finite_elements_installed
 from ..plan.over_time import Drive, Starts
 
-#: Length over a of the quadrature rule for a pressure over layers.
-_FINEST = 0.5
-#: Accuracy of steady motion over layers, over the scene's tolerance.
-_OF_TOLERANCE = 0.1
 
-
-@dataclass(frozen=True)
-class QuasiSteady:
-    """Steady motion under a flat punch at a speed.
-
-    Args:
-        starts: the motions and the datasets requested.
-        solid: the solid.
-        c: speed over c_s.
-    """
-
-    starts: Starts
-    solid: Solid
-    c: float
-
-    def centres(self, ratios: NDArray) -> NDArray[np.float64]:
-        """Centre of the pressure over a at frictions σ_XY/σ_YY, (n,)."""
-        different, which = np.unique(ratios, return_inverse=True)
-        response: Any = self.starts.response(self.solid, self.c)
-        if len(response.depths):
-            stack, accuracy = response.stack(response.a), _OF_TOLERANCE * self.starts.tolerance
-            nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
-            return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
-        punches = [FlatPunch(response, ratio) for ratio in different]
-        return np.array([punch.β - punch.α for punch in punches])[which]
-
-    def K_I(self, ratio: float) -> float:
-        """K_I of both ends as :attr:`FlatPunch.K_I`, dimensionless; NaN over layers: they differ."""
-        response = self.starts.response(self.solid, self.c)
-        return np.nan if len(response.depths) else FlatPunch(response, ratio).K_I
+def _steady_centres(starts: Starts, solid: Solid, c: float, ratios: NDArray) -> NDArray[np.float64]:
+    """Centre of the pressure over a in steady motion at frictions σ_XY/σ_YY, (n,)."""
+    different, which = np.unique(ratios, return_inverse=True)
+    response: Any = starts.response(solid, c)
+    if len(response.depths):
+        stack, accuracy = response.stack(response.a), 0.1 * starts.tolerance
+        nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
+        return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
+    punches = [FlatPunch(response, ratio) for ratio in different]
+    return np.array([punch.β - punch.α for punch in punches])[which]
 
 
 def _centre(pressure: Pressure) -> NDArray[np.float64]:
-    t, forces = pressure.points(_FINEST)
+    t, forces = pressure.points(0.5)  # the rule's length over a
     return np.array(forces @ t / forces.sum())
 
 
@@ -129,14 +104,16 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     for c, of_speed in starts.drives.items():
         for i, drive in enumerate(of_speed):
             g = np.array([drive(at) for at in t])
-            quasi_steady = QuasiSteady(starts, solid, c)
-            centres = quasi_steady.centres(g)
+            centres = _steady_centres(starts, solid, c, g)
+            uniform = not len(solid.depths)
             datasets = {
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
                 rows.STEADY_CENTRE.path: centres[-1],
-                rows.STEADY_K_I.path: np.array(quasi_steady.K_I(g[-1])),
+                rows.STEADY_K_I.path: np.array(
+                    FlatPunch(starts.response(solid, c), g[-1]).K_I if uniform else np.nan
+                ),
                 rows.CENTRES.path: centres,
-                APPROACH.path: np.array(_within(solid, c, g[-1])),
+                APPROACH.path: np.array(approach(solid, c, g[-1]).within(0.01) if uniform else np.nan),
                 rows.DISSIPATED.path: starts.dissipated(c, drive),
                 rows.DIRECTION.path: starts.directions(drive),
             }  # fmt: skip
@@ -146,17 +123,12 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     joined = {path: np.array([datasets[path] for datasets in every]) for path in every[0]}
     whole = {rows.TIMES.path: t, rows.LOAD.path: starts.load(t)} | joined
     if starts.every:
-        whole |= over_time.place_datasets(t[starts.outputs - 1])
+        whole |= {rows.SURFACE_TIMES.path: t[starts.outputs - 1], rows.SURFACE_PLACES.path: ON_SURFACE}
     if SIE in starts.methods and not starts.steady:
         whole[rows.PLACES.path] = PLACES
     for name in starts.methods:
         whole |= over_time.distances_from_steady(whole, name)
     return whole
-
-
-def _within(solid: Solid, c: float, g: float) -> float:
-    """Time over a/c_s from which on a start is within 1 % of steady motion; NaN over layers."""
-    return np.nan if len(solid.depths) else approach(solid, c, g).within(0.01)
 
 
 def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
@@ -235,7 +207,7 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
         lean = np.zeros(1)
         if starts.changing:
-            lean = QuasiSteady(starts, solid, c).centres(np.array([drive(at) for at in starts.times()]))
+            lean = _steady_centres(starts, solid, c, np.array([drive(at) for at in starts.times()]))
         motions.append(
             _named(FEM, values)
             | {

@@ -252,7 +252,7 @@ _RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers, up to the first with faults."""
-    _fill_in_material(tree)
+    _fill_in_materials(tree)
     before = len(faults)
     swept = _swept(tree, faults)
     scenes: list[Scene] = []
@@ -316,10 +316,7 @@ def _tables(
         tables = {f"layer[{i}]": table for i, table in enumerate(given)} if several else {name: given}
         for path, table in tables.items():
             if isinstance(table, dict):
-                named = table.get("material")
-                material = LIBRARY.get(named) if isinstance(named, str) else None
-                kind = {"kind": material.kind} if material else {}
-                yield path, table, SECTIONS[name].keys(kind | table)
+                yield path, table, SECTIONS[name].keys(table)
 
 
 def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
@@ -367,15 +364,19 @@ def _checked(
     return None if len(faults) > before else scene
 
 
-def _fill_in_material(tree: dict[str, Any]) -> None:
-    """Fill in the constants of the material that a scene names; those that the scene gives stay."""
-    solid = tree.get("solid")
-    if isinstance(solid, dict):
-        name = solid.get("material")
-        if isinstance(name, str):
-            # An unknown name is one fault, which its key reports: no constant shall be missing besides.
-            material = LIBRARY.get(name) or next(iter(LIBRARY.values()))
-            tree["solid"] = material.constants | solid
+def _fill_in_materials(tree: dict[str, Any]) -> None:
+    """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
+    if "solid" in tree:
+        tree["solid"] = _with_constants(tree["solid"])
+    if isinstance(tree.get("layer"), list):
+        tree["layer"] = [_with_constants(table) for table in tree["layer"]]
+
+
+def _with_constants(table: Any) -> Any:
+    if not isinstance(table, dict) or not isinstance(table.get("material"), str) or "properties" in table:
+        return table
+    # An unknown name is one fault, which its key reports: no constant shall be missing besides.
+    return (LIBRARY.get(table["material"]) or next(iter(LIBRARY.values()))).constants | table
 
 
 def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:

@@ -319,15 +319,9 @@ class LayerSections(ModelSection):
     def _read(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
         if isinstance(given.get("properties"), list):
             return self._tabulated(name, given, faults)
-        material = given.get("material")
-        of_library = LIBRARY.get(material) if isinstance(material, str) else None
-        constants = of_library.constants if of_library else {}
-        if material is not None and not of_library:  # its constants are not missing: one fault
-            constants = next(iter(LIBRARY.values())).values
-        kept = constants | given
-        layer = super().read(name, kept, faults)
+        layer = super().read(name, given, faults)
         if layer and layer["bottom"] is not None:
-            own = {key: value for key, value in kept.items() if key not in _KEYS or key == "thickness"}
+            own = {key: value for key, value in given.items() if key not in _KEYS or key == "thickness"}
             bottom = super().read(f"{name}.to", own | layer["bottom"], faults)
             layer = bottom and layer | {"bottom": bottom["solid"]}
         try:

@@ -30,10 +30,9 @@ from ..plan.states import enumerate_states
 from ..scene import read as scenes
 from ..scene.library import SCENES
 from ..scene.scene import Scene
-from .published import REFERENCE
+from .published import FAST, MILDER, REFERENCE, SLOW
 
-#: The study's two speeds over the shear wave speed, slow and high, and its strokes.
-SS, HS = 4.786e-7, 0.6
+#: The study's strokes.
 FM1, BM1, FM2 = "FM1", "BM1", "FM2"
 
 #: Parameters of Dahl's law, one varied after the other, and the values of the other two meanwhile.
@@ -43,9 +42,8 @@ VARIED = {
     _SIGMA: (12500.0, 25000.0, 50000.0),
     _DELTA: (0.8, 1.0, 1.2, 1.5),
 }
-MIDDLE = REFERENCE | {_MU: 0.5}
 #: Speeds of Fig 6 (a).
-SPEEDS = (SS, 0.2, 0.4, HS)
+SPEEDS = (SLOW, 0.2, 0.4, FAST)
 
 _PROBLEM = (
     "Fig 1. The problem: a rigid flat punch under the loads N and F per depth slides at the speed V "
@@ -107,7 +105,7 @@ class Stresses:
     rows: tuple[Any, ...]
     curve: str
     curves: tuple[Any, ...]
-    speeds: tuple[float, ...] = (SS, HS)
+    speeds: tuple[float, ...] = (SLOW, FAST)
 
 
 #: By name.
@@ -116,7 +114,7 @@ STRESSES = {
         "Fig 5. Slow sliding (SS), at two places of three strokes: closed form as lines, finite "
         "elements as markers. The pressure leans to the end that trails, where the surface is pulled; "
         "it is pressed at the other. BM1 at X/L = 0.2 has gone 0.8 L from its turn, at 0.8 only 0.2 L.",
-        REFERENCE, STROKE, (FM1, BM1, FM2), PLACE, (0.2, 0.8), (SS,),
+        REFERENCE, STROKE, (FM1, BM1, FM2), PLACE, (0.2, 0.8), (SLOW,),
     ),
     "fig7": Stresses(
         "Fig 7. Slow (SS) and high speed (HS) at three places of three strokes. X/L is measured on one "
@@ -136,13 +134,13 @@ STRESSES = {
         "FM1 friction is nearer to its full value, in FM2 it still points backward at 12 500/m and "
         "forward above. In FM1 the more of it, the larger the pressure at X = -a, and the nearer the top "
         "of the curve, the least pressure, to X = +a: the study says that it slants to the leading end.",
-        MIDDLE | {PLACE: 0.2}, STROKE, (FM1, FM2), _SIGMA, VARIED[_SIGMA],
+        MILDER | {PLACE: 0.2}, STROKE, (FM1, FM2), _SIGMA, VARIED[_SIGMA],
     ),
     "fig10": Stresses(
         "Fig 10. What δ_D does at X/L = 0.4 of FM1, slow (SS) and at high speed (HS), with μ_C = 0.5: "
         "a little less friction, hence less pressure and tension at X = -a, and less compression ahead "
         "at X = +a.",
-        MIDDLE | {STROKE: FM1}, PLACE, (0.4,), _DELTA, VARIED[_DELTA],
+        MILDER | {STROKE: FM1}, PLACE, (0.4,), _DELTA, VARIED[_DELTA],
     ),
 }  # fmt: skip
 
@@ -154,7 +152,7 @@ _AT = 0.3
 _CURVE = {"mu_c": (0.5,), "mu_s": (0.6,), "stribeck_velocity": (3e-3,), "sigma0_over_load": (25000.0,)}
 LAWS_SHOWN: dict[str, tuple[str, dict[str, tuple[Any, ...]]]] = {
     "coulomb": ("Coulomb", {"mu_c": (0.5,)}),
-    "dahl": ("Dahl", {key: (value,) for key, value in MIDDLE.items()}),
+    "dahl": ("Dahl", {key: (value,) for key, value in MILDER.items()}),
     "bouc_wen": (
         "Bouc-Wen, $n = 4$",
         {"mu_c": (0.5,), "yield_displacement": (2e-5,), "exponent": (4.0,)},
@@ -219,14 +217,14 @@ def _archive(scene: Scene) -> Archive:
 def _laws(scene: Scene, X: NDArray) -> Drawing:
     """Contact stresses of several friction laws, by the closed form."""
     under, shown, dots, curves = under_punch(X), [], [], []
-    motion = replace(scene.motion, c=(SS, HS), X_over_L=(_AT,))
+    motion = replace(scene.motion, c=(SLOW, FAST), X_over_L=(_AT,))
     for (name, (called, values)), look in zip(LAWS_SHOWN.items(), looks(len(LAWS_SHOWN))):
         given = {key: (field.default,) for key, field in fields(LAWS[name]).items()} | values
         friction = replace(scene.friction, law=LAWS[name], parameters=given, vary=())
         own = replace(scene, friction=friction, motion=motion)
         states = enumerate_states(own)
         loops = Loops(Archive(states.datasets, own, Choice()))
-        of = [_state(loops.labels, {STROKE: FM2, C: c}) for c in (SS, HS)]
+        of = [_state(loops.labels, {STROKE: FM2, C: c}) for c in (SLOW, FAST)]
         punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in of]
         both = [np.array([np.where(under, punch.σ_YY(X), np.nan), punch.σ_XX(X)]) for punch in punches]
         curves.append(_Stressed(called, look, both[0], both[1]))
@@ -248,7 +246,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
 def _loops(loops: Loops) -> Any:
     """Loops over speed, then over each parameter of the law."""
     labels = loops.labels
-    over = {C: (REFERENCE, SPEEDS)} | {name: (MIDDLE, values) for name, values in VARIED.items()}
+    over = {C: (REFERENCE, SPEEDS)} | {name: (MILDER, values) for name, values in VARIED.items()}
     panels = []
     for name, (at, values) in over.items():
         states = [_state(labels, at | {name: value}) for value in values]
@@ -358,7 +356,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
             for pair, look in zip(pairs, styles)
         ]
         if name == "fig7":
-            travelled = _state(labels, at | {STROKE: BM1, C: SS, PLACE: 1.0 - value})
+            travelled = _state(labels, at | {STROKE: BM1, C: SLOW, PLACE: 1.0 - value})
             dots = Look(COLOURS[6], LINES[3], "")
             label = "BM1 (SS), $X/L$ travelled since its turn"
             curves.append(_Stressed(label, dots, _values(data, CLOSED_FORM, travelled), width=0.8))

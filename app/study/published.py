@@ -20,6 +20,8 @@ from galinx.solvers.solids.isotropic import Isotropic
 
 #: The parameters of the study's Tables 4 and 5.
 REFERENCE = {"mu_c": 0.7, "sigma0_over_load": 25000.0, "delta": 1.0}
+#: Those of Figs 6 (c), (d), 9 and 10.
+MILDER = REFERENCE | {"mu_c": 0.5}
 
 #: The study's two speeds over the shear wave speed: its SS and HS.
 SLOW, FAST = 4.786e-7, 0.6

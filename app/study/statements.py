@@ -20,10 +20,7 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.solids import Solid
 
-from .published import FAST, REFERENCE, SLOW, published, state_of
-
-#: The parameters of the study's Figs 6c, 6d, 9 and 10.
-MILDER = REFERENCE | {"mu_c": 0.5}
+from .published import FAST, MILDER, REFERENCE, SLOW, published, state_of
 
 #: "Near", "close" and "negligible": a share of the whole. "Slight" beside "notable": a share of that.
 NEAR, SLIGHT = 0.1, 0.5

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
+from functools import lru_cache
 
 # Each module adds its own quantities; tables have them in this order.
 # isort: off
@@ -13,6 +14,8 @@ from . import over_time, layers, swept  # noqa: F401
 from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
+from galinx.solvers.profiles import PROFILES
+from galinx.solvers.solids import SOLIDS
 
 from .quantity import ALONG, FRICTION_ALONE, INSIDE, POINT, QUANTITIES, STATE, Quantity
 
@@ -26,8 +29,17 @@ def column(name: str) -> str:
 
 def table() -> dict[str, Quantity]:
     """Every quantity by its path, parameters of registered laws, solids and profiles among them."""
+    kinds = (tuple(registry.values()) for registry in (LAWS, SOLIDS, PROFILES))
+    return _of_parameters(*kinds) | QUANTITIES
+
+
+@lru_cache(maxsize=1)
+def _of_parameters(
+    laws: tuple[type, ...], solids: tuple[type, ...], profiles: tuple[type, ...]
+) -> dict[str, Quantity]:
+    """Columns of states by path; made anew only where a kind is registered: archives ask per dataset."""
     of_laws: dict[str, Quantity] = {}
-    for key, parameter in (pair for law in LAWS.values() for pair in parameters(law).items()):
+    for key, parameter in (pair for law in laws for pair in parameters(law).items()):
         if parameter.single:
             known = of_laws.get(column(key))
             of_laws[column(key)] = Quantity(
@@ -35,7 +47,7 @@ def table() -> dict[str, Quantity]:
                 (STATE,), symbol=parameter.symbol or key,
                 range=known.range | parameter.range if known else parameter.range,
             )  # fmt: skip
-    return of_laws | swept.columns() | QUANTITIES
+    return of_laws | swept.columns(solids, profiles)
 
 
 def declared(path: str) -> Quantity:

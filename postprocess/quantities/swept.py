@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from galinx.solvers.contact import AT_INTERFACES
 from galinx.solvers.parameters import Parameter, Range, parameters
-from galinx.solvers.profiles import PROFILES
-from galinx.solvers.solids import SOLIDS
 
 from . import layers
 from .quantity import INTERFACE, QUANTITIES, STATE, Quantity
@@ -48,34 +46,34 @@ def interface_depths(data: Mapping[str, Any]) -> tuple[str, NDArray[np.float64]]
     return unit, data[layers.DEPTHS[unit].path][None]
 
 
-def columns() -> dict[str, Quantity]:
-    """Columns of all numbers that scenes can sweep beside speeds, loads and laws, by path.
+def columns(solids: tuple[type, ...], profiles: tuple[type, ...]) -> dict[str, Quantity]:
+    """Columns by path of all numbers of these kinds that scenes sweep beside speeds, loads and laws.
 
     Their names are the keys of scenes, as ``states/solid.E``, and have a dot, unlike all others.
     """
     rows: dict[str, Quantity] = {}
-    for key, symbol, parameter in _keys():
+    for key, symbol, parameter in _keys(solids, profiles):
         path = f"states/{key}"
         about = f"{parameter.about}, {key} of the scene"
         rows[path] = Quantity(path, parameter.unit or "1", about, (STATE,), symbol=symbol)
     return rows
 
 
-def _keys() -> Iterator[tuple[str, str, Parameter]]:
+def _keys(solids: tuple[type, ...], profiles: tuple[type, ...]) -> Iterator[tuple[str, str, Parameter]]:
     """Key in a scene, symbol and description of each number."""
     strength = Parameter("yield_strength", "uniaxial yield strength", "Pa", r"\sigma_Y")
     thickness = Parameter("thickness", "thickness", "m", "h")
     exponent = Parameter("exponent", "exponent of the grading", "", "k")
     length = Parameter("pre_sliding", "pre-sliding displacement L", "m", "L")
-    solids = {p.key: p for kind in SOLIDS.values() for p in parameters(kind).values() if _single(p)}
-    solids["yield_strength"] = strength
-    for key, p in solids.items():
+    constants = {p.key: p for kind in solids for p in parameters(kind).values() if _single(p)}
+    constants["yield_strength"] = strength
+    for key, p in constants.items():
         yield f"solid.{key}", p.symbol or key, p
     for i in range(MOST_LAYERS):
-        for key, p in (solids | {"thickness": thickness, "exponent": exponent}).items():
+        for key, p in (constants | {"thickness": thickness, "exponent": exponent}).items():
             symbol = f"h_{i + 1}" if p is thickness else f"{p.symbol or key}^{{({i + 1})}}"
             yield f"layer[{i}].{key}", symbol, p
-    for p in (p for kind in PROFILES.values() for p in parameters(kind).values() if _single(p)):
+    for p in (p for kind in profiles for p in parameters(kind).values() if _single(p)):
         yield f"punch.{p.key}", p.symbol or p.key, p
     yield "friction.pre_sliding", "L", length
 

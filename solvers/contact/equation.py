@@ -53,7 +53,7 @@ def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
 
 def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points and weights of Gauss's rule for the weight (1 - t)^α (1 + t)^β, (points,) each."""
-    with np.errstate(invalid="ignore"):  # SciPy evaluates a branch it then discards
+    with np.errstate(invalid="ignore", divide="ignore"):  # SciPy evaluates a branch it then discards
         t, w = roots_jacobi(points, α, β)
     return t, w
 

@@ -2,7 +2,6 @@
 
 from . import (  # noqa: F401 - each adds its law
     bouc_wen,
-    coulomb,
     dahl,
     elasto_plastic,
     gms,

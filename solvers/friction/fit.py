@@ -23,12 +23,8 @@ _SEARCH, _FIT = (1e-4, 30), (1e-7, 40)
 #: Relative difference of sums of squares below which two starts led to one law, and times that this
 #: happens until the search ends.
 _AGAIN, _ENOUGH = 1e-4, 2
-#: Difference of unknowns, over their size, in a derivative.
-_STEP = 1e-6
 #: Residual where a law rejects its parameters.
 _REJECTED = 1e3
-#: Relative difference of speeds below which they count as one.
-_SAME = 1e-6
 #: Distance from the bounds of an open range that a fit keeps.
 _INSIDE = 1e-6
 #: Factor from its start within which a positive number is sought.
@@ -143,7 +139,7 @@ def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]
             continue
         s, V = (1 if step > 0.0 else -1), abs(step) / time
         last = pieces[-1] if pieces and rest == 0.0 else None
-        if last and last[0] == s and (not by_speed or abs(V / last[1] - 1.0) < _SAME):
+        if last and last[0] == s and (not by_speed or abs(V / last[1] - 1.0) < 1e-6):
             last[3].append(last[3][-1] + abs(step))
             last[4].append(n)
         else:
@@ -315,7 +311,7 @@ def _least(data: _Fitted, search: "_Search", θ: NDArray, tolerance: float, step
     def both(θ: NDArray) -> tuple[NDArray, NDArray]:
         """Residuals and their derivatives."""
         if θ.tobytes() not in last:
-            h = _STEP * np.maximum(search.reach, np.abs(θ))
+            h = 1e-6 * np.maximum(search.reach, np.abs(θ))
             h = np.where(θ + h > search.high, -h, h)
             residuals = data.residuals(search, np.concatenate([θ[None], θ + np.diag(h)]))
             last.clear()

@@ -14,8 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from .integrate import INTEGRATORS, Integrator, work
 from .law import FrictionLaw
 
-#: Digits after the point by which speeds differ.
-_DIGITS = 11
 #: Direction of sliding by the name of a stroke.
 DIRECTION = {"forward": 1, "backward": -1}
 
@@ -120,7 +118,7 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
             continue
         speed = abs(X_next - X) / (t_next - t)
         # Speeds that differ by rounding are one speed, at which a contact is solved once.
-        speed = speeds.setdefault(f"{speed:.{_DIGITS}e}", speed)
+        speed = speeds.setdefault(f"{speed:.11e}", speed)
         result.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
         rest = 0.0
     if not result:

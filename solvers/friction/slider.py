@@ -22,8 +22,6 @@ _LEAST_EXCESS = 1e-6
 #: Share of the drive's speed below which the mass is at rest; friction at rest is evaluated at this
 #: speed, for laws of the logarithm of the speed.
 _AT_REST = 1e-9
-#: An instant at rest [s].
-_INSTANT = 1e-300
 #: Periods of the mass on its spring after which the integration begins anew, and progress is reported.
 _PERIODS = 10
 #: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
@@ -258,7 +256,7 @@ class _Motion:
 
     def _start(self) -> None:
         """Start from rest, after a while, in the direction in which the pull exceeds friction."""
-        force, self.z = self.pull(self.e, 0.0), self.law.pause(self.z, _INSTANT)
+        force, self.z = self.pull(self.e, 0.0), self.law.pause(self.z, 1e-300)  # an instant
         bears = {s: self.load * self._at_once(s) for s in (1, -1)}
         self.s = -1
         if force > bears[1]:

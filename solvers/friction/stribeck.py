@@ -1,4 +1,4 @@
-"""Friction that falls with the speed: Stribeck's curve, alone and as part of other laws."""
+"""Laws without memory, Coulomb's and Stribeck's; and Stribeck's curve, of which other laws are made."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -8,6 +8,61 @@ from numpy.typing import NDArray
 
 from ..parameters import check, parameter
 from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
+
+
+class Memoryless(FrictionLaw):
+    """Base of laws without memory, f = s h(V); their state stays zero."""
+
+    broadcasts: ClassVar[bool] = True
+    has_memory: ClassVar[bool] = False
+
+    def level(self, V: float) -> NDArray[np.float64]:
+        """Size h of the friction coefficient at a speed [m/s]."""
+        raise NotImplementedError
+
+    def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
+        """Rate of the state: 0."""
+        return np.zeros(np.shape(z))
+
+    def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
+        return s * self.level(V) + np.zeros(np.shape(z)[:-1])
+
+    def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        return np.zeros(np.shape(self.level(V) + np.asarray(slip)))[..., None]
+
+    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
+        return self.level(V) * np.asarray(slip, dtype=float)
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return 0.0 * self.friction(z, s, V)
+
+
+@dataclass(frozen=True)
+class Coulomb(Memoryless):
+    """Coulomb's law: friction against the motion, of one size and without memory::
+
+        f = s μ_C
+
+    (C. A. Coulomb, Théorie des machines simples, 1785.) Its state stays zero.
+
+    Raises:
+        ValueError: a parameter is outside its range.
+    """
+
+    about: ClassVar[str] = "Coulomb's law"
+    depends_on_speed: ClassVar[bool] = False
+
+    μ_C: float = coulomb_coefficient("at_least")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @classmethod
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+        return {"mu_c": seen.level}
+
+    def level(self, V: float) -> NDArray[np.float64]:
+        return np.asarray(self.μ_C)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +96,7 @@ class StribeckCurve(FrictionLaw):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stribeck(StribeckCurve):
+class Stribeck(Memoryless, StribeckCurve):
     """Stribeck's curve with viscous friction, without memory::
 
         f = s (g(V) + σ₂ V),   g(V) = μ_C + (μ_S - μ_C) exp(-(V/v_S)^j)
@@ -54,29 +109,15 @@ class Stribeck(StribeckCurve):
     """
 
     about: ClassVar[str] = "Stribeck's curve"
-    broadcasts: ClassVar[bool] = True
-    has_memory: ClassVar[bool] = False
 
     σ2: float = parameter(
         "sigma2_over_load", "viscous friction σ₂/N", "s/m", symbol=r"\sigma_2/N", at_least=0.0,
         default=0.0,
     )  # fmt: skip
 
-    def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Rate of the state: 0."""
-        return np.zeros(np.shape(z))
-
-    def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        return s * (self.g(V) + self.σ2 * V) + np.zeros(np.shape(z)[:-1])
-
-    def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        return np.zeros(np.shape(self.g(V) + np.asarray(slip)))[..., None]
-
-    def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        return (self.g(V) + self.σ2 * V) * np.asarray(slip, dtype=float)
-
-    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        return 0.0 * self.friction(z, s, V)
+    def level(self, V: float) -> NDArray[np.float64]:
+        return self.g(V) + self.σ2 * V
 
 
+LAWS.register("coulomb", Coulomb)
 LAWS.register("stribeck", Stribeck)

@@ -40,8 +40,6 @@ from ..solids.half_plane import HalfPlane, Roots, Waves
 
 #: Imaginary part over the size of a root below which the root is real, where C is real.
 _REAL = 1e-9
-#: Newton's steps: roots begin with half the digits where two of them meet.
-_STEPS = 3
 #: Directions at which speeds of waves are computed, and halvings of the angle between two of them.
 _DIRECTIONS, _HALVINGS = 1440, 60
 #: Points on a circle round the pole, which halves the way to the next speed at which 𝐘 is not analytic.
@@ -222,7 +220,7 @@ def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, 
         e: approximate product of the other two, (n,).
         b: coefficients of p⁰ to p³, (4, n).
     """
-    for _ in range(_STEPS):
+    for _ in range(3):  # roots begin with half the digits where two of them meet
         t = -b[3] - s  # sum of the other two
         rest = np.array([d + e + s * t - b[2], -(s * e + t * d) - b[1], d * e - b[0]])
         ones = np.ones_like(s)

@@ -48,8 +48,6 @@ _POINTS, _WIDTH = 12, 0.8
 _GONE = 32.0
 #: Directions of the ways below the real axis, and how far from the fastest decay one is taken.
 _DIRECTIONS = np.arange(0.6, 1.7, 0.3)
-#: First panel along a way over the distance of the nearest singularity.
-_FIRST = 0.1
 #: Panels between two speeds at which 𝐘 is not analytic: at first, halvings at most, and accuracy.
 _PANELS, _HALVINGS, _ACCURACY = 3, 14, 1e-10
 #: Radians of the exponential in a panel at most.
@@ -127,9 +125,9 @@ class Kernel:
 
     @property
     def _first(self) -> float:
-        """Length of the first panel of a way."""
+        """Length of the first panel of a way, a tenth of the distance of the nearest singularity."""
         ends = self._edges
-        return _FIRST * min(self._pole[0] - ends[-1], *np.diff(ends))
+        return 0.1 * min(self._pole[0] - ends[-1], *np.diff(ends))
 
     def _rows(self, ζ: NDArray, below: bool = False) -> NDArray[np.complex128]:
         """Components of 𝐘/ζ: v of σ_YY and σ_XY, then u of them, (4, n); ``below``: conj 𝐘(C*)/ζ."""

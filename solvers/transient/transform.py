@@ -13,9 +13,9 @@ from math import ceil, exp, lgamma, log, pi
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 from ..contact.edges import EdgeExponents
+from ..contact.equation import gauss, jacobi
 from ..solids.half_plane import HalfPlane
 from .line_load import Side, both_sides, interpolation
 
@@ -38,7 +38,7 @@ class Weighted:
 
     def polynomials(self, X: NDArray) -> NDArray[np.float64]:
         """Polynomials without the weight, orthonormal with it, (..., terms)."""
-        return _jacobi(np.asarray(X, dtype=float), self.α, self.β, self.terms) / self._norms
+        return np.ascontiguousarray(jacobi(self.terms, self.α, self.β, X)) / self._norms
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
         """Polynomials times their weight, |X| < 1, (n, terms)."""
@@ -47,11 +47,7 @@ class Weighted:
 
     def rule(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Gauss's points and weights, with the weight in them."""
-        with np.errstate(
-            invalid="ignore", divide="ignore"
-        ):  # SciPy divides 0 by 0 where α + β = -1, and replaces that
-            X, w = roots_jacobi(points, self.α, self.β)
-        return X, w
+        return gauss(points, self.α, self.β)
 
     def tested(self, others: "Weighted") -> NDArray[np.float64]:
         """∫ w P_j P'_i dX of polynomials P_j with their weight w and others P'_i, (others, terms)."""
@@ -114,20 +110,6 @@ def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]
     return np.array(products)
 
 
-def _jacobi(X: NDArray, α: float, β: float, terms: int) -> NDArray[np.float64]:
-    """Jacobi's polynomials by their recurrence, α + β = -1, (..., terms), terms > 1."""
-    P = np.empty((*X.shape, terms))
-    P[..., 0] = 1.0
-    P[..., 1] = (α + 1.0) + (X - 1.0) / 2.0
-    for j in range(2, terms):
-        by_X = (2.0 * j - 2.0) * ((2.0 * j - 1.0) * (2.0 * j - 3.0) * X + (β - α))
-        back = 2.0 * (j + α - 1.0) * (j + β - 1.0) * (2.0 * j - 1.0)
-        P[..., j] = (by_X * P[..., j - 1] - back * P[..., j - 2]) / (
-            2.0 * j * (j - 1.0) * (2.0 * j - 3.0)
-        )
-    return P
-
-
 def _norm(j: int, α: float, β: float) -> float:
     """Root of the weighted square of Jacobi's polynomial where α + β = -1."""
     if j == 0:
@@ -178,8 +160,6 @@ _EVEN = 0.125
 _SAMPLES = 24
 #: Points of the pressure in its effect beside the contact.
 _FEW = 96
-#: More polynomials than there are.
-_ALL = 10**6
 
 
 class Transformed:
@@ -206,16 +186,14 @@ class Transformed:
         """Polynomials of the pressure where σ_XY = g σ_YY."""
         return Basis(self._response, g, self._terms)
 
-    def answers(
-        self, basis: Basis, terms: tuple[int, ...] = (_ALL,)
-    ) -> tuple[NDArray[np.complex128], ...]:
-        """Pressure and indentation by a load N̂ for every s, by all polynomials or the first of them.
+    def answers(self, basis: Basis, terms: tuple[int, ...] = ()) -> tuple[NDArray[np.complex128], ...]:
+        """Pressure and indentation by a load N̂ for every s, by so many polynomials, or by all.
 
         Returns:
             Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), (n, count + 1), for each of ``terms``.
         """
         matrices, solutions = self.sinking(basis, basis.tests), []
-        for count in (min(number, self._terms) for number in terms):
+        for count in terms or (self._terms,):
             whole = np.zeros((len(self.s), count + 1, count + 1), dtype=complex)
             whole[:, :-1, :-1] = matrices[:, :count, :count]
             whole[:, 0, -1] = basis.tests.integral

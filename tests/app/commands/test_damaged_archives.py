@@ -22,7 +22,7 @@ from galinx.postprocess.quantities.quantity import NUMBER, TEXT, WHOLE
 from galinx.postprocess.quantities.runs import LINE
 from galinx.postprocess.schema import ATTRIBUTES, FIRST
 
-FLIPS, TAMPERED = (5000, 2000) if THOROUGH else (60, 40)
+FLIPS, TAMPERED = (5000, 2000) if THOROUGH else (12, 20)
 #: Those that read all of an archive come first.
 COMMANDS = (
     ("check",), ("report",), ("plot",), ("csv",), ("show",), ("show", "--json"), ("fields",),

@@ -2,10 +2,12 @@
 
 import json
 import tomllib
+from itertools import product
 
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
+from support import THOROUGH
 
 import galinx
 from galinx.app.errors import BadInput
@@ -243,8 +245,12 @@ def test_interfaces_without_layers_are_refused():
         scene(layers="", quantities=("interfaces",))
 
 
-@pytest.mark.parametrize("modulus", ["1 GPa", "450 GPa"])
-@pytest.mark.parametrize("thickness", ["2 um", "20 um", "200 um", "2 mm"])
+@pytest.mark.parametrize(
+    "modulus, thickness",
+    product(("1 GPa", "450 GPa"), ("2 um", "20 um", "200 um", "2 mm"))
+    if THOROUGH
+    else [("450 GPa", "20 um"), ("1 GPa", "2 mm")],
+)
 def test_largest_stresses_along_an_interface_lie_inside_the_window(modulus, thickness):
     """A thin stiff layer has its largest tension six half-widths behind the punch, others farther."""
     data = galinx.compute(

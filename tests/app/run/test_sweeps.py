@@ -90,12 +90,11 @@ def solved(result):
     ("solid", "punch", "tolerance"),
     [
         (ISOTROPIC, "", 1e-4),
-        (random_solid(3), "", 1e-3),
+        *([(random_solid(3), "", 1e-3)] if THOROUGH else []),
         (random_solid(5), "", 1e-3),
         (ISOTROPIC, 'profile = "parabolic"\nradius = 0.1\nload = [1e4, 7e4]', 1e-4),
         (ISOTROPIC, "tilt = 2e-4\nload = [1e4, 5e4, 2e5]", 1e-4),
     ],
-    ids=["isotropic", "orthotropic", "cubic", "parabola", "tilted"],
 )
 def test_a_sweep_is_what_its_speeds_are_by_themselves(solid, punch, tolerance):
     c = np.random.default_rng(7).permutation(np.linspace(0.0, 0.85, 24)) * solid.limit()
@@ -214,5 +213,5 @@ def test_all_speeds_of_random_solids(seed):
     c = np.sort(rng.uniform(0.0, rng.uniform(0.5, 0.95), 32)) * solid.limit()
     tolerance = 10.0 ** rng.uniform(-6.0, -3.0)
     result = galinx.compute(scene(solid, c, tolerance))
-    each = c if THOROUGH else c[::-3]
+    each = c if THOROUGH else c[::-6]
     check(result, galinx.compute(scene(solid, each, tolerance, solve='sweep = "every"')), tolerance)

@@ -14,7 +14,7 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.scene.changes import from_words
 from galinx.app.scene.read import read
 
-TEXTS = 300 if os.environ.get("GALINX_THOROUGH") else 60
+TEXTS = 300 if os.environ.get("GALINX_THOROUGH") else 20
 
 KEYS = [
     "title", "solid", "solid.E", "solid.nu", "solid.material", "solid.plane", "punch.profile",

@@ -1,5 +1,7 @@
 """A motion's residual falls as its steps do, and shows a wrong number at any time."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -26,8 +28,7 @@ def test_it_falls_with_the_steps(g):
     assert fine < min(coarse / 6.0, 1e-3)
 
 
-@pytest.mark.parametrize("when", [3, 10, 19])
-def test_a_wrong_number_is_shown(when):
+def test_a_wrong_number_is_shown():
     response, scheme = SOLID.response(0.6), Radau(END, 20)
     transformed = Transformed(response, SOLID.limit(), scheme.s, TERMS)
     basis, t = transformed.basis(-0.4), scheme.times[:, -1]
@@ -35,7 +36,8 @@ def test_a_wrong_number_is_shown(when):
     solved = scheme.answered(answers[..., None], load(scheme.times)[..., None])
     residual = Residual(response, SOLID.limit(), t, TERMS)
     right = residual.of([basis], solved[:, :-1], solved[:, -1])
-    for number in (0, 1, 5, -1):  # of the pressure's polynomials, and the indentation
+    # Of the pressure's polynomials, and the indentation.
+    for when, number in product((3, 10, 19), (0, 1, 5, -1)):
         wrong = solved.copy()
         wrong[when, number] += 0.05 * np.abs(solved).max()
         assert residual.of([basis], wrong[:, :-1], wrong[:, -1]) > 5.0 * right

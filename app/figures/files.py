@@ -258,27 +258,20 @@ class Files:
         """Write all figures, and the film if ``made`` is given; none where one cannot be written."""
         folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
         files, said = [], []
-        for name, left_out, content in self._contents(drawings, made):
+        pictures = [
+            (d.name, d.left_out, partial(content, d.figure, dpi=self.dpi or DPI)) for d in drawings
+        ]
+        if made:
+            moving, left_out = made()
+            film = partial(film_content, moving, dpi=self.dpi or FILM_DPI)
+            pictures.append((FILM, left_out, film))
+        for name, left_out, as_bytes in pictures:
             for ending in self.endings(name):
                 target = self.target(name, ending, folder)
-                files.append((target, content(ending)))
+                files.append((target, as_bytes(ending)))
                 said.append(Written(target.path, _noun(name), left_out))
         write(files)
         return said
-
-    def _contents(
-        self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
-    ) -> Iterator[tuple[str, str, Callable[[str], bytes]]]:
-        """Name of each picture, states that it leaves out, and a function that makes its file."""
-        for drawing in drawings:
-            yield (
-                drawing.name,
-                drawing.left_out,
-                partial(content, drawing.figure, dpi=self.dpi or DPI),
-            )
-        if made:
-            moving, left_out = made()
-            yield FILM, left_out, partial(film_content, moving, dpi=self.dpi or FILM_DPI)
 
 
 #: The picture that moves.

@@ -585,14 +585,16 @@ def _two_states(labels: StateLabels) -> list[int]:
 
 def has_surface(of: Archive) -> bool:
     """Return True if an archive has the chosen stresses along the surface."""
-    available = surface_names(of)
-    return bool(available) and set(of.choice.quantities) <= set(available)
+    return _has(surface_names(of), of)
 
 
 def has_interfaces(of: Archive) -> bool:
     """Return True if an archive has the chosen stresses along interfaces."""
-    available = interface_names(of)
-    return bool(available) and set(of.choice.quantities) <= set(available)
+    return _has(interface_names(of), of)
+
+
+def _has(names: Sequence[str], of: Archive) -> bool:
+    return bool(names) and set(of.choice.quantities) <= set(names)
 
 
 def has_inside(of: Archive) -> bool:

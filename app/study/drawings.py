@@ -20,7 +20,7 @@ from galinx.texts import number, plain
 from ..figures.choice import Archive, Choice, Drawing
 from ..figures.friction import Loops, loop_panel, loops_figure
 from ..figures.numerics import mesh_figure
-from ..figures.render import MARKERS, Curve, Panel, handle, marked, render
+from ..figures.render import MARKERS, Curve, Panel, lines_and_markers, render
 from ..figures.sketches import problem_figure, procedure_figure
 from ..figures.states import PLACE, STROKE, C, StateLabels
 from ..figures.stresses import _BESIDE, along, broken, limits, surface_curves
@@ -238,7 +238,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
     panels[1:] = [
         replace(panel, curves=[replace(c, label="") for c in panel.curves]) for panel in panels[1:]
     ]
-    figure = render(panels, None, 3, _says(*_slow_and_fast(loops.labels, of)), high=0.95)
+    figure = render(panels, None, 3, lines_and_markers(*_slow_and_fast(loops.labels, of)), high=0.95)
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
     return Drawing("laws", _LAWS.format(laws=names, at=_AT), figure)
 
@@ -309,11 +309,6 @@ def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, name
     )  # fmt: skip
 
 
-def _says(lines: str, markers: str) -> list[Any]:
-    """Handles that say what lines and markers are."""
-    return [handle(Look(GREY, "-", ""), lines), marked(markers)]
-
-
 def _rows_figure(
     X: NDArray, rows: Sequence[_Row], says: tuple[str, str], differ: dict[str, NDArray]
 ) -> Any:
@@ -336,7 +331,7 @@ def _rows_figure(
             "position on the surface $X/a$", r"$|\Delta\sigma|/(N/2a)$", curves=curves, xlim=above.xlim,
             log="y", tall=_FLAT, title=f"largest difference of both methods: {how}",
         ))  # fmt: skip
-    return render(panels, None, 2, _says(*says), high=0.5)
+    return render(panels, None, 2, lines_and_markers(*says), high=0.5)
 
 
 def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
@@ -362,7 +357,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
             curves.append(_Stressed(label, dots, _values(data, CLOSED_FORM, travelled), width=0.8))
         rows.append(_Row(labels.label(pairs[0][0], [figure.row]), curves))
     if len(figure.speeds) == 1:
-        says = ("lines: closed form", "markers: finite elements")
+        says = ("closed form", "finite elements")
         differ: dict[str, NDArray] = {}
     else:
         says = _slow_and_fast(labels, states[0])
@@ -375,7 +370,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
 def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str]:
     """Legend texts of lines and markers, for two states at the study's speeds."""
     slow, fast = (labels.label(state, [C]) for state in states)
-    return f"lines: SS, {slow}", f"markers: HS, {fast}"
+    return f"SS, {slow}", f"HS, {fast}"
 
 
 def _curve(label: str, look: Look, data: dict[str, Any], states: Sequence[int]) -> _Stressed:

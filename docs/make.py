@@ -263,7 +263,7 @@ def scene_page() -> str:
 
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
-    from galinx.postprocess.quantities import swept, table
+    from galinx.postprocess.quantities import table
     from galinx.postprocess.schema import ATTRIBUTES, RULES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
@@ -273,7 +273,7 @@ def archive_page() -> str:
         rows = [
             row
             for path, row in known.items()
-            if path.startswith(f"{group}/") and not _laws(row) and path not in swept.columns()
+            if path.startswith(f"{group}/") and not _laws(row) and "." not in path
         ]
         (word, *others) = {row.asked_by for row in rows}
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()

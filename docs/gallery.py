@@ -30,7 +30,7 @@ SHOWN = {
     "fig10": (STUDY, "Dahl's exponent acts through f alone, and little."),
     "parameter_study": ("parameters", "What K_I and the exponents make of μ_C, at three speeds."),
     "inside": ("inside", "Stresses below the punch, slow and fast, on one scale."),
-    "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
+    "fibres": ("inside", "Stresses follow the stiff fibres of a carbon/epoxy ply deep into it."),
     "cylinder": ("surface", "A cylinder: the pressure ends at 0, and friction moves the contact back."),
     "along": ("along", "Bristles that enter the contact at rest: the pressure goes to the leading end."),
     "elastic_punch": ("surface", "A steel cylinder on aluminium: both deform, at rest and at speed."),

@@ -210,7 +210,7 @@ def compare(
     default="",
     metavar="NAMES",
     help="surface, along, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
-    "energies, angles, thicknesses, degrees, mesh, film; several as in surface,mesh; all for all.",
+    "energies, degrees, mesh, film; several as in surface,mesh; all for all.",
 )
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
 @click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")

@@ -21,7 +21,7 @@ from galinx.postprocess.units import Scaled, Units, as_archived
 from ..errors import BadInput, nearest, short
 from ..scene.scene import Scene
 from .measured import Measured
-from .render import Curve, Size, of_methods
+from .render import Curve, Size, lines_and_markers
 from .states import StateLabels
 from .style import Look
 
@@ -232,4 +232,4 @@ def both(
 def explained(methods: Collection[str]) -> list[Any]:
     """Handles that explain lines and markers, where a figure has both."""
     lines = next((METHODS[name] for name in METHODS if name in methods and name != FEM), "")
-    return of_methods(bool(lines), FEM in methods, lines)
+    return lines_and_markers(lines, METHODS[FEM]) if lines and FEM in methods else []

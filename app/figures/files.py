@@ -1,15 +1,11 @@
 """Files of figures and films: names, formats and resolution; all are written, or none."""
 
-import os
 import shutil
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from io import BytesIO
-from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -37,27 +33,23 @@ FORMATS: dict[str, tuple[str, Kind]] = {
 #: Formats by default: text that stays text, and pixels for everything else.
 USUAL = ("pdf", "png")
 
-#: Figures from which on a process of its own draws a format sooner.
-_WORTH_A_PROCESS = 4
-
 
 @styled
-def content(figure: Figure, ending: str, dpi: int = DPI) -> bytes:
+def content(figure: Figure, ending: str, dpi: int = DPI, transparent: bool = False) -> bytes:
     """Bytes of a figure's file.
 
     Args:
         figure: the figure.
         ending: one of ``FORMATS``.
         dpi: dots per inch of what is made of pixels.
+        transparent: without ground.
     """
-    says, _ = FORMATS[ending]
     data = BytesIO()  # matplotlib leaves half of a figure on a full disk
     # Without a date a figure that is drawn again is the same file.
-    metadata = {says: "galinx"} | ({"Date": None} if ending == "svg" else {})
+    metadata = {FORMATS[ending][0]: "galinx"} | ({"Date": None} if ending == "svg" else {})
     # Pixels that are nearly all white are packed as well at once as after a search.
     packed = {"pil_kwargs": {"compress_level": 1}} if ending == "png" else {}
-    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata, **packed)
-    figure.set_layout_engine("none")  # laid out once
+    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata, transparent=transparent, **packed)
     return data.getvalue()
 
 
@@ -71,52 +63,13 @@ def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, byt
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    made = _in_usual_formats(dict(figures))
-    write(
-        (folder.target(f"{name}.{ending}", FORMATS[ending][1]), data)
-        for ending, contents in made.items()
-        for name, data in contents.items()
-    )
-    return made["png"]
-
-
-def _in_usual_formats(figures: Mapping[str, Figure]) -> dict[str, dict[str, bytes]]:
-    """Contents of figures by format and name, each format on a core of its own where there is one.
-
-    The other process is a copy of this one, so that no figure has to be handed over. It meets neither
-    files nor MPI.
-    """
-    first, *others = USUAL
-    cores = len(os.sched_getaffinity(0))
-    # So many pages are drawn in the time that a process takes.
-    if cores < len(USUAL) or len(figures) < _WORTH_A_PROCESS:
-        return {ending: _contents(figures, ending) for ending in USUAL}
-    made: dict[str, dict[str, bytes]] = {}
-    with ProcessPoolExecutor(len(others), get_context("fork"), _inherit, (figures,)) as pool:
-        drawn = {ending: pool.submit(_inherited_contents, ending) for ending in others}
-        made[first] = _contents(figures, first)
-        for ending, future in drawn.items():
-            try:
-                made[ending] = future.result()
-            except BrokenProcessPool:  # somebody ended it
-                made[ending] = _contents(figures, ending)
-    return made
-
-
-def _contents(figures: Mapping[str, Figure], ending: str) -> dict[str, bytes]:
-    return {name: content(figure, ending) for name, figure in figures.items()}
-
-
-#: The figures of the process that this one is a copy of.
-_inherited: dict[str, Figure] = {}
-
-
-def _inherit(figures: Mapping[str, Figure]) -> None:
-    _inherited.update(figures)
-
-
-def _inherited_contents(ending: str) -> dict[str, bytes]:
-    return _contents(_inherited, ending)
+    made = {
+        folder.target(f"{name}.{ending}", FORMATS[ending][1]): content(figure, ending)
+        for name, figure in figures
+        for ending in USUAL
+    }
+    write(made.items())
+    return {t.path.stem: data for t, data in made.items() if t.path.suffix == ".png"}
 
 
 def write(files: Iterable[tuple[Target, bytes]]) -> None:
@@ -133,7 +86,6 @@ def write(files: Iterable[tuple[Target, bytes]]) -> None:
         target.write(data)
 
 
-@styled
 def in_a_page(figure: Figure, pixels: bool) -> str:
     """Data URI of a figure for a page.
 
@@ -141,13 +93,9 @@ def in_a_page(figure: Figure, pixels: bool) -> str:
         figure: what to show.
         pixels: as PNG, for pictures with too many elements to draw each; else as SVG, without ground.
     """
-    data = BytesIO()
     if pixels:
-        figure.savefig(data, format="png", dpi=160)
-    else:
-        figure.savefig(data, format="svg", transparent=True, metadata={"Date": None})
-    figure.set_layout_engine("none")
-    return embedded(data.getvalue(), "png" if pixels else "svg+xml")
+        return embedded(content(figure, "png", 160))
+    return embedded(content(figure, "svg", transparent=True), "svg+xml")
 
 
 def embedded(data: bytes, kind: str = "png") -> str:
@@ -161,15 +109,8 @@ _DPI = 110
 
 def for_notebook(figure: Figure) -> Figure:
     """Figure that notebooks can show, which otherwise know only figures of pyplot."""
-    figure._repr_png_ = lambda: _png(figure)  # type: ignore[attr-defined]
+    figure._repr_png_ = lambda: content(figure, "png", _DPI)  # type: ignore[attr-defined]
     return figure
-
-
-@styled
-def _png(figure: Figure) -> bytes:
-    data = BytesIO()
-    figure.savefig(data, format="png", dpi=_DPI)
-    return data.getvalue()
 
 
 #: Kind of file of a film by the format's ending.
@@ -317,27 +258,20 @@ class Files:
         """Write all figures, and the film if ``made`` is given; none where one cannot be written."""
         folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
         files, said = [], []
-        for name, left_out, content in self._contents(drawings, made):
+        pictures = [
+            (d.name, d.left_out, partial(content, d.figure, dpi=self.dpi or DPI)) for d in drawings
+        ]
+        if made:
+            moving, left_out = made()
+            film = partial(film_content, moving, dpi=self.dpi or FILM_DPI)
+            pictures.append((FILM, left_out, film))
+        for name, left_out, as_bytes in pictures:
             for ending in self.endings(name):
                 target = self.target(name, ending, folder)
-                files.append((target, content(ending)))
+                files.append((target, as_bytes(ending)))
                 said.append(Written(target.path, _noun(name), left_out))
         write(files)
         return said
-
-    def _contents(
-        self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
-    ) -> Iterator[tuple[str, str, Callable[[str], bytes]]]:
-        """Name of each picture, states that it leaves out, and a function that makes its file."""
-        for drawing in drawings:
-            yield (
-                drawing.name,
-                drawing.left_out,
-                partial(content, drawing.figure, dpi=self.dpi or DPI),
-            )
-        if made:
-            moving, left_out = made()
-            yield FILM, left_out, partial(film_content, moving, dpi=self.dpi or FILM_DPI)
 
 
 #: The picture that moves.

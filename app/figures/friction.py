@@ -1,7 +1,7 @@
 """Friction of an archive: loops of its states, stick-slip of its sliders; and fits to measurements."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
 
@@ -15,7 +15,7 @@ from galinx.solvers.friction.motion import names
 
 from ..plan.states import order
 from .choice import Archive, Drawing, named
-from .render import DOTS, Curve, Panel, across, handle, render
+from .render import DOTS, Curve, Panel, Size, across, handle, render
 from .states import C, N, not_shown, spread
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, SMALL, Look, looks
 
@@ -237,10 +237,6 @@ def friction(of: Archive) -> Drawing:
 
 def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Any = None) -> Any:
     """Panels of loops with legends of their own where these differ."""
-    from dataclasses import replace
-
-    from .render import Size
-
     size = size or Size(COLUMN if len(panels) == 1 else PAGE)
     entries = [
         tuple(curve.label for curve in panel.curves if curve.label and curve.form != DOTS)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities.quantity import FEM, METHODS, POINT, STATE
 from galinx.postprocess.quantities.stresses import SURFACE_X
 from galinx.solvers.contact.edges import under_punch
-from galinx.texts import plain
+from galinx.texts import folded, plain
 
 from .choice import Archive
 from .render import DOTS, JOINED, LINE, MARKERS, Curve, Panel
@@ -22,6 +22,8 @@ from .stresses import SHOWN, Fields, has_map, limits, place_of, position_name, s
 
 #: Most numbers of all states along the surface, and in maps: pages stay below 6 MB.
 _NUMBERS = 80_000
+#: Characters of a line along a chart's height.
+_LINE = 34
 _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "markers"}
 _SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open",
             "x": "x", "_": "line-ew-open", ".": "circle"}  # fmt: skip
@@ -39,7 +41,7 @@ def _chart(panel: Panel) -> dict[str, Any]:
     layout: dict[str, Any] = {
         "title": {"text": plain(panel.title)} if panel.title else {},
         "xaxis": _axis(plain(panel.x or ""), panel.xlim, "x" in panel.log),
-        "yaxis": _axis(plain(panel.y or "") + unit, panel.ylim, "y" in panel.log),
+        "yaxis": _axis(_lines(plain(panel.y or "") + unit), panel.ylim, "y" in panel.log),
         "shapes": [_band(*ends) for ends in panel.bands],
     }
     layout["shapes"] += [_line("x", x) for x in panel.at_x] + [_line("y", y) for y in panel.at_y]
@@ -67,6 +69,11 @@ def _axis(title: str, ends: tuple[float, float] | None, logarithmic: bool) -> di
     elif ends:
         axis["range"] = [float(f"{end:.6g}") for end in ends]
     return axis
+
+
+def _lines(title: str) -> str:
+    """Title of a vertical axis, in lines that are no longer than a chart is high."""
+    return folded(title, _LINE).replace("\n", "<br>")
 
 
 def _band(low: float, high: float) -> dict[str, Any]:
@@ -120,7 +127,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
         for label, values in stresses.items():
             drawn = next(iter(values.values()))[shown]
             made["surface"].append({
-                "label": plain(label), "range": numbers(limits(X, drawn)),
+                "label": _lines(plain(label)), "range": numbers(limits(X, drawn)),
                 "curves": {
                     METHODS[method]: [numbers(np.insert(y[i][order], edge, np.nan)) for i in shown]
                     for method, y in values.items()

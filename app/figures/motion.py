@@ -16,7 +16,7 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.texts import number
+from galinx.texts import number, plain
 
 from ..scene.scene import Time
 from .choice import Archive, Drawing, both, explained, named
@@ -96,19 +96,12 @@ def time(of: Archive) -> Drawing:
         f"{', and K_I at both ends by the full load' * with_K_I}, over time. {_history(settings)}"
     )
     if len(shown) == 1:
-        caption += f" At {drive_text(c[0], g[0], way[0])}."
+        caption += f" At {plain(drive_label(c[0], g[0], way[0]))}."
     missing = f"{len(c) - len(shown)} of {len(c)} starts not shown." * (len(shown) < len(c))
     columns = 2 if not of.size or of.size.width > 3.0 else 1
     return Drawing(
         "time", caption, render(panels, of.size, columns, explained(methods)), left_out=missing
     )
-
-
-def drive_text(c: float, g: float, way: float) -> str:
-    """Speed, friction and way of a motion as plain text."""
-    from galinx.texts import plain
-
-    return plain(drive_label(c, g, way))
 
 
 def _history(settings: Time) -> str:

@@ -3,6 +3,9 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from galinx.meshes.kind import edges, nodes
@@ -13,9 +16,8 @@ from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
 from ..plan.plan import make_plan
 from .choice import Archive, Drawing
 from .render import JOINED, MARKERS, Curve, Panel, Size, marked, render
-from .sketches import mesh_figure
 from .states import C, spread
-from .style import COLUMN, LINES, looks
+from .style import COLOURS, COLUMN, looks
 
 #: Speeds that can be told apart in a figure.
 _SPEEDS = 6
@@ -84,12 +86,48 @@ def degrees(of: Archive) -> Drawing:
     return Drawing("degrees", caption, figure, left_out=left_out)
 
 
-def lines_figure(
-    x: NDArray, lines: dict[str, NDArray], x_label: str, y_label: str, title: str, log_x: bool
-) -> Any:
-    """Figure of lines by label over x, the y axis logarithmic."""
-    curves = [
-        Curve(x, y, look._replace(line=LINES[0]), label, JOINED)
-        for (label, y), look in zip(lines.items(), looks(len(lines)))
-    ]
-    return render([Panel(x_label, y_label, curves=curves, title=title, log="y" + "x" * log_x)], Size(5.0))
+#: Nodes nearer to each other than this share of a panel print as one.
+_DOT = 1.0 / 500.0
+
+
+def mesh_figure(
+    edges: NDArray,
+    nodes: NDArray,
+    size: Size | None = None,
+    zooms: tuple[float, ...] = (4.0, 0.5, 0.01),
+    first: str = "under the punch",
+) -> Figure:
+    """Figure of a mesh below the punch, then nearer and nearer to the edge X = a.
+
+    Args:
+        edges: polylines of the cells' edges over a, (edges, points, 2).
+        nodes: positions of its unknowns over a, (n, 2).
+        size: of the figure.
+        zooms: half-widths of the panels over a; the first is centred on the punch.
+        first: title of that one.
+    """
+
+    def panel(n: int, half: float) -> Panel:
+        centre = (0.0 if n == 0 else 1.0, 0.0)
+        # Coordinates from the panel's centre: far-away points would lose the picture's digits.
+        lines, dots = edges - centre, nodes - centre
+        near = np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half
+        near_dots = dots[np.abs(dots).max(axis=1) < 1.5 * half]
+        printed = np.unique(np.round(near_dots / (2.0 * half * _DOT)), axis=0) * (2.0 * half * _DOT)
+        punch = np.clip([-1.0 - centre[0], 1.0 - centre[0]], -half, half)
+
+        def after(axis: Axes) -> None:
+            axis.add_collection(LineCollection(lines[near], colors="#555555", linewidths=0.5))
+            axis.plot(
+                *printed.T, linestyle="none", marker=".", markersize=1.3, markeredgewidth=0.0,
+                color=COLOURS[0], rasterized=True,
+            )  # fmt: skip
+            axis.fill_between(punch, 0.0, 0.12 * half, color=COLOURS[1], linewidth=0.0)
+
+        return Panel(
+            "$X/a$" if n == 0 else "$X/a - 1$", "$Y/a$", xlim=(-half, half),
+            ylim=(-1.18 * half, 0.12 * half), after=after,
+            title=first if n == 0 else f"{zooms[0] / half:.0f} times larger",
+        )  # fmt: skip
+
+    return render([panel(n, half) for n, half in enumerate(zooms)], size, high=0.65)

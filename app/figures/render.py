@@ -151,11 +151,9 @@ def handle(look: Look, label: str, **style: Any) -> Line2D:
     return Line2D([], [], **({"color": look.colour, "linestyle": look.line, "label": label} | style))
 
 
-def of_methods(exact: bool, fem: bool, lines: str = "closed form") -> list[Line2D]:
-    """Handles that explain lines and markers, where a figure has both; else none."""
-    if not (exact and fem):
-        return []
-    return [handle(Look(GREY, "-", ""), f"lines: {lines}"), marked("markers: finite elements")]
+def lines_and_markers(lines: str, markers: str) -> list[Line2D]:
+    """Handles that say what lines and what markers are."""
+    return [handle(Look(GREY, "-", ""), f"lines: {lines}"), marked(f"markers: {markers}")]
 
 
 def marked(label: str, marker: str = "o") -> Line2D:

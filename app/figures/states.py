@@ -159,7 +159,7 @@ class StateLabels:
 
 def drive_label(c: float, g: float, way: float) -> str:
     """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""
-    towards = f", towards ${'-+'[int(way > 0)]}X$" * (c > 0.0 and way != 0)
+    towards = f", towards ${'-+'[int(way > 0)]}X$" * bool(c > 0.0 and way != 0)
     return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
 
 

@@ -1,5 +1,5 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
-inside."""
+inside; and those of several archives, one over the other."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -28,11 +28,24 @@ from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.texts import number, plain
 
-from .choice import Archive, Drawing, both, explained, named, require_one_of
+from ..errors import BadInput
+from .choice import Archive, Drawing, both, explained, named, require_one_of, short_name
 from .friction import Loops
-from .render import DOTS, LINE, Curve, Map, Panel, across, handle, render, spaced
+from .render import (
+    DOTS,
+    LINE,
+    Curve,
+    Map,
+    Panel,
+    Size,
+    TooSmall,
+    across,
+    handle,
+    render,
+    spaced,
+)
 from .states import C, N, StateLabels, not_shown, spread, states_for_panel
-from .style import COLUMN, GREY, PAGE, SMALL, Look, looks
+from .style import COLUMN, GREY, LINES, PAGE, SMALL, Look, looks
 
 #: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.0
@@ -129,13 +142,6 @@ def surface_stresses(of: Archive) -> dict[str, dict[str, NDArray]]:
         label = named(words, of.scaled(row).unit)
         shown[label] = {method: sign * of.values(row) for method, row in rows.items()}
     return shown
-
-
-def short_name(row: Quantity) -> str:
-    """Name of a quantity, from the beginning of its description."""
-    from re import split
-
-    return split(r"[,;:]| \(", row.about)[0]
 
 
 #: Ends of captions by the ends of the contact.
@@ -507,8 +513,6 @@ def inside(of: Archive) -> Drawing:
     apart = labels.varied(states) or ([C] if C in labels.varied() or alone else [])
     size = choice.size
     if size is None and len(states) == 1:
-        from .render import Size
-
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
     lines = list(_interfaces(of))
@@ -581,16 +585,87 @@ def _two_states(labels: StateLabels) -> list[int]:
 
 def has_surface(of: Archive) -> bool:
     """Return True if an archive has the chosen stresses along the surface."""
-    available = surface_names(of)
-    return bool(available) and set(of.choice.quantities) <= set(available)
+    return _has(surface_names(of), of)
 
 
 def has_interfaces(of: Archive) -> bool:
     """Return True if an archive has the chosen stresses along interfaces."""
-    available = interface_names(of)
-    return bool(available) and set(of.choice.quantities) <= set(available)
+    return _has(interface_names(of), of)
+
+
+def _has(names: Sequence[str], of: Archive) -> bool:
+    return bool(names) and set(of.choice.quantities) <= set(names)
 
 
 def has_inside(of: Archive) -> bool:
     """Return True if an archive has a map, and the chosen stresses in it."""
     return has_map(of) and set(of.choice.quantities) <= set(Fields(of).names)
+
+
+#: States of each archive that can be told apart.
+_COMPARED = 3
+
+
+def compared(
+    archives: Sequence[Archive], labels: Sequence[str], pairs: Sequence[Sequence[int]],
+    titles: Sequence[str],
+) -> Drawing:  # fmt: skip
+    """Contact pressure and in-plane stress of states, colours by archive and lines by state.
+
+    Args:
+        archives: what to draw, in the same units.
+        labels: of the archives.
+        pairs: a state of each archive, (pairs, archives); of many some are drawn.
+        titles: of the pairs.
+
+    Raises:
+        BadInput: an archive has no stresses along the surface, or measured points lie elsewhere.
+    """
+    for of, label in zip(archives, labels):
+        if not has_surface(of):
+            raise BadInput(
+                f'{label} holds no stresses along the surface; add "surface" to output.quantities'
+            )
+    chosen, styles = spread(range(len(pairs)), _COMPARED), looks(len(archives))
+    panels = []
+    methods = {method for of in archives for by in surface_stresses(of).values() for method in by}
+    for name in dict.fromkeys(name for of in archives for name in stress_names(of)):
+        curves, ranges, windows, ends = [], [], [], []
+        for n, of in enumerate(archives):
+            shown = dict(zip(stress_names(of), surface_stresses(of).items()))
+            if name not in shown:
+                continue
+            axis, values = shown[name]
+            X, drawn = of.data[SURFACE_X.path], next(iter(values.values()))
+            states = [pairs[k][n] for k in chosen]
+            half = along(X, drawn)
+            ranges.append(limits(X, drawn[states]))
+            ends += contacts_of(of, states) if half > 1.5 else []
+            for order, (k, state) in enumerate(zip(chosen, states)):
+                line = LINES[order % len(LINES)] if len(chosen) > 1 else styles[n].line
+                a, b = place_of(of, state)
+                windows += [b - half * a, b + half * a]
+                curves += surface_curves(
+                    X, {method: y[state] for method, y in values.items()}, styles[n]._replace(line=line),
+                    f"{labels[n]}, {titles[k]}" if len(chosen) > 1 else labels[n],
+                    n / len(archives), (a, b),
+                )  # fmt: skip
+        low, high = np.min(ranges, axis=0)[0], np.max(ranges, axis=0)[1]
+        panel = Panel(
+            position_name(archives[0]), axis, curves=curves, xlim=(min(windows), max(windows)),
+            ylim=(float(low), float(high)), at_y=(0.0,),
+            bands=ends[:1] if ends and np.allclose(ends, ends[0], rtol=1e-9) else (),
+        )  # fmt: skip
+        measured = archives[0].choice.measured
+        panels.append(measured.over_stress(panel, name, archives[0].units) if measured else panel)
+    try:
+        figure = render(panels, None, min(2, len(panels)), explained(methods))
+    except TooSmall as error:
+        raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
+    left_out = (
+        f"{len(pairs) - len(chosen)} of {len(pairs)} pairs of states not shown; choose by --states."
+    )
+    return Drawing(
+        "compare", f"Stresses along the surface: {', '.join(labels)}.", figure,
+        left_out=left_out if len(pairs) > len(chosen) else "",
+    )  # fmt: skip

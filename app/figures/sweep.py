@@ -1,38 +1,21 @@
-"""Numbers of an archive's states over what is swept, over the angle of the solid, and over the
-thickness of the uppermost layer.
+"""Numbers of an archive's states over what is swept; over two swept numbers they are maps."""
 
-Numbers over a sweep are those of the archive; two swept numbers make maps. Over the angle of the solid
-the closed form gives the speed limit, and the exponents and K_I of sharp edges, or contacts with free
-ends. Over the thickness of the uppermost layer the integral equation gives K_I, and the largest stresses
-along the layer's lower face.
-"""
-
-from collections.abc import Callable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, fields, replace
-from functools import partial
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, column, layers, states, stresses, validity, yielding
-from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE, STATE
+from galinx.postprocess.quantities.quantity import FEM, STATE
 from galinx.postprocess.quantities.states import FRICTION, VELOCITY
-from galinx.solvers.contact import layered as on_layers
-from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Contact, Places, Task
-from galinx.solvers.contact.stresses import NEAR
-from galinx.solvers.contact.uniform import contacts
-from galinx.solvers.errors import SolveError
-from galinx.texts import number, plain
+from galinx.texts import plain
 
 from ..errors import BadInput
-from ..plan.plan import interface_grid, surface_grid
-from .choice import Archive, Drawing, both, explained, named, require_one_of
-from .render import Curve, Map, Panel, render
+from .choice import Archive, Drawing, both, explained, named, require_one_of, short_name
+from .render import Map, Panel, Size, render
 from .states import PLACE, C, N, StateLabels, not_shown, spread
-from .stresses import replace_unit, short_name
 from .style import COLUMN, looks
 
 #: Values of a parameter that make a curve, and those of two that make a map; curves that can be told
@@ -133,8 +116,6 @@ def parameters(of: Archive) -> Drawing:
     methods = {method for name in sweep.drawn for method in columns[name].values}
     size = of.size
     if size is None and len(panels) == 1:
-        from .render import Size
-
         size = Size(COLUMN)
     figure = render(panels, size, notes=[] if grid else explained(methods), high=0.72)
     at = f" at {of.labels.text(int(sweep.states[0]), list(sweep.fixed))}" if sweep.fixed else ""
@@ -375,208 +356,3 @@ def _by_ratios(x: NDArray) -> bool:
     """True where the middle number lies midway by ratios, rather than by differences."""
     low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
     return bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
-
-
-#: Angles that are drawn [°]; a half turn leaves a solid as it is.
-_ANGLES = np.arange(0.0, 181.0, 3.0)
-
-
-def has_angles(of: Archive) -> bool:
-    """Return True if the scene's solid has an angle."""
-    return any(field.name == "angle" for field in fields(of.scene.solid))  # type: ignore[arg-type]
-
-
-def angles(of: Archive) -> Drawing:
-    """Figure over the angle of the solid, under the archive's steepest friction at its fastest speed."""
-    data, scene = of.data, of.scene
-    g = data[states.RATIO.path]
-    steepest = float(g[np.argmax(np.abs(g))])
-    V = float(data[states.SPEED.path].max()) * scene.solid.c_s
-    turned: list[Any] = [replace(scene.solid, angle=angle) for angle in _ANGLES.tolist()]  # type: ignore[type-var]
-    limits = np.array([solid.limit() * solid.c_s for solid in turned])
-    bodies = [replace(scene.body, solid=solid) for solid in turned]
-    more, what = _OVER_ANGLE[scene.body.ends](of, bodies, V, steepest)
-    shown = [("speed limit (m/s)", {"": limits}), *more]
-    panels = [
-        Panel(
-            "angle of the first axis from $X$ (°)", title, xlim=(0.0, 180.0), own_legend=len(curves) > 1,
-            ylim=(0.0, 1.08 * max(np.nanmax(values, initial=1e-9) for values in curves.values())),
-            curves=[
-                Curve(_ANGLES, values, look, label)
-                for (label, values), look in zip(curves.items(), looks(len(curves)))
-            ],
-            at_x=(float(scene.solid.angle) % 180.0,),  # type: ignore[attr-defined]
-        )
-        for title, curves in shown
-    ]  # fmt: skip
-    caption = (
-        f"The solid turned under the punch, closed form at {number(V)} m/s and σ_XY/σ_YY = "
-        f"{number(steepest)}: over the angle from X to its first axis the speed of the wave along its "
-        f"surface, {what}. "
-        "The grey line is the angle of the archive; where there is no curve the solid's limit is slower."
-    )
-    return Drawing("angles", caption, render(panels, of.size, high=0.72))
-
-
-_Panels = list[tuple[str, dict[str, NDArray]]]
-
-
-def _of_edges(of: Archive, bodies: list[Contact], V: float, g: float) -> tuple[_Panels, str]:
-    """Panels of -α and -β of sharp edges, and of K_I of a flat punch; and what they show."""
-    flat = [_at(body, V, lambda response, body: FlatPunch(response, g)) for body in bodies]
-
-    def each(name: str, sign: float) -> NDArray:
-        return np.array([np.nan if punch is None else sign * getattr(punch, name) for punch in flat])
-
-    exponents = {r"$-\alpha$, at $X = a$": each("α", -1.0), r"$-\beta$, at $X = -a$": each("β", -1.0)}
-    panels: _Panels = [(r"edge exponents $-\alpha$, $-\beta$", exponents)]
-    what = "how strong the pressure's singularity is at either end"
-    if FLAT in bodies[0].lacks:
-        return panels, what
-    return [*panels, ("$K_I$", {"": each("K_I", 1.0)})], f"{what}, and K_I, the same at both"
-
-
-def _of_contacts(
-    of: Archive, bodies: list[Contact], V: float, g: float, nearest: float = 0.0
-) -> tuple[_Panels, str]:
-    """Panels of half-width, largest pressure and tension, and of the intensity of a sharp end; and what
-    they show. Tensions are no nearer to an end than a distance over a."""
-    length, unit = replace_unit(of)
-    of_pa, stress_unit = (
-        (1e-6, "MPa") if of.units.dimensionless else (_of_pascal(of), of.units.stress.unit)
-    )
-
-    def numbers(response: Any, body: Contact) -> list[float]:
-        contact = contacts(response, np.array([g]), body.profile, body.compression)
-        h = float(contact.of("half_width")[0])
-        in_pa = body.load / (2.0 * h)
-        X = surface_grid()
-        X = X[np.abs(np.abs(X) - 1.0) >= nearest]
-        tension = in_pa * float(contact.on_surface(X)[0].max())
-        pressure = in_pa * float(contact.largest()[0][0])
-        return [length * h, of_pa * pressure, of_pa * tension, *contact.of("K_I")[0]]
-
-    rows = [_at(body, V, numbers) for body in bodies]
-    h, pressure, tension, K_left, K_right = np.array([row or [np.nan] * 5 for row in rows]).T
-    titles = {
-        f"half-width ({unit})": h, f"largest pressure ({stress_unit})": pressure,
-        f"largest tension ({stress_unit})": tension,
-    }  # fmt: skip
-    panels: _Panels = [
-        (title, {"": values}) for title, values in titles.items() if np.isfinite(values).any()
-    ]
-    if np.nan_to_num([K_left, K_right]).any():
-        ends = {"at $X = a$": K_right, "at $X = -a$": K_left}
-        panels.append(("$K_I$", {label: values for label, values in ends.items() if values.any()}))
-    what = "half-width, largest pressure and tension on the surface of the contact under"
-    return panels, f"{what} {number(1e-3 * bodies[0].load)} N/mm"
-
-
-def _of_pascal(of: Archive) -> float:
-    """What stresses in Pa are multiplied by in a figure."""
-    load, half = np.ravel(of.units.load)[0], np.ravel(of.units.half_width)[0]
-    return float(np.ravel(of.units.stress.factor)[0] / (load / (2.0 * half)))
-
-
-#: Panels over the angle, and what they show, by the ends of the contact.
-_OVER_ANGLE: dict[str, Callable[[Archive, list[Contact], float, float], tuple[_Panels, str]]] = {
-    SHARP: _of_edges,
-    PRESCRIBED: _of_edges,
-    FREE: _of_contacts,
-    ONE_FREE: partial(_of_contacts, nearest=NEAR),  # beside a sharp edge it is infinite
-}
-
-
-def _at(body: Contact, V: float, of: Callable[[Any, Contact], Any]) -> Any:
-    """Value of ``of`` for a body at a speed [m/s]; None from the limit on, and without a contact."""
-    c = V / body.solid.c_s
-    if c >= body.solid.limit():
-        return None
-    with suppress(SolveError):
-        return of(body.solid.response(c), body)
-    return None
-
-
-#: Thicknesses over that of the archive: from the first to the last, so many.
-_FIRST, _LAST, _COUNT = 0.1, 10.0, 17
-#: The thinnest layer over a that is drawn: thinner ones take the equation many seconds.
-_THINNEST = 0.05
-#: Relative accuracy: more than a figure shows.
-_TOLERANCE = 1e-4
-#: Panels, in their order.
-_SHOWN = (
-    "$K_I$ at $X = -a$",
-    "$K_I$ at $X = a$",
-    r"largest $-\sigma_{YY}$ below the layer",
-    r"largest shear traction $|\sigma_{XY}|$ there",
-    r"largest $\sigma_{XX}$ in the layer",
-    r"largest $\sigma_{XX}$ below the layer",
-)
-
-
-def has_thicknesses(of: Archive) -> bool:
-    """Return True if a punch with sharp edges was solved over uniform layers by the integral equation."""
-    scene = of.scene
-    solved = any(path.startswith(f"states/{SIE}/") for path in of.data)
-    sharp = scene.body.ends == SHARP
-    least = _THINNEST * scene.body.half_width
-    # Graded ones take a second or two a thickness.
-    quick = all(layer.bottom is None and layer.thickness >= least for layer in scene.layers)
-    return solved and sharp and bool(scene.layers) and quick
-
-
-def thicknesses(of: Archive) -> Drawing:
-    """Figure over the thickness of the top layer, under the steepest friction at the fastest speed."""
-    data, scene = of.data, of.scene
-    g = data[states.RATIO.path]
-    steepest = float(g[np.argmax(np.abs(g))])
-    c = float(data[states.SPEED.path].max())
-    top, a = scene.layers[0].thickness, scene.body.half_width
-    H = np.geomspace(max(_FIRST * top, _THINNEST * a), _LAST * top, _COUNT)
-    numbers = np.full((_COUNT, len(_SHOWN)), np.nan)
-    for row, thickness in zip(numbers, H.tolist()):
-        body = _with_top(scene.body, thickness)
-        with suppress(SolveError):
-            if c < body.solid.limit():
-                row[:] = _at_thickness(body, c, steepest)
-    factor, unit = float(np.ravel(of.units.stress.factor)[0]), of.units.stress.unit
-    length, length_unit = (1.0 / a, "") if of.units.dimensionless else replace_unit(of)
-    about = "thickness of the uppermost layer"
-    label = f"{about} over $a$" if of.units.dimensionless else f"{about} ({length_unit})"
-    beside = ("thickness (mm)", 1e3 * a) if of.units.dimensionless else None
-    panels = []
-    for n, (title, values) in enumerate(zip(_SHOWN, numbers.T)):
-        panels.append(Panel(
-            label, named(title, unit) if n > 1 else title, log="x", at_x=(length * top,), beside=beside,
-            curves=[Curve(length * H, values * (factor if n > 1 else 1.0), looks(1)[0])],
-        ))  # fmt: skip
-    caption = (
-        f"The uppermost layer thinner and thicker, by the {METHODS[SIE]} at "
-        f"{number(c * scene.solid.c_s)} m/s and σ_XY/σ_YY = {number(steepest)}: K_I at both ends, and "
-        "the largest stresses along the layer's lower face: pressure, the shear that it has to bear, and "
-        "σ_XX in the layer and in what is below. The grey line is the archive's; where there is no curve "
-        "the limit is slower than the punch, or the equation has no answer."
-    )
-    return Drawing("thicknesses", caption, render(panels, of.size, high=0.72))
-
-
-def _with_top(body: Contact, thickness: float) -> Contact:
-    top, *others = body.solid.layers
-    layers_ = (replace(top, thickness=thickness), *others)
-    return replace(body, solid=replace(body.solid, layers=layers_))  # type: ignore[type-var]
-
-
-def _at_thickness(body: Contact, c: float, g: float) -> NDArray[np.float64]:
-    """Numbers of all panels at one thickness, (panels,).
-
-    Raises:
-        SolveError: the equation has no answer.
-    """
-    depths, along = interface_grid(body)
-    places = Places(np.empty(0), np.empty((0, 2)), interfaces=depths[:1], along=along)
-    response = body.response(c)
-    task = Task(0, body, response, places, (), ())
-    stack = response.stack(body.half_width)  # type: ignore[attr-defined]
-    punch = on_layers.at_speed(task, stack, _TOLERANCE, np.array([g])).states(np.array([g]))
-    σ_YY, σ_XY, above, below = punch.interfaces[:, 0, 0]
-    return np.array([*punch.K_I[0], -σ_YY.min(), np.abs(σ_XY).max(), above.max(), below.max()])

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from galinx.solvers.layers.layered import dispersion
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
+from galinx.texts import plain
 
 from ..errors import BadInput
 from ..plan.over_time import headings
@@ -134,8 +135,7 @@ class Answer:
     @property
     def words(self) -> str:
         """Speed, friction and way of the motion, as one line."""
-        towards = {1: ", towards +X", -1: ", towards -X", 0: ""}[self.way]
-        return f"c = {self.c:.4g}, σ_XY/σ_YY = {self.g:.4g}{towards}"
+        return plain(drive_label(self.c, self.g, self.way))
 
 
 def answers(scene: Scene, first: float, last: float | None, count: int) -> list[Answer]:

@@ -177,7 +177,7 @@ class Comparison:
             BadInput: a result has no stresses along the surface, or no measured point lies in the figure.
         """
         from ..figures.choice import Archive, Choice
-        from ..figures.compared import compared
+        from ..figures.stresses import compared
 
         if measured and not measured.lies_in("surface"):
             raise BadInput(

@@ -276,7 +276,7 @@ def fit(
         raise BadInput(f"friction law {short(model)!r}: there is none{nearest(model, [*LAWS, ALL])}")
     names = [*LAWS] if model == ALL else [model]
     fixed, started = (_values(names, given or {}) for given in (fix, start))
-    tables, speedless = _at_speeds([_table(source) for source in sources], speed)
+    tables, speedless = _at_speeds([_source(source) for source in sources], speed)
     _resists(tables)
     fits: list[Fit] = []
     failed: dict[str, str] = {}
@@ -301,7 +301,7 @@ def fit(
     return replace(best, others=tuple(others), failed=failed)
 
 
-def _table(source: str | Path | Measured) -> Table:
+def _source(source: str | Path | Measured) -> Table:
     return Table("arrays", source, True) if isinstance(source, Measured) else read(Path(source))
 
 

@@ -19,10 +19,11 @@ from galinx.texts import number, plain
 
 from ..figures.choice import Archive, Choice, Drawing
 from ..figures.friction import Loops, loop_panel, loops_figure
-from ..figures.render import LINE, MARKERS, Curve, Panel, handle, marked, render, spaced
-from ..figures.sketches import mesh_figure, problem_figure, procedure_figure
+from ..figures.numerics import mesh_figure
+from ..figures.render import MARKERS, Curve, Panel, lines_and_markers, render
+from ..figures.sketches import problem_figure, procedure_figure
 from ..figures.states import PLACE, STROKE, C, StateLabels
-from ..figures.stresses import _BESIDE, along, broken, limits
+from ..figures.stresses import _BESIDE, along, broken, limits, surface_curves
 from ..figures.style import COLOURS, GREY, LINES, Look, looks
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states
@@ -237,7 +238,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
     panels[1:] = [
         replace(panel, curves=[replace(c, label="") for c in panel.curves]) for panel in panels[1:]
     ]
-    figure = render(panels, None, 3, _says(*_slow_and_fast(loops.labels, of)), high=0.95)
+    figure = render(panels, None, 3, lines_and_markers(*_slow_and_fast(loops.labels, of)), high=0.95)
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
     return Drawing("laws", _LAWS.format(laws=names, at=_AT), figure)
 
@@ -264,13 +265,13 @@ class _Stressed:
 
     Attributes:
         label, look: name in the legend, and look of line and markers.
-        line, markers: σ_YY and σ_XX, (2, points); None for none.
+        line, markers: σ_YY and σ_XX, (2, points); no markers by default.
         width: of the line [pt].
     """
 
     label: str
     look: Look
-    line: NDArray | None = None
+    line: NDArray
     markers: NDArray | None = None
     width: float = 1.0
 
@@ -294,25 +295,18 @@ def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, name
     every = [values for of in rows for curve in of.curves for values in (curve.line, curve.markers)]
     shown = np.array([values[column] for values in every if values is not None])
     half = along(X, shown)
-    inside, curves = np.abs(X) <= half, []
+    curves: list[Curve] = []
     for n, curve in enumerate(row.curves):
-        label = curve.label if named else ""
-        if curve.line is not None:
-            curves.append(Curve(*broken(X, curve.line[column]), curve.look, label, LINE, curve.width))
+        values = {CLOSED_FORM: curve.line[column]}
         if curve.markers is not None:
-            label = label * (curve.line is None)
-            at = spaced(np.where(inside, X, np.nan), n / len(row.curves))
-            curves.append(Curve(X[at], curve.markers[column][at], curve.look, label, MARKERS))
+            values[FEM] = curve.markers[column]
+        drawn = surface_curves(X, values, curve.look, curve.label if named else "", n / len(row.curves))
+        curves += [replace(one, width=curve.width) for one in drawn]
     return Panel(
         "position on the surface $X/a$", _AXES[column], curves=curves, title=row.title,
         xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,),
         bands=[(-1.0, 1.0)] if half == _BESIDE else (),
     )  # fmt: skip
-
-
-def _says(lines: str, markers: str) -> list[Any]:
-    """Handles that say what lines and markers are."""
-    return [handle(Look(GREY, "-", ""), lines), marked(markers)]
 
 
 def _rows_figure(
@@ -337,7 +331,7 @@ def _rows_figure(
             "position on the surface $X/a$", r"$|\Delta\sigma|/(N/2a)$", curves=curves, xlim=above.xlim,
             log="y", tall=_FLAT, title=f"largest difference of both methods: {how}",
         ))  # fmt: skip
-    return render(panels, None, 2, _says(*says), high=0.5)
+    return render(panels, None, 2, lines_and_markers(*says), high=0.5)
 
 
 def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
@@ -363,7 +357,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
             curves.append(_Stressed(label, dots, _values(data, CLOSED_FORM, travelled), width=0.8))
         rows.append(_Row(labels.label(pairs[0][0], [figure.row]), curves))
     if len(figure.speeds) == 1:
-        says = ("lines: closed form", "markers: finite elements")
+        says = ("closed form", "finite elements")
         differ: dict[str, NDArray] = {}
     else:
         says = _slow_and_fast(labels, states[0])
@@ -376,7 +370,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
 def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str]:
     """Legend texts of lines and markers, for two states at the study's speeds."""
     slow, fast = (labels.label(state, [C]) for state in states)
-    return f"lines: SS, {slow}", f"markers: HS, {fast}"
+    return f"SS, {slow}", f"HS, {fast}"
 
 
 def _curve(label: str, look: Look, data: dict[str, Any], states: Sequence[int]) -> _Stressed:

@@ -52,9 +52,16 @@ def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
 
 
 def _figure(row: Row) -> Any:
-    from galinx.app.figures.numerics import lines_figure
+    """Lines of a row over its x, the y axis logarithmic."""
+    from galinx.app.figures.render import JOINED, Curve, Panel, Size, render
+    from galinx.app.figures.style import LINES, looks
 
-    return lines_figure(row.x, row.lines, row.x_label, row.y_label, row.title, row.log_x)
+    curves = [
+        Curve(row.x, y, look._replace(line=LINES[0]), label, JOINED)
+        for (label, y), look in zip(row.lines.items(), looks(len(row.lines)))
+    ]
+    panel = Panel(row.x_label, row.y_label, curves=curves, title=row.title, log="y" + "x" * row.log_x)
+    return render([panel], Size(5.0))
 
 
 def _write(target: Target, rows: list[Row], good: bool) -> None:

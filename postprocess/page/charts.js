@@ -46,5 +46,9 @@ addEventListener("load", async () => {
     chosen?.addEventListener("change", show);
     show();
   }
+  // On paper a chart is as wide as the page, whatever the window was.
+  const every = (layout) => document.querySelectorAll(".chart.js-plotly-plot").forEach((box) => Plotly.relayout(box, layout));
+  addEventListener("beforeprint", () => every({ width: 640 }));
+  addEventListener("afterprint", () => every({ width: null, autosize: true }));
   document.body.dataset.ready = "yes";
 });

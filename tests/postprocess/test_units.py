@@ -32,6 +32,11 @@ SCENES = {
     "cylinder": ("cylinder", CLOSED | {"output.quantities": ["sif", "surface"], "output.map": None}),
     "coating": ("coating", {"solve.methods": ["sie"], "output.quantities": ["surface", "interfaces"]}),
     "slider": ("slider", {}),
+    "fibres": ("fibres", CLOSED | {"output.quantities": ["sif"], "output.map": None}),
+    "shoulders": ("shoulders", CLOSED | {"output.quantities": ["sif"]}),
+    "from rest": ("start_from_rest", {"solve.methods": ["sie"]}),
+    "minor loops": ("minor_loops", {}), "velocity steps": ("velocity_steps", {}),
+    "prescribed pressure": ("traction", CLOSED),
 }  # fmt: skip
 
 

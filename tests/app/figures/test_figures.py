@@ -103,6 +103,7 @@ KINDS = {
     "coating": {"solve.methods": ["sie"]}, "slider": {}, "start_from_rest": {"solve.methods": ["sie"]},
     "fibres": CLOSED_FORM, "shoulders": CLOSED_FORM, "minor_loops": {}, "velocity_steps": {},
     "fig6": {}, "sinusoidal": {}, "own_material": CLOSED_FORM,
+    "cylinder_on_steel": {}, "parameter_study": CLOSED_FORM,
 }  # fmt: skip
 
 

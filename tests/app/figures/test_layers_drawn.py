@@ -1,7 +1,6 @@
 """Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
 
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,11 +8,9 @@ from support import HOME, computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.figures import sweep
 from galinx.app.figures.archive import names, of_archive
 from galinx.app.figures.choice import Choice, size
 from galinx.app.scene.read import parse
-from galinx.solvers.errors import SolveError
 
 sys.path.insert(0, str(HOME / "tests" / "postprocess" / "figures"))
 from legible import faults
@@ -121,56 +118,6 @@ def test_they_can_be_read_in_print(coated):
 def test_uniform_solids_have_no_such_figure():
     run = computed(changes={"solve.methods": ["closed_form"]})
     assert "interfaces" not in names(run.data, run.scene)
-
-
-def test_thinner_and_thicker_layers_are_what_their_scenes_say():
-    changes = {"friction.mu_c": [0.1, 0.8], "output.quantities": ["sif", "interfaces"]}
-    here = computed("coating", changes)
-    axes = drawn(here, "thicknesses").figure.axes
-    scene = here.scene
-    (top,) = scene.layers
-    for place, factor in ((0, 0.1), (8, 1.0), (16, 10.0)):
-        layer = replace(top, thickness=factor * top.thickness)
-        data = galinx.compute(replace(scene, layers=(layer,))).data
-        steepest = int(np.argmax(np.abs(data["states/g"])))
-
-        def extreme(name, data=data, state=steepest):
-            values = data[f"interfaces/sie/{name}"][state, 0]
-            return np.abs(values).max() if name.endswith("Y") else values.max()
-
-        names = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
-        K_I = [data[f"states/sie/K_I_{end}"][steepest] for end in ("left", "right")]
-        for axis, wanted in zip(axes, [*K_I, *map(extreme, names)]):
-            line = curves(axis)[0]
-            assert line.get_xdata()[place] == pytest.approx(
-                factor * top.thickness / scene.body.half_width
-            )
-            assert line.get_ydata()[place] == pytest.approx(wanted, rel=5e-3)
-
-
-def test_thicknesses_are_drawn_of_uniform_layers_that_are_not_thin():
-    alone = {"output.quantities": ["sif"], "friction.mu_c": 0.1}
-    here = computed("coating", alone)
-    assert "thicknesses" in names(here.data, here.scene, Choice(("all",)))
-    (top,) = here.scene.layers
-    graded = replace(here.scene, layers=(replace(top, bottom=here.scene.half_plane.solid),))
-    thin = replace(here.scene, layers=(replace(top, thickness=1e-5),))
-    assert all("thicknesses" not in names(here.data, one, Choice(("all",))) for one in (graded, thin))
-
-
-def test_where_the_equation_has_no_answer_curves_have_a_gap(monkeypatch):
-    here, found = computed("coating", {"output.quantities": ["sif"], "friction.mu_c": 0.1}), []
-
-    def solved(body, *_):
-        found.append(body.solid.layers[0].thickness)
-        if len(found) == 1:
-            raise SolveError("no answer")
-        return np.arange(6.0)
-
-    monkeypatch.setattr(sweep, "_at_thickness", solved)
-    (line,) = curves(drawn(here, "thicknesses").figure.axes[3])
-    assert np.isnan(line.get_ydata()[0]) and set(line.get_ydata()[1:].tolist()) == {3.0}
-    assert line.get_xdata() == pytest.approx(np.array(found) / here.scene.body.half_width)
 
 
 def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():

@@ -176,7 +176,7 @@ def test_films_are_made_of_strokes(strokes, tmp_path):
 
 
 def test_a_film_goes_along_every_stroke_in_the_order_of_travel(strokes):
-    from galinx.app.figures.film import film as made
+    from galinx.app.figures.archive import film as made
 
     shown, _ = made(Archive(strokes.data, strokes.scene, Choice()))
     places = []
@@ -315,45 +315,6 @@ def test_contacts_of_several_widths_are_compared_in_units():
     assert values.max() == pytest.approx(pressure.max(), rel=1e-14)
     assert all((np.diff(line.get_ydata()) < 0.0).all() for line in curves(axis))
     assert not any("N/(2a)" in axis.get_ylabel() or "over $a$" in axis.get_ylabel() for axis in axes)
-
-
-@pytest.mark.parametrize("profile", ["parabolic", "wedge", "tilted", "flat"])
-def test_angles_are_of_the_archives_own_punch(profile):
-    """Each panel at the archive's angle has what the archive has, and axes begin at 0."""
-    given = {
-        "parabolic": {"punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm"},
-        "wedge": {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005},
-        "tilted": {"punch.tilt": "0.01 deg"},
-        "flat": {},
-    }[profile]
-    fibres = {"solid.material": "carbon-epoxy", "solid.angle": "30 deg", "motion.c": [0.3]}
-    result = computed("tables4_5", ROUND | fibres | given | {"motion.strokes": ["forward"]})
-    drawing = drawn(result, "angles", size=size("85mm"), units=result.units())
-    g, axes = result.data["states/g"], drawing.figure.axes
-    state = int(np.argmax(np.abs(g)))
-    held = {name: result.data.get(f"states/closed_form/{name}", np.full(len(g), np.nan))[state]
-            for name in ("half_width", "largest_pressure", "K_I_left", "K_I_right")}  # fmt: skip
-    unit = 1e-6 * result.scene.punch.load / (2.0 * held["half_width"])
-    length = result.units().length.unit
-    expected = {
-        f"half-width ({length})": {"mm": 1e3, "µm": 1e6}[length] * held["half_width"],
-        "largest pressure (MPa)": unit * held["largest_pressure"],
-        "$K_I$": held["K_I_right"] if profile == "flat" else np.nan,
-    }
-    titles = {axis.get_ylabel().replace("\n", " "): axis for axis in axes}
-    shown = {
-        "parabolic": {f"half-width ({length})", "largest pressure (MPa)", "largest tension (MPa)"},
-        "wedge": {f"half-width ({length})", "largest tension (MPa)"},
-        "tilted": {f"half-width ({length})", "largest tension (MPa)", "$K_I$"},
-        "flat": {"edge exponents $-\\alpha$, $-\\beta$", "$K_I$"},
-    }[profile]
-    assert titles.keys() == {"speed limit (m/s)"} | shown
-    for title, axis in titles.items():
-        assert axis.get_ylim()[0] == 0.0
-        line = curves(axis)[0]
-        (value,) = line.get_ydata()[np.isclose(line.get_xdata(), 30.0)]
-        if np.isfinite(expected.get(title, np.nan)):
-            np.testing.assert_allclose(value, expected[title], rtol=1e-9)
 
 
 def test_the_mesh_of_layers_is_drawn_where_it_is():

@@ -191,22 +191,3 @@ def test_constants_that_are_lists_are_archived(tmp_path):
     assert json.loads(galinx.load(tmp_path / "skew.h5").attributes["solid"])["stiffness"] == SKEW
     assert ATTRIBUTES["solid"].fits('{"kind": "mine", "table": [[0.0, 1e9], [1.0, 2e9]]}')
     assert not ATTRIBUTES["solid"].fits('{"kind": "mine", "table": [null]}')
-
-
-def test_figures_turn_a_solid_that_has_an_angle():
-    from galinx.app.figures import archive
-
-    changes = {"solve.methods": ["closed_form"], "output.quantities": ["sif"], "output.map": None}
-    fibres, steel = (
-        galinx.template(name, changes | more)
-        for name, more in (("fibres", {}), ("inside", {"output.points": None}))
-    )
-    every = archive.Choice(figures=("all",))
-    assert "angles" in archive.names(galinx.compute(fibres).data, fibres, every)
-    assert "angles" not in archive.names(galinx.compute(steel).data, steel, every)
-    data = galinx.compute(fibres).data
-    drawn = {d.name: d for d in archive.of_archive(data, fibres, archive.Choice(figures=("angles",)))}
-    limits = drawn["angles"].figure.axes[0].lines[1]  # the first is the angle of the scene
-    angles, speeds = (np.asarray(values) for values in limits.get_data())
-    turned = speeds[np.isclose(angles, 30.0)]
-    assert turned == pytest.approx(fibres.solid.limit() * fibres.solid.c_s, rel=1e-12)

@@ -33,12 +33,11 @@ the folder you are in. Exit status:
 | 3 | failure of program or machine, or interrupted |
 
 SIGINT (Ctrl-C), SIGTERM, SIGHUP and a killed rank end a command at once, with status 3 and one message.
-What a run has finished is kept for `--resume`. Signals that were ignored at the start, as by `nohup`,
-stay ignored.
+What a run has finished is kept for `--resume`.
 
 A file appears under its name when it is whole. What is made from an archive is replaced unasked. Scenes,
-archives and what galinx did not make are replaced with `--overwrite` only. Files that a command reads,
-folders, devices and FIFOs never are. Links are followed, and `--log` adds to logs only.
+archives and what galinx did not make are replaced with `--overwrite` only, files that a command reads
+never. `--log` adds to logs only.
 
 Words that `run.sh` knows besides the commands:
 

@@ -112,7 +112,7 @@ sigma0_over_load = ["12500 1/m", "25000 1/m"]
   [Extend galinx](howto_extend.md) adds others.
 - Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a file
   of them, `"rows.csv"`.
-- An unknown key is an error; the message names the nearest known key.
+- Without a default a key may be left out. An unknown key is an error.
 - Results call strokes FM1, … (forward) and BM1, … (backward).
 
 Editors complete and check scenes by `scenes/scene.schema.json`, which `./run.sh schema` prints.
@@ -384,6 +384,7 @@ def _row(key: str, known: Any) -> tuple[str, ...]:
         default = known.without if empty else f"`{json.dumps(described['default'], ensure_ascii=False)}`"
     else:
         default = known.without
+    default = "" if default == "none" else default
     of_library = getattr(known.kind, "options", None) is LIBRARY
     allowed = "[materials](#materials)" if of_library else _allowed(described)
     meaning = "; ".join(filter(None, (known.about, known.note)))

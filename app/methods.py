@@ -74,9 +74,9 @@ def _refusal(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) ->
 _OF_FLAT_PUNCHES = {
     SHARP: {
         states.K_I_BOTH.path: "the two ends differ",
-        BELOW: "known below flat punches only",
-        YIELD: "known below flat punches only",
-        PUNCH: "known of flat punches only",
+        BELOW: "known below flat punches with one friction only",
+        YIELD: "known below flat punches with one friction only",
+        PUNCH: "known of flat punches with one friction only",
     }
 }
 
@@ -116,7 +116,7 @@ _LACKING = {
 def fem_mode(scene: Any) -> str:
     """Mode of a scene's finite elements, see :class:`galinx.solvers.contact.fem_plan.FemPlan`."""
     body = scene.body
-    mode = _MODES[body.ends][bool(scene.layers)][not smooth(body.profile)]
+    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][not smooth(body.profile)]
     return scene.solve.mode if mode == CONTACT else mode
 
 

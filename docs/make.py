@@ -143,7 +143,8 @@ with h5py.File("out.h5") as file:
 - METHOD in a path is `closed_form`, `sie` (integral equation) or `fem` (finite elements); the column
   "with" names the methods where not all give the dataset.
 - The column also has words of `solve.mode` and `output.quantities`, and what else a dataset needs: sharp
-  edges (punch) or free ends, a pressure of your own, finite stresses, one method, fitted speeds.
+  edges (punch) or free ends, a pressure of your own, friction along the contact, finite stresses, one
+  method, fitted speeds.
 - Words with a slash between them follow the order of the names in their row.
 - Values without a unit are dimensionless. NaN: there may be no answer.
 - The place of the largest or smallest value NAME is `NAME_X_over_a` along the surface and, where it may

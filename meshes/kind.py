@@ -9,7 +9,9 @@ where the boundary is nearest.
 
 Under a punch whose slope has kinks, cells are graded towards these, too, see :func:`with_kinks`. Between
 neighbouring places, both ends of the contact among them, the strip along the contact is cut in the
-middle; each half is a corner of :mod:`galinx.meshes.rings`, stretched. Columns go on outwards.
+middle; each half is a corner of :mod:`galinx.meshes.rings`, stretched. Where two places are near each
+other the strip is as narrow as they are near, and blocks without rings grow from there to the middle of
+the longer neighbour. Columns go on outwards.
 
 :func:`check_cells` refuses degenerate cells; :func:`edges` and :func:`nodes` are for drawings.
 """
@@ -17,7 +19,7 @@ middle; each half is a corner of :mod:`galinx.meshes.rings`, stretched. Columns 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, exp, log, log10, pi, sqrt
+from math import ceil, exp, log, log2, log10, pi, sqrt
 
 import numpy as np
 from numpy.polynomial import Legendre
@@ -56,9 +58,17 @@ def boundary_error(R: float, moments: int, margin: float) -> float:
 
 #: Width of the strip over the mean height of its halves, and factor by which columns grow outwards.
 _WIDE, _GROWTH = 1.3, 1.6
+#: Most width of the strip, over that times the height where places are near each other; factor up to
+#: which halves next to a place are alike, and by which blocks between such a place and the middle grow.
+_SLENDER, _ALIKE = 2.0, 3.0
 #: Elliptic coordinate, some 4 000 a, beyond which a field is that of a line load to all digits of the
 #: results, linear in this coordinate, and columns need no largest width.
 _FAR = 9.0
+
+
+def rings_at_kinks(refinement: Refinement, size: float) -> int:
+    """Number of rings around kinks beyond those around ends, by the size of innermost cells."""
+    return ceil(log(size) / log(refinement.ratio)) - refinement.levels
 
 
 def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMesh:
@@ -70,31 +80,45 @@ def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMe
         more: number of additional rings around the kinks.
     """
     η = np.concatenate([[-np.pi], np.sort(-np.arccos(places)), [0.0]])
-    width = min(_WIDE * np.pi / (2.0 * (len(η) - 1)), np.pi / 2.0)
+    half, legs = np.diff(η) / 2.0, refinement.legs
+    least = np.minimum(np.append(half, np.inf), np.append(np.inf, half))
+    widest = min(_WIDE * np.pi / (2.0 * len(half)), np.pi / 2.0)
     of_end, of_kink = (
         corner(1.0, replace(refinement, levels=refinement.levels + levels), False)[0]
         for levels in (0, more)
     )
-    quads, rows = [], [-np.pi]
-    for low, high in pairwise(η):
-        half = (high - low) / 2.0
-        below = (of_end if high == η[-1] else of_kink) * [width, half] + [0.0, high]
-        above = ((of_end if low == η[0] else of_kink) * [width, -half] + [0.0, low])[:, ::-1]
-        quads += [above, below]
-        for start in (low, low + half):
-            rows += (start + half * refinement.legs[1:]).tolist()
-    ξ = _columns(width, np.pi / 2.0 + sum(refinement.columns), max(refinement.columns))
-    quads.append(
-        np.reshape(
-            [
-                [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-                for x0, x1 in pairwise(ξ)
-                for y0, y1 in pairwise(rows)
-            ],
-            (-1, 4, 2),
-        )
-    )
-    return joined(np.concatenate(quads).reshape(-1, 2), ξ[-1])
+    blocks, of_ends, of_widths = [], list[float](), list[float]()
+    for i, h in enumerate(half):
+        for node, side in ((i, 1), (i + 1, -1)):
+            steps = ceil(log(h / least[node]) / log(_ALIKE))
+            sizes = h * (least[node] / h) ** (
+                np.arange(steps, -1, -1) / steps if steps > 1 else np.zeros(1)
+            )
+            corners = of_end if node in (0, len(half)) else of_kink
+            blocks.append((corners * [1.0, -side * sizes[0]] + [0.0, η[node]])[:, ::-side])
+            for low, high in pairwise(sizes):
+                blocks.append(_grid(legs, η[node] + side * (low + (high - low) * legs))[:, ::side])
+            of_ends += [η[node], *(η[node] + side * sizes[:-1]), η[i] + h]
+            of_widths += [least[node], *sizes]
+    order = np.argsort(of_ends, kind="stable")
+    ends = np.array(of_ends)[order]
+    widths = np.minimum(_SLENDER * _WIDE * np.array(of_widths)[order], widest)
+    for block in blocks:
+        block[..., 0] *= np.interp(block[..., 1], ends, widths)
+    rows = np.unique([low + (high - low) * legs for low, high in pairwise(np.unique(ends))])
+    ξ = np.array(_columns(widest, np.pi / 2.0 + sum(refinement.columns), max(refinement.columns)))
+    count = 1 + round(log2(widest / widths.min()))
+    beside = _grid(np.arange(count + 1) / count, rows)
+    share, width = beside[..., 0], np.interp(beside[..., 1], ends, widths)
+    beside[..., 0] = width ** (1.0 - share) * ξ[1] ** share
+    return joined(np.concatenate([*blocks, beside, _grid(ξ[1:], rows)]).reshape(-1, 2), ξ[-1])
+
+
+def _grid(x: NDArray, y: NDArray) -> NDArray[np.float64]:
+    """Quadrilaterals between coordinates x and y, (cells, 4, 2)."""
+    x, y = np.meshgrid(x, y, indexing="ij")
+    xy = np.stack([x, y], axis=-1)
+    return np.stack([xy[:-1, :-1], xy[1:, :-1], xy[1:, 1:], xy[:-1, 1:]], axis=2).reshape(-1, 4, 2)
 
 
 def _columns(first: float, last: float, widest: float) -> list[float]:

@@ -186,6 +186,10 @@ def _over_larger(fem: Any, exact: Any, *_: Any) -> float:
     return (np.abs(np.subtract(fem, exact)) / np.abs(exact).max(axis=0)).max()
 
 
+def _apart(fem: Any, exact: Any, *_: Any) -> float:
+    return np.abs(np.subtract(fem, exact)).max()
+
+
 def _over_half_width(fem: Any, exact: Any, *_: Any) -> float:
     return (np.abs(np.subtract(fem, exact)) / exact[0]).max()
 
@@ -277,8 +281,8 @@ def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[C
 
 def _imbalance(data: dict[str, Any], load: Any) -> float:
     normal, tangential = (data[row.path] for row in (of.NORMAL_FORCE, of.TANGENTIAL_FORCE))
-    off = np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + data[of.RATIO.path]))
-    return off.max()
+    ratio = data.get(of.RESULTANT_RATIO[FEM].path, data[of.RATIO.path])
+    return np.maximum(np.abs(normal / load + 1.0), np.abs(tangential / load + ratio)).max()
 
 
 def _resultant(other: str) -> Callable[[dict[str, Any], Any], float]:
@@ -362,6 +366,12 @@ RULES: Registry[Rule] = Registry(
         "estimate": _estimate(of.ESTIMATE[FEM], "K_I and moments", False),
         "K_I of layers": against(
             SIE, _intensities, f"K_I at both ends{_SIE}, relative", of.K_I_LEFT, of.K_I_RIGHT
+        ),
+        "resultant_ratio": against(
+            CLOSED_FORM, _apart, "resultant of σ_XY over that of σ_YY, absolute", of.RESULTANT_RATIO
+        ),
+        "pressure_centre": against(
+            CLOSED_FORM, _apart, "centre of pressure, over a", of.PRESSURE_CENTRE
         ),
         "sigma_YY of layers": against(
             SIE, _pressure, f"σ_YY{_SIE}, relative to itself or a tenth of the mean",

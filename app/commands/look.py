@@ -209,7 +209,7 @@ def compare(
     "--figure",
     default="",
     metavar="NAMES",
-    help="surface, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
+    help="surface, along, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
     "energies, angles, thicknesses, degrees, mesh, film; several as in surface,mesh; all for all.",
 )
 @click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")

@@ -10,7 +10,7 @@ from galinx.postprocess.units import Units
 from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
-from . import film, friction, motion, numerics, stresses, sweep
+from . import along, film, friction, motion, numerics, stresses, sweep
 from .choice import Archive, Choice, Drawing, require_one_of
 from .files import OF_FILMS, Files, Written
 from .film import FILM
@@ -42,6 +42,7 @@ def _no_figure(of: Archive) -> Drawing:
 #: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
     "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES | {"measured"}, True),
+    "along": _Figure(along.along, along.has_along, frozenset({"states", "method"}), True),
     "inside": _Figure(stresses.inside, stresses.has_inside, _STRESSES, True),
     "parameters": _Figure(
         sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), True

@@ -47,6 +47,7 @@ from galinx.solvers.contact.fem_plan import (
     size_of,
     swept,
     unknowns,
+    with_friction_kinks,
 )
 from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.solution import (
@@ -372,6 +373,10 @@ _MOST_SHAPES, _ROUNDED = 48, 1e-13
 SMALL = 200_000
 
 
+#: Positions along the contact at which friction is sampled for its extremes.
+_ACROSS = 201
+
+
 def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: NDArray) -> FemPlan:
     """Plan of the finite elements at the speeds of a scene; builds no mesh.
 
@@ -390,7 +395,8 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         depths = scene.solid.depths / scene.body.half_width
         kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
     _check_degree_and_solver(scene)
-    mixed, ends = scene.solid.nearly_incompressible, (float(g.min()), float(g.max()))
+    ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, _ACROSS))
+    mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
     exponent = min(
         -0.5 - abs(EdgeExponents(response, end).α + 0.5) for response in responses for end in ends
     )
@@ -404,7 +410,9 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
-    drawn = kind.drawn(required)
+    drawn, kinks = kind.drawn(required), scene.body.friction_kinks
+    if kinks:
+        drawn = with_friction_kinks(refinement, kinks, solve.tolerance)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))
     solver = solve.solver
@@ -417,7 +425,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=pressure_moments(scene.solid, kind, required),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
+        kinks=kinks, shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
     )  # fmt: skip
 
 

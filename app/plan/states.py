@@ -21,7 +21,7 @@ from galinx.solvers.friction.motion import Stroke, Work, follow, last_cycle, wor
 from galinx.solvers.solids.solid import Solid
 
 from ..errors import BadInput, listed
-from ..scene.scene import Scene, oddities
+from ..scene.scene import ADVECTED, Scene, oddities
 
 
 @dataclass(frozen=True)
@@ -226,6 +226,8 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
                 done(at, count)
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
+    if friction.state == ADVECTED:
+        f[:] = friction.stress_ratio * np.array(list(scene.along))[:, None]
     assert inner is not None
     loop = np.arange(count)
     loop[len(loops.f) :] = -1

@@ -322,7 +322,8 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.i
         except SolveError:
             continue
         height = body.profile.height(solution.centre - solution.half_width)
-        v0 = body.displacement * indentation(task.response, g[rows], σ_YY, height / body.displacement)
+        ratio = body.ratio(g[rows], looked_at.places.X)
+        v0 = body.displacement * indentation(task.response, ratio, σ_YY, height / body.displacement)
         far = np.abs(held[rows] - v0) > _INDENTATION * np.abs(v0)
         if far.any():
             state = rows[far][0]

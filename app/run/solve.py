@@ -15,7 +15,7 @@ from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.method import Method, Solver
-from galinx.solvers.contact.solution import Contact, Task
+from galinx.solvers.contact.solution import Contact, Places, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
@@ -24,9 +24,11 @@ from ..plan.task import Plan
 
 @dataclass(frozen=True)
 class Edges:
-    """Local analysis of the punch's edges, all that needs no solution of states."""
+    """Friction and the local analysis of the punch's edges, all that needs no solution of states."""
 
     local: Any
+    g: NDArray[np.float64]
+    places: Places
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,8 @@ class Work:
         if len(task.loads) > 1:
             load = np.concatenate([self.plan.load(slice(row, row + 1)) for row in rows.tolist()])
         body = task.body.loaded(load)
-        data = self._of(LOCAL, Edges(task.body.local_exponents(task.response, g, load)), body)
+        local = task.body.local_exponents(task.response, g, load)
+        data = self._of(LOCAL, Edges(local, g, task.places), body)
         for name, method in self.methods.items():
             with ExitStack() as stack:
                 solver = None
@@ -153,7 +156,8 @@ class Work:
             load = np.concatenate([self.plan.load(rows) for rows in runs])
         body = task.body.loaded(load)
         with self.clock(_STEPS["closed_form"]):
-            data = self._of(LOCAL, Edges(task.body.local_exponents(task.response, g, load)), body)
+            local = task.body.local_exponents(task.response, g, load)
+            data = self._of(LOCAL, Edges(local, g, task.places), body)
         for name in self.methods:
             try:
                 if name not in failures:

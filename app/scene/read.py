@@ -20,13 +20,14 @@ import numpy as np
 
 from galinx import files
 from galinx.solvers.friction import LAWS
+from galinx.solvers.friction.along import tabulated
 from galinx.texts import unseen
 
 from ..console import program
 from ..errors import BadInput, excerpt, listed, nearest, short
 from ..text_table import read_table
 from .library import LIBRARY
-from .scene import Scene, contradictions, in_words, usual_quantities
+from .scene import ADVECTED, Scene, contradictions, in_words, usual_quantities
 from .sections import SECTIONS, SWEPT, Key
 from .values import Number, Numbers, Or, Rows, Wrapped
 
@@ -340,6 +341,7 @@ def _checked(
     """Scene of single numbers, or None after its faults are added."""
     before = len(faults)
     faults += _fill_in_stiffness(tree)
+    faults += _fill_in_along(tree)
     faults += _fill_in_coefficient(tree)
     steady = _fill_in_motion(tree)
     named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
@@ -426,14 +428,32 @@ def _fill_in_coefficient(tree: dict[str, Any]) -> list[str]:
     return []
 
 
+def _fill_in_along(tree: dict[str, Any]) -> list[str]:
+    """Give the mean of friction along the contact to Coulomb's law; returns the faults."""
+    friction = tree.get("friction")
+    if not isinstance(friction, dict) or "along" not in friction:
+        return []
+    if others := sorted(friction.keys() - {"along", "sign", "pre_sliding"}):
+        return [f"friction: along gives f itself; take {', '.join(others)} away"]
+    tree["friction"] = friction | {"model": "coulomb", "mu_c": 1.0}
+    try:
+        rows = SECTIONS["friction"].keys(tree["friction"])["along"].kind(friction["along"])
+    except ValueError:
+        return []  # one fault, which its own key reports
+    tree["friction"]["mu_c"] = tabulated(rows, 1.0).mean
+    return []
+
+
 def _fill_in_motion(tree: dict[str, Any]) -> bool:
-    """True for steady sliding: a law without memory, and no strokes; these are filled in then."""
+    """True for steady sliding, a law without memory or advected, and no strokes; these are filled in."""
     friction, motion = tree.get("friction", {}), tree.get("motion", {})
     if not isinstance(friction, dict) or not isinstance(motion, dict):
         return False
     name = friction.get("model")
     law = LAWS.get(name) if isinstance(name, str) else None
-    if law is None or law.has_memory or motion.keys() & {"strokes", "X_over_L", "path", "rest"}:
+    if (law is None or law.has_memory) and friction.get("state") != ADVECTED:
+        return False
+    if motion.keys() & {"strokes", "X_over_L", "path", "rest"}:
         return False
     if "time" in tree or "slider" in tree:
         return False

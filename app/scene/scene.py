@@ -16,18 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities.over_time import TIME
-from galinx.postprocess.quantities.quantity import FRICTION_ALONE
+from galinx.postprocess.quantities.quantity import FEM, FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, ON_SURFACE, YIELD
+from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
 from galinx.solvers.friction import FrictionLaw
+from galinx.solvers.friction.along import Along, advected, tabulated
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import build_model, parameters
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles import Profile
+from galinx.solvers.profiles import Profile, half_width
+from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids import Solid
 
 from ..errors import listed
@@ -66,6 +69,10 @@ class Punch:
 _MOST_LISTED = 100_000
 
 
+#: State of bristles: the same all along the contact, or advected with the surface from the leading end.
+STATES_ALONG = UNIFORM_STATE, ADVECTED = "uniform", "advected"
+
+
 @dataclass(frozen=True)
 class Friction:
     """[friction]: laws, how they are integrated over strokes of ``pre_sliding`` [m], the sign of σ_XY.
@@ -75,6 +82,8 @@ class Friction:
         parameters: values of each of its parameters by key; their product is computed.
         vary: [[friction.vary]], values of some of these parameters in place of those above; the laws
             are then the products of all tables, each law once.
+        along: X/a and f, point by point along the contact; None for none.
+        state: of bristles, one along the contact or ``ADVECTED`` with the surface from its leading end.
 
     Raises:
         ValueError: there are too many laws in ``vary``.
@@ -86,6 +95,8 @@ class Friction:
     integrator: str
     sign: str
     vary: tuple[dict[str, tuple[Any, ...]], ...] = ()
+    along: tuple[tuple[float, float], ...] | None = None
+    state: str = UNIFORM_STATE
 
     def __post_init__(self) -> None:
         count = sum(prod(map(len, lists.values())) for lists in self._products)
@@ -308,7 +319,36 @@ class Scene:
         """Contact of the punch, or of the prescribed pressure, and the solid under the first load."""
         pressure = LinearPressure(*np.array(self.solve.pressure).T) if self.solve.own_pressure else None
         strength = self.half_plane.yield_strength
-        return make_contact(self.solid, self.punch.profile, self.punch.load, pressure, strength)
+        along = None if _not_varying(self) else self.along
+        return make_contact(self.solid, self.punch.profile, self.punch.load, pressure, strength, along)
+
+    @cached_property
+    def along(self) -> dict[float, Along]:
+        """σ_XY/σ_YY over X/a, by its mean, where it varies along the contact: by speed and law.
+
+        Raises:
+            ValueError: a law refuses its parameters.
+        """
+        friction, a = self.friction, float(half_width(self.punch.profile))
+        if friction.along is not None:
+            law = next(friction.laws())
+            means = {
+                friction.stress_ratio * float(law.friction(law.rest(), s, 0.0)) + 0.0 for s in (1, -1)
+            }
+            scale = max(means)
+            return {g: tabulated(friction.along, g / scale if scale else 1.0) for g in sorted(means)}
+        if friction.state != ADVECTED:
+            return {}
+        V = self.motion.speed or tuple(c * self.solid.c_s for c in self.motion.c or ())
+        each: dict[float, Along] = {}
+        for speed in dict.fromkeys(V) if friction.law.depends_on_speed else V[:1]:
+            for law in friction.laws():
+                along = advected(law, self.legs[0].s, speed, a, friction.stress_ratio)
+                g = along.mean
+                while g in each:  # another law with the same mean
+                    g = float(np.nextafter(g, np.inf))
+                each[g] = along
+        return each
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -385,6 +425,21 @@ def contradictions(scene: Scene) -> list[str]:
         faults.append(
             'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are'
         )
+    varies = scene.friction.along is not None or scene.friction.state == ADVECTED
+    if varies and (found := _not_varying(scene)):
+        faults.append(
+            f"friction varies along the contact, but found {found}; expected steady sliding of a flat "
+            "punch that is not tilted on a solid without layers, with a direct solver"
+        )
+    elif varies and FEM in solve.methods:
+        try:
+            crowded = crowded_kinks(scene.body.friction_kinks)
+        except ValueError as error:
+            crowded = str(error)
+        if crowded:
+            faults.append(
+                f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
+            )
     fixed = solve.degree is not None
     if not fixed and solve.cuts != 1:
         faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")
@@ -394,6 +449,25 @@ def contradictions(scene: Scene) -> list[str]:
     if own and solve.mode != "traction":
         faults.append('solve.pressure needs solve.mode = "traction"')
     return faults
+
+
+def _not_varying(scene: Scene) -> str:
+    """Reason why friction cannot vary along the contact, "" where it can."""
+    punch, solve = scene.punch.profile, scene.solve
+    reasons = {
+        "a motion in time": scene.time is not None,
+        "a slider": scene.slider is not None,
+        f"a {punch.words()}": not isinstance(punch, Flat) or punch.rise != 0.0,
+        "layers": bool(scene.layers),
+        f'solve.mode = "{solve.mode}"': solve.mode != "contact",
+        f'solve.mesh = "{solve.mesh}"': solve.mesh != "confocal",
+        f'solve.solver = "{solve.solver}"': solve.solver not in ("auto", "direct"),
+        'the quantity "yield"': YIELD in scene.output.quantities,
+        "strokes or positions on them with an advected state": (
+            scene.friction.state == ADVECTED and not scene.steady
+        ),
+    }
+    return " and ".join(reason for reason, holds in reasons.items() if holds)
 
 
 def _of_motion(scene: Scene) -> Iterator[str]:

@@ -28,8 +28,9 @@ from ..console import program
 from ..errors import excerpt, nearest, short
 from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
-from .scene import Friction, HalfPlane, Motion, Output, Punch, Solve, Time
+from .scene import STATES_ALONG, UNIFORM_STATE, Friction, HalfPlane, Motion, Output, Punch, Solve, Time
 from .values import (
+    ALONG,
     DEPTHS,
     POINTS,
     PRESSURE,
@@ -459,6 +460,17 @@ _FRICTION_KEYS = {
         "divided by punch.load it is `sigma0_over_load`. The study's σ₀ = 1.5922 N/µm and N = 55.3 N, "
         'both read per mm of depth, are `"1.5922 N/µm/mm"` and `"55.3 N/mm"`: 28 792 1/m for any depth',
         stands_for="sigma0_over_load",
+    ),
+    "along": Key(
+        ALONG, "f along the contact, pairs [X/a, f]", None,
+        "linear between the pairs, from X/a = -1 to 1, instead of a law; see "
+        "[Friction along the contact](howto_friction.md#friction-along-the-contact)",
+        stands_for="mu_c",
+    ),
+    "state": Key(
+        Choice(STATES_ALONG), "state of the law along the contact", UNIFORM_STATE,
+        '`"uniform"`: that of the stroke all along; `"advected"`: in steady sliding, from rest at the '
+        "leading end on, f of the law over the distance from there",
     ),
     "pre_sliding": Key(
         Number("m", _POSITIVE), "pre-sliding displacement L", 1e-4, "the length of a stroke",

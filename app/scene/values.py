@@ -220,12 +220,23 @@ def _by_key(
     return values
 
 
-def _check_pressure(pairs: Sequence[Sequence[float]]) -> None:
+def _check_over_contact(pairs: Sequence[Sequence[float]]) -> None:
     positions = [x for x, _ in pairs]
     if positions[0] != -1.0 or positions[-1] != 1.0 or positions != sorted(set(positions)):
         raise ValueError("expected positions that grow from X/a = -1 to X/a = 1")
+
+
+def _check_pressure(pairs: Sequence[Sequence[float]]) -> None:
+    _check_over_contact(pairs)
     if not any(σ for _, σ in pairs):
         raise ValueError("found no pressure but 0, expected a σ_YY/(N/2a) below 0")
+
+
+def _check_along(pairs: Sequence[Sequence[float]]) -> None:
+    _check_over_contact(pairs)
+    f = [of for _, of in pairs]
+    if min(f) < 0.0 or not any(f):
+        raise ValueError(f"found f from {min(f):g} to {max(f):g}, expected none below 0, and not all 0")
 
 
 def _check_points(pairs: Sequence[Sequence[float]]) -> None:
@@ -247,10 +258,11 @@ def _check_depths(rows: Sequence[Sequence[float]]) -> None:
         raise ValueError(f"found the depths {excerpt(depths)}, expected {_BY_DEPTH}")
 
 
-#: A pressure by its positions, points below the surface, and constants of a solid by depth.
+#: A pressure and f by their positions, points below the surface, and constants of a solid by depth.
 PRESSURE = Rows(
     ("", ""), 2, '"closed_form" or a list of pairs [X/a, σ_YY/(N/2a)], dimensionless', _check_pressure
 )
+ALONG = Rows(("", ""), 2, "a list of pairs [X/a, f]", _check_along)
 POINTS = Rows(("", ""), 0, "a list of pairs [X/a, Y/a]", _check_points)
 DEPTHS = Rows(("m", "Pa", "", "kg/m^3"), 2, _BY_DEPTH, _check_depths)
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE
+from galinx.solvers.contact import FREE_ENDS, INTENSITIES, OWN_PRESSURE, VARYING
 from galinx.solvers.contact.solution import FLAT, PUNCH, SOLVED
 from galinx.solvers.contact.stresses import flatness
 from galinx.solvers.parameters import Range
@@ -164,6 +164,18 @@ RESULTANT = by_method(
     lambda s, body: s.normal_force * body.force,
     {CLOSED_FORM: {"compared": ("resultant",)}, SIE: {"compared": ("resultant over layers",)}},
     mode=OWN_PRESSURE, accuracy=True,
+)  # fmt: skip
+
+#: Resultant and centre of the tractions where friction varies along the contact, by method.
+RESULTANT_RATIO = by_method(
+    "states/{method}/resultant_ratio", "1", "resultant of sigma_XY over that of sigma_YY", (STATE,),
+    lambda s, _: s.resultant_ratio, {CLOSED_FORM: {}, FEM: {"compared": ("resultant_ratio",)}},
+    mode=VARYING,
+)  # fmt: skip
+PRESSURE_CENTRE = by_method(
+    "states/{method}/pressure_centre", "1", "centre of pressure over the half-width", (STATE,),
+    lambda s, _: s.pressure_centre, {CLOSED_FORM: {}, FEM: {"compared": ("pressure_centre",)}},
+    mode=VARYING, scale=X_OVER_A,
 )  # fmt: skip
 
 #: Share of the larger intensity below which an error is over this share rather than over itself.

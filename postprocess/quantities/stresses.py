@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
-from galinx.solvers.contact import BELOW, ON_SURFACE
+from galinx.solvers.contact import BELOW, ON_SURFACE, VARYING
 from galinx.solvers.contact.free_ends import extreme_in_plane
 from galinx.solvers.contact.solution import OUT_OF_PLANE
 from galinx.solvers.contact.stresses import principal, von_mises
@@ -17,6 +18,7 @@ from .quantity import (
     CLOSED_FORM,
     FEM,
     INSIDE,
+    LOCAL,
     OVER_A,
     POINT,
     QUANTITIES,
@@ -35,6 +37,11 @@ SURFACE_X = Quantity(
     asked_by=ON_SURFACE,
     scale=X_OVER_A,
 )
+RATIO_ALONG = Quantity(
+    "surface/g", "1", "sigma_XY/sigma_YY along the contact, NaN outside", (STATE, POINT),
+    lambda s, body: np.where(s.places.under, body.ratio(s.g, s.places.X), np.nan), LOCAL, VARYING,
+    ON_SURFACE, nan_allowed=BESIDE,
+)  # fmt: skip
 PRESSURE = by_method(
     "surface/{method}/sigma_YY", "N/(2a)", "contact stress", (STATE, POINT),
     lambda s, _: s.surface.σ_YY, {

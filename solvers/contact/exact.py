@@ -80,7 +80,7 @@ class ExactSolution:
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
-        flat = FlatPunch(self.task.response, self.g)
+        flat = self.task.body.edges(self.task.response, self.g)
         α, β = map(self._of, "αβ")
         return Exponents(flat.α + (α > 0.0), flat.β + (β > 0.0))
 
@@ -98,6 +98,16 @@ class ExactSolution:
     def K_I(self) -> NDArray[np.float64]:
         """K_I at the left and the right end, 0 at a free end, (states, 2)."""
         return self._of("K_I")
+
+    @property
+    def resultant_ratio(self) -> NDArray[np.float64]:
+        """Resultant of σ_XY over that of σ_YY, of friction that varies along the contact, (states,)."""
+        return np.array([group.pressure.resultant_ratio for group in self.contacts.groups])[self._rows]
+
+    @property
+    def pressure_centre(self) -> NDArray[np.float64]:
+        """Centre of pressure over a, of friction that varies along the contact, (states,)."""
+        return np.array([group.pressure.pressure_centre for group in self.contacts.groups])[self._rows]
 
     @property
     def normal_force(self) -> NDArray[np.float64]:

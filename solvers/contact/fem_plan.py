@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MeshKind, Requirements
+from galinx.meshes.kind import rings_at_kinks, with_kinks
 from galinx.meshes.layered import OnLayers, on_layers
 from galinx.meshes.rings import QuadMesh, Refinement
 
@@ -200,6 +201,35 @@ FITTED = ("contact", FREE_ENDS)
 _MANY = 8
 
 
+#: Most kinks in a contact; over its half-width, their largest distance from its middle, and their least
+#: distance from each other: cells between kinks that are nearer have no shape.
+_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.99, 1e-3
+
+
+def crowded_kinks(places: Sequence[float] | NDArray) -> str:
+    """Why no mesh is graded towards kinks at positions over the half-width, sorted; "" where one is."""
+    at = np.asarray(places, dtype=float)
+    apart, farthest = np.diff(at).min(initial=1.0), np.abs(at).max(initial=0.0)
+    if len(at) <= _MOST and farthest <= _NEXT_TO_END and apart >= _NEXT_TO_KINK:
+        return ""
+    return (
+        f"{len(at)} kinks under the contact, at {at.round(4).tolist()} (over the half-width); finite "
+        f"elements want at most {_MOST}, none within {1.0 - _NEXT_TO_END:.2g} of an end or "
+        f"{_NEXT_TO_KINK:g} of another"
+    )
+
+
+#: Size of the innermost cells at a kink of friction over the tolerance, and at most: the pressure is
+#: d log d next to it, times the change of the slope of f. Smaller cells lose digits of derivatives.
+_OF_FRICTION, _LARGEST = 500.0, 0.1
+
+
+def with_friction_kinks(refinement: Refinement, kinks: Sequence[float], tolerance: float) -> QuadMesh:
+    """The mesh of a punch with sharp ends, graded towards kinks of friction at positions over a."""
+    size = min(_OF_FRICTION * tolerance, _LARGEST)
+    return with_kinks(refinement, np.array(kinks), rings_at_kinks(refinement, size))
+
+
 @dataclass(frozen=True)
 class FemPlan:
     """Plan of the finite elements of a scene.
@@ -214,14 +244,15 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: True where the scene fixes the degree.
         wanted: requirements on the mesh.
-        mode: ``"contact"``, ``"traction"``, ``OWN_PRESSURE``, ``FREE_ENDS``, ``OWN_MESHES``,
-            ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
+        mode: ``"contact"``, ``"traction"``, ``VARYING``, ``OWN_PRESSURE``, ``FREE_ENDS``,
+            ``OWN_MESHES``, ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
         shared_speeds: True where speeds are shared out over the ranks, each rank with a mesh of its own;
             False where all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
-        drawn: the mesh where it follows interfaces, None elsewhere.
+        drawn: the mesh where it follows interfaces or kinks, None elsewhere.
         tests: moments that recover the pressure over layers, None without layers.
         sweep: speeds of a fit; None where each speed is solved.
+        kinks: positions over a of kinks of friction along the contact.
         shapes: number of polynomials whose sum is the punch under every contact, for free ends.
     """
 
@@ -241,6 +272,7 @@ class FemPlan:
     drawn: QuadMesh | None = None
     tests: PressureMoments | None = None
     sweep: Sweep | None = None
+    kinks: tuple[float, ...] = ()
     shapes: int = 0
 
     @property

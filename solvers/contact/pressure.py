@@ -96,6 +96,10 @@ class Pressure:
         transform[close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
         return transform
 
+    def transforms(self, g: Any, r: NDArray) -> tuple[Any, NDArray, Any]:
+        """σ_XY/σ_YY at r, H[σ_YY], and H[σ_XY] beyond the product of both; ``g`` is a state's ratio."""
+        return g, self.hilbert(r), 0.0
+
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")

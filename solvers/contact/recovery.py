@@ -245,6 +245,18 @@ class ContactFacets:
         widest = np.argmax(self.length)
         self.nodes = (s[self.facets[widest]] - self.start[widest]) / self.length[widest]
 
+    def product(self, factor: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
+        """Map from nodal forces of σ_YY to those of its product with a function of r, (n, n)."""
+        degree = self.facets.shape[1] - 1
+        t, w = roots_legendre(degree + 2)
+        basis, _ = lagrange(self.nodes, (t + 1.0) / 2.0)
+        s = self.start[:, None] + self.length[:, None] * (t + 1.0) / 2.0
+        f = np.reshape(factor(self._chart.surface_position(s.ravel())), s.shape)
+        density, product = self.density(np.eye(len(self._s))), np.zeros((len(self._s), len(self._s)))
+        for facet, length, values in zip(self.facets, self.length, f):
+            product[facet] += (basis.T * (values * w / 2.0 * length)) @ basis @ density[facet]
+        return product
+
     def density(self, forces: NDArray) -> NDArray[np.float64]:
         """Density σ_YY dX/ds at the nodes by nodal forces, (n, ...) each, with the mass matrix."""
         degree = self.facets.shape[1] - 1
@@ -261,10 +273,14 @@ class ContactFacets:
     def stress(self, density: NDArray, r: NDArray) -> NDArray[np.float64]:
         """Stress over N/(2a) at r under the punch, (..., q), by densities at the nodes, (..., n)."""
         s = self._chart.surface_coordinate(r)
+        return self.interpolated(density, r) / self._chart.surface_stretch(s)
+
+    def interpolated(self, nodal: NDArray, r: NDArray) -> NDArray[np.float64]:
+        """Values at r under the punch, (..., q), of functions by their values at the nodes, (..., n)."""
+        s = self._chart.surface_coordinate(r)
         facet = np.clip(np.searchsorted(self.start, s, side="right") - 1, 0, len(self.start) - 1)
         values, _ = lagrange(self.nodes, (s - self.start[facet]) / self.length[facet])
-        density = np.einsum("qi,...qi->...q", values, density[..., self.facets[facet]])
-        return np.asarray(density / self._chart.surface_stretch(s))
+        return np.einsum("qi,...qi->...q", values, nodal[..., self.facets[facet]])
 
 
 #: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.

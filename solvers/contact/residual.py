@@ -23,7 +23,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..layers.kernel import Kernel, Scaled
 from ..solids.half_plane import DATUM, HalfPlane
-from .closed_form import Weighted
 
 #: Panels' ends off all kinks: beyond |x| = 12 all is powers of e^x, beyond 300 it is negligible.
 _OUTER = np.append(np.arange(12.0, 300.0, 8.0), 300.0)
@@ -89,7 +88,7 @@ def _smooth(pressure: Stress, r: NDArray, α: NDArray, β: NDArray) -> NDArray[n
 
 def of_pressure(
     response: HalfPlane,
-    g: NDArray,
+    g: Any,
     exponents: tuple[NDArray, NDArray],
     slope: Stress,
     pressure: Stress,
@@ -97,43 +96,36 @@ def of_pressure(
     breaks: Sequence[float] | NDArray = (),
     layers: Sequence[Scaled] = (),
 ) -> NDArray[np.float64]:
-    """Residual of a pressure in the integral equation, over N̂ times the largest pressure, (states,).
+    """Residual of a pressure in the integral equation, over the largest N̂ times pressure, (states,).
 
     Args:
         response: of the half-plane.
-        g: σ_XY/σ_YY, (states,).
-        exponents: α at the right and β at the left end, (states,) each; their sum is whole.
+        g: σ_XY/σ_YY, (states,), or its function of positions, (n,): (states, n).
+        exponents: α at the right and β at the left end, (states,) each.
         slope: μ v,X under the punch over N/(2a).
         pressure: contact stress over N/(2a).
         kinks: places at which the pressure is not smooth.
         breaks: ends of pieces in which the pressure is a polynomial; none for other pressures.
         layers: kernel of the layers for each state, lengths over its half-width; none without layers.
     """
+    ratio = g if callable(g) else lambda r: g[:, None]
     (α, β), kinks = exponents, np.asarray(kinks, dtype=float)
     s = _AT[np.abs(_AT[:, None] - kinks).min(axis=1, initial=1.0) > _OFF_KINKS]
     # Where a kernel has a logarithm, it has it at the places themselves.
     rough = s if layers and layers[0].rough else np.empty(0)
     sizes = np.append(np.full(len(kinks) + len(rough), _SHORTEST), np.full(len(breaks), 1.0))
     rule = Rule(np.concatenate([kinks, rough, breaks]), sizes)
-    p, at = rule.smooth(pressure, α, β), _smooth(pressure, s, α, β)
-    order = np.round(α + β).astype(int)
-    H = np.empty_like(at)
-    for kind in np.unique(order).tolist():
-        rows_of_order = order == kind
-        ends = α[rows_of_order, None], β[rows_of_order, None]
-        H[rows_of_order] = Weighted(*ends, 1.0, 0.0, kind).hilbert(s) * at[rows_of_order]
-    weights = rule.weights(α, β) / np.pi
-    # Σ w (p(t) - p(s))/(t - s): a matrix times p(t), less the part of p(s).
-    divided = 1.0 / (rule.t[:, None] - s)
-    H += (weights * p) @ divided - at * (weights @ divided)
-    σ = pressure(s)
-    own = (response.n + g * response.n12)[:, None]
-    defect = own * H - (g * response.q)[:, None] * σ - slope(s)
-    loads = rule.weights(α, β) * p
+    loads, σ = rule.weights(α, β) * rule.smooth(pressure, α, β), pressure(s)
+    own, own_there = (response.n + ratio(r) * response.n12 for r in (s, rule.t))
+    # (1/π) ⨍ τ(t)/(t - s) dt of τ = N̂ σ: the part of τ(s) is a logarithm.
+    divided, none = 1.0 / (rule.t[:, None] - s) / np.pi, np.zeros(1)
+    of_constant = np.log((1.0 - s) / (1.0 + s)) / np.pi - (rule.weights(none, none) @ divided)
+    H = (own_there * loads) @ divided + own * σ * of_constant
+    defect = H - response.q * ratio(s) * σ - slope(s)
     for i, kernel in enumerate(layers):
         by_kernel = kernel(s[:, None] - rule.t)
-        defect[i] += (by_kernel[..., 3] + g[i] * by_kernel[..., 2]) @ loads[i]
-    return np.asarray(np.abs(defect).max(axis=1) / (own[:, 0] * np.abs(σ).max(axis=1)))
+        defect[i] += (by_kernel[..., 3] + by_kernel[..., 2] * ratio(rule.t)[i]) @ loads[i]
+    return np.asarray(np.abs(defect).max(axis=1) / np.abs(own * σ).max(axis=1))
 
 
 def of_contact(
@@ -149,7 +141,8 @@ def of_contact(
     """Residual :func:`of_pressure` for the contact of a punch, (states,).
 
     Args:
-        response, g, pressure, kinks, breaks: as in :func:`of_pressure`.
+        response, pressure, kinks, breaks: as in :func:`of_pressure`.
+        g: means of σ_XY/σ_YY, (states,).
         local: exponents α and β, (states,).
         body: punch and half-plane, under the load of each state.
         lengths: middle and half-width of each contact [m], (states,), with free ends.
@@ -164,7 +157,10 @@ def of_contact(
         return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
 
     layers = _kernels(response, h) if len(response.depths) else []
-    return of_pressure(response, g, (local.α, local.β), slope, pressure, kinks, breaks, layers)
+    kinks, exponents = [*kinks, *body.friction_kinks], (local.α, local.β)
+    return of_pressure(
+        response, lambda r: body.ratio(g, r), exponents, slope, pressure, kinks, breaks, layers
+    )
 
 
 def _kernels(response: Any, half_widths: NDArray) -> list[Scaled]:
@@ -260,7 +256,7 @@ def indentation(response: HalfPlane, g: NDArray, σ_YY: NDArray, height: Any) ->
 
     Args:
         response: of a uniform half-plane at its speed.
-        g: σ_XY/σ_YY, (states,).
+        g: σ_XY/σ_YY at :func:`places`, (states, n) or (states, 1).
         σ_YY: over N/(2a) at :func:`places`, (states, n).
         height: height of the punch at the left end of the contact over N/(2μ), (states,).
     """
@@ -269,6 +265,6 @@ def indentation(response: HalfPlane, g: NDArray, σ_YY: NDArray, height: Any) ->
     # The exact load is -2: the difference is the part next to the ends of a sharp punch.
     load = weighted.sum(axis=1)
     beyond = np.abs(load / -2.0 - 1.0) > _BEYOND
-    mean = weighted @ np.log((1.0 + X) / DATUM) / load
-    v = -2.0 * (-(response.n + g * response.n12) / np.pi * mean + g * response.q / 2.0)
+    own = (response.n + g * response.n12) * weighted @ np.log((1.0 + X) / DATUM)
+    v = -2.0 * (-own / np.pi + (g * weighted).sum(axis=1) * response.q / 2.0) / load
     return np.where(beyond, np.nan, height - v)

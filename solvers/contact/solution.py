@@ -6,6 +6,7 @@ change with a power of the distance, and the largest may lie between samples: a 
 limits there, :class:`Turns`.
 """
 
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SolveError
+from ..friction.along import Along
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
 from ..solids.half_plane import HalfPlane
-from . import FREE_ENDS, OWN_PRESSURE, YIELD
+from . import FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
 from .edges import EdgeExponents, Exponents, under_punch
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
@@ -88,6 +90,8 @@ class Contact:
 
     ends: ClassVar[str]
     found: ClassVar[bool] = False
+    #: Mode of finite elements, "" where that depends on the profile and the solid.
+    fem_mode: ClassVar[str] = ""
 
     @property
     def half_width(self) -> Any:
@@ -175,6 +179,19 @@ class Contact:
         """Normal stress out of the plane at a solution's points inside, over N/(2a), (states, m)."""
         return solution.σ_ZZ if self.layered else self.solid.σ_ZZ(*solution.inside)
 
+    def ratio(self, g: NDArray, X: NDArray) -> NDArray[np.float64]:
+        """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with means g."""
+        return np.asarray(g)[:, None]
+
+    @property
+    def friction_kinks(self) -> tuple[float, ...]:
+        """Positions over a at which friction along the contact is not smooth, in any state."""
+        return ()
+
+    def edges(self, response: HalfPlane, g: NDArray) -> Any:
+        """Local analysis of sharp ends with frictions g, (states,): exponents α and β."""
+        return EdgeExponents(response, g)
+
     def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Exponents of the pressure at the ends of states.
 
@@ -183,7 +200,7 @@ class Contact:
             g: σ_XY/σ_YY under the punch, (states,).
             load: of each state [N/m], (states,); None for this contact's.
         """
-        edges = EdgeExponents(response, g)
+        edges = self.edges(response, g)
         free_left, free_right = self._free_ends(response, g, self.loaded(load).compression).T
         return Exponents(edges.α + free_right, edges.β + free_left)
 
@@ -224,14 +241,14 @@ class Contact:
         """
         return np.column_stack([local.β, local.α]) < 0.0
 
-    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure | None:
-        """Pressure without an equation to solve, over a uniform half-plane; None where there is one.
+    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
+        """Pressures over a uniform half-plane without an equation to solve, each with numbers of states.
 
         Args:
             response: of the half-plane at a speed.
-            g: σ_XY/σ_YY, a column that broadcasts against positions, (states, 1).
+            g: σ_XY/σ_YY, (states,).
         """
-        return None
+        return []
 
     @property
     def _length(self) -> Any:
@@ -303,10 +320,46 @@ class SharpContact(Contact):
     def growth_exponent(self) -> float | None:
         return 0.0 if self.flat else None
 
-    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure | None:
+    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
         from .closed_form import FlatPunch  # SciPy's special functions, a slow import
 
-        return FlatPunch(response, g) if self.flat else None
+        return [(np.arange(len(g)), FlatPunch(response, g[:, None]))] if self.flat else []
+
+
+@dataclass(frozen=True)
+class VaryingContact(SharpContact):
+    """Contact of a flat punch with friction that varies along it, on a uniform solid.
+
+    Attributes:
+        along: σ_XY/σ_YY over X/a by the number g that stands for it in a state, its mean.
+    """
+
+    along: Mapping[float, Along] = field(default_factory=dict)
+
+    modes = (PUNCH, VARYING)  # type: ignore[assignment]
+    fem_mode = VARYING
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        reason = "friction varies along the contact"
+        return super().lacks | {FLAT: reason, YIELD: reason}
+
+    def ratio(self, g: NDArray, X: NDArray) -> NDArray[np.float64]:
+        return np.stack([self.along[each](X) for each in np.asarray(g).tolist()])
+
+    @property
+    def friction_kinks(self) -> tuple[float, ...]:
+        return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
+
+    def edges(self, response: HalfPlane, g: NDArray) -> Exponents:
+        at = self.ratio(g, np.array([-1.0, 1.0]))
+        return Exponents(EdgeExponents(response, at[:, 1]).α, EdgeExponents(response, at[:, 0]).β)
+
+    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
+        from .along import FlatAlong
+
+        each = enumerate(g.tolist())
+        return [(np.array([row]), FlatAlong(response, self.along[value])) for row, value in each]
 
 
 class PrescribedContact(SharpContact):
@@ -326,8 +379,8 @@ class PrescribedContact(SharpContact):
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         return np.tile(self.pressure.values[[0, -1]] != 0.0, (len(local.α), 1))
 
-    def known_pressure(self, response: HalfPlane, g: NDArray) -> Pressure:
-        return self.pressure
+    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
+        return [(np.arange(len(g)), self.pressure)]
 
 
 class FreeEndContact(Contact):
@@ -430,11 +483,14 @@ def make_contact(
     load: Any,
     pressure: LinearPressure | None = None,
     yield_strength: float | None = None,
+    along: Mapping[float, Along] | None = None,
 ) -> Contact:
     """Contact of the kind that a punch, or a prescribed pressure, makes; arguments are its attributes.
 
     Where an end is free the punch determines the pressure, and a prescribed one is left out.
     """
+    if along:
+        return VaryingContact(solid, profile, load, None, yield_strength, along)
     kind: type[Contact] = PrescribedContact if pressure else SharpContact
     if has_free_end(profile):
         kind, pressure = OneFreeContact if any(profile.sharp) else FreeContact, None

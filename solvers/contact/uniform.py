@@ -121,7 +121,8 @@ class Contacts:
         """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (2, rows, points)."""
         r, g = off_tips(r, group.pressure.tips), self.g[group.rows, None]
         σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
-        σ_XX = in_plane(self.response, g, σ_YY, group.pressure.hilbert(r))
+        ratio, H, C = group.pressure.transforms(g, r)
+        σ_XX = in_plane(self.response, ratio, σ_YY, H, self.response.m * C)
         return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
@@ -177,8 +178,8 @@ def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
     """
     if body.shared_ends is None:
         return contacts(response, g, body.profile, body.compression)
-    if pressure := body.known_pressure(response, g[:, None]):
-        return Contacts(response, g, (_fixed(np.arange(len(g)), pressure, body.half_width),))
+    if known := body.known_pressures(response, g):
+        return Contacts(response, g, tuple(_fixed(rows, p, body.half_width) for rows, p in known))
     from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 
     groups, loads = [], np.broadcast_to(body.load, g.shape).tolist()

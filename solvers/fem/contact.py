@@ -300,7 +300,7 @@ class PunchLevel(Level):
         least, single = negligible(work), self.ends.single
         # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
         friction_rest = 0.0 if work.stresses or single else least
-        solved = SlidingPunch(
+        solved = self.sliding(
             space, task.response, self.plan.solver, least, self.ends.heights(self), friction_rest
         )
         self.punch, self.factor = solved, solved.factor
@@ -313,6 +313,10 @@ class PunchLevel(Level):
             if single:
                 solved.destroy()
         self.stress_gauges  # noqa: B018 - cached
+
+    def sliding(self, *punch: Any) -> SlidingPunch:
+        """Punch of the level, of these arguments."""
+        return SlidingPunch(*punch)
 
     def _summed(self, ends: SolvedEnds) -> SolvedEnds:
         """The only state, by its own displacement and nodal forces."""

@@ -15,7 +15,7 @@ from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
 from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, YIELD
-from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned
+from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned, with_friction_kinks
 from .dolfinx_space import DolfinxSpace
 from .space import Space, distribute
 
@@ -136,7 +136,10 @@ def on_finer_cells(plan: FemPlan) -> FemPlan:
     refinement = replace(
         rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
     )
-    return replace(plan, wanted=target, refinement=refinement)
+    plan = replace(plan, wanted=target, refinement=refinement)
+    if not plan.kinks:
+        return plan
+    return replace(plan, drawn=with_friction_kinks(refinement, plan.kinks, target.tolerance))
 
 
 @contextmanager

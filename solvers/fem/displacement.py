@@ -95,7 +95,7 @@ class Displacement:
         u_X, v_X = self.slopes.of(weights)
         places = self._task.places
         σ = np.where(places.under, σ_YY, 0.0)
-        σ_XX = self._task.response.σ_XX(u_X, σ, g[:, None] * σ)
+        σ_XX = self._task.response.σ_XX(u_X, σ, self._task.body.ratio(g, places.X) * σ)
         σ_YY = np.broadcast_to(np.where(places.under, σ_YY, np.nan), σ_XX.shape)
         return Surface(places, σ_YY, σ_XX, raw, v_X)
 

@@ -647,7 +647,11 @@ class MeasuredError:
         far = nearer * kind.truncation(target, margin)
         lean = response.n12 / response.n
         # Without friction nothing leans to a side, but every other of the higher moments needs no side.
-        leaning = np.abs(g) + 0.5 * abs(lean) + _UPRIGHT * (kind.terms(target) > 1)
+        leaning = (
+            np.abs(self._ladder.task.body.ratio(g, _ACROSS)).max(axis=1)
+            + 0.5 * abs(lean)
+            + _UPRIGHT * (kind.terms(target) > 1)
+        )
         of_edges = compliance * leaning / np.abs(1.0 + g * lean) + 1.8 * far
         errors = {}
         for gauge in gauges:

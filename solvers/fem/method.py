@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from galinx.clock import Clock
 
-from ..contact import FREE_ENDS, OWN_PRESSURE
+from ..contact import FREE_ENDS, OWN_PRESSURE, VARYING
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
 from ..contact.method import ContactStress, Solver
 from ..contact.solution import Task
+from .along import VaryingLevel
 from .contact import PunchLevel, shared_mesh
 from .discretisation import Discretisation, quiet_compiler
 from .own_meshes import between_kinks, over_layers
@@ -25,6 +26,7 @@ from .sweep import Trained, train
 LEVELS: dict[str, Any] = {
     "contact": PunchLevel,
     FREE_ENDS: PunchLevel,
+    VARYING: VaryingLevel,
     "traction": FormulaLevel,
     OWN_PRESSURE: PiecesLevel,
     PRESCRIBED_ON_LAYERS: WholeLevel,

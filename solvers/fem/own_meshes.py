@@ -27,7 +27,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.kind import DEGREES, with_kinks
+from galinx.meshes.kind import DEGREES, rings_at_kinks, with_kinks
 from galinx.meshes.rings import Refinement
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
@@ -37,6 +37,7 @@ from ..contact.fem_plan import (
     NEAR_FREE_END,
     OWN_MESHES_KEPT,
     FemPlan,
+    crowded_kinks,
     kind_of,
     no_nearer,
     pressure_moments,
@@ -128,10 +129,6 @@ class EndsLevel(PunchLevel):
         return [Gauge(INTENSITIES, values, np.ones_like(values))]
 
 
-#: Most kinks in a contact; over its half-width, their largest distance from its middle, and their least
-#: distance from each other: cells between kinks that are nearer have no shape.
-_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.98, 3e-3
-
 #: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
 #: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
 _CELLS, _DIGITS = 3.0, 1e-5
@@ -163,14 +160,8 @@ class EndsBetweenKinks(Ends):
         at = (np.array(kinks(body.profile), dtype=float) - self._centre) / self._half_width
         #: Positions of the kinks over the half-width; of those at which stresses are infinite; of others.
         self._places = at[np.abs(at) < 1.0]
-        apart, farthest = np.diff(self._places), np.abs(self._places).max(initial=0.0)
-        if len(self._places) > _MOST or farthest > _NEXT_TO_END or apart.min(initial=1.0) < _NEXT_TO_KINK:
-            raise SolveError(
-                f"the punch has {len(self._places)} kinks under the contact, at "
-                f"{self._places.round(4).tolist()} (over the half-width); finite elements want at most "
-                f"{_MOST}, none within {1.0 - _NEXT_TO_END:.2g} of an end or {_NEXT_TO_KINK:g} of "
-                'another; take methods = ["closed_form"]'
-            )
+        if crowded := crowded_kinks(self._places):
+            raise SolveError(f'the punch has {crowded}; take methods = ["closed_form"]')
         tip = bool(jumps(body.profile))
         self._tips: NDArray[np.float64] = self._places if tip else np.empty(0)
         self._kinks: NDArray[np.float64] = np.empty(0) if tip else self._places
@@ -195,7 +186,7 @@ class EndsBetweenKinks(Ends):
         else:
             order = max((exponent(self._body.profile) or 2.0) - 1.0, 1.0)
             size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
-        return max(0, ceil(log(size) / log(rings.ratio)) - rings.levels)
+        return max(0, rings_at_kinks(rings, size))
 
     def heights(self, level: PunchLevel) -> NDArray[np.float64]:
         X = self._centre + self._half_width * level.r

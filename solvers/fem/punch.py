@@ -97,6 +97,21 @@ class KrylovSpace:
         return self._V[:, self.applied :]
 
     @property
+    def loads(self) -> NDArray[np.float64]:
+        """All loads, (n, loads)."""
+        return self._V
+
+    def load_by(self, loads: NDArray) -> None:
+        """Take orthonormal loads, (n, k), the first of which are those that are applied."""
+        self._V = loads
+
+    def beside(self, loads: NDArray) -> NDArray[np.float64]:
+        """Orthonormal loads, (n, m), that span with those of the space as much as loads (n, k) do."""
+        directions, size, _ = np.linalg.svd(self._beside(loads), full_matrices=False)
+        more, _ = np.linalg.qr(self._beside(directions[:, size > LEAST]))
+        return np.asarray(more)
+
+    @property
     def unsettled(self) -> NDArray[np.float64]:
         """Loads that are applied and have no fields yet, (n, loads)."""
         return self._V[:, len(self.fields) - 1 : self.applied]
@@ -169,9 +184,7 @@ class KrylovSpace:
             g, left = g[short], directions @ rest[:, short]
         answers = [np.linalg.solve(np.eye(len(T)) - value * T, r) for value, r in zip(g, left.T)]
         R = np.column_stack([answer / np.linalg.norm(answer) for answer in answers])
-        loads, size, _ = np.linalg.svd(self._beside(R), full_matrices=False)
-        more, _ = np.linalg.qr(self._beside(loads[:, size > LEAST]))
-        self._V = np.column_stack([self._V, more])
+        self._V = np.column_stack([self._V, self.beside(R)])
 
     def _beside(self, loads: NDArray) -> NDArray[np.float64]:
         """Parts of loads (n, k) that are orthogonal to the others."""

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact.edges import EdgeExponents, Exponents
+from ..contact.edges import Exponents
 from ..contact.free_ends import turns_at_ends
 from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
@@ -62,7 +62,7 @@ class SolvedStates:
     @property
     def local(self) -> Exponents:
         """Exponents of the pressure at the right and the left end."""
-        flat = EdgeExponents(self.task.response, self.contact.g)
+        flat = self.body.edges(self.task.response, self.contact.g)
         return Exponents(flat.α + self.free[:, 1], flat.β + self.free[:, 0])
 
     @cached_property
@@ -79,6 +79,12 @@ class SolvedStates:
     def below(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
         return self.displacement.inside(self.contact.weights)
+
+    @property
+    def centre_of_pressure(self) -> NDArray[np.float64]:
+        """Centre of pressure over the half-width, from the middle, (states,)."""
+        moments = self.contact.tested(self.recovery().moments[:, :2])  # type: ignore[misc]
+        return np.asarray(moments[:, 1] / moments[:, 0])
 
     @property
     def off_equation(self) -> NDArray[np.float64]:
@@ -162,6 +168,16 @@ class Solution:
     def tangential_force(self) -> NDArray[np.float64]:
         """Tangential force over N/2, (states,)."""
         return self._joined(lambda states: states.contact.tangential.sum(axis=1))
+
+    @property
+    def resultant_ratio(self) -> NDArray[np.float64]:
+        """Resultant of σ_XY over that of σ_YY, (states,)."""
+        return self.tangential_force / self.normal_force
+
+    @cached_property
+    def pressure_centre(self) -> NDArray[np.float64]:
+        """Centre of pressure over a, (states,)."""
+        return self._joined(lambda states: states.centre_of_pressure)
 
     @cached_property
     def v0(self) -> NDArray[np.float64]:

@@ -1,0 +1,182 @@
+"""Flat punch on a uniform half-plane whose friction varies along the contact: closed form.
+
+With g(X) = σ_XY/σ_YY, N̂ = n + g n₁₂ and τ = N̂ σ_YY the integral equation is
+
+    H[τ] - cot(πα) τ = 0,   cot πα(X) = g q/N̂,   -1 < α < 0,
+
+and its solution, with H[τ] = cot(πα) τ below the punch and A e^E/(1 + X) beside it,
+
+    τ = A sin(πα) e^E/(1 + X),   E(X) = ⨍ α(t)/(t - X) dt.
+
+Next to the ends it goes with α(1) and β = -1 - α(-1). The transform of σ_XY differs from g times that of
+σ_YY by the regular integral C = (1/π) ∫ (g(t) - g(X)) σ_YY(t)/(t - X) dt; E less its logarithms is such
+an integral, too.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline
+
+from ..friction.along import Along
+from ..solids.half_plane import HalfPlane
+from .edges import EdgeExponents, from_edge, under_punch
+from .pressure import Expansion, Pressure
+from .recovery import Polynomials
+from .residual import Rule
+
+#: Distance from an end within which the pressure less its power is that of the end; distance of places,
+#: over that from the ends, at which a quotient is a derivative, and the step of that.
+_NEXT_TO_END, _SAME, _STEP = 1e-13, 1e-9, 1e-6
+#: Integrals that are held in memory at once.
+_AT_ONCE = 500
+
+
+@dataclass(frozen=True)
+class FlatAlong(Pressure):
+    """Pressure of a flat punch with friction that varies along the contact, at one speed.
+
+    Attributes:
+        response: of the half-plane at that speed.
+        along: σ_XY/σ_YY over X/a.
+    """
+
+    response: HalfPlane
+    along: Along
+
+    def _local(self, r: NDArray) -> EdgeExponents:
+        """Exponents of sharp edges with the friction at r."""
+        return EdgeExponents(self.response, self.along(r))
+
+    @cached_property
+    def α(self) -> float:  # type: ignore[override]
+        return float(self._local(np.ones(1)).α[0])
+
+    @cached_property
+    def β(self) -> float:  # type: ignore[override]
+        return float(self._local(-np.ones(1)).β[0])
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self._amplitude * self._shape(r)
+
+    def _shape(self, r: NDArray) -> NDArray[np.float64]:
+        """Pressure without its weight and amplitude, (n,)."""
+        return np.asarray(self._local(r)._sin / self._compliance(r) * np.exp(self._bounded(r)))
+
+    def _compliance(self, r: NDArray) -> NDArray[np.float64]:
+        """N̂ = n + g n₁₂ at r."""
+        return np.asarray(self.response.n + self.along(r) * self.response.n12)
+
+    def _bounded(self, r: NDArray) -> NDArray[np.float64]:
+        """E without its logarithms of the distances from both ends, (n,)."""
+        at = np.where(np.abs(np.abs(r) - 1.0) < _NEXT_TO_END, np.sign(r) * (1.0 - _NEXT_TO_END), r)
+        α, none = self._local(at).α, np.zeros(1)
+        E = self._divided(lambda t: self._local(t).α, at, self.rule.weights(none, none)[0])
+        right, left = np.log(np.abs(1.0 - at)), np.log(np.abs(1.0 + at))
+        return np.asarray(E + (α - self.α) * right - (α + 1.0 + self.β) * left)
+
+    @cached_property
+    def rule(self) -> Rule:
+        """Quadrature over the contact, graded towards kinks of friction."""
+        return Rule(self.along.kinks)
+
+    def _divided(self, function: Callable[[NDArray], NDArray], r: NDArray, dμ: NDArray) -> NDArray:
+        """∫ (f(t) - f(r))/(t - r) dμ(t) at places r, (n,)."""
+        t, room = self.rule.t, np.abs(1.0 - np.abs(r))
+        step = _STEP * room
+        slope = (function(r + step) - function(r - step)) / (2.0 * step + np.finfo(float).tiny)
+        of_t, of_r, result = function(t), function(r), np.empty(len(r))
+        for first in range(0, len(r), _AT_ONCE):
+            some = slice(first, first + _AT_ONCE)
+            apart = t - r[some, None]
+            same = np.abs(apart) <= _SAME * room[some, None]
+            quotient = (of_t - of_r[some, None]) / np.where(same, 1.0, apart)
+            result[some] = np.where(same, slope[some, None], quotient) @ dμ
+        return result
+
+    @cached_property
+    def _unit_forces(self) -> NDArray[np.float64]:
+        """∫ σ_YY dt of each place of the rule for the amplitude 1, (n,)."""
+        ends = np.array([self.α]), np.array([self.β])
+        return np.asarray(self.rule.weights(*ends)[0] * self._shape(self.rule.t))
+
+    @cached_property
+    def _amplitude(self) -> float:
+        return -2.0 / float(self._unit_forces.sum())
+
+    @property
+    def forces(self) -> NDArray[np.float64]:
+        """∫ σ_YY dt of each place of the rule, (n,)."""
+        return self._amplitude * self._unit_forces
+
+    @property
+    def resultant_ratio(self) -> float:
+        """Resultant of σ_XY over that of σ_YY."""
+        return float(self.forces @ self.along(self.rule.t)) / -2.0
+
+    @property
+    def pressure_centre(self) -> float:
+        """Centre of pressure over a."""
+        return float(self.forces @ self.rule.t) / -2.0
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        return self.transforms(None, np.asarray(r, dtype=float))[1][0]
+
+    def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        local, C = self._local(r), self._divided(self.along, r, self.forces) / np.pi
+        with np.errstate(invalid="ignore", divide="ignore"):
+            size = np.abs(1.0 - r) ** self.α * np.abs(1.0 + r) ** self.β * np.exp(self._bounded(r))
+        τ = self._amplitude * size * np.where(under_punch(r), local._cot * local._sin, np.sign(r))
+        τ = np.where(from_edge(r) == 0.0, np.nan, τ)
+        return self.along(r)[None], ((τ - self.response.n12 * C) / self._compliance(r))[None], C[None]
+
+
+@dataclass(frozen=True)
+class Splines(Polynomials):
+    """Splines that follow a pressure without its weight where friction varies along the contact.
+
+    Next to ends and kinks the pressure less its weight has terms like x log x, so knots gather there; at
+    kinks splines are continuous only, elsewhere as smooth as they can be.
+
+    Attributes:
+        knots: positions over a, those of the ends among them.
+        kinks: those at which splines are continuous only.
+        degree: of the polynomials.
+    """
+
+    knots: tuple[float, ...]
+    kinks: tuple[float, ...]
+    degree: int
+
+    @cached_property
+    def _knots(self) -> NDArray[np.float64]:
+        """Knots as often as the splines' smoothness asks for."""
+        more = [-1.0] * self.degree, list(self.kinks) * (self.degree - 1), [1.0] * self.degree
+        return np.sort(np.concatenate([self.knots, *more]))
+
+    def values(self, r: NDArray, count: int = 0) -> NDArray[np.float64]:
+        return BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
+
+    def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
+        return c @ self.values(np.ravel(r)).T
+
+    def fitted(
+        self, moments: NDArray, α: NDArray, β: NDArray, tests: Callable[[NDArray], NDArray]
+    ) -> Expansion:
+        """Pressure with given moments.
+
+        Args:
+            moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, splines).
+            α, β: exponents at X = a and X = -a, (states,).
+            tests: functions f_k at r, as many as splines, (points, splines).
+        """
+        rule = Rule(self.knots, 1.0)
+        f, f_test, c = self.values(rule.t), tests(rule.t), np.empty_like(moments)
+        for i, w in enumerate(rule.weights(α, β)):
+            size = np.sqrt(w @ f**2)
+            c[i] = np.linalg.solve((f_test / size).T @ (w[:, None] * f / size), moments[i] / size) / size
+        return Expansion(α[:, None], β[:, None], c, self)

@@ -1,0 +1,107 @@
+"""Friction that varies along the contact: given over X/a, or that of bristles that enter it at rest.
+
+In steady sliding bristles belong to the surface. They enter the contact at its leading end, and have
+slipped their distance from that end: f over X/a is f of the law over its slip.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..approximation import legendre_panel
+from .integrate import closely, exactly, work
+from .law import FrictionLaw
+
+#: Points of a panel; last coefficients over the largest value up to which it resolves friction that is
+#: known exactly, and that is integrated.
+_τ, _, _TO_LEGENDRE = legendre_panel(16)
+_EXACT, _INTEGRATED = 1e-12, 1e-7
+#: Half-length of panels over their distance from the nearer end from which on those that resolve nothing
+#: surround a kink, and at which they are no longer halved; most panels of one length.
+_BESIDE, _SHORTEST, _MOST = 1e-3, 1e-8, 400
+#: End of the first panel: panels end at no round number, where kinks are that they would not meet.
+_FIRST = 0.0618033988
+
+
+@dataclass(frozen=True)
+class Along:
+    """σ_XY/σ_YY over the contact.
+
+    Attributes:
+        mean: mean over X.
+        ratio: σ_XY/σ_YY at positions X/a in [-1, 1], (n,): (n,).
+        kinks: positions inside at which it is not smooth.
+    """
+
+    mean: float
+    ratio: Callable[[NDArray], NDArray]
+    kinks: tuple[float, ...] = ()
+
+    def __call__(self, X: NDArray) -> NDArray[np.float64]:
+        """σ_XY/σ_YY at X/a, beside the contact that at its nearer end, in the shape of X."""
+        X = np.clip(X, -1.0, 1.0)
+        return np.asarray(self.ratio(X.ravel())).reshape(X.shape)
+
+
+def tabulated(rows: Sequence[tuple[float, float]], factor: float) -> Along:
+    """Friction linear between rows (X/a, f), from X/a = -1 to 1; σ_XY/σ_YY is ``factor`` times f."""
+    X, f = np.transpose(rows)
+    mean = float(np.diff(X) @ (f[1:] + f[:-1]) / 4.0)
+    return Along(factor * mean, lambda at: factor * np.interp(at, X, f), tuple(X[1:-1].tolist()))
+
+
+def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) -> Along:
+    """Friction of bristles that enter the contact at rest, in steady sliding.
+
+    The punch drags the surface along, so it moves to the side to which σ_XY acts on the surface: towards
+    X > 0 where σ_XY/σ_YY < 0.
+
+    Args:
+        law: the law of friction.
+        s: direction, 1 or -1.
+        V: speed [m/s].
+        a: half-width of the contact [m].
+        stress_ratio: σ_XY/σ_YY over f.
+
+    Raises:
+        ValueError: the law could not be integrated.
+    """
+    leading, start = -s * np.sign(stress_ratio), law.settle(law.rest(), s, V)
+
+    def ratio(X: NDArray) -> NDArray[np.float64]:
+        z = closely(law, start, s, V, 2.0 * a, a * (1.0 - leading * X))
+        return np.asarray(stress_ratio * law.friction(z, s, V))
+
+    mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a, exactly)) / (2.0 * a)
+    known = law.exact(start, s, V, np.zeros(1)) is not None
+    return Along(mean, ratio, _kinks(ratio, _EXACT if known else _INTEGRATED))
+
+
+def _kinks(function: Callable[[NDArray], NDArray], digits: float) -> tuple[float, ...]:
+    """Positions in (-1, 1) at which panels do not resolve a function before they are very short.
+
+    Raises:
+        ValueError: the function is not smooth in between.
+    """
+    left, half = np.array([-1.0, _FIRST]), np.array([1.0 + _FIRST, 1.0 - _FIRST]) / 2.0
+    size, rough = 0.0, list[tuple[float, float]]()
+    while len(left):
+        t = (left + half)[:, None] + half[:, None] * _τ
+        values = function(t.ravel()).reshape(t.shape)
+        size = max(size, float(np.abs(values).max()))
+        unresolved = np.abs(values @ _TO_LEGENDRE[-2:].T).max(axis=1) > digits * size
+        room, middle = half / (1.0 - np.abs(left + half)), left + half
+        beside = unresolved & (room < _BESIDE)
+        rough += zip(half[beside].tolist(), middle[beside].tolist())
+        halved = unresolved & (room > _SHORTEST)
+        if halved.sum() > _MOST:
+            raise ValueError("friction along the contact is too rough to be resolved")
+        left = (left[halved, None] + half[halved, None] * [0.0, 1.0]).ravel()
+        half = np.repeat(half[halved] / 2.0, 2)
+    kinks: list[float] = []
+    for half_length, place in sorted(rough):  # the shortest panel about a kink comes first
+        if all(abs(place - kink) > 2.0 * half_length for kink in kinks):
+            kinks.append(place)
+    return tuple(sorted(kinks))

@@ -1,0 +1,136 @@
+"""Friction that varies along the contact, from a scene to an archive: both methods, what is refused."""
+
+import numpy as np
+import pytest
+from support import THOROUGH
+
+import galinx
+from galinx.app.errors import BadInput
+from galinx.app.results import check
+from galinx.app.scene.read import parse
+
+ISOTROPIC = 'E = "40 GPa"\nnu = 0.3\nrho = 2000'
+ORTHOTROPIC = (
+    'kind = "orthotropic"\nE1 = "40 GPa"\nE2 = "10 GPa"\nE3 = "10 GPa"\nG12 = "5 GPa"\nnu12 = 0.3\n'
+    "nu13 = 0.3\nnu23 = 0.35\nrho = 1600\nangle = {}"
+)
+DAHL = 'state = "advected"\nmodel = "dahl"\nmu_c = {}\nsigma0_over_load = {}\ndelta = {}'
+MAXWELL = 'state = "advected"\nmodel = "maxwell_slip"\nelements = [[{}, 0.2], [1000, 0.3]]'
+LUGRE = (
+    'state = "advected"\nmodel = "lugre"\nmu_c = 0.3\nmu_s = 0.5\nstribeck_velocity = 1e-3\n'
+    "sigma0_over_load = {}"
+)
+
+
+def scene(friction, solid=ISOTROPIC, c=0.3, more=""):
+    return f"[solid]\n{solid}\n[friction]\n{friction}\n[motion]\nc = {c}\n{more}"
+
+
+def random_scene(seed):
+    """A scene of a random solid, speed and friction."""
+    rng = np.random.default_rng(seed)
+    solid = ORTHOTROPIC.format(rng.uniform(0.0, 180.0)) if seed % 3 == 1 else ISOTROPIC
+    laws = [
+        DAHL.format(rng.uniform(0.1, 0.8), 10.0 ** rng.uniform(2.0, 5.0), 1.0),
+        DAHL.format(rng.uniform(0.1, 0.8), rng.uniform(200.0, 1000.0), rng.choice([0.5, 1.5])),
+        MAXWELL.format(rng.uniform(200.0, 700.0)),
+        LUGRE.format(rng.uniform(300.0, 3e4)),
+    ]
+    inner = np.sort(rng.uniform(-0.9, 0.9, rng.integers(0, 4)))
+    f = rng.uniform(0.0, 0.9, len(inner) + 2)
+    rows = [[float(X), float(y)] for X, y in zip([-1.0, *inner, 1.0], f)]
+    tabulated = f'along = {rows}\nsign = "{rng.choice(["physical", "eq25"])}"'
+    friction = tabulated if seed % 2 else laws[seed // 2 % len(laws)]
+    return scene(friction, solid, rng.uniform(0.0, 0.6))
+
+
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (1, 2, 4))
+def test_both_methods_agree_within_tolerance_and_estimate(seed):
+    result = galinx.compute(parse(random_scene(seed)))
+    data = result.data
+    assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
+    for side in ("left", "right"):
+        fem, exact = (data[f"states/{name}/K_I_{side}"] for name in ("fem", "closed_form"))
+        assert (np.abs(fem / exact - 1.0) <= data["states/fem/estimate"]).all()
+    # Without any form of the pressure: from the nodal forces through the mass matrix.
+    X = data["surface/X_over_a"]
+    raw, exact = data["surface/fem/sigma_YY_raw"], data["surface/closed_form/sigma_YY"]
+    np.testing.assert_allclose(raw[:, np.abs(X) < 0.9], exact[:, np.abs(X) < 0.9], rtol=2e-3)
+
+
+def test_a_constant_is_one_number_by_both_methods():
+    one, along = (
+        galinx.compute(parse(scene(f))).data
+        for f in ("mu = 0.4", "along = [[-1, 0.4], [0.3, 0.4], [1, 0.4]]")
+    )
+    for name in ("K_I_left", "K_I_right"):
+        for method, rel in (("closed_form", 1e-12), ("fem", 1e-6)):
+            path = f"states/{method}/{name}"
+            np.testing.assert_allclose(along[path], one[path], rtol=rel)
+    np.testing.assert_allclose(
+        along["states/fem/tangential_force"], one["states/fem/tangential_force"], 1e-9
+    )
+    for path in ("sigma_YY", "sigma_XX"):
+        path = f"surface/closed_form/{path}"
+        np.testing.assert_allclose(along[path], one[path], rtol=1e-12, atol=1e-12)
+
+
+def test_archive_has_friction_over_x_its_resultant_and_the_centre():
+    data = galinx.compute(parse(scene("along = [[-1, 0.2], [1, 0.5]]"))).data
+    X = data["surface/X_over_a"]
+    np.testing.assert_allclose(data["surface/g"][0], np.where(np.abs(X) < 1.0, -0.35 - 0.15 * X, np.nan))
+    assert data["states/f"] == pytest.approx(0.35) and data["states/g"] == pytest.approx(-0.35)
+    ratio, centre = (data[f"states/fem/{name}"][0] for name in ("resultant_ratio", "pressure_centre"))
+    # σ_XY = g σ_YY with g linear: its resultant is g at the centre of pressure.
+    assert ratio == pytest.approx(-0.35 - 0.15 * centre, abs=1e-7) and -0.1 < centre < 0.0
+
+
+@pytest.mark.parametrize(
+    ("friction", "more", "words"),
+    [
+        ("along = [[-1, 0.2], [1, 0.5]]\nmu = 0.3", "", "take mu away"),
+        ("along = [[-0.9, 0.2], [1, 0.5]]", "", "from X/a = -1 to X/a = 1"),
+        ("along = [[-1, -0.2], [1, 0.5]]", "", "none below 0"),
+        ("along = [[-1, 0], [1, 0]]", "", "not all 0"),
+        ("along = [[-1, 0.2], [1, 0.5]]", '[punch]\nprofile = "parabolic"\nradius = 1', "flat punch"),
+        ("along = [[-1, 0.2], [1, 0.5]]", "[time]\nend = 3\n[output]\nquantities = ['time']", "in time"),
+        (DAHL.format(0.5, 1e4, 1.0), 'strokes = ["forward", "backward"]', "strokes"),
+        (DAHL.format(0.5, 1e4, 1.0), '[solve]\nmesh = "box"', 'mesh = "box"'),
+        ("along = [[-1, 0.2], [0, 0.3], [0.0005, 0.3], [1, 0.5]]", "", "0.001 of another"),
+    ],
+)
+def test_what_is_not_computed_is_refused_with_the_reason(friction, more, words):
+    with pytest.raises(BadInput, match=words):
+        parse(scene(friction, more=more))
+
+
+@pytest.mark.parametrize("row", [(0.203, 0.1), (0.2011, 0.6989)])
+def test_kinks_near_each_other_have_cells_between_them(row):
+    result = galinx.compute(parse(scene(f"along = [[-1, 0.2], [0.2, 0.7], {list(row)}, [1, 0.5]]")))
+    assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
+
+
+def test_mirrored_motion_and_friction_mirror_all_results():
+    one, other = (
+        galinx.compute(parse(scene(f'along = {rows}\nsign = "{sign}"'))).data
+        for rows, sign in (
+            ([[-1, 0.2], [0.3, 0.6], [1, 0.1]], "physical"),
+            ([[-1, 0.1], [-0.3, 0.6], [1, 0.2]], "eq25"),
+        )
+    )
+    X = one["surface/X_over_a"]
+    np.testing.assert_allclose(other["surface/X_over_a"], -X[::-1], atol=1e-15)
+    for method, rtol in (("closed_form", 1e-9), ("fem", 1e-7)):
+        for name, sign in (("sigma_YY", 1.0), ("sigma_XX", 1.0)):
+            values = (data[f"surface/{method}/{name}"] for data in (one, other))
+            np.testing.assert_allclose(
+                sign * next(values), next(values)[:, ::-1], rtol=rtol, atol=rtol, equal_nan=True
+            )
+        left, right = one[f"states/{method}/K_I_left"], other[f"states/{method}/K_I_right"]
+        np.testing.assert_allclose(left, right, rtol=rtol)
+
+
+def test_an_archive_is_whole(tmp_path):
+    path = tmp_path / "along.h5"
+    galinx.compute(parse(scene("along = [[-1, 0.2], [1, 0.5]]"))).save(path)
+    assert check.faults(path) == []

@@ -1,0 +1,134 @@
+"""Friction that varies along the contact: closed form against a quadrature of its own in 30 digits."""
+
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+from random_solids import random_solid
+
+from galinx.solvers.contact.along import FlatAlong
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.solution import make_contact
+from galinx.solvers.contact.uniform import contacts_of
+from galinx.solvers.friction.along import advected, tabulated
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.maxwell_slip import MaxwellSlip
+from galinx.solvers.friction.stribeck import Coulomb
+from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.solids.isotropic import Isotropic
+
+PLACES = np.array([-0.999999, -0.93, -0.4, 0.01, 0.35, 0.8, 0.9999])
+ISOTROPIC = Isotropic(2.5e9, 0.3, 1000.0)
+
+
+def reference(response, g, breaks, X, digits=30):
+    """σ_YY/σ_YY(0) in many digits: sin(πα)/(N̂ (1 + X)) exp ⨍ α(t)/(t - X) dt."""
+    with mp.workdps(digits):
+        n, q, n12 = (mp.mpf(float(value)) for value in (response.n, response.q, response.n12))
+
+        def α(t):
+            return -mp.mpf(1) / 2 - mp.atan(g(t) * q / (n + g(t) * n12)) / mp.pi
+
+        def shape(x):
+            x = mp.mpf(float(x))
+            at = α(x)
+            pieces = sorted({mp.mpf(-1), *map(mp.mpf, breaks), x, mp.mpf(1)})
+            E = mp.quad(lambda t: (α(t) - at) / (t - x) if t != x else mp.mpf(0), pieces)
+            E += at * mp.log((1 - x) / (1 + x))
+            return mp.sin(mp.pi * at) / (n + g(x) * n12) / (1 + x) * mp.exp(E)
+
+        middle = shape(0.0)
+        return np.array([float(shape(x) / middle) for x in X])
+
+
+def linear(rows):
+    """g = -f linear between rows, in the precision of the place."""
+
+    def g(t):
+        for (x0, f0), (x1, f1) in pairwise(rows):
+            if t <= x1:
+                share = (t - mp.mpf(x0)) / (mp.mpf(x1) - mp.mpf(x0))
+                return -(mp.mpf(f0) + share * (mp.mpf(f1) - mp.mpf(f0)))
+        return -mp.mpf(rows[-1][1])
+
+    return g
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_closed_form_against_a_quadrature_in_30_digits(seed):
+    rng = np.random.default_rng(seed)
+    solid = random_solid(seed) if seed else ISOTROPIC
+    response = solid.response(rng.uniform(0.0, 0.8) * solid.limit())
+    inner = np.sort(rng.uniform(-0.9, 0.9, rng.integers(0, 4))).tolist()
+    rows = list(zip([-1.0, *inner, 1.0], rng.uniform(0.0, 0.9, len(inner) + 2).tolist()))
+    pressure = FlatAlong(response, tabulated(rows, -1.0))
+    found = pressure.σ_YY(PLACES) / pressure.σ_YY(np.zeros(1))
+    np.testing.assert_allclose(found, reference(response, linear(rows), inner, PLACES), rtol=1e-9)
+
+
+@pytest.mark.parametrize("stiffness", [10.0, 1e3, 1e5])
+def test_advected_dahl_against_a_quadrature_in_30_digits(stiffness):
+    response, μ, a = ISOTROPIC.response(0.4), 0.7, 1e-3
+    along = advected(Dahl(μ, stiffness, 1.0), 1, 1.0, a, -1.0)
+
+    def g(t):  # it enters at X = a, at rest
+        return -mp.mpf(μ) * (1 - mp.exp(-mp.mpf(stiffness) / mp.mpf(μ) * mp.mpf(a) * (1 - t)))
+
+    pressure = FlatAlong(response, along)
+    found = pressure.σ_YY(PLACES) / pressure.σ_YY(np.zeros(1))
+    layer = [1 - s * μ / (stiffness * a) for s in (0.1, 1, 4, 10) if s * μ / (stiffness * a) < 1.5]
+    np.testing.assert_allclose(found, reference(response, g, layer, PLACES), rtol=1e-9)
+    at_trailing_end = FlatPunch(response, μ * np.expm1(-2.0 * stiffness * a / μ))
+    assert pressure.α == -0.5 and pressure.β == pytest.approx(at_trailing_end.β, rel=1e-12)
+
+
+@pytest.mark.parametrize("f", [0.0, 0.3, 0.9])
+@pytest.mark.parametrize("seed", [0, 2])
+def test_constant_friction_is_one_number(f, seed):
+    solid = random_solid(seed) if seed else ISOTROPIC
+    response, X = solid.response(0.5 * solid.limit()), np.array([-3.0, -1.01, *PLACES, 1.0001, 2.0])
+    one, none = FlatPunch(response, -f), np.where(np.abs(X) < 1.0, 1.0, 0.0)
+    contact = make_contact(
+        solid, Flat(1e-3), 1.0, along={-f: tabulated([(-1, f), (0.2, f), (1, f)], -1.0)}
+    )
+    contacts = contacts_of(contact, response, np.array([-f]))
+    σ_XX, σ_YY = contacts.on_surface(X)
+    np.testing.assert_allclose(σ_YY[0], np.nan_to_num(one.σ_YY(X)) * none, rtol=1e-12)
+    np.testing.assert_allclose(σ_XX[0], one.σ_XX(X), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(contacts.of("K_I")[0], one.K_I, rtol=1e-12)
+    pressure = contacts.groups[0].pressure
+    assert pressure.resultant_ratio == pytest.approx(-f, abs=1e-12)
+    assert pressure.pressure_centre == pytest.approx(one.β - one.α, abs=1e-12)
+
+
+def test_stiff_bristles_come_to_one_friction_as_their_length_predicts():
+    response, off = ISOTROPIC.response(0.3), []
+    for stiffness in (1e4, 1e5, 1e6, 1e7):
+        pressure = FlatAlong(response, advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, 1e-3, -1.0))
+        off.append(abs(float(pressure.σ_YY(np.zeros(1))[0] / FlatPunch(response, -0.6).σ_YY(0.0) - 1.0)))
+    # The pressure changes where friction does, in proportion to the length over which it grows.
+    np.testing.assert_allclose(np.divide(off[1:], off[:-1]), 0.1, rtol=0.1)
+
+
+def test_mirrored_friction_mirrors_the_pressure():
+    response = ISOTROPIC.response(0.5)
+    one = FlatAlong(response, tabulated([(-1, 0.2), (0.3, 0.6), (1, 0.1)], -1.0))
+    other = FlatAlong(response, tabulated([(-1, 0.1), (-0.3, 0.6), (1, 0.2)], 1.0))
+    np.testing.assert_allclose(one.σ_YY(PLACES), other.σ_YY(-PLACES), rtol=1e-9)
+    law = Dahl(0.5, 2e3, 1.0)
+    forward, backward = (advected(law, s, 1.0, 1e-3, -1.0) for s in (1, -1))
+    np.testing.assert_allclose(forward(PLACES), -backward(-PLACES), rtol=1e-12)
+    assert forward(np.ones(1)) == 0.0 and forward(-np.ones(1)) < -0.45
+
+
+def test_an_advected_law_without_memory_is_one_number():
+    along = advected(Coulomb(0.4), 1, 1.0, 1e-3, -1.0)
+    assert along.mean == pytest.approx(-0.4, rel=1e-15) and not along.kinks
+    np.testing.assert_array_equal(along(PLACES), -0.4)
+
+
+def test_kinks_of_a_law_are_found_where_its_elements_slip():
+    law = MaxwellSlip(((400.0, 0.2), (1000.0, 0.3)))
+    along = advected(law, 1, 1.0, 1e-3, -1.0)
+    np.testing.assert_allclose(along.kinks, [1.0 - 0.5, 1.0 - 0.3], atol=1e-7)

@@ -56,9 +56,8 @@ _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 _HEAD = """\
 # Gallery
 
-Written by `docs/make.py` from the scenes in `scenes/`, which the headings name. Every picture is a
-figure that `plot` makes of the scene's archive, or one that `./run.sh` writes into `results/`; its
-name follows it. Copy a scene and change it:
+The headings name scenes in `scenes/`. Below each picture stands the file that `plot` makes of the
+scene's archive, or `./run.sh` in `results/`. Copy a scene and change it:
 
 ```console
 ./run.sh init fig8 -o mine.toml
@@ -77,7 +76,7 @@ def page() -> str:
     for name, (figure, seen) in SHOWN.items():
         parts.append(
             f"## `{name}`\n\n{known[name].about}\n\n"
-            f"[![{figure} of {name}](figures/gallery/{name}.png)](figures/gallery/{name}.png)\n\n"
+            f"[![{name}](figures/gallery/{name}.png)](figures/gallery/{name}.png)\n\n"
             f"*{seen}* `{_called(name, figure)}`\n"
         )
     others = "\n".join(f"- `{name}`: {known[name].about}" for name in known if name not in SHOWN)

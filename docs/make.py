@@ -33,12 +33,11 @@ the folder you are in. Exit status:
 | 3 | failure of program or machine, or interrupted |
 
 SIGINT (Ctrl-C), SIGTERM, SIGHUP and a killed rank end a command at once, with status 3 and one message.
-What a run has finished is kept for `--resume`. Signals that were ignored at the start, as by `nohup`,
-stay ignored.
+What a run has finished is kept for `--resume`.
 
 A file appears under its name when it is whole. What is made from an archive is replaced unasked. Scenes,
-archives and what galinx did not make are replaced with `--overwrite` only. Files that a command reads,
-folders, devices and FIFOs never are. Links are followed, and `--log` adds to logs only.
+archives and what galinx did not make are replaced with `--overwrite` only, files that a command reads
+never. `--log` adds to logs only.
 
 Words that `run.sh` knows besides the commands:
 
@@ -88,16 +87,14 @@ c = 0.3                          # over the shear wave speed
 - A number is in the unit of its row, dimensionless where there is none. A text carries its own unit:
   `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, `"25000 1/m"`, with `*`, `/` and whole powers `^`. `"5 %"`
   is 0.05. A unit of another dimension is an error; so are degrees, counts and bits for numbers.
-- `c` or `speed`, `load`, `X_over_L` and the numbers and words of a friction law may be lists or ranges.
-  All combinations are computed, each on all `strokes`. Each combination is a state, numbered from 0.
-  `c` changes most slowly, then the load, the law's parameters in the order of their rows, stroke,
-  position.
+- `c` or `speed`, `load`, `X_over_L` and the parameters of a friction law may be lists or ranges. Each
+  combination is a state, numbered from 0, on all `strokes`. `c` changes most slowly, then the load, the
+  law's parameters in the order of their rows, stroke, position.
 - Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
-  too: `radius = ["2 mm", "5 mm"]`. The scene then stands for one scene with each combination of these
-  numbers, whose states follow each other in one archive; the number that stands last changes fastest of
-  them.
-- Each table `[[friction.vary]]` is such a product of its own; it takes what it leaves out from
-  [friction]. These are 4 laws, since 0.5 with 25 000 /m is in both tables:
+  too: `radius = ["2 mm", "5 mm"]`. All combinations follow each other in one archive; the last number
+  changes fastest.
+- Each table `[[friction.vary]]` is a product of its own; it takes what it leaves out from [friction].
+  Here 4 laws result, since 0.5 with 25 000 /m is in both tables:
 
 ```toml
 [friction]
@@ -116,11 +113,10 @@ sigma0_over_load = ["12500 1/m", "25000 1/m"]
   [Extend galinx](howto_extend.md) adds others.
 - Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a file
   of them, `"rows.csv"`.
-- An unknown key is an error; the message names the nearest known key.
-- Results call strokes FM1, FM2, … (forward) and BM1, BM2, … (backward).
+- Without a default a key may be left out. An unknown key is an error.
+- Results call strokes FM1, … (forward) and BM1, … (backward).
 
-Editors complete and check scenes by `scenes/scene.schema.json`, the output of `./run.sh schema`, which
-the first line of the scenes in `scenes/` names.
+Editors complete and check scenes by `scenes/scene.schema.json`, which `./run.sh schema` prints.
 
 `title`, free text before the sections, is shown above tables and figures.
 """
@@ -145,41 +141,44 @@ with h5py.File("out.h5") as file:
 
 [Read archives](howto_read_archive.md) shows other ways.
 
-METHOD in a path stands for the methods of the column "with": `closed_form`, `sie` (integral equation)
-or `fem` (finite elements). The column also has words of `solve.mode` and `output.quantities`, and what
-else it takes: a punch of sharp edges (punch) or with free ends, a pressure of your own, finite
-stresses, a single method, fitted speeds. Where it is empty, the run, or the method in the path, writes
-the dataset in any case. Words with a slash between them follow the order of the names in their row.
-Values without a unit are dimensionless; NaN means that there may be no answer. Each parameter of a
-friction law is a dataset `/states/KEY`, each swept number of another section `/states/SECTION.KEY`, as
-`/states/solid.E`, in the SI unit of [its row](scene.md#friction). [Your own quantities](howto_extend.md)
-come beside these.
+- METHOD in a path is `closed_form`, `sie` (integral equation) or `fem` (finite elements); the column
+  "with" names the methods where not all give the dataset.
+- The column also has words of `solve.mode` and `output.quantities`, and what else a dataset needs: sharp
+  edges (punch) or free ends, a pressure of your own, friction along the contact, finite stresses, one
+  method, fitted speeds.
+- Words with a slash between them follow the order of the names in their row.
+- Values without a unit are dimensionless. NaN: there may be no answer.
+- The place of the largest or smallest value NAME is `NAME_X_over_a` along the surface and, where it may
+  lie inside, `NAME_Y_over_a` outwards, over the half-width. The tables leave these out.
+- A parameter of a friction law is `/states/KEY`. A swept number of another section is
+  `/states/SECTION.KEY`, as `/states/solid.E`. Both have the SI unit of [their row](scene.md#friction).
+- [Your own quantities](howto_extend.md#a-quantity) come beside these.
 """
 
 _WHOLE = """\
 ## What is read
 
-Every command reads archives through `postprocess/hdf5/archive.py`. A fault ends it with one message and
-status 2.
+A fault of an archive ends every command with one message and status 2.
 
 1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow. It is
    verified before HDF5 opens the file. `head -n 3 out.h5` shows it, `tail -c +513 out.h5 | sha256sum`
    computes it.
-2. Names, types, shapes, units, ranges and attributes must be those of this page. Numbers are finite
-   unless this page, `run/failures` or `comparisons` says otherwise.
+2. Names, types, shapes, units and attributes must be those of this page, and values in their range.
+   Numbers are finite unless this page, `run/failures` or `comparisons` says otherwise.
 
 `check` also repeats the friction, the comparisons and the verdict. For archives of its own version it
-knows which datasets the scene asks for, and computes some again: closed forms of all states under flat
-punches, of 24 under other smooth ones, of 6 under those with kinks (of 3 where stresses are largest);
-integral equations of 4 states over layers; indentations; sizes of linear systems; warnings. It compares
-finite elements with closed forms to 1 %, even if the scene does not ask for both. It does not cover
-`run/seconds`, the record of solves in `run/fem`, `sigma_YY_raw`, places of largest stresses by finite
-elements, stresses over layers by these alone, motions in time and of sliders. A contradiction is a
-fault, status 1. Whoever changes numbers consistently and computes the digest again has made another
-archive.
+computes some results again:
 
-Archives of schema version 1 have no digest and are not read. Archives of version 2 have no attributes of
-their solid and its speeds.
+- closed forms of all states under flat punches, of 24 under other smooth ones, of 6 under those with
+  kinks (of 3 where stresses are largest),
+- integral equations of 4 states over layers,
+- indentations, sizes of linear systems, warnings.
+
+It compares finite elements with closed forms to 1 %. It does not check `run/seconds`, `run/fem`,
+`sigma_YY_raw`, places of largest stresses by finite elements, stresses over layers by these alone,
+motions in time and of sliders. A contradiction ends it with status 1.
+
+Archives of schema version 1 are not read. Those of version 2 lack attributes of solid and speeds.
 """
 
 _ATTRIBUTES = """\
@@ -191,7 +190,7 @@ _COMPARISONS = """\
 ## Comparisons
 
 The attribute `comparisons` has the largest value over all states by these texts. The verdict is FAIL
-where one exceeds its limit. T is `solve.tolerance`.
+where one exceeds its limit. T is `solve.tolerance`. Texts with [brackets] stand for two comparisons.
 
 """
 
@@ -245,19 +244,18 @@ def scene_page() -> str:
     parts = [_SCENE]
     for name, section in SECTIONS.items():
         parts += [f"## {section.heading.format(name)}\n", *_section(section)]
-    parts.append("## Materials\n\nNames for `solid.material`; `./run.sh materials` prints them.\n")
+    parts.append("## Materials\n\n`./run.sh materials` prints the same, with the kind of each.\n")
     rows = [
         (
             f"`{n}`",
             m.about,
-            f"`{m.kind}`",
             m.told.replace(" (dimensionless)", ""),
             m.source,
             f"{m.yield_strength}, {m.yield_source}" if m.yield_strength else "–",
         )
         for n, m in LIBRARY.items()
     ]
-    heads = ("name", "solid", "kind", "constants", "source", "yield strength")
+    heads = ("name", "solid", "constants", "source", "yield strength")
     parts.append(_table(heads, rows))
     return "\n".join(parts)
 
@@ -274,7 +272,10 @@ def archive_page() -> str:
         rows = [
             row
             for path, row in known.items()
-            if path.startswith(f"{group}/") and not _laws(row) and "." not in path
+            if path.startswith(f"{group}/")
+            and not _laws(row)
+            and not _place(path, known)
+            and "." not in path  # a swept number of another section
         ]
         (word, *others) = {row.asked_by for row in rows}
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
@@ -282,8 +283,13 @@ def archive_page() -> str:
         told += [f"Shape, if no other is given: {over}."] * (count > 1)
         table = _table(("dataset", "what", "values", "with"), _datasets(rows, bool(others), over))
         parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
-    rules = [(rule.text, _limit(rule)) for rule in RULES.values()]
-    parts.append(_COMPARISONS + _table(("comparison", "at most"), rules))
+    rules: dict[str, list[str]] = {}
+    for rule in RULES.values():
+        rules.setdefault(_limit(rule), []).append(rule.text)
+    parts.append(_COMPARISONS.rstrip("\n") + "\n")
+    for limit, texts in rules.items():
+        listed = "".join(f"- {text}\n" for text in _both(texts))
+        parts.append(f"{limit[0].upper()}{limit[1:]}:\n\n{listed}")
     return "\n".join(parts)
 
 
@@ -322,7 +328,7 @@ def _section(section: Any) -> list[str]:
     heads = ("key", "value", "default", "meaning")
 
     def rows(keys: dict[str, Any]) -> list[tuple[str, ...]]:
-        return [_row(key, known, section.or_else) for key, known in keys.items()]
+        return [_row(key, known) for key, known in keys.items()]
 
     alternatives = section.alternatives
     if "" in alternatives:
@@ -348,29 +354,37 @@ def _section(section: Any) -> list[str]:
         (row[0], "all" if len(of) == len(alternatives) else ", ".join(of), *row[1:])
         for row, of in merged.items()
     ]
-    named = [
-        f"`{model}`: {models[model].about}" for model in alternatives if models[model].about != model
-    ]
+    abouts = {model: models[model].about for model in alternatives}
+    if section is SECTIONS["friction"]:
+        named = "[Friction laws](howto_friction.md#which-law) says what each is for. "
+    else:
+        named = "".join(f"`{model}`: {about}. " for model, about in abouts.items() if about != model)
+    if section is SECTIONS["solid"]:
+        named += "A `material` gives what is required. "
+    shared = [(", ".join(f"`{key}`" for key in keys), *rest, about) for keys, about, rest in _merged(
+        [([key.strip("`")], about, tuple(rest)) for key, *rest, about in shared]
+    )]  # fmt: skip
     return [
         *parts,
-        f"Keys of each `{chosen}`" + f" ({'; '.join(named)})" * bool(named) + ":\n",
+        f"{named}Keys of each `{chosen}`:\n",
         _table((heads[0], chosen, *heads[1:]), shared),
     ]
 
 
-def _row(key: str, known: Any, or_else: str) -> tuple[str, ...]:
-    """A key's row; ``or_else`` is what else would do where it is missing."""
+def _row(key: str, known: Any) -> tuple[str, ...]:
+    """A key's row."""
     from galinx.app.scene.library import LIBRARY
     from galinx.app.scene.sections import REQUIRED, entry
 
     described = entry(known)
     if known.default is REQUIRED:
-        default = f"required{or_else}"
+        default = "required"
     elif "default" in described:
         empty = described["default"] == []
         default = known.without if empty else f"`{json.dumps(described['default'], ensure_ascii=False)}`"
     else:
         default = known.without
+    default = "" if default == "none" else default
     of_library = getattr(known.kind, "options", None) is LIBRARY
     allowed = "[materials](#materials)" if of_library else _allowed(described)
     meaning = "; ".join(filter(None, (known.about, known.note)))
@@ -386,6 +400,23 @@ def _laws(row: Any) -> list[str]:
 
     name = row.path.rpartition("/")[2]
     return [law for law, model in LAWS.items() if row.symbol and name in parameters(model)]
+
+
+def _place(path: str, known: dict[str, Any]) -> bool:
+    """Whether a dataset is the place of the largest or smallest value that another one holds."""
+    ends = ("_X_over_a", "_Y_over_a")
+    return any(path.endswith(end) and path.removesuffix(end) in known for end in ends)
+
+
+def _both(texts: list[str]) -> list[str]:
+    """Comparisons; two that differ in their being made with the integral equation are one text."""
+    against = " against the integral equation"
+    shorter = {text.replace(against, "") for text in texts if against in text}
+    return [
+        text.replace(against, f" [{against.strip()}]") if text.replace(against, "") in texts else text
+        for text in texts
+        if against in text or text not in shorter
+    ]
 
 
 def _method(row: Any) -> str:
@@ -407,7 +438,7 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
     ``asked``: with the word of output.quantities that asks for them; ``usual``: shape that is left out.
     """
     from galinx.app.methods import MODES
-    from galinx.postprocess.quantities.quantity import ANYWHERE, LOCAL, METHODS, NUMBER, TEXT, WHOLE
+    from galinx.postprocess.quantities.quantity import ANYWHERE, METHODS, NUMBER, TEXT, WHOLE
 
     kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
     of_methods: dict[str, list[Any]] = {}
@@ -418,17 +449,11 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
     for path, same in of_methods.items():
         row, methods = same[0], [_method(r) for r in same]
         if len(same) == 1:
-            path, methods = row.path, ["any method"] * (methods == [LOCAL])
+            path = row.path
         nan = any(r.nan_allowed == ANYWHERE for r in same)
         over, unit = " × ".join(row.over), row.unit if row.unit not in ("none", "1") else ""
-        values = (over if over != usual else "", kinds[row.type], unit, str(row.range), "NaN" * nan)
-        words = (
-            ["any method"]
-            if len(same) == len(METHODS)
-            else methods
-            if len(same) == 1
-            else [f"`{m}`" for m in methods]
-        )
+        values = (over if over != usual else "", kinds[row.type], unit, "NaN" * nan)
+        words = [f"`{m}`" for m in methods if len(METHODS) > len(same) > 1]
         # Modes of the scene are code; others are words, of which one is an older name.
         words += [f"`{row.mode}`" if row.mode in MODES else row.mode.replace("found", "free")]
         words += [f"`{row.asked_by}`"] * bool(row.asked_by and asked)
@@ -476,8 +501,11 @@ def _limit(rule: Any) -> str:
     """Largest value of a PASS."""
     if rule.tolerances is not None:
         limit = "T" if rule.tolerances == 1.0 else f"{rule.tolerances:g} T"
+    elif rule.limit is None:
+        limit = "shown only"
     else:
-        limit = "shown only" if rule.limit is None else f"{rule.limit:g}"
+        limit = f"{rule.limit:g}"
+    limit = limit if limit == "shown only" else f"at most {limit}"
     return limit + f", mode `{rule.mode}`" * bool(rule.mode)
 
 
@@ -513,6 +541,9 @@ def _plain(text: str) -> str:
 
 
 def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """A table, without the columns that are empty in all rows."""
+    full = [i for i in range(len(heads)) if any(row[i] for row in rows)]
+    heads, rows = tuple(heads[i] for i in full), [tuple(row[i] for i in full) for row in rows]
     lines = [heads, ("---",) * len(heads)] + [[c.replace("|", "\\|") for c in row] for row in rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 

@@ -147,7 +147,7 @@ def test_output_of_other_commands_becomes_tables(accuracy, tmp_path):
             file[f"{name}/verdicts"] = texts
             file[f"{name}/verdicts"].attrs["long_name"] = f"about {name}"
     rows = accuracy.of_archive(tmp_path / "stress.h5").splitlines()
-    assert "| speed | about speed | holds: true error at most 0.40 of its estimate, allowed 1 |" in rows
+    assert "| speed | about speed | true error at most 0.40 of its estimate, allowed 1 |" in rows
     assert "| random | about random | FAILS: median 11.0, allowed 10 |" in rows
     assert rows[-2:] == [
         "| box | 1.03 to 7.0, median 3.1; of K_I alone 3.2, up to 9.0; of stresses at least 1.2 |",

@@ -10,6 +10,7 @@ from typing import Any
 
 from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
+from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
@@ -85,6 +86,8 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
     if scene.layers:
         return "the solid has layers, and no closed form"
     lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
+    if scene.elastic_punch and scene.elastic_punch.speed:
+        lacks = lacks | {row.path: "the punch's surface moves, too" for row in SLIP_REVERSED}
     return _refusal(quantity, body, lacks)
 
 
@@ -123,6 +126,8 @@ def fem_mode(scene: Any) -> str:
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
     lacks = _LACKING.get(mode, {})
+    if scene.elastic_punch and body.solid.nearly_incompressible:
+        return "one of two elastic bodies is nearly incompressible; closed_form takes such bodies"
     if scene.layers:
         if body.solid.nearly_incompressible:
             return "a solid is nearly incompressible; the integral equation takes such layers"

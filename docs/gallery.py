@@ -33,6 +33,7 @@ SHOWN = {
     "fibres": ("angles", "A carbon/epoxy ply turned under the punch: speed limit, exponents, K_I."),
     "cylinder": ("surface", "A cylinder: the pressure ends at 0, and friction moves the contact back."),
     "along": ("along", "Bristles that enter the contact at rest: the pressure goes to the leading end."),
+    "elastic_punch": ("surface", "A steel cylinder on aluminium: both deform, at rest and at speed."),
     "shoulders": ("surface", "A flat base with rounded shoulders, on which the contact ends."),
     "coating": ("interfaces", "What a hard coating hands down; tension in it at the trailing edge."),
     "minor_loops": ("friction", "Springs with sliders close small loops and remember where they turned."),
@@ -47,8 +48,8 @@ SHOWN = {
 #: Figure of each scene of recipes.md, or of a scene by its name in scenes/.
 RECIPES = {
     "cylinder": "surface", "coated": "parameters", "crystal": "parameters", "wedge": "surface",
-    "loop": "surface", "start": "time", "stick_slip": "slider", "fast": "parameters",
-    "bristles": "along",
+    "elastic": "parameters", "loop": "surface", "start": "time", "stick_slip": "slider",
+    "fast": "parameters", "bristles": "along",
 }  # fmt: skip
 _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 

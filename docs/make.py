@@ -90,8 +90,9 @@ c = 0.3                          # over the shear wave speed
 - `c` or `speed`, `load`, `X_over_L` and the parameters of a friction law may be lists or ranges. Each
   combination is a state, numbered from 0, on all `strokes`. `c` changes most slowly, then the load, the
   law's parameters in the order of their rows, stroke, position.
-- Any other number of [solid], [[layer]], [punch] and [friction] may be a list or a range, too: `radius =
-  ["2 mm", "5 mm"]`. All combinations follow each other in one archive; the last number changes fastest.
+- Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
+  too: `radius = ["2 mm", "5 mm"]`. All combinations follow each other in one archive; the
+  last number changes fastest.
 - Each table `[[friction.vary]]` is a product of its own; it takes what it leaves out from [friction].
   Here 4 laws result, since 0.5 with 25 000 /m is in both tables:
 
@@ -342,11 +343,8 @@ def _section(section: Any) -> list[str]:
     first = own[next(iter(own))]
     common = {k: known for k, known in keys.items() if k not in first and not known.stands_for}
     parts = [_table(heads, rows(common))]
-    if section is SECTIONS["layer"]:
-        return [
-            *parts,
-            "It needs the constants of a [solid](#solid), `material` or `properties`.\n",
-        ]
+    if section is SECTIONS["layer"] or section is SECTIONS["punch.solid"]:
+        return [*parts, f"The constants are those of [solid](#solid), required{section.or_else}.\n"]
     merged: dict[tuple[str, ...], list[str]] = {}
     for model, keys in alternatives.items():
         for row in rows({k: v for k, v in keys.items() if k in own[model] or v.stands_for}):

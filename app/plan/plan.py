@@ -164,6 +164,11 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
     c_R = scene.solid.limit() if beyond or near else 0.0
     name = "speed limit of the layers" if scene.layers else "Rayleigh speed"
     limit = f"the {name} c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
+    if beyond and scene.elastic_punch:
+        raise BadInput(
+            f"motion: c = {listed(beyond)} is not below {limit}: a wave along the plate's surface is not "
+            "faster than the contact; take lower speeds"
+        )
     if beyond and scene.layers:
         raise BadInput(
             f"motion: c = {listed(beyond)} is not below {limit}: a wave along the layers is not faster "

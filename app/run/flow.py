@@ -61,6 +61,8 @@ def scene_attributes(scene: Scene) -> dict[str, Any]:
         solid_words["yield_strength"] = half_plane.yield_strength
     if scene.layers:
         solid_words |= {f"layer {i}": layer.words() for i, layer in enumerate(scene.layers, 1)}
+    if punch := scene.elastic_punch:
+        solid_words["punch"] = punch.solid.words() + f", at {punch.speed:g} m/s over the contact"
     return {
         "title": scene.title,
         "material": half_plane.material or "",
@@ -193,7 +195,7 @@ def _steady(scene: Scene) -> Steady | None:
     It is infinite from the speed of the wave along the surface on.
     """
     solid = scene.solid
-    if scene.layers or scene.variants or not isinstance(scene.punch.profile, Flat):
+    if scene.layers or scene.elastic_punch or scene.variants or not isinstance(scene.punch.profile, Flat):
         return None
 
     def within(c: float, g: float) -> float:

@@ -16,8 +16,8 @@ from galinx.solvers.solids import SOLIDS
 from ..errors import BadInput, excerpt, nearest, short
 
 #: Keys that a material sets, or that a solid of another kind may not have.
-_CONSTANTS = ["solid.kind", "solid.yield_strength"] + [
-    f"solid.{key}" for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
+_CONSTANTS = ["kind", "yield_strength"] + [
+    key for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
 ]
 
 #: Two names of a number: a new value is given to that name which the scene has.
@@ -157,16 +157,19 @@ def _parameter(key: str) -> str:
 
 
 def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    """Keys of section [solid] that the newly chosen material or kind replaces or does not have."""
-    if "solid.material" in changes:
-        return _CONSTANTS
-    solid = tree.get("solid")
-    old = solid.get("kind", "isotropic") if isinstance(solid, dict) else None
-    kind = changes.get("solid.kind", old)
-    if not isinstance(kind, str) or kind == old or kind not in SOLIDS:
-        return []
-    own = parameters(SOLIDS[kind])
-    return [path for path in ("solid.material", *_CONSTANTS) if path.removeprefix("solid.") not in own]
+    """Keys of both solids that a newly chosen material or kind replaces or does not have."""
+    punch = tree.get("punch")
+    stale: list[str] = []
+    for section, of in (("solid", tree), ("punch.solid", punch if isinstance(punch, dict) else {})):
+        solid = of.get("solid")
+        old = solid.get("kind", "isotropic") if isinstance(solid, dict) else None
+        kind = changes.get(f"{section}.kind", old)
+        if f"{section}.material" in changes:
+            stale += [f"{section}.{key}" for key in _CONSTANTS]
+        elif isinstance(kind, str) and kind != old and kind in SOLIDS:
+            own = parameters(SOLIDS[kind])
+            stale += [f"{section}.{key}" for key in ("material", *_CONSTANTS) if key not in own]
+    return stale
 
 
 def _keys(tree: Mapping[str, Any]) -> dict[str, Any]:
@@ -176,7 +179,10 @@ def _keys(tree: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(value, list) and all(isinstance(table, dict) for table in value):
             values |= {f"{name}[{i}].{key}": table[key] for i, table in enumerate(value) for key in table}
         elif isinstance(value, dict):
-            values |= {f"{name}.{key}": value[key] for key in value}
+            of_section = {f"{name}.{key}": value[key] for key in value}
+            if isinstance(of_punch := of_section.pop("punch.solid", None), dict):
+                of_section |= {f"punch.solid.{key}": entry for key, entry in of_punch.items()}
+            values |= of_section
         else:
             values[name] = value
     return values
@@ -197,7 +203,8 @@ def differences(texts: Iterable[str]) -> dict[str, list[str]]:
 def _change(tree: Any, path: str, value: Any) -> None:
     """Set a key of a scene in place, or remove it where the value is None."""
     *sections, key = path.split(".")
-    if len(sections) > 1 or (not sections and key != "title"):
+    nested = len(sections) > 1 and sections != ["punch", "solid"]
+    if nested or (not sections and key != "title"):
         raise ValueError(f"found {excerpt(path)}, expected section.key, as in friction.mu_c")
     if isinstance(value, str) and len(value) > _LONGEST:
         raise ValueError(f"found a text of {len(value)} characters, expected at most {_LONGEST}")

@@ -253,6 +253,9 @@ _RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers, up to the first with faults."""
+    punch = tree.get("punch")
+    if isinstance(punch, dict) and "solid" in punch:  # a section of its own
+        tree["punch.solid"] = punch.pop("solid") or {"kind": "isotropic"}
     _fill_in_materials(tree)
     before = len(faults)
     swept = _swept(tree, faults)
@@ -324,7 +327,7 @@ def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str,
     """A scene of one value of every swept number."""
     variant = dict(tree)
     for path, value in values.items():
-        section, _, key = path.partition(".")
+        section, _, key = path.rpartition(".")
         name, bracket, number = section.partition("[")
         if bracket:
             tables = list(variant[name])
@@ -358,7 +361,7 @@ def _checked(
         return None
     scene = Scene(
         title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
-        swept=swept, **read,
+        swept=swept, elastic_punch=read.pop("punch.solid"), **read,
     )  # fmt: skip
     if steady and not named and scene.solve.methods:
         scene = replace(scene, output=replace(scene.output, quantities=usual_quantities(scene)))
@@ -370,6 +373,9 @@ def _fill_in_materials(tree: dict[str, Any]) -> None:
     """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
     if "solid" in tree:
         tree["solid"] = _with_constants(tree["solid"])
+    if isinstance(own := tree.get("punch.solid"), dict):  # nothing asks where the punch yields
+        every = _with_constants(own)
+        tree["punch.solid"] = {k: v for k, v in every.items() if k != "yield_strength" or k in own}
     if isinstance(tree.get("layer"), list):
         tree["layer"] = [_with_constants(table) for table in tree["layer"]]
 

@@ -32,6 +32,7 @@ from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles import Profile, half_width
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids import Solid
+from galinx.solvers.solids.pair import Pair
 
 from ..errors import listed
 from .values import Spread
@@ -50,6 +51,26 @@ class HalfPlane:
     solid: Solid
     material: str | None
     yield_strength: float | None
+
+
+@dataclass(frozen=True)
+class ElasticPunch:
+    """[punch.solid]: the solid of an elastic punch, and its speed over the contact [m/s].
+
+    Raises:
+        ValueError: the speed is not below that of the wave along the solid's surface.
+    """
+
+    solid: Solid
+    speed: float
+
+    def __post_init__(self) -> None:
+        limit = self.solid.limit() * self.solid.c_s
+        if self.speed >= limit:
+            raise ValueError(
+                f"found speed = {self.speed:g} m/s, expected less than {limit:.6g} m/s, that of the wave "
+                "along the surface of this solid"
+            )
 
 
 @dataclass(frozen=True)
@@ -258,6 +279,7 @@ class Scene:
         half_plane, punch, friction, motion, solve, output: its sections.
         slider: a mass on a spring, None for none.
         layers: layers on the solid, from the top down.
+        elastic_punch: solid of the punch, None for a rigid one.
         time: a motion in time, None for none.
         steady: True for steady sliding at each speed, of a law without memory and no strokes.
         swept: values of swept numbers by their keys, those of the first variant where it has some.
@@ -275,6 +297,7 @@ class Scene:
     output: Output
     slider: Slider | None = None
     layers: tuple[Layer, ...] = ()
+    elastic_punch: ElasticPunch | None = None
     time: Time | None = None
     steady: bool = False
     swept: Mapping[str, float] = field(default_factory=dict)
@@ -292,8 +315,10 @@ class Scene:
 
     @cached_property
     def solid(self) -> Solid:
-        """The elastic solid, with its layers."""
+        """The elastic solid, with its layers, or with that of an elastic punch."""
         below = self.half_plane.solid
+        if punch := self.elastic_punch:
+            return Pair(below, punch.solid, punch.speed)
         return Layered(self.layers, below) if self.layers else below
 
     @cached_property
@@ -421,6 +446,8 @@ def contradictions(scene: Scene) -> list[str]:
             'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
             "without which σ_ZZ is not known in plane strain"
         )
+    if scene.elastic_punch:
+        faults += _of_elastic_punch(scene, scene.elastic_punch.solid)
     if AT_INTERFACES in quantities and not scene.layers:
         faults.append(
             'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are'
@@ -459,6 +486,7 @@ def _not_varying(scene: Scene) -> str:
         "a slider": scene.slider is not None,
         f"a {punch.words()}": not isinstance(punch, Flat) or punch.rise != 0.0,
         "layers": bool(scene.layers),
+        "an elastic punch": scene.elastic_punch is not None,
         f'solve.mode = "{solve.mode}"': solve.mode != "contact",
         f'solve.mesh = "{solve.mesh}"': solve.mesh != "confocal",
         f'solve.solver = "{solve.solver}"': solve.solver not in ("auto", "direct"),
@@ -468,6 +496,20 @@ def _not_varying(scene: Scene) -> str:
         ),
     }
     return " and ".join(reason for reason, holds in reasons.items() if holds)
+
+
+def _of_elastic_punch(scene: Scene, solid: Solid) -> Iterator[str]:
+    """Faults of section [punch.solid], one sentence each."""
+    if solid.plane != scene.half_plane.solid.plane:
+        yield f'punch.solid.plane: found "{solid.plane}", expected that of [solid], "{scene.solid.plane}"'
+    if scene.solve.mode == "traction":
+        yield 'solve.mode: found "traction" with an elastic punch, expected "contact"'
+    for name, other in (("layer", scene.layers), ("time", scene.time)):
+        if other:
+            yield (
+                f"punch.solid: found an elastic punch beside [{name}], expected a rigid one: two elastic "
+                "bodies are solved in steady motion, both uniform"
+            )
 
 
 def _of_motion(scene: Scene) -> Iterator[str]:
@@ -546,7 +588,10 @@ def _too_small(scene: Scene) -> Iterator[str]:
 def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, float]]]:
     """Numbers of a scene with their path, values, unit and usual range."""
     yield "friction.pre_sliding", [scene.friction.pre_sliding], "m", _STROKE
+    punch = scene.elastic_punch
     models = {"solid": scene.solid, "punch": scene.punch.profile}
+    if punch:
+        models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
     given = [
         *((name, parameters(model), constants(model)) for name, model in models.items()),
         ("friction", parameters(scene.friction.law), scene.friction.values),

@@ -28,7 +28,18 @@ from ..console import program
 from ..errors import excerpt, nearest, short
 from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
-from .scene import STATES_ALONG, UNIFORM_STATE, Friction, HalfPlane, Motion, Output, Punch, Solve, Time
+from .scene import (
+    STATES_ALONG,
+    UNIFORM_STATE,
+    ElasticPunch,
+    Friction,
+    HalfPlane,
+    Motion,
+    Output,
+    Punch,
+    Solve,
+    Time,
+)
 from .values import (
     ALONG,
     DEPTHS,
@@ -386,6 +397,19 @@ def _solid(
     return HalfPlane(build_model(kind, values), material, yield_strength)
 
 
+def _elastic_punch(
+    kind: type[Solid], values: dict[str, Any], material: str | None, speed: float
+) -> ElasticPunch:
+    return ElasticPunch(build_model(kind, values), speed)
+
+
+class PunchSection(ModelSection):
+    """Section [punch.solid], which rigid punches do not have."""
+
+    def read(self, name: str, given: Any, faults: list[str]) -> ElasticPunch | None:
+        return None if given == {} else super().read(name, given, faults)
+
+
 def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...]) -> Punch:
     return Punch(build_model(kind, values), tuple(dict.fromkeys(load)))
 
@@ -440,6 +464,14 @@ _SOLID_KEYS = {
         "what is written beside it replaces the material's",
     ),
     "yield_strength": _YIELD_STRENGTH,
+}  # fmt: skip
+
+_PUNCH_SOLID_KEYS = {
+    "material": _KEYS["material"],
+    "speed": Key(
+        Number("m/s", Range(at_least=0.0)), "speed of the punch's solid over the contact", 0.0,
+        "at rest in the frame of the contact it slides; with a speed of its own it rolls",
+    ),
 }  # fmt: skip
 
 _PUNCH_KEYS = {
@@ -620,7 +652,7 @@ _OUTPUT_KEYS = {
 }  # fmt: skip
 
 #: Sections whose numbers may be swept.
-SWEPT = ("solid", "layer", "punch", "friction")
+SWEPT = ("solid", "layer", "punch", "punch.solid", "friction")
 
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Any] = {
@@ -630,6 +662,14 @@ SECTIONS: dict[str, Any] = {
     "layer": LayerSections(),
     "punch": ModelSection(
         "profile", "flat", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}
+    ),
+    "punch.solid": PunchSection(
+        "kind",
+        "isotropic",
+        SOLIDS,
+        _elastic_punch,
+        _PUNCH_SOLID_KEYS,
+        or_else=", or punch.solid.material",
     ),
     "friction": ModelSection("model", "dahl", LAWS, _friction, _FRICTION_KEYS, several=True),
     "motion": Section(Motion, _MOTION_KEYS),
@@ -644,6 +684,7 @@ def schema() -> dict[str, Any]:
     """JSON schema (draft 7) of a scene."""
     properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
     properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
+    properties["punch"]["properties"]["solid"] = properties.pop("punch.solid")
     properties["layer"] = {"type": "array", "items": _layer_schema(properties["layer"]), "maxItems": MOST}
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
@@ -668,7 +709,7 @@ def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, An
         "properties": {key: entry(described, name in SWEPT) for key, described in every.items()},
         "additionalProperties": False,
     }
-    if name == "solid":  # a material gives the constants
+    if name.endswith("solid"):  # a material gives the constants
         section["anyOf"] = [{"required": ["material"]}, {"required": needed}]
     elif needed:
         section["required"] = needed

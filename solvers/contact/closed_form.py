@@ -40,8 +40,7 @@ def in_plane(
         H: its Hilbert transform.
         strain: strain μ u,X over N/(2a) that layers add.
     """
-    u_X = response.q * σ_YY + (response.n12 + response.m * g) * H + strain
-    return response.σ_XX(u_X, σ_YY, g * σ_YY)
+    return response.σ_XX(response.strain(g, σ_YY, H) + strain, σ_YY, g * σ_YY)
 
 
 @dataclass(frozen=True)
@@ -92,8 +91,7 @@ class FlatPunch(EdgeExponents, Pressure):
         Returns:
             Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
         """
-        answer = self.response
-        by_pressure = answer.q + (answer.n12 + answer.m * self.g) * self._cot
+        by_pressure = self.response.strain(self.g, 1.0, self._cot)
         size = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
         log_ratio = np.log(strain / size)
         return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)

@@ -215,7 +215,8 @@ def of_field(
     deep = points[points[:, 1] <= -_DEEP]
     samples = deep[np.unique(np.linspace(0, len(deep) - 1, min(_INSIDE, len(deep))).astype(int))]
     X, Y = samples.T
-    feet = [X + p * Y for p in response.roots.each]
+    roots = response.surface.roots.each
+    feet = [X + p * Y for p in roots]
     at = np.concatenate([kinks, *(z.real for z in feet)])
     sizes = np.concatenate([np.full(len(kinks), _SHORTEST), *(0.3 * np.abs(z.imag) for z in feet)])
     rule = Rule(at, sizes)
@@ -226,8 +227,8 @@ def of_field(
         size = np.abs(reference).max(axis=(0, 2))
         off = np.abs(inside(X, Y) - reference).max(axis=(0, 2)) / size
     # Along a line below the surface: X = L tan θ, in which what is analytic in 1/X is periodic.
-    depth = 1.0 / min(p.imag for p in response.roots.each)
-    L = depth * max(abs(p) for p in response.roots.each)
+    depth = 1.0 / min(p.imag for p in roots)
+    L = depth * max(abs(p) for p in roots)
     count = int(np.ceil(_ALONG * max(L, 1.0)))
     θ = np.pi * ((np.arange(count) + 0.5) / count - 0.5)
     _, σ_YY, σ_XY = inside(L * np.tan(θ), np.full(count, -depth))

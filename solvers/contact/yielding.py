@@ -545,7 +545,7 @@ class Strength:
         self._turns, self._nearest = turns, nearest
         ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
         #: True for states whose stress is infinite where the pressure ends in a jump, (states,).
-        self.infinite = (response.n12 + response.m * g != 0.0) & bool(ends.any())
+        self.infinite = (response.strain(g, 0.0, 1.0) != 0.0) & bool(ends.any())
         unit = body.stress if half_width is None else body.load / (2.0 * half_width)
         #: Yield strength over N/(2a), (states,); infinite where it is not given.
         self.strength = np.broadcast_to((body.yield_strength or np.inf) / unit, np.shape(g))

@@ -44,7 +44,7 @@ from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, of_pressure, solved_to_tolerance
-from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined
+from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined, sliding_punch
 from .solution import Solution, SolvedStates, solution_of
 from .space import Space
 
@@ -316,7 +316,7 @@ class PunchLevel(Level):
 
     def sliding(self, *punch: Any) -> SlidingPunch:
         """Punch of the level, of these arguments."""
-        return SlidingPunch(*punch)
+        return sliding_punch(*punch)
 
     def _summed(self, ends: SolvedEnds) -> SolvedEnds:
         """The only state, by its own displacement and nodal forces."""

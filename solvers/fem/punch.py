@@ -34,6 +34,7 @@ from scipy.linalg import schur
 from ..approximation import barycentric
 from ..errors import SolveError
 from ..solids.half_plane import HalfPlane
+from ..solids.pair import PairAtSpeed
 from .boundary import FarBoundary, held_forces
 from .fields import Slopes
 from .linear import LinearSolver, times, vector
@@ -576,6 +577,115 @@ class SlidingPunch(Punch):
             forces[:, i, nodes.owned] = times(rows, w).T
         self.space.comm.Allreduce(MPI.IN_PLACE, forces)
         return forces
+
+
+class ElasticPunch(SlidingPunch):
+    """All friction states of an elastic punch and the plate, each on the mesh of the plate.
+
+    With S the normal reactions by normal displacements held at the contact nodes, T those by tangential
+    forces, of the plate, and S', T' of the mirrored punch, whose displacement is v' by contact forces R:
+
+        R = S (P - v') + g T R,   R = S' v' - g T' R.
+
+    Solutions are dense algebra. Their displacements in the plate are combinations of few fields, a basis
+    of all that frictions require.
+
+    Args:
+        space, solver, negligible, heights, left: as of :class:`SlidingPunch`.
+        response: of the plate and the punch.
+    """
+
+    response: PairAtSpeed
+
+    def __init__(
+        self, space: Space, response: PairAtSpeed, solver: str = "direct", negligible: float = 0.0,
+        heights: NDArray[np.float64] | None = None, left: float = 0.0,
+    ) -> None:  # fmt: skip
+        unit = np.eye(len(space.contact.s))
+        # v' is that of the first node and, of the others, what they move farther. So the contact's common
+        # motion, which is large, spoils no digits of the rest.
+        others = unit[1:]
+        punch = SlidingPunch(space, response.punch, solver, negligible, others)
+        each = others if heights is None else np.vstack([heights, others])
+        super().__init__(space, response.plate, solver, negligible, each, left)
+        self.response, count = response, len(self._spaces) - len(others)
+        self._spaces, self._others = self._spaces[:count], self._spaces[count:]
+        #: Forces in the plate by each unit of v', (n, 2, n).
+        self._moving = _forces([self._spaces[0], *self._others])
+        S, S_punch = self._moving[:, 1].T, _forces(punch._spaces)[:, 1].T
+        T, T_punch = (of._of_nodes[:, 1].T for of in (self, punch))
+        punch.destroy()
+        #: -v' by R, for g = 0 and for each unit of g; and matrices of the equations of R, likewise.
+        self._moved = -response.ratio * np.linalg.solve(S_punch, [unit, T_punch])
+        self._equations = unit - S @ self._moved[0], -S @ self._moved[1] - T
+        #: 0 where the punch is the softer one: all of the plate's displacement is in the basis then.
+        self._rigid = 1.0
+        if response.punch.n * response.ratio > response.plate.n:
+            self._rigid, self._moved = 0.0, np.linalg.solve(S, [unit, -T])
+        self._bases: list[NDArray[np.float64]] = []
+        self._fields = [list(of.fields) for of in self._spaces]
+        self._forces = [of.forces for of in self._spaces]
+
+    @property
+    def fields(self) -> list[PETSc.Vec]:
+        """Displacements of the plate: of each part under a rigid punch, and of its basis."""
+        return [field for of_part in self._fields for field in of_part]
+
+    def _changes(self, g: NDArray, part: int) -> NDArray[np.float64]:
+        """Displacements -v' and tangential forces g R of a part for every g, (states, 2 n)."""
+        (first, second), (moved, by_g) = self._equations, self._moved
+        forces, changes = self._spaces[part].forces[0, 1], []
+        for value in g.tolist():
+            R = np.linalg.solve(first + value * second, forces)
+            changes.append(np.append((moved + value * by_g) @ R, value * R))
+        return np.array(changes)
+
+    def prepare(self, g: NDArray[np.float64]) -> None:
+        spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
+        n = len(self._moving)
+        units = np.array(
+            [-self._spaces[0].fields[0].array_r, *(of.fields[0].array_r for of in self._others)]
+        )
+        for i in range(len(self._spaces)):
+            changes = self._changes(np.concatenate([spread, -spread]), i)
+            _, size, rows = np.linalg.svd(changes, full_matrices=False)
+            basis = rows[size > LEAST * size[0]]
+            b = self._tangential(basis[:, n:].T)
+            x = self._displacements(b)
+            residuals = self._residuals(x, b, np.zeros(b.shape[1]))
+            if np.any(g):
+                self.factor.check(b, x, residuals)
+            x += self._corrections(residuals)
+            fields = [vector(self.factor.A, column) for column in x.T]
+            forces = np.array([self._boundary.follow(*pair) for pair in zip(self._reactions(x), fields)])
+            for field, along in zip(fields, basis[:, :n] @ units):
+                field.setArray(field.array_r + along)
+            self._bases.append(basis)
+            self._fields[i] += fields
+            self._forces[i] = np.concatenate(
+                [self._forces[i], forces + np.tensordot(basis[:, :n], self._moving, 1)]
+            )
+        for of in self._others:
+            of.fields[0].destroy()
+
+    def parts(self, g: NDArray[np.float64], shapes: int | None = None) -> list[Part]:
+        first, every = np.full((len(g), 1), self._rigid), list(enumerate(zip(self._bases, self._forces)))
+        return [
+            Part(np.hstack([first, self._changes(g, i) @ basis.T]), forces)
+            for i, (basis, forces) in every[: None if shapes is None else 1 + shapes]
+        ]
+
+
+def _forces(spaces: Sequence[KrylovSpace]) -> NDArray[np.float64]:
+    """Forces by a common displacement 1 of all nodes, of a flat punch's space, and by each shape."""
+    return np.array([-spaces[0].forces[0], *(of.forces[0] for of in spaces[1:])])
+
+
+def sliding_punch(space: Space, response: HalfPlane, *args: Any) -> SlidingPunch:
+    """Punch of the arguments of :class:`SlidingPunch`, elastic where the response is that of a pair."""
+    if isinstance(response, PairAtSpeed):
+        return ElasticPunch(space, response, *args)
+    return SlidingPunch(space, response, *args)
 
 
 @dataclass(frozen=True)

@@ -184,6 +184,11 @@ class HalfPlane:
         """Strain u,X by σ_YY, slope -v,X by σ_XY."""
         return float((self.surface.Y[0, 1] - self.surface.Y[1, 0]).real / 2.0)
 
+    def strain(self, g: Any, σ_YY: Any, H: Any) -> Any:
+        """Strain μ u,X on the surface by σ_YY with the Hilbert transform H, and by σ_XY = g σ_YY."""
+        of = self.surface
+        return of.q * σ_YY + (of.n12 + of.m * g) * H
+
     @property
     def contraction(self) -> complex:
         """p of the plane X + pY midway between those of the fields; 1j in an isotropic solid at rest."""
@@ -246,7 +251,9 @@ class HalfPlane:
         Args:
             names: names of the constants in the form.
         """
-        return [np.array([[float(getattr(self, name)) for name in names]])]
+        stiffness = dict(zip(("c11", "c12", "c16", "c22", "c26"), self.surface.C[np.triu_indices(3)]))
+        values = [stiffness[name] if name in stiffness else getattr(self, name) for name in names]
+        return [np.array([values], dtype=float)]
 
     def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
         """Numbers of the solids at heights over a, of the shape of ``Y``; ``side`` as in stresses_at."""
@@ -287,6 +294,11 @@ class UniformHalfPlane(HalfPlane):
 
     @property
     def surface(self) -> "UniformHalfPlane":
+        return self
+
+    @property
+    def mirror_image(self) -> "UniformHalfPlane":
+        """Half-plane of the solid's mirror image, in X = 0 or in Y = 0."""
         return self
 
     @cached_property

@@ -101,6 +101,10 @@ class AnisotropicFrame(UniformHalfPlane):
         """True if the solid is its own mirror image in X = 0."""
         return self.c16 == 0.0 == self.c26
 
+    @property
+    def mirror_image(self) -> "AnisotropicFrame":
+        return AnisotropicFrame(self.c11, self.c12, -self.c16, self.c22, -self.c26, self.c)
+
     def at(self, c: float) -> "AnisotropicFrame":
         """Half-plane of this solid at another speed c."""
         return AnisotropicFrame(self.c11, self.c12, self.c16, self.c22, self.c26, c)

@@ -5,6 +5,7 @@ it is seen to that nothing new is missing among them.
 """
 
 import tomllib
+from functools import reduce
 from pathlib import Path
 
 import pytest
@@ -40,15 +41,19 @@ def options(known):
 
 def properties(name):
     """Keys of a section with their schemas."""
-    section = schema()["properties"][name]
-    return section.get("items", section)["properties"]
+    section = schema()
+    for part in name.split("."):
+        section = section["properties"][part]
+        section = section.get("items", section)
+    own = set() if name != "punch.solid" else properties("solid").keys()  # read by one reader
+    return {key: known for key, known in section["properties"].items() if key not in own}
 
 
 def values(section):
     """Values in all scenes by key of a section."""
     given = {}
     for tree in TREES.values():
-        tables = tree.get(section, [])
+        tables = reduce(lambda table, part: table.get(part, {}), section.split("."), tree)
         for table in tables if isinstance(tables, list) else [tables]:
             for key, value in table.items():
                 given.setdefault(key, []).append(value)

@@ -1,0 +1,140 @@
+"""Two elastic bodies in sliding contact: a plate, and a punch that is a half-plane above it.
+
+The punch's half-plane, mirrored at Y = 0, is one below the surface: its stiffnesses c₁₆ and c₂₆ change
+their sign, and so does the shear stress on it. The slopes of both surfaces add up to that of the punch's
+profile, and so do their compliances, with n₁₂' of the mirrored punch:
+
+    μ v,X = (n + n' μ/μ') H[σ_YY] + (n₁₂ - n₁₂' μ/μ') H[σ_XY] - (q - q' μ/μ') σ_XY
+
+Like bodies at the same speed over the contact, rest among them, are not coupled (Dundurs, 1969). The
+pressure and its ends are those of a rigid punch on a solid with these constants. Stresses in each body
+follow from the pressure and that body's own constants.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import nan
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .half_plane import DATUM, HalfPlane, Potential, UniformHalfPlane
+from .solid import Solid
+
+
+@dataclass(frozen=True)
+class PairAtSpeed(HalfPlane):
+    """A plate at its speed under an elastic punch at its own; n, n₁₂ and q are those of both together.
+
+    Stresses and displacements are those of the plate.
+
+    Attributes:
+        plate: half-plane of the plate.
+        punch: half-plane of the punch, mirrored at Y = 0.
+        ratio: shear modulus of the plate over that of the punch.
+    """
+
+    plate: UniformHalfPlane
+    punch: UniformHalfPlane
+    ratio: float
+
+    @property
+    def c(self) -> float:  # type: ignore[override]
+        return self.plate.c
+
+    @property
+    def surface(self) -> UniformHalfPlane:
+        return self.plate
+
+    @cached_property
+    def n(self) -> float:
+        return self.plate.n + self.ratio * self.punch.n
+
+    @cached_property
+    def n12(self) -> float:
+        return self.plate.n12 - self.ratio * self.punch.n12
+
+    @cached_property
+    def q(self) -> float:
+        return self.plate.q - self.ratio * self.punch.q
+
+    @property
+    def margin(self) -> float:
+        return min(self.plate.margin, self.punch.margin)
+
+    @property
+    def mirrored(self) -> bool:
+        return self.plate.mirrored and self.punch.mirrored
+
+    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        return self.plate.inside(Φ, g, X, Y)
+
+    def far(self, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM) -> NDArray[np.float64]:
+        return self.plate.far(X, Y, terms, datum)
+
+    def constants(self, names: Any) -> list[NDArray[np.float64]]:
+        return self.plate.constants(names)
+
+
+@dataclass(frozen=True)
+class Pair(Solid):
+    """A plate and the solid of a punch; modulus, density and wave speed are those of the plate.
+
+    Attributes:
+        plate: uniform solid.
+        punch: uniform solid, in the frame of the scene.
+        speed: of the punch's solid over the contact [m/s]; 0 slides, a speed near the plate's rolls.
+    """
+
+    about: ClassVar[str] = "a plate under an elastic punch"
+
+    plate: Solid
+    punch: Solid
+    speed: float
+
+    @property
+    def plane(self) -> str:  # type: ignore[override]
+        return self.plate.plane
+
+    @property
+    def form(self) -> str:
+        return self.plate.form if self.plate.form == self.punch.form else "anisotropic"
+
+    @property
+    def nearly_incompressible(self) -> bool:
+        return self.plate.nearly_incompressible or self.punch.nearly_incompressible
+
+    @property
+    def knows_σ_ZZ(self) -> bool:
+        return self.plate.knows_σ_ZZ
+
+    @property
+    def μ(self) -> float:
+        return self.plate.μ
+
+    @property
+    def ρ(self) -> float:  # type: ignore[override]
+        return self.plate.ρ
+
+    @property
+    def flutter(self) -> tuple[float, float]:
+        return nan, nan
+
+    def limit(self) -> float:
+        return self.plate.limit()
+
+    @cached_property
+    def _punch(self) -> UniformHalfPlane:
+        return self.punch.response(self.speed / self.punch.c_s).surface.mirror_image
+
+    def response(self, c: float, a: float = 1.0) -> PairAtSpeed:
+        """Both half-planes, the plate's at a speed over its wave speed."""
+        return PairAtSpeed(self.plate.response(c).surface, self._punch, self.μ / self.punch.μ)
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        return self.plate.σ_ZZ(σ_XX, σ_YY, σ_XY)
+
+    def words(self) -> str:
+        motion = f"at {self.speed:g} m/s over the contact" if self.speed else "at rest"
+        return f"{self.plate.words()}, under a punch of {self.punch.words()}, {motion}"

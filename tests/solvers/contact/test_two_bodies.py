@@ -1,0 +1,134 @@
+"""Two elastic bodies: Fourier's fields in both, quadrature of the singular equation, and limits."""
+
+from dataclasses import replace
+from math import pi
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.uniform import contacts
+from galinx.solvers.profiles import PROFILES
+from galinx.solvers.solids import SOLIDS, Isotropic
+from galinx.solvers.solids.pair import Pair
+
+STEEL = Isotropic(210e9, 0.29, 7850.0)
+POLYMER = Isotropic(3e9, 0.38, 1200.0)
+
+
+def _fibres(seed: int) -> object:
+    random = np.random.default_rng(seed)
+    E1, E2, G12 = random.uniform(5e9, 100e9, 3)
+    return SOLIDS["orthotropic"](
+        max(E1, E2), min(E1, E2), 5e9, 0.3, 0.3, 0.3, 0.2 * G12 + 2e9, 1600.0, random.uniform(-90, 90)
+    )
+
+
+def _stiffness(solid):
+    if isinstance(solid, Isotropic):
+        λ = solid.E * solid.ν / ((1.0 + solid.ν) * (1.0 - 2.0 * solid.ν))
+        shear = np.diag([2.0, 2.0, 1.0]) * solid.μ
+        return shear + λ * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 0]])
+    return solid.stiffness
+
+
+def _displacement(solid, V, t, below):
+    """Displacement over 1/k of the surface of a body under tractions (σ_XY, σ_YY) e^(ikX) on Y = 0.
+
+    Waves e^(ik(X + pY)) that decay downwards below the surface, and upwards above it.
+    """
+    (c11, c12, c16), (_, c22, c26), (_, _, c66) = _stiffness(solid)
+    Q = np.array([[c11, c16], [c16, c66]]) - solid.ρ * V**2 * np.eye(2)
+    R = np.array([[c16, c12], [c66, c26]])
+    T = np.array([[c66, c26], [c26, c22]])
+    zero, one = np.zeros((2, 2)), np.eye(2)
+    first = np.block([[zero, one], [-Q, -(R + R.T)]])
+    p, modes = np.linalg.eig(np.linalg.solve(np.block([[one, zero], [zero, T]]), first))
+    decays = (p.imag < 0.0) if below else (p.imag > 0.0)
+    A, p = modes[:2, decays], p[decays]
+    of_traction = 1j * (R.T @ A + T @ A * p)
+    return A @ np.linalg.solve(of_traction, t)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_gap_between_two_surfaces_is_that_of_waves_in_both_bodies(seed):
+    """Roots that meet cost eigenvectors digits: solids here have none that do."""
+    random = np.random.default_rng(seed)
+    plate, punch = _fibres(seed), _fibres(100 + seed)
+    c, other, g = 0.6 * plate.limit() * random.uniform(), 0.6 * random.uniform(), random.uniform(-1, 1)
+    speed = other * punch.limit() * punch.c_s
+    pair = Pair(plate, punch, speed).response(c)
+    t = np.array([g, 1.0])
+    slope = 1j * (
+        _displacement(plate, c * plate.c_s, t, True) - _displacement(punch, speed, t, False)
+    )[1]  # fmt: skip
+    by_constants = (1j * (pair.n + g * pair.n12) - g * pair.q) / plate.μ  # H[e^(ikX)] = i e^(ikX)
+    assert abs(slope - by_constants) < 1e-10 * abs(slope)
+
+
+@pytest.mark.parametrize("c, speed, g", [(0.0, 0.0, -0.4), (0.5, 0.0, -0.6), (0.3, 400.0, 0.8)])
+def test_a_flat_punch_satisfies_the_singular_equation_of_both_bodies(c, speed, g):
+    pair = Pair(STEEL, POLYMER, speed).response(c)
+    flat = FlatPunch(pair, g)
+    α, β, r = mp.mpf(float(flat.α)), mp.mpf(float(flat.β)), mp.mpf("0.3")
+    amplitude = 2 * mp.sin(mp.pi * α) / mp.pi
+    weight = lambda t: (1 - t) ** α * (1 + t) ** β  # noqa: E731
+    # The singular part by the symmetric rule about r; ends by powers of their distance.
+    near = mp.quad(lambda x: (weight(r + x) - weight(r - x)) / x, [0, 0.35, 0.69])
+    right = mp.quad(lambda x: x ** (1 / (1 + α) - 1 + α / (1 + α)) * (2 - x ** (1 / (1 + α))) ** β
+                    / (1 - x ** (1 / (1 + α)) - r) / (1 + α), [0, mp.mpf("0.01") ** (1 + α)])  # fmt: skip
+    left = mp.quad(lambda x: x ** (1 / (1 + β) - 1 + β / (1 + β)) * (2 - x ** (1 / (1 + β))) ** α
+                   / (x ** (1 / (1 + β)) - 1 - r) / (1 + β), [0, mp.mpf("0.61") ** (1 + β)])  # fmt: skip
+    H = amplitude * (near + right + left) / mp.pi
+    slope = (pair.n + g * pair.n12) * H - g * pair.q * amplitude * weight(r)
+    assert abs(slope) < 1e-9 * abs(amplitude * weight(r)) * pair.n
+
+
+@pytest.mark.parametrize("plate", [STEEL, _fibres(3)])
+@pytest.mark.parametrize("profile", ["flat", "parabolic"])
+def test_a_stiff_punch_is_a_rigid_one(plate, profile):
+    """The compliance that it adds is 1e-12 of the plate's."""
+    stiff = Isotropic(1e12 * 200e9, 0.3, 1e15)
+    c = 0.7 * plate.limit()
+    pair, rigid, g = Pair(plate, stiff, 0.0).response(c), plate.response(c), np.array([-0.5])
+    if profile == "flat":
+        X = np.linspace(-1.5, 1.5, 31)
+        now, expected = (FlatPunch(of, -0.5) for of in (pair, rigid))
+        assert abs(now.K_I - expected.K_I) < 1e-10 * expected.K_I
+        np.testing.assert_allclose(now.σ_XX(X), expected.σ_XX(X), rtol=1e-10)
+        return
+    punch = PROFILES["parabolic"](10e-3)
+    of_pair, of_rigid = (contacts(of, g, punch, 1e-6) for of in (pair, rigid))
+    for name in ("half_width", "centre", "α"):
+        assert of_pair.of(name)[0] == pytest.approx(of_rigid.of(name)[0], rel=1e-10)
+
+
+@pytest.mark.parametrize("solid", [STEEL, _fibres(5)])
+def test_like_bodies_at_one_speed_are_not_coupled(solid):
+    """A mirror image at the same speed over the contact; at rest, and rolling."""
+    angle = getattr(solid, "angle", None)
+    image = solid if angle is None else replace(solid, angle=-angle)
+    for c in (0.0, 0.5 * solid.limit()):
+        pair = Pair(solid, image, c * solid.c_s).response(c)
+        assert abs(pair.q) < 1e-14 and FlatPunch(pair, 0.7).α == pytest.approx(-0.5, abs=1e-14)
+    sliding = Pair(solid, image, 0.0).response(0.5 * solid.limit())
+    assert abs(sliding.q) > 1e-3
+
+
+def test_hertz_with_the_contact_modulus_of_both_bodies():
+    R, N = 10e-3, 1e5
+    modulus = 1.0 / sum((1.0 - s.ν**2) / s.E for s in (STEEL, POLYMER))
+    pair = Pair(STEEL, POLYMER, 0.0).response(0.0)
+    contact = contacts(pair, np.zeros(1), PROFILES["parabolic"](R), N / STEEL.μ)
+    assert contact.of("half_width")[0] == pytest.approx(np.sqrt(4.0 * N * R / (pi * modulus)), rel=1e-12)
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_coupling_at_rest_is_dundurs_constant(plane):
+    first, second = replace(STEEL, plane=plane), replace(POLYMER, plane=plane)
+    (κ1, μ1), (κ2, μ2) = ((s.κ, s.μ) for s in (first, second))
+    β = (μ2 * (κ1 - 1.0) - μ1 * (κ2 - 1.0)) / (μ2 * (κ1 + 1.0) + μ1 * (κ2 + 1.0))
+    pair = Pair(first, second, 0.0).response(0.0)
+    assert pair.q / pair.n == pytest.approx(β, rel=1e-12)
+    assert 1.0 / np.tan(pi * FlatPunch(pair, -0.3).α) == pytest.approx(-0.3 * β, rel=1e-12)

@@ -16,7 +16,7 @@ BAD = [
     (("shwo",), "No such command 'shwo'; did you mean show?"),
     (("reprot", "a.h5"), "did you mean report?"),
     (("init", "tabel1"), "init tabel1: no such scene; did you mean table1?"),
-    (("init", "quite something else"), "no such scene; valid: box, "),
+    (("init", "quite something else"), "no such scene; valid: along, box, "),
     (("paper", "-o", "figures.pdf"), "ends with .pdf, expected a folder"),
     (("./bad.toml",), "No such command"),
 ]

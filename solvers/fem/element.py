@@ -191,7 +191,7 @@ class _Block:
             [_pairs(a[direction], b[direction]) for a in left for b in right] for direction in (0, 1)
         )
         self._first, self._second = first, np.concatenate(second)
-        self._components, self._pairs = components, first[0].shape[1]
+        self._pairs = first[0].shape[1]
         #: Number of products of a cell.
         self.size = components * self._pairs**2
 

@@ -215,6 +215,14 @@ def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         Column("stroke", [*map(str, data[motion.path])], "none", "motion", motion.path),
         Column("friction f", f, "1", "f", of.FRICTION.path),
     ]
+    if resultant := preferred(data, of.RESULTANT_RATIO):
+        # The force over the load is no mean of f over the contact, since the pressure weighs it.
+        g = data[of.RATIO.path]
+        force = f * data[resultant.path] / np.where(g == 0.0, 1.0, g)
+        columns[1:] = [
+            Column("friction f", force, "1", "f", resultant.path),
+            Column("mean of f over X", f, "1", "mean_f", of.FRICTION.path),
+        ]
     scaled = units(speed)
     assert scaled
     head = "speed c over the wave speed" if units.dimensionless else "speed"

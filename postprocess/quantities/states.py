@@ -48,8 +48,12 @@ LOAD = Quantity(
     "states/load", "N/m", "normal load per depth N, where states differ in it", (STATE,), symbol="N",
     range=Range(above=0.0),
 )  # fmt: skip
-FRICTION = Quantity("states/f", "1", "friction coefficient F/N, positive in forward motion", (STATE,))
-RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch", (STATE,))
+FRICTION = Quantity(
+    "states/f", "1",
+    "friction coefficient F/N, positive in forward motion; mean of f over X where it varies along X",
+    (STATE,),
+)  # fmt: skip
+RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch, its mean where it varies", (STATE,))
 INNER_STATE = Quantity(
     "states/inner_state", "1", "inner state of the friction law, as its page says", (STATE, INNER)
 )

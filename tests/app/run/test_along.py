@@ -85,6 +85,15 @@ def test_archive_has_friction_over_x_its_resultant_and_the_centre():
     assert ratio == pytest.approx(-0.35 - 0.15 * centre, abs=1e-7) and -0.1 < centre < 0.0
 
 
+def test_friction_in_the_table_is_the_force_over_the_load():
+    """By the forces at nodes; mean f stands beside it, and for one f along the contact both are that."""
+    result = galinx.compute(parse(scene("along = [[-1, 0.5], [0.2, 0.5], [1, 0.2]]")))
+    row = {column.name: column.values for column in result.table()}
+    forces = (result.data[f"states/fem/{name}_force"] for name in ("tangential", "normal"))
+    assert row["f"] == pytest.approx(abs(np.divide(*forces)), rel=1e-6)
+    assert row["mean_f"] == pytest.approx([0.44], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("friction", "more", "words"),
     [

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from galinx import __version__
 from galinx.clock import Clock
 from galinx.meshes.kind import DEGREES
+from galinx.postprocess.quantities.quantity import CLOSED_FORM
+from galinx.postprocess.quantities.stresses import STRESSES_INSIDE
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.contact.edges import under_punch
@@ -29,6 +31,7 @@ from galinx.solvers.contact.uniform import Contacts, contacts_of
 from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed, listed
+from ..methods import METHODS
 from ..plan.plan import farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.task import Plan
@@ -46,7 +49,7 @@ class OneState:
         task: the state's speed.
         g: σ_XY/σ_YY under the punch.
         degree: polynomial degree.
-        exact: True where there is a closed form to compare with.
+        exact: True where a closed form of stresses inside is there to compare with.
         parameters: values that distinguish the state, by the names of archives' columns.
     """
 
@@ -135,7 +138,10 @@ def select_states(
         task = tasks[parameters["c"]]
         task = replace(task, body=task.body.loaded(parameters.get("load")))
         degree = state_degrees[i] or fem.degrees[task.number] + more
-        exact = "closed_form" in scene.solve.methods
+        inside = STRESSES_INSIDE[CLOSED_FORM][0]
+        exact = CLOSED_FORM in scene.solve.methods and not METHODS[CLOSED_FORM].refusal(
+            scene, task.body, inside
+        )
         selection.append(
             OneState(number, replace(plan, fem=fem), task, parameters["g"], degree, exact, parameters)
         )

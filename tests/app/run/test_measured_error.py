@@ -57,7 +57,7 @@ def solved(space, g):
 
 TASK = SimpleNamespace(
     number=0,
-    body=SimpleNamespace(alike=True, layered=False),
+    body=SimpleNamespace(alike=True, layered=False, ratio=lambda g, X: g[:, None]),
     probes=lambda g: (g, None),
     response=SimpleNamespace(c=0.3, margin=1.0, n=0.75, m=0.75, n12=0.0, contraction=1j),
 )

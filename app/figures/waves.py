@@ -156,6 +156,11 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
         )
     if not isinstance(scene.punch.profile, Flat):
         raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a flat punch")
+    if scene.elastic_punch or scene.along:
+        raise BadInput(
+            "response: found an elastic punch, or friction that varies along the contact, expected a "
+            "rigid punch with one friction"
+        )
     states = enumerate_states(scene)
     ways = headings(scene, states.directions) * (states.columns["c"] > 0.0)
     different = np.unique(np.column_stack([states.columns["c"], ways, states.g]), axis=0)

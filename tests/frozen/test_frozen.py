@@ -19,7 +19,7 @@ SCENES = {path.stem: path for path in sorted(Path(__file__).parent.glob("*.toml"
 TREES = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in SCENES.items()}
 #: Scenes that are planned in a moment, and whose solutions give every quantity.
 PLANNED = (
-    "coating", "cylinder", "flat", "own_pressure", "pressure_on_coating", "speeds_of_a_cylinder",
+    "along", "coating", "cylinder", "flat", "own_pressure", "pressure_on_coating", "speeds_of_a_cylinder",
     "steady", "third_power", "tilted_on_coating",
 )  # fmt: skip
 #: Known solids are constants, and no code of their own.

@@ -52,7 +52,9 @@ def archived(row, contact, h, m, N):
     if row.unit != "1":
         return units.get(row.unit, 1.0), 0.0
     name = row.path.rpartition("/")[2]
-    if name.endswith(("X_over_a", "pressure_position", "steady_centre", "steady_centres")):
+    if name.endswith(
+        ("X_over_a", "pressure_position", "pressure_centre", "steady_centre", "steady_centres")
+    ):
         return a, m if by_state else 0.0
     if name == "centre_of_pressure":
         return a, 0.0

@@ -29,6 +29,7 @@ def test_what_has_no_answer_is_refused(tmp_path):
         (["--to", "50", "--set", "motion.c=0.9"], "expected at most"),
         (["--from", "2", "--to", "1"], "expected them to grow"),
         (["--set", "solid.nu=0.499"], "expected a uniform solid"),
+        (["--set", 'punch.solid.material="steel"'], "found an elastic punch"),
     ):
         done = here("response", SCENE, "-o", tmp_path, *words)
         assert done.returncode == 2 and said in done.stderr, done.stderr

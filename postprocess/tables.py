@@ -461,7 +461,12 @@ _OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
 
 
 def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
-    """Table of the first friction loops: work, breakaway force and stiffness."""
+    """Table of the first friction loops: work, breakaway force and stiffness.
+
+    Where friction varies along the contact there are no rows: the loops are those of the law alone.
+    """
+    if preferred(data, of.RESULTANT_RATIO):
+        return Sheet("", [], [])
     of_state, count = data[runs.LOOP_OF_STATE.path], len(data[runs.LOOP_F.path])
     states = [int(np.argmax(of_state == n)) for n in range(count)]
     columns = [
@@ -482,7 +487,12 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
-    """Table of the law's inner variables at the first states; no rows without any, or for f alone."""
+    """Table of the law's inner variables at the first states; no rows without any, or for f alone.
+
+    Where friction varies along the contact there are none either.
+    """
+    if preferred(data, of.RESULTANT_RATIO):
+        return Sheet("", [], [])
     z, f = data.get(of.INNER_STATE.path), data[of.FRICTION.path]
     rows: list[list[str]] = []
     count = min(0 if z is None else z.shape[1], _VARIABLES)

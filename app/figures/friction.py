@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import column, runs
+from galinx.postprocess.quantities.states import RESULTANT_RATIO
 from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.motion import names
 
@@ -206,7 +207,9 @@ def _arrow(axis: Axes, start: Any, end: Any, colour: Any) -> None:
 
 
 def has_loop(of: Archive) -> bool:
-    """Return True if friction changes along a stroke, or between strokes of several."""
+    """Return True if friction changes along a stroke, or between strokes, but not along the contact."""
+    if any(of.has(row) for row in RESULTANT_RATIO.values()):
+        return False
     loops = Loops(of)
     shown = [loop for loop in (loops.of(int(i)) for i in loops.first[:_LOOPS]) if loop]
     return of.scene.slider is None and any(loop.varies for loop in shown)

@@ -8,6 +8,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.results import check
 from galinx.app.scene.read import parse
+from galinx.postprocess.tables import inner_sheet, loops_sheet
 
 ISOTROPIC = 'E = "40 GPa"\nnu = 0.3\nrho = 2000'
 ORTHOTROPIC = (
@@ -92,6 +93,8 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     forces = (result.data[f"states/fem/{name}_force"] for name in ("tangential", "normal"))
     assert row["f"] == pytest.approx(abs(np.divide(*forces)), rel=1e-6)
     assert row["mean_f"] == pytest.approx([0.44], rel=1e-12)
+    # Loops are those of the law alone: their work and force are none of this contact.
+    assert not loops_sheet(result.data, result.units()).rows and not inner_sheet(result.data).rows
 
 
 @pytest.mark.parametrize(

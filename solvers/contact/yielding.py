@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 
 from ..profiles import exponent
 from ..solids.half_plane import HalfPlane
-from .solution import Contact, Turns
-from .stresses import maximum_shear, von_mises
+from .solution import Contact
+from .stresses import Turns, maximum_shear, von_mises
 
 #: Distances over a between which rays are sampled. Nearer, stresses are extrapolated; no zone reaches
 #: farther under a load that a punch can carry.

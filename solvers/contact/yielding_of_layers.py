@@ -13,8 +13,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .solution import Contact, Surface
-from .stresses import extreme, von_mises
+from .extremes import extreme
+from .solution import Contact
+from .stresses import Surface, von_mises
 from .yielding import Peak
 from .yielding import places as uniform_places
 
@@ -120,7 +121,7 @@ class StrengthOfLayers:
 
     def _on_surface(self) -> tuple[NDArray, NDArray, NDArray]:
         """Largest von Mises stress on the surface, X and Y over a, (states,) each."""
-        from .free_ends import turns_at_ends  # SciPy's interpolation, a slow import
+        from .stresses import turns_at_ends
 
         surface, solid = self.surface, self.body.solid.at(0.0)  # type: ignore[attr-defined]
         σ_YY = np.nan_to_num(surface.σ_YY)

@@ -36,7 +36,8 @@ from ..contact.recovery import (
     from_moments,
     without_zeros,
 )
-from ..contact.solution import Contact, Surface, Task, Turns
+from ..contact.solution import Contact, Task
+from ..contact.stresses import Surface, Turns
 from ..errors import SolveError
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic

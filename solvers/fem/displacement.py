@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import AT_INTERFACES, BELOW, YIELD
-from ..contact.solution import Surface, Task
+from ..contact.solution import Task
+from ..contact.stresses import Surface
 from .fields import Gradients, InteriorGradients, KeptValues, Slopes, surface_slopes
 from .space import Space
 

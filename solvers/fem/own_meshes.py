@@ -43,19 +43,11 @@ from ..contact.fem_plan import (
     pressure_moments,
     requirements,
 )
-from ..contact.free_ends import (
-    SHAPES,
-    EndConditions,
-    KinkedPressure,
-    at_and_between,
-    free_ends,
-    gaps_of,
-    slopes_towards_ends,
-    turns_at_ends,
-)
+from ..contact.free_ends import SHAPES, EndConditions, free_ends
 from ..contact.pressure import Expansion
-from ..contact.solution import Contact, Places, Surface, Task, Turns
-from ..contact.stresses import NEAR_TIP, off_tips
+from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
+from ..contact.solution import Contact, Task
+from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips, turns_at_ends
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.flat import Flat
@@ -255,10 +247,8 @@ class EndsBetweenKinks(Ends):
             between = None
             if len(X):
                 places = np.array([-1.0, *X, 1.0])
-                _, between = at_and_between(places, 1, in_plane)
                 # Nearer to ends and kinks the limits there stand for the stress.
-                near = np.abs(between[0][..., None] - places).min(axis=-1) < self.nearest(pressure)
-                between[1, near] = np.nan
+                _, between = at_and_between(places, in_plane, nearest=self.nearest(pressure))
             ends = turns_at_ends(surface, states.local)
             return ends.joined(Turns(X[None], under[:, None], between))
 

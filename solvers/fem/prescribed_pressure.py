@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.closed_form import FlatPunch
-from ..contact.free_ends import turns_at_knots
 from ..contact.prescribed_pressure import LinearPressure
 from ..contact.pressure import Pressure
-from ..contact.solution import Places, Surface, Task, Turns
+from ..contact.solution import Task
+from ..contact.stresses import Places, Surface, Turns, turns_at_knots
 from ..rays import NEAR, rays
 from .discretisation import Discretisation
 from .displacement import Displacement

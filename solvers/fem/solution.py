@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.edges import Exponents
-from ..contact.free_ends import turns_at_ends
 from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
-from ..contact.solution import Contact, Places, Surface, Task, Turns, solved_once, together
+from ..contact.solution import Contact, Task, solved_once
+from ..contact.stresses import Places, Surface, Turns, together, turns_at_ends
 from ..contact.yielding import Strength
 from ..contact.yielding_of_layers import StrengthOfLayers
 from .displacement import Displacement

@@ -17,7 +17,7 @@ speed.
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -50,8 +50,8 @@ from .punch import ContactStates, FittedPunch, Punch, sliding_punch
 from .solution import Ended, Solution, SolvedStates, solution_of
 from .space import Space
 
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
-#: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
+#: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
+#: most keeps results on any number of ranks equal to 1e-9.
 _NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
 
 #: Share of that where stresses are requested: next to an edge a force counts by the little load there.
@@ -154,7 +154,7 @@ class VaryingEnds(SharpEnds):
     def along(self, level: "PunchLevel") -> Callable[[float], NDArray]:
         nodes, along = level.space.contact, level.task.body.along  # type: ignore[attr-defined]
         facets = ContactFacets(nodes.s, level.space.degree, level.space.chart)
-        return lambda g: facets.product(along[g])
+        return cache(lambda g: facets.product(along[g]))
 
     def pressure(self, level: "PunchLevel", ends: Ended) -> Expansion:
         return self._pressure(level, ends.contact, _NEXT)
@@ -334,11 +334,8 @@ class PunchLevel(Level):
             self.fields, self.recovery, self.moments = fitted.fields, recovery, recovery.moments
             return
         least, single = negligible(work), self.ends.single
-        # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
-        friction_rest = 0.0 if work.stresses or single else least
         self.punch = solved = sliding_punch(
-            space, task.response, self.plan.solver, least, self.ends.heights(self), friction_rest,
-            self.ends.along(self),
+            space, task.response, self.plan.solver, least, self.ends.heights(self), self.ends.along(self),
         )  # fmt: skip
         self.factor = solved.factor
         try:

@@ -416,23 +416,25 @@ class _Search:
         Raises:
             SolveError: no contact was found, or the equations could not be solved.
         """
-        drawn, words, off = self._half_width(near), self._work.stresses, np.inf
-        for _ in range(2):
-            mesh, task = self._on(drawn, words)
-            state = own_state(mesh, task, self._g, self._ends(drawn), self._done)
-            balanced: Any = state.solved.level.only
-            h = self._moved(drawn, balanced.off)
-            off = abs(h / drawn - 1.0)
-            if off <= _ERROR * self._work.plan.tolerance or _:
-                break
+        drawn, profile = self._half_width(near), self._task.body.profile
+        state, lean, h = self._solved_on(drawn)
+        if abs(h / drawn - 1.0) > _ERROR * self._work.plan.tolerance:
             state.solved.close()
             drawn = h
-        check_reach(self._task.body.profile, h * (balanced.lean - 1.0), h * (balanced.lean + 1.0))
-        ends = replace(state.states.ends, half_width=np.array([h]), centre=np.array([h * balanced.lean]))
-        errors = {word: value + off for word, value in state.states.errors.items()}
+            state, lean, h = self._solved_on(drawn)
+        check_reach(profile, h * (lean - 1.0), h * (lean + 1.0))
+        ends = replace(state.states.ends, half_width=np.array([h]), centre=np.array([h * lean]))
+        errors = {word: value + abs(h / drawn - 1.0) for word, value in state.states.errors.items()}
         return replace(
             state, states=replace(state.states, body=self._task.body, ends=ends, errors=errors)
         )
+
+    def _solved_on(self, h: float) -> tuple["OwnState", float, float]:
+        """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
+        mesh, task = self._on(h, self._work.stresses)
+        state = own_state(mesh, task, self._g, self._ends(h), self._done)
+        balanced: Any = state.solved.level.only
+        return state, balanced.lean, self._moved(h, balanced.off)
 
     def _half_width(self, h: float) -> float:
         """Half-width [m] of the contact that carries the load, from a half-width near by."""

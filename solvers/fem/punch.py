@@ -166,14 +166,12 @@ class SlidingPunch(Punch):
             first solution is refined in any case, which shows whether the others need it.
         heights: of the punch's profile over N/(2μ) at the contact nodes, (nodes,), or of several shapes
             that are combined, (shapes, nodes); None for a flat punch.
-        left: relative residual of the contact forces that may remain at each friction.
         along: gives G by g where friction varies along the contact; None where G is g.
     """
 
     def __init__(
         self, space: Space, response: HalfPlane, solver: str = "direct", negligible: float = 0.0,
-        heights: NDArray[np.float64] | None = None, left: float = 0.0,
-        along: Callable[[float], NDArray] | None = None,
+        heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
         nodes = space.contact
@@ -195,7 +193,7 @@ class SlidingPunch(Punch):
         A = space.held(A, response, ("contact", "far"))
         self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
         #: Relative residual that may remain; number of parts; true where solutions are refined.
-        self._left, self._parts, self._refines = max(left, LEAST), len(shapes), False
+        self._left, self._parts, self._refines = LEAST, len(shapes), False
         self.fields, self.forces = self._frictionless(shaped, negligible)
         #: Orthonormal loads, (n, loads), and displacements of the last ones that have no fields yet.
         self._loads: NDArray[np.float64] = np.empty((len(nodes.s), 0))
@@ -210,7 +208,7 @@ class SlidingPunch(Punch):
         Frictions that vary along the contact are no such family: each counts.
         """
         spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
-        self._grow(g if self._along else np.concatenate([spread, -spread]))
+        self._grow(g if self._along else np.concatenate([spread, -spread]), last=True)
         self._complete = True
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -248,8 +246,12 @@ class SlidingPunch(Punch):
             every.append(np.moveaxis((t - self._loads @ y) / size, 0, 1).reshape(len(R0), -1))
         return np.concatenate(every, axis=1)
 
-    def _grow(self, g: NDArray) -> None:
+    def _grow(self, g: NDArray, last: bool = False) -> None:
         """Add loads until the equations of every friction are solved, and fields of these loads.
+
+        Args:
+            g: the frictions.
+            last: no other frictions follow.
 
         Raises:
             SolveError: there are as many loads as there may be.
@@ -261,6 +263,8 @@ class SlidingPunch(Punch):
             if left <= self._left:
                 if not self._rough:
                     return
+                if last and len(self._rough) == self._loads.shape[1]:
+                    self._reduce(g)
                 self._settle()
                 continue
             if self._loads.shape[1] >= limit:
@@ -280,6 +284,18 @@ class SlidingPunch(Punch):
             self._rough += list(x.T)
             forces = [self._boundary.follow(force) for force in self._reactions(x)]
             self.forces = np.concatenate([self.forces, forces])
+
+    def _reduce(self, g: NDArray) -> None:
+        """Keep of all loads what frictions g need: fewer fields are refined and differentiated."""
+        y = np.concatenate(
+            [np.moveaxis(y, 1, 0).reshape(y.shape[1], -1) for _, y in self._amplitudes(g)], 1
+        )
+        size = np.linalg.norm(y, axis=0)
+        directions, left, _ = np.linalg.svd(y[:, size > 0.0] / size[size > 0.0], full_matrices=False)
+        Q = directions[:, left > LEAST]
+        self._loads, self._rough = self._loads @ Q, list(Q.T @ np.array(self._rough))
+        forces = np.tensordot(Q.T, self.forces[self._parts :], 1)
+        self.forces = np.concatenate([self.forces[: self._parts], forces])
 
     def _frictionless(self, shaped: NDArray, negligible: float) -> tuple[list[PETSc.Vec], NDArray]:
         """Fields and forces of the flat punch at v = -1 and of each shape, without friction.
@@ -415,7 +431,7 @@ class ElasticPunch(SlidingPunch):
     of all that frictions require.
 
     Args:
-        space, solver, negligible, heights, left: as of :class:`SlidingPunch`.
+        space, solver, negligible, heights: as of :class:`SlidingPunch`.
         response: of the plate and the punch.
     """
 
@@ -423,7 +439,7 @@ class ElasticPunch(SlidingPunch):
 
     def __init__(
         self, space: Space, response: PairAtSpeed, solver: str = "direct", negligible: float = 0.0,
-        heights: NDArray[np.float64] | None = None, left: float = 0.0, along: None = None,
+        heights: NDArray[np.float64] | None = None, along: None = None,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
@@ -431,7 +447,7 @@ class ElasticPunch(SlidingPunch):
         others = unit[1:]
         punch = SlidingPunch(space, response.punch, solver, negligible, others)
         each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, negligible, each, left)
+        super().__init__(space, response.plate, solver, negligible, each)
         self.response, self._parts = response, self._parts - len(others)
         self._moving_fields = self.fields[self._parts :]
         #: Forces in the plate by each unit of v', (n, 2, n).
@@ -518,35 +534,29 @@ class Sampled:
         forces: in Y at the contact nodes, (parts, frictions, nodes); those in X are g times these.
         slopes: of both displacements along X at places on the surface, none where they are not needed,
             (2, parts, frictions, places).
-        rounding: error of slopes of u by rounding, (parts, frictions, places).
         fields: displacements, this rank's unknowns, none where they are not needed,
             (parts, frictions, unknowns).
     """
 
     forces: NDArray[np.float64]
     slopes: NDArray[np.float64]
-    rounding: NDArray[np.float64]
     fields: NDArray[np.float64]
 
     def scaled(self, forces: NDArray, slopes: NDArray) -> "Sampled":
         """Numbers times factors of nodal forces, (frictions, nodes), and slopes, (frictions, places)."""
-        return Sampled(self.forces * forces, self.slopes * slopes, self.rounding * slopes, self.fields)
+        return Sampled(self.forces * forces, self.slopes * slopes, self.fields)
 
     def blocks(self) -> Iterator[NDArray[np.float64]]:
-        """Numbers that a fit needs, kind by kind for each part, (n,); the rounding is not among them."""
+        """Numbers that a fit needs, kind by kind for each part, (n,)."""
         for part, forces in enumerate(self.forces):
             yield from (forces.ravel(), self.slopes[:, part].ravel(), self.fields[part].ravel())
 
 
 def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
     """Sum of the numbers of several speeds with weights ``shares``, (len(several),)."""
-
-    def total(name: str, shares: NDArray) -> NDArray[np.float64]:
-        each = zip(shares.tolist(), several)
-        return np.asarray(sum(share * getattr(sample, name) for share, sample in each if share))
-
-    rounding = total("rounding", np.abs(shares))
-    return Sampled(total("forces", shares), total("slopes", shares), rounding, total("fields", shares))
+    each = [(share, vars(sample).values()) for share, sample in zip(shares.tolist(), several) if share]
+    scaled = ([share * values for values in all_values] for share, all_values in each)
+    return Sampled(*(np.asarray(sum(of_kind)) for of_kind in zip(*scaled)))
 
 
 def sampled(punch: Punch, at: Frictions, slopes: Slopes, with_fields: bool = False) -> Sampled:
@@ -559,10 +569,9 @@ def sampled(punch: Punch, at: Frictions, slopes: Slopes, with_fields: bool = Fal
         with_fields: keep the displacements.
     """
     parts = punch.parts(at.g).swapaxes(0, 1)
-    each = [(*slopes.of(weights), slopes.rounding(weights)) for weights in parts]
-    *of_slopes, noise = (np.array(values) for values in zip(*each))
+    of_slopes = np.array([slopes.of(weights) for weights in parts]).swapaxes(0, 1)
     fields = np.array([field.array_r if with_fields else [] for field in punch.fields])
-    return Sampled(parts @ punch.forces[:, -1], np.array(of_slopes), noise, parts @ fields)
+    return Sampled(parts @ punch.forces[:, -1], of_slopes, parts @ fields)
 
 
 class FittedPunch(Punch):
@@ -584,9 +593,9 @@ class FittedPunch(Punch):
         # No equations are assembled here from which tangential forces could be read.
         self.forces = np.concatenate(list(samples.forces))[:, None]
         # Slopes of u and of v, part after part.
-        u_X, v_X = (np.concatenate(list(of)).T for of in samples.slopes)
-        #: Slopes of the fields at the places on the surface.
-        self.slopes = Slopes(np.array([u_X, v_X]), np.concatenate(list(samples.rounding)).T)
+        basis = np.array([np.concatenate(list(of)).T for of in samples.slopes])
+        #: Slopes of the fields at the places on the surface, without their rounding.
+        self.slopes = Slopes(basis, np.zeros(basis.shape[1:]))
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
         shares = self._at.shares(g)

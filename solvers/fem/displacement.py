@@ -4,21 +4,17 @@ Next to free ends of a contact, or to knots of a prescribed pressure, slopes may
 little farther away, where finite elements have more digits.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.solution import Task
 from ..contact.stresses import Surface
 from .fields import Gradients, InteriorGradients, KeptValues, Slopes, surface_slopes
 from .space import Space
-
-#: Derivatives that a word of output.quantities requests besides the slopes on the surface.
-_DERIVATIVES = {BELOW: "_gradients", YIELD: "_around", AT_INTERFACES: "_interfaces"}
 
 
 class Displacement:
@@ -40,13 +36,6 @@ class Displacement:
         self._task, self._space, self._fields, self._continuation = task, space, fields, continuation
         if slopes is not None:
             self.slopes = slopes
-
-    def prepare(self, words: Collection[str]) -> None:
-        """Take the derivatives that words of output.quantities request, before the fields are freed."""
-        if words:
-            self.slopes  # noqa: B018 - cached
-        for word in words:
-            getattr(self, _DERIVATIVES.get(word, "slopes"))
 
     @cached_property
     def slopes(self) -> Slopes:

@@ -1,7 +1,7 @@
 """Finite elements as a method: solvers by the mode of their plan."""
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,6 @@ from ..contact import FREE_ENDS, OWN_PRESSURE, VARYING
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
 from ..contact.method import ContactStress, Solver
 from ..contact.solution import Task
-from .along import VaryingLevel
 from .contact import PunchLevel, shared_mesh
 from .discretisation import Discretisation, quiet_compiler
 from .own_meshes import between_kinks, over_layers
@@ -26,7 +25,7 @@ from .sweep import Trained, train
 LEVELS: dict[str, Any] = {
     "contact": PunchLevel,
     FREE_ENDS: PunchLevel,
-    VARYING: VaryingLevel,
+    VARYING: PunchLevel,
     "traction": FormulaLevel,
     OWN_PRESSURE: PiecesLevel,
     PRESCRIBED_ON_LAYERS: WholeLevel,
@@ -95,9 +94,7 @@ class FiniteElements:
         whole = mode == OWN_PRESSURE
         with quiet_compiler():
             space = self.work.space(degree, 2 if whole else cuts)
-            level = (WholeLevel if whole else LEVELS[mode])(self.work, task, space, of_one)
-            try:
+            kind = WholeLevel if whole else LEVELS[mode]
+            with closing(kind(self.work, task, space, of_one)) as level:
                 states = level.states(of_one)
                 yield space, level.fields, states.contact.weights[0], lambda X: states.pressure.σ_YY(X)[0]
-            finally:
-                level.destroy()

@@ -31,8 +31,8 @@ from scipy.special import log1p
 class Potential(Protocol):
     """Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt below the surface, Im z < 0, of a pressure under the punch.
 
-    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform. Beside the contact Φ goes on above
-    the surface.
+    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform. Beside the contact Φ goes on
+    above the surface.
     """
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:

@@ -115,7 +115,7 @@ def test_the_command_is_declared(names_and_site):
 
 
 #: What conda-forge calls otherwise than PyPI.
-CONDA = {"matplotlib": "matplotlib-base", "dolfinx-solver-real": "fenics-dolfinx", "gmsh": "python-gmsh"}
+CONDA = {"matplotlib": "matplotlib-base", "dolfinx-solver-real": "fenics-dolfinx"}
 
 
 def test_the_conda_environment_has_what_the_package_needs():

@@ -9,7 +9,7 @@ from support import FEW_DEGREES, HOME, SCENE, clean_environment
 
 #: Files that a user may have for reasons of their own, named like rooms and libraries of the program.
 NAMESAKES = (
-    "app", "meshes", "solvers", "numpy", "mpi4py", "click", "h5py", "gmsh", "socket", "json", "resource",
+    "app", "meshes", "solvers", "numpy", "mpi4py", "click", "h5py", "socket", "json", "resource",
 )  # fmt: skip
 
 

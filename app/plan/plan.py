@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes import MESHES, Requirements, store
+from galinx.meshes import MESHES, Requirements
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
@@ -667,7 +667,7 @@ def make_plan(
         warnings += warnings_of(fem)
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
-    skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
+    skipped = (*_skipped(scene, body, methods, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
@@ -740,7 +740,6 @@ def _skipped(
     scene: Scene,
     body: Contact,
     methods: tuple[str, ...],
-    fem: FemPlan | None,
     quantities: Iterable[Quantity],
 ) -> list[str]:
     """Messages about work that is not done, with the reason."""
@@ -753,8 +752,6 @@ def _skipped(
         for name, kind in METHODS.items()
         if name not in methods and (scene.layers or not kind.of_layers)
     ]
-    if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
-        skipped.append("gmsh: an earlier run made the same mesh")
     words = {quantity.asked_by for quantity in quantities}
     for word, what in _PLACES.items():
         if word not in words:

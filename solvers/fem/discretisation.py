@@ -12,7 +12,6 @@ from mpi4py import MPI
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS
-from galinx.meshes.store import obtain
 
 from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, YIELD
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned, with_friction_kinks
@@ -106,7 +105,7 @@ class Discretisation:
         with quiet_compiler():
             return SPACES[self.plan.assembler](
                 *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
-                self.clock, self._progress.warn,
+                self.clock,
             )  # fmt: skip
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:
@@ -117,13 +116,11 @@ class Discretisation:
         return self._meshes[cuts]
 
     def _made(self, cuts: int) -> tuple[Any, Any]:
-        comm, kind, pattern = self.comm, self.plan.kind, self.plan.pattern
-        check_cells(pattern)
-        if self.plan.drawn is not None:  # no other run has the same
-            return distribute(pattern if comm.rank == 0 else None, comm)
-        if cuts > 1:  # gmsh's copy of a cut mesh would only be large
-            return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
-        return distribute(obtain(pattern, self._progress.warn) if comm.rank == 0 else None, comm)
+        plan, comm = self.plan, self.comm
+        check_cells(plan.pattern)
+        whole = plan.drawn is not None or cuts == 1
+        mesh = plan.pattern if whole or comm.rank else plan.kind.build(plan.refinement, cuts)
+        return distribute(mesh if comm.rank == 0 else None, comm)
 
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:

@@ -26,8 +26,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.kind import DEGREES, rings_at_kinks, with_kinks
-from galinx.meshes.rings import Refinement
+from galinx.meshes.kind import DEGREES
+from galinx.meshes.rings import Refinement, rings_at_kinks, with_kinks
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents

@@ -59,7 +59,7 @@ def contents(path):
     """Datasets and attributes of an archive, but for date and times, and what a full cache skipped."""
     data, attributes = archive.read(path)
     del data["run/seconds"], data["run/steps"], data["run/skipped"]
-    del attributes["created"], attributes["versions"]  # gmsh is met where no mesh is kept
+    del attributes["created"], attributes["versions"]
     return data, attributes
 
 

@@ -12,7 +12,6 @@ The first two terms are exact for the polynomials that the pressure is made of. 
 each s once, whatever the friction, and is smooth in each panel of distances but the one at 0.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -22,6 +21,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from ..solids.half_plane import HalfPlane
+from .history import History
 from .line_load import both_sides, interpolation
 from .march import FrictionInterpolation, Radau, Residual, march
 from .transform import Basis, Transformed, Weighted, divided, double_exponential, response_at
@@ -153,15 +153,6 @@ _BEYOND = np.geomspace(0.01, 1.0, 24)
 ON_SURFACE = np.concatenate([-1.0 - _BEYOND[::-1], PLACES, 1.0 + _BEYOND])
 _UNDER = np.abs(ON_SURFACE) < 1.0
 
-#: Function of time: values at times over a/c_s of any shape.
-Law = Callable[[NDArray], NDArray]
-
-
-def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
-    """Share of the load at times t: 10s³ - 15s⁴ + 6s⁵, s = t/length, up to 1."""
-    s = np.clip(np.asarray(t, dtype=float) / length, 0.0, 1.0)
-    return s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
-
 
 @dataclass(frozen=True)
 class Course:
@@ -230,7 +221,7 @@ class StartingPunch:
         beside = self._transformed.strains(basis, BESIDE)
         return beside if self._along is None else np.hstack([beside, self._along.strains(basis)])
 
-    def course(self, g: Law | float, load: Law, steady: bool = False) -> Course:
+    def course(self, g: History | float, load: History, steady: bool = False) -> Course:
         """Motion where σ_XY = g(t) σ_YY, and N is present by the share ``load(t)``.
 
         Args:

@@ -12,7 +12,7 @@ ONE_PLACE = {
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/versions.py"},
     "matplotlib": {"app/figures/"},
-    "jinja2": {"postprocess/page/"},
+    "jinja2": {"app/results/report.py"},
     "xarray": {"app/results/result.py"},
     "tomlkit": {"app/scene/changes.py"},
     "pint": {"app/scene/units.py"},

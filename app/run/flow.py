@@ -39,8 +39,8 @@ from .. import ranks
 from ..console import Progress
 from ..errors import BadInput
 from ..methods import METHODS
+from ..plan.plan import Plan
 from ..plan.states import States
-from ..plan.task import Plan
 from ..plan.variants import (
     Variant,
     joined_positions,

@@ -19,7 +19,7 @@ from galinx.solvers.contact.solution import Contact, Places, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
-from ..plan.task import Plan
+from ..plan.plan import Plan
 
 
 @dataclass(frozen=True)

@@ -423,7 +423,7 @@ def _put_states(sink: Sink, scene: Scene, variants: Sequence[Variant], states: S
     for path, positions in joined_positions(variants).items():
         sink.put(path, positions)
     if plan.asks(stresses.BELOW) and scene.output.map:
-        sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
+        sink.put(stresses.MAP.path, np.array([count for *_, count in reversed(scene.output.map)]))
 
 
 def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:

@@ -35,10 +35,10 @@ def shared_out(tasks: Sequence[_Task], solve: Callable[[_Task], Iterator[_Part]]
     working, busy = world.size - 1, True
     while working or busy:
         if busy:
-            part = next(mine, None)
-            busy = part is not None
-            if part is not None:
-                yield part
+            own = next(mine, None)
+            busy = own is not None
+            if own is not None:
+                yield own
         while working and (not busy or world.iprobe()):
             message = world.recv()
             if message is None:  # the last that a rank sends

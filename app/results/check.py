@@ -46,7 +46,7 @@ from galinx.solvers.profiles import smooth
 
 from ..console import Progress
 from ..methods import METHODS
-from ..plan.task import Plan
+from ..plan.plan import Plan
 from ..plan.variants import Variant, joined_positions, joined_states, make_variants, restricted
 from ..run.flow import Judge, scene_attributes
 from ..run.solve import Work

@@ -5,7 +5,7 @@ import pytest
 from support import computed
 
 from galinx import template
-from galinx.app.plan import task
+from galinx.app.plan import plan as planning
 from galinx.app.run import flow
 from galinx.app.run.flow import Judge, Memory, compute
 from galinx.postprocess.compare import Comparison
@@ -72,10 +72,8 @@ def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypat
         interrupted.setattr(Journal, "keep", once)
         with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
             compute(scene, Memory(), None, journal)
-    solved, states = [], flow.Collector.take
-    monkeypatch.setattr(
-        flow.Collector, "take", lambda self, part: solved.append(part.rows) or states(self, part)
-    )
+    solved, keep = [], Journal.keep
+    monkeypatch.setattr(Journal, "keep", lambda self, part: solved.append(part.rows) or keep(self, part))
     data = Memory()
     with Journal(target, "key", resume=True) as journal:
         kept = journal.states
@@ -114,5 +112,5 @@ def test_a_verdict_names_some_of_thousands_of_failures():
 def test_chunks_have_the_states_of_all_speeds(monkeypatch):
     few = MANY | {"motion.c": MANY["motion.c"][::12]}
     whole = computed("tables4_5", few).data
-    monkeypatch.setattr(task, "CHUNK_NUMBERS", 1)
+    monkeypatch.setattr(planning, "CHUNK_NUMBERS", 1)
     equal(computed("tables4_5", few).data, whole)

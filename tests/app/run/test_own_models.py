@@ -10,7 +10,7 @@ from support import command, computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.run.flow import Memory, Nowhere
+from galinx.app.run.flow import Memory
 from galinx.solvers.errors import SolveError
 
 
@@ -119,11 +119,10 @@ def test_a_name_or_a_unit_that_is_taken_is_refused(monkeypatch):
         galinx.LAWS.register("other", Other)
 
 
-def test_a_path_outside_the_table_is_refused_by_every_sink():
-    for sink in (Memory(), Nowhere()):
-        for write in (lambda s: s.put("states/ff", 1.0), lambda s: s.reserve("states/ff", (1,))):
-            with pytest.raises(KeyError, match="did you mean states/f"):
-                write(sink)
+def test_a_path_outside_the_table_is_refused():
+    for write in (lambda s: s.put("states/ff", 1.0), lambda s: s.reserve("states/ff", (1,))):
+        with pytest.raises(KeyError, match="did you mean states/f"):
+            write(Memory())
 
 
 class Failing:

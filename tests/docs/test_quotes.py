@@ -1,7 +1,6 @@
 """A page that quotes a wrong number is found out; one that another machine would print passes."""
 
 import pytest
-from examples import HOME, quotes
 from quotes import fault
 
 PRINTED = """\
@@ -53,10 +52,3 @@ def test_what_another_machine_would_print_passes(quote):
 )
 def test_a_wrong_number_is_found(quote, found):
     assert fault(quote, PRINTED) == found
-
-
-def test_outputs_in_indented_blocks_are_quotes():
-    (indented,) = (quote for quote in quotes(HOME / "README.md") if "verdict: PASS" in quote)
-    assert "Tables 4 and 5" in indented and indented.endswith("./run.sh init\n")
-    assert not quotes(HOME / "CONTRIBUTING.md"), "its blocks are commands"
-    assert not quotes(HOME / "docs" / "theory.md"), "its blocks are equations"

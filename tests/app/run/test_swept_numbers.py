@@ -77,15 +77,6 @@ def test_every_state_is_that_of_a_scene_with_single_numbers():
         assert (result.data[swept.WAVE_SPEED.path][rows] == alone.scene.solid.c_s).all()
 
 
-def test_parameters_are_listed_slowest_first():
-    result = compute(parse(changed(FLAT, from_words(["solid.E=[100, 200] GPa"]))))
-    names = [path.partition("/")[2] for path in parameters(result.data)]
-    assert names == ["solid.E", "c", "load", "mu_c", "motion", "X_over_L"]
-    for name in names[:4]:  # an index of states that grows, most slowly the first
-        values = result.data[f"states/{name}"]
-        assert values[0] != values[len(values) // (2 << names.index(name))]
-
-
 def test_the_length_over_which_positions_of_a_path_are_is_one():
     path = 'path = [["0 s", "0 m"], ["1 s", "50 µm"]]'
     text = FLAT.replace('speed = ["100 m/s", "1000 m/s"]', path)

@@ -81,29 +81,11 @@ def test_invariants_inside_are_those_of_the_stresses(inside_run):
         np.testing.assert_allclose(data[f"interior/{method}/von_mises"], mises, rtol=1e-14)
 
 
-def test_nothing_of_yield_is_computed_unasked(tables_run):
-    assert not any("yield" in name for name in tables_run.data)
-    assert "yield: not in output.quantities" in tables_run.data["run/skipped"]
-
-
 def test_yield_without_a_strength_is_refused():
     with pytest.raises(BadInput, match=r'"yield": expected solid\.yield_strength'):
         computed("tables4_5", {"output.quantities": ["yield"]})
     with pytest.raises(BadInput, match=r"expected solid\.yield_strength"):
         computed("tables4_5", {"solid.material": "BK7", "output.quantities": ["yield"]})
-
-
-def test_a_strength_of_ones_own_replaces_the_materials():
-    closed = CHANGES | {"solve.methods": ["closed_form"]}
-    one, other = (
-        computed("tables4_5", closed | changes).data["states/closed_form/yield_depth"]
-        for changes in ({}, {"solid.yield_strength": "410 MPa"})
-    )
-    half = computed("tables4_5", closed | {"punch.load": 55.3e3 / 2}).data[
-        "states/closed_form/yield_depth"
-    ]
-    np.testing.assert_allclose(other, half, rtol=1e-12)
-    assert (other < one / 2).all()
 
 
 def test_incompressible_solids_have_it_in_closed_form_only():

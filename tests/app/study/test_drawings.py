@@ -154,13 +154,6 @@ def test_legends_name_the_values(drawings):
     assert all("SS" in legends[name][-2] and "HS" in legends[name][-1] for name in ROWS if name != "fig5")
 
 
-def test_captions_say_what_is_fixed_and_which_end_leads(drawings):
-    assert "X/L = 0.4" in drawings["fig10"].caption and "μ_C = 0.5" in drawings["fig10"].caption
-    assert "X/L = 0.2" in drawings["fig9"].caption and "μ_C = 0.5" in drawings["fig9"].caption
-    for name in ROWS:
-        assert "the study calls X = +a the leading end" in drawings[name].caption
-
-
 @pytest.mark.parametrize("name", [name for name in ROWS if name != "fig5"])
 def test_the_last_row_shows_how_far_both_methods_are_apart(name, drawings, study_run):
     data = study_run.data
@@ -221,15 +214,6 @@ def test_loops_are_those_of_the_studys_panels(drawings):
     assert names[1] == [rf"$\mu_C = {mu:g}$" for mu in MU] and len(names[2]) == 3 and len(names[3]) == 4
     widths = [line.get_linewidth() for line in panels[0].lines if len(line.get_xdata()) > 2][::3]
     assert widths == sorted(widths, reverse=True) and len(set(widths)) == 4  # none hides another
-
-
-def test_the_scene_of_fig_6_is_drawn_where_its_lists_meet():
-    """Of laws that are no product of lists, each parameter is drawn where most laws have the others."""
-    (drawing,) = computed("fig6").drawings(figures=("friction",))
-    panels = drawing.figure.axes
-    assert [len(loops_of(axis)) for axis in panels] == [4, 3, 4]
-    assert "not shown" not in drawing.full_caption
-    assert all(r"\mu_C = 0.5" in axis.get_title(loc="left") for axis in panels[1:])
 
 
 def test_the_block_has_the_studys_proportions(drawings):

@@ -136,44 +136,6 @@ def test_a_run_with_damaged_caches(cache, compiles):
     np.testing.assert_array_equal(v0, again)
 
 
-#: Assembles a matrix, each time in a process of its own, and flips a bit of the compiled forms before.
-FLIPPER = """
-import hashlib, logging, os, random, sys
-from pathlib import Path
-from support import space_on
-from galinx.meshes.rings import Refinement
-from galinx.solvers.solids.isotropic import MovingFrame
-
-def tell():
-    if child := os.fork():
-        return print(os.waitpid(child, 0)[1], flush=True)
-    logging.disable()
-    A = space_on("confocal", Refinement(2, 0.35, 1, (3.0,)), 1).assemble(MovingFrame(2.0, 0.5))
-    print(hashlib.sha256(A.getValuesCSR()[2].tobytes()).hexdigest(), end=" ", flush=True)
-    os._exit(0)
-
-tell()
-chance, cache = random.Random(5), Path(os.environ["XDG_CACHE_HOME"])
-for _ in range(int(sys.argv[1])):
-    path = chance.choice(sorted(p for p in cache.glob("galinx/forms/*/*") if p.stat().st_size))
-    data, bit = bytearray(path.read_bytes()), chance.randrange(8 * path.stat().st_size)
-    data[bit // 8] ^= 1 << bit % 8
-    path.write_bytes(data)
-    tell()
-"""
-
-
-def test_a_flipped_bit_changes_no_number(cache, compiles):
-    done = subprocess.run(
-        [sys.executable, "-c", FLIPPER, str(COMPILED)],
-        capture_output=True, text=True, timeout=60 + 30 * COMPILED,
-        env=clean_environment() | {"PYTHONPATH": f"{HOME}:{HOME / 'tests'}"},
-    )  # fmt: skip
-    told = done.stdout.splitlines()
-    assert len(told) == COMPILED + 1 and len(told[0]) == 66 and told[0].endswith(" 0"), done.stderr
-    assert set(told) == {told[0]}, done.stderr
-
-
 def test_nobody_waits_for_what_a_killed_run_left(cache):
     """FFCx alone would wait ten seconds for a source that is not compiled, and then give up."""
     compiled()

@@ -1,11 +1,9 @@
 """What measures the program is careful with files, as the program is."""
 
 import importlib
-import os
 import re
 import sys
 
-import h5py
 import pytest
 from support import HOME
 
@@ -30,20 +28,6 @@ def bench(measure, tmp_path, monkeypatch):
     monkeypatch.setattr(measure, "steps", lambda _: "steps\n")
     monkeypatch.setattr(sys, "argv", ["measure.py", "-o", str(tmp_path / "out")])
     return measure.main
-
-
-def test_figures_are_written_whole(bench, tmp_path, monkeypatch):
-    synchronised, synchronise = [], os.fsync
-    monkeypatch.setattr(os, "fsync", lambda handle: synchronised.append(synchronise(handle)))
-    for _ in range(2):  # what is there is made again
-        bench()
-    folder = tmp_path / "out"
-    assert sorted(os.listdir(folder)) == ["benchmark.h5", "error_against_time.png", "table.md"]
-    assert len(synchronised) == 2 * 2 * 3  # each file, and its name
-    assert "| 1 state | 1 | 2 | 3.00 | 4.00 | 5 | 6.0e+00 |" in (folder / "table.md").read_text("utf-8")
-    assert (folder / "error_against_time.png").read_bytes().startswith(b"\x89PNG")
-    with h5py.File(folder / "benchmark.h5") as file:
-        assert file["wall"][0] == 3.0 and file["wall"].attrs["units"] == "s"
 
 
 def test_each_case_can_be_computed(measure):

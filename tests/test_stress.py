@@ -1,5 +1,4 @@
 from dataclasses import replace
-from itertools import islice
 
 import all_kinds
 import friction_law
@@ -9,14 +8,10 @@ import numpy as np
 import pytest
 import random_scenes
 import resolution
-from all_kinds import Judged
 from random_scenes import Ratios
 from row import Row, Verdict, honest, reached
 
-from galinx.app.scene.read import parse
 from galinx.postprocess.target import Folder
-from galinx.solvers.profiles import PROFILES
-from galinx.solvers.solids import SOLIDS
 
 
 def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
@@ -78,29 +73,3 @@ def test_estimates_are_bounds_and_tight(found, holds):
 
     assert good(found, found, found) == holds
     assert not good(found, found, [*found, 101.0]) and not good(found, found, found, [0.9])
-
-
-def test_scenes_of_all_kinds_are_those_of_their_seed():
-    def drawn(seed):
-        return list(islice(all_kinds.scenes(seed), 60))
-
-    texts = drawn(5)
-    assert texts == drawn(5) != drawn(6)
-    for name in (*PROFILES, *SOLIDS):
-        assert any(f'= "{name}"' in text for text in texts), name
-    assert any("[[layer]]" in text and "to = {" in text for text in texts)
-    assert all(parse(text) for text in texts)
-
-
-@pytest.mark.parametrize(
-    "below, alone, holds",
-    [(0, 0, (True, True)), (1, 0, (False, True)), (0, 3, (True, True)), (0, 4, (True, False))],
-)
-def test_scenes_of_all_kinds_are_counted(below, alone, holds):
-    found = [Judged("", True, False, {"estimate": 0.9}) for _ in range(below)]
-    found += [Judged("", False, True, {"estimate": 3.0}) for _ in range(alone)]
-    found += [Judged("", False, False, {"estimate": 0.1})]  # what FAILs says so already
-    found += [Judged("", True, False, {"estimate": 2.0, "estimate inside": 5.0})] * (100 - len(found))
-    made = all_kinds.row(found, 1)
-    assert tuple(verdict.holds for verdict in made.verdicts) == holds
-    assert f"{below} of 100" in made.verdicts[0].text and f"{alone} of 100" in made.verdicts[1].text

@@ -12,10 +12,10 @@ from support import computed, here
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
 from galinx.app.figures.archive import of_archive, write
-from galinx.app.figures.choice import Archive, Choice, size
+from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
 from galinx.postprocess.errors import Occupied
-from galinx.postprocess.target import GIF, MP4, SVG
+from galinx.postprocess.target import GIF, MP4
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
@@ -80,17 +80,6 @@ def test_numbers_are_drawn_over_what_is_swept_most(sweep):
     assert "σ₀ l/N = 20\u202f000 m⁻¹, FM1, X/L = 0.8" in drawing.caption.replace("\u202fm", " m")
 
 
-def test_formats_and_endings_are_obeyed(fast, tmp_path):
-    choice = Choice(figures=("surface",), states=(0, 4), size=size("3.5in"))
-    for name, begins in (("a.svg", b"<?xml"), ("a.pdf", b"%PDF"), ("a.png", b"\x89PNG")):
-        write(fast.data, fast.scene, choice, Files(tmp_path / name))
-        assert (tmp_path / name).read_bytes().startswith(begins)
-    assert SVG.of(tmp_path / "a.svg")
-    wrote = write(fast.data, fast.scene, choice, Files(tmp_path / "many", "x", ("svg", "png")))
-    assert [one.path.name for one in wrote] == ["x_surface.svg", "x_surface.png"]
-    assert {one.path for one in wrote} == set((tmp_path / "many").iterdir())
-
-
 def test_films_are_made_of_strokes(strokes, tmp_path):
     from PIL import Image
 
@@ -101,21 +90,6 @@ def test_films_are_made_of_strokes(strokes, tmp_path):
         pictures = [opened.seek(n) or np.asarray(opened.convert("RGB")).copy() for n in (0, 3, 9)]
     assert all((one != other).any() for one, other in pairwise(pictures))
     write(strokes.data, strokes.scene, Choice(), Files(tmp_path / "film.gif"))  # made again unasked
-
-
-def test_a_film_goes_along_every_stroke_in_the_order_of_travel(strokes):
-    from galinx.app.figures.archive import film as made
-
-    shown, _ = made(Archive(strokes.data, strokes.scene, Choice()))
-    places = []
-    for n in range(shown.frames):
-        shown.show(n)
-        axis = shown.figure.axes[0]
-        title = axis.get_title(loc="left").removeprefix("(a)").strip()
-        places.append(title.split(", $f")[0].replace("$", ""))
-    assert places[0] == "FM1, X/L = 0" and places[5:8] == [
-        "FM1, X/L = 1", "BM1, X/L = 1", "BM1, X/L = 0.8",
-    ]  # fmt: skip
 
 
 def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):

@@ -135,17 +135,6 @@ def test_measured_points_lie_at_their_places(light, heavy, table):
     assert dots(pressure)[1] == pytest.approx([0.0, 17.25], rel=1e-12)
 
 
-def test_a_german_table_is_the_same(table):
-    english = read(table(POINTS))
-    german = read(table(POINTS.replace(",", ";").replace(".", ",")))
-    micro = read(
-        table("x [µm];p [kPa];sigma_XX [GPa]\n-500;15500;-0,02\n0;17250;-0,0305\n750;2e6;-0,025")
-    )
-    for name, of_english in english.points.items():
-        for other in (german, micro):
-            np.testing.assert_allclose(other.points[name], of_english, rtol=1e-14)
-
-
 @pytest.mark.parametrize(
     "text, said",
     [
@@ -161,18 +150,3 @@ def test_a_german_table_is_the_same(table):
 def test_what_is_no_measured_table_is_refused(table, text, said):
     with pytest.raises(BadInput, match=re.escape(said)):
         read(table(text))
-
-
-def test_points_beside_what_is_drawn_are_refused(light, two, table, tmp_path):
-    far = table("position [m],pressure [MPa]\n5,1\n")
-    done = here("plot", two[0], "--measured", far, "-o", tmp_path)
-    assert done.returncode == 2, done.stdout
-    assert "found points at 5000 to 5000, the figure shows -1.04 to 1.04" in done.stderr
-    for options in ({"figures": ("friction",)}, {"quantities": ("sigma_XX",)}):
-        with pytest.raises(BadInput, match="which no chosen figure or quantity shows"):
-            list(light.drawings(measured=read(far), **options))
-    near = table(POINTS)
-    done = here("plot", two[0], "--measured", near, "-o", tmp_path / "near.svg")
-    assert done.returncode == 0 and (tmp_path / "near.svg").exists(), done.stderr
-    done = here("plot", two[0], "--measured", near, "-o", near)
-    assert done.returncode == 2

@@ -9,7 +9,6 @@ import pytest
 from support import command, computed
 
 import galinx
-from galinx.app.errors import BadInput
 from galinx.solvers.errors import SolveError
 
 
@@ -47,13 +46,6 @@ def test_finite_elements_and_collocation_agree_on_a_profile(c, monkeypatch):
     assert "states/closed_form/K_I" not in data and "states/fem/slope_under_punch" not in data
     assert result.comparisons["σ_YY pointwise, relative"] <= 1e-5
     assert result.comparisons["σ_XX pointwise, relative to itself or the largest"] <= 1e-6
-
-
-def test_a_pressure_that_no_closed_form_gives_is_not_put_in(monkeypatch):
-    monkeypatch.setitem(galinx.PROFILES, "crowned", Crowned)
-    changes = {"punch.profile": "crowned", "punch.rise": "30 nm", "solve.mode": "traction"}
-    with pytest.raises(BadInput, match="has no closed form"):
-        computed("tables4_5", changes)
 
 
 @dataclass(frozen=True)

@@ -46,16 +46,6 @@ def test_every_state_is_that_of_its_strokes_speed(run):
         assert run.data["states/closed_form/K_I_left"][i] == pytest.approx(K, rel=1e-12)
 
 
-def test_a_speed_is_solved_once(run):
-    c = run.data["states/c"]
-    assert run.data["run/fem/c"].tolist() == list(dict.fromkeys(c.tolist()))
-    assert len(run.data["run/fem/c"]) == 3
-    plan = make_plan(run.scene)
-    rows = [row for one in plan.tasks for some in one.runs for row in range(some.start, some.stop)]
-    assert sorted(rows) == list(range(24)) and plan.states == 24
-    assert [one.response.c for one in plan.tasks] == run.data["run/fem/c"].tolist()
-
-
 def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, monkeypatch):
     """Runs of a speed are cut and put together, and a run that was stopped goes on."""
     scene = galinx.template("tables4_5", SCENE | CLOSED)

@@ -6,6 +6,7 @@ formulas of their own.
 
 import numpy as np
 import pytest
+from study_reference import f_of, stresses
 from support import HOME, computed
 
 from galinx.app.study.drawings import of_study
@@ -50,44 +51,6 @@ def study_run():
 @pytest.fixture(scope="module")
 def drawings(study_run):
     return {drawing.name: drawing for drawing in of_study(study_run.data, study_run.scene)}
-
-
-def f_of(mu, sigma, delta, motion, X, L=1e-4):
-    """Dahl's friction at X over L of a stroke, all strokes before it gone to their end."""
-    f = 0.0
-    for name, s in (("FM1", 1), ("BM1", -1), ("FM2", 1)):
-        way = L * ((X if s > 0 else 1.0 - X) if name == motion else 1.0)
-        y = 1.0 - s * f / mu
-        if delta == 1.0:
-            y *= np.exp(-sigma * way / mu)
-        else:
-            power = y ** (1.0 - delta) - (1.0 - delta) * sigma * way / mu
-            y = power ** (1.0 / (1.0 - delta)) if power > 0.0 else 0.0
-        f = s * mu * (1.0 - y)
-        if name == motion:
-            return f
-    raise AssertionError(motion)
-
-
-def stresses(x, f, c, kappa=2.0):
-    """σ_YY and σ_XX over N/(2a) of the sliding flat punch (Eqs 32, 38-43, 55)."""
-    k, g = (kappa - 1.0) / (kappa + 1.0), -f
-    s, d = np.sqrt(1.0 - c * c), np.sqrt(1.0 - k * c * c)
-    fraction = 4.0 * (1.0 + k - k * c * c) / (1.0 + s * d)
-    r = 4.0 - c * c - fraction
-    n, q, m = d / r, (fraction / 2.0 - 1.0) / r, s / r
-    cot = g * q / n
-    alpha = -0.5 - np.arctan(cot) / np.pi
-    beta, sin = -1.0 - alpha, np.sin(np.pi * alpha)
-    size = 2.0 * sin / np.pi
-    under = np.abs(x) < 1.0
-    weight = np.abs(1.0 - x) ** alpha * np.abs(1.0 + x) ** beta
-    pressure = np.where(under, size * weight, 0.0)
-    hilbert = size * np.where(under, cot * weight, np.sign(x) * weight / sin)
-    in_plane = ((3.0 - kappa) + 8.0 * q) / (kappa + 1.0) * pressure + 8.0 * m / (
-        kappa + 1.0
-    ) * g * hilbert
-    return np.where(under, pressure, np.nan), in_plane
 
 
 def drawn(axis):

@@ -140,8 +140,8 @@ class Validity:
             if steep[0] > 0.0:
                 least = " or ".join(f"{threshold:.3g}" for threshold in steep)
                 yield (
-                    f"{up_to}, and at least {least} in {states['ratio']}: from there on such an interface "
-                    "may flutter at short waves"
+                    f"{up_to}, and at least {least} in {states['ratio']}: from there on such an "
+                    "interface may flutter at short waves"
                 )
             else:
                 yield (

@@ -28,11 +28,6 @@ def test_a_file_keeps_its_permissions_when_it_is_replaced(tmp_path):
     assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o640
 
 
-def test_a_name_as_long_as_can_be_is_no_hindrance(tmp_path):
-    files.write(tmp_path / ("n" * 255), b"one")
-    assert os.listdir(tmp_path) == ["n" * 255]
-
-
 @pytest.mark.parametrize("links", [True, False])
 def test_what_appeared_meanwhile_is_not_replaced(tmp_path, monkeypatch, links):
     if not links:
@@ -56,17 +51,6 @@ def test_a_full_disk_leaves_what_was_there(tmp_path):
     with full_disk(1000), pytest.raises(OSError, match="large"):
         files.write(tmp_path / "a", b"x" * 5000)
     assert (tmp_path / "a").read_bytes() == b"precious" and os.listdir(tmp_path) == ["a"]
-
-
-def test_a_process_that_ends_where_it_stands_leaves_no_unfinished_file(tmp_path):
-    files.write(tmp_path / "a", b"one")
-    if not (child := os.fork()):
-        with files.NewFile(tmp_path / "a") as new:
-            new.temporary.write_bytes(b"two")
-            files.give_up()
-            os._exit(0)
-    assert os.waitpid(child, 0)[1] == 0
-    assert (tmp_path / "a").read_bytes() == b"one" and os.listdir(tmp_path) == ["a"]
 
 
 def test_it_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):

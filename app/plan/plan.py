@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes import MESHES, Requirements, store
+from galinx.meshes import MESHES, Requirements
 from galinx.postprocess.compare import FINITE as FINITE_RULE
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses

@@ -36,12 +36,6 @@ def job(*mpirun):
     return done.returncode, done.stderr
 
 
-def test_a_rank_tells_how_its_job_ends():
-    assert job(sys.executable, "-c", RANK, "0", "") == (errors.GOOD, "")
-    long = f"error: {'é' * 10**6}\n"  # more than a socket holds
-    assert job(sys.executable, "-c", RANK, "2", "é") == (errors.BAD_INPUT, long)
-
-
 def test_an_mpirun_that_starts_no_rank_is_said():
     assert job("sh", "-c", "kill -KILL $$") == (errors.FAILURE, STOPPED)
     status, said = job("sh", "-c", "echo no slots; exit 1")

@@ -200,9 +200,8 @@ class Section:
         """Keys of a section with a model of that name."""
         if self._models is None:
             return self._keys
-        own = {
-            key: self._key(parameter, model) for key, parameter in parameters(self._models[model]).items()
-        }
+        kind = self._models[model]
+        own = {key: self._key(parameter, kind) for key, parameter in parameters(kind).items()}
         chosen = Key(Choice(self._models), self._models.noun, self._default)
         besides = {key: entry for key, entry in self._keys.items() if entry.stands_for in ("", *own)}
         keys = {**own, self._chosen: chosen, **besides}

@@ -73,7 +73,7 @@ from galinx.solvers.contact.solution import (
     Task,
 )
 from galinx.solvers.contact.uniform import contacts
-from galinx.solvers.contact.yielding_of_layers import places as yield_places
+from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent
 from galinx.solvers.rays import NEAR

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
-#: Most tops of a curve that are refined; places at which a function is evaluated about each; samples of
-#: a curve that a polynomial goes through; places at which the polynomial is compared first.
-_TOPS, _NODES, _THROUGH, _COMPARED = 5, np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65
+#: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
+#: places at which the polynomial is compared first; most tops of a curve that are refined.
+_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
 GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
@@ -48,7 +48,7 @@ def between(turns: NDArray, x: NDArray = GRADED) -> NDArray[np.float64]:
 
 
 def largest(
-    function: Callable[[NDArray], NDArray], pieces: Sequence[NDArray], ends: bool = True
+    function: Callable[[NDArray], NDArray], pieces: Sequence[NDArray], ends: bool = True, refined: int = 5
 ) -> tuple[float, float]:
     """Largest value of a function of one variable, and its place.
 
@@ -57,15 +57,16 @@ def largest(
         pieces: rising places at which each smooth piece is sampled, close enough for a polynomial
             between the neighbours of any.
         ends: False where the first and the last sample of a piece are next to a turn, and are no top.
+        refined: most tops between the neighbours of which a polynomial is taken.
     """
     values = np.split(function(np.concatenate(pieces)), np.cumsum([len(x) for x in pieces])[:-1])
-    tops = []
+    tops: list[tuple[float, ...]] = []
     for x, y in zip(pieces, values):
         padded = np.pad(y, 1, constant_values=-np.inf if ends else np.inf)
         i = np.flatnonzero((y >= padded[:-2]) & (y >= padded[2:]))
         tops += zip(y[i], x[i], x[np.maximum(i - 1, 0)], x[np.minimum(i + 1, len(x) - 1)])
     best = max([(value, place) for value, place, *_ in tops], default=(-np.inf, np.nan))
-    for _, _, low, high in sorted(tops, reverse=True)[:_TOPS]:
+    for _, _, low, high in sorted(tops, reverse=True)[:refined]:
         u = (low + high) / 2.0 + (high - low) / 2.0 * _NODES
         height, place = summit(u[None], function(u)[None], np.array([low]), np.array([high]))
         best = max(best, (height[0], place[0]))
@@ -89,7 +90,7 @@ def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float
     padded = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.inf)
     top = finite & (curves >= padded[:, :-2]) & (curves >= padded[:, 2:])
     heights, places = [], []
-    for i in np.argsort(np.where(top, -curves, np.inf), axis=1, kind="stable")[:, :3].T:
+    for i in np.argsort(np.where(top, -curves, np.inf), axis=1, kind="stable")[:, :_TOPS].T:
         own = pieces == pieces[rows, i][:, None]
         first, count = own.argmax(axis=1), own.sum(axis=1)
         height, place = np.full(len(curves), -np.inf), u[i]

@@ -31,7 +31,7 @@ from .prescribed_pressure import COARSE, FINE, LinearPressure
 from .pressure import ENDS, Pressure, largest_of
 from .solution import Task
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
-from .yielding_of_layers import StrengthOfLayers
+from .yielding import StrengthOfLayers
 
 #: The two frictions solved for a prescribed pressure.
 _NODES = np.array([0.0, 1.0])

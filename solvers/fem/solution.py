@@ -19,8 +19,7 @@ from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
 from ..contact.stresses import Places, Surface, Turns, together, turns_at_ends
-from ..contact.yielding import Strength
-from ..contact.yielding_of_layers import StrengthOfLayers
+from ..contact.yielding import Strength, StrengthOfLayers
 from .displacement import Displacement
 from .punch import ContactStates
 

@@ -57,7 +57,7 @@ from ..contact.stresses import NEAR_TIP, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.flat import Flat
-from .contact import Ends, FreeEnds, PunchLevel
+from .contact import Ends, FreeEnds, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, Solved, WorkDone, climb, to_tolerance
 from .solution import Ended, Solution, SolvedStates, solution_of
@@ -313,13 +313,13 @@ class BalancedEnds(Ends):
             SolveError: no load makes such a contact.
         """
         (parts, loads, K), h = level.parts(g), self._half_width
-        amplitudes = np.linalg.solve(np.vstack([loads, K[0]]), np.array([-2.0, 0.0, 0.0]))
+        amplitudes = without_intensity(loads, K)
         # Over its own load the punch's height is that over the task's load times their quotient.
-        _, share, slope = amplitudes.tolist()
+        _, share, slope = amplitudes[0].tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
         off, lean = float(-np.log(share)), self._near / h + slope / share
-        contact = level.punch.summed(g, parts, amplitudes[None])
+        contact = level.punch.summed(g, parts, amplitudes)
         lengths = np.full(1, h * np.exp(-off / GROWTH)), np.full(1, h * lean)
         return BalancedContact(contact, *lengths, _FREE, off=off, lean=lean)
 
@@ -500,9 +500,8 @@ def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: Wo
         ends: ends of the contact.
         done: takes the numbers of the work.
     """
-    solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends))
-    done.add(solved.done)
-    return OwnState(replace(solved.level.states(g), errors=solved.error.of(g)), solved)
+    solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends), done)
+    return OwnState(*solved.solved(g), solved)
 
 
 class OwnMeshesAtSpeed:
@@ -577,17 +576,17 @@ def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnM
     def level(space: Space, g: NDArray) -> EndsLevel:
         return EndsLevel(work.for_ends, task, space, g, near)
 
-    with closing(climb(work.for_ends, task, g, level)) as solved:
+    done = WorkDone()
+    with closing(climb(work.for_ends, task, g, level, done=done)) as solved:
 
         def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
             of = np.array([g])
-            lengths, unseen = solved.level.lengths(of, np.array([alone.body.load]))
-            ends = EndsBetweenKinks(alone.body, tuple(lengths[0].tolist()), work.plan.tolerance)
+            (lengths,), unseen = solved.level.lengths(of, np.array([alone.body.load]))
+            ends = EndsBetweenKinks(alone.body, tuple(lengths.tolist()), work.plan.tolerance)
             mesh = work.on(ends.drawn(work.plan), refine=lambda plan: ends.drawn(on_finer_cells(plan)))
-            state = own_state(mesh, alone, of, ends, solved.done)
-            off = solved.error.of(of)[INTENSITIES] + unseen
-            state.states.errors[INTENSITIES] += off
+            state = own_state(mesh, alone, of, ends, done)
+            state.states.errors[INTENSITIES] += solved.error.of(of)[INTENSITIES] + unseen
             return state
 
-        with closing(OwnMeshesAtSpeed(task, solve, solved.done)) as at:
+        with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
             yield at

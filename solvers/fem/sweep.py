@@ -23,9 +23,9 @@ from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import LADDERS, MOST, Sweep, levels
 from ..contact.solution import Task
 from ..errors import SolveError
-from .contact import AtSpeed, PunchLevel
+from .contact import PunchLevel
 from .discretisation import Discretisation
-from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb
+from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
 from .punch import FittedPunch, Frictions, Sampled, sampled, together
 from .space import Space
 
@@ -167,9 +167,7 @@ class Fit:
         """Numbers of the work at a speed; none was done where it is fitted."""
         if number in self.speeds:
             return self.speeds[number].record
-        space = self.space
-        size = {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
-        return size | vars(WorkDone())
+        return size_of(self.space) | vars(WorkDone())
 
 
 @dataclass(frozen=True)
@@ -197,18 +195,18 @@ class Trained:
         number, fit = task.number, self.fit
         fitted, z = number not in fit.speeds, float(fit.sweep.z[number])
         covered = min(self.estimates) <= z <= max(self.estimates)
-        of_fit = self.error if fitted and self.error else {}
-
-        def errors(g: NDArray) -> dict[str, NDArray[np.float64]]:
-            """Errors of the speeds measured on both sides, the larger ones, and of the fit."""
-            places, each = np.array([*self.estimates]), list(self.estimates.values())
-            low, high = (each[i].of(g) for i in around(places, np.array([z]))[0])
-            return {word: np.maximum(low[word], high[word]) + of_fit.get(word, 0.0) for word in low}
-
         known = self.error is not None or (not fitted and covered)
-        if known and max((of.max() for of in errors(g).values()), default=0.0) <= fit.work.plan.tolerance:
+        # Errors of the speeds measured on both sides, the larger ones, and of the fit.
+        places, each = np.array([*self.estimates]), list(self.estimates.values())
+        low, high = (each[i] for i in around(places, np.array([z]))[0])
+        of_fit = self.error if fitted and self.error else {}
+        error = Estimate(
+            low.g, {w: np.maximum(low.errors[w], high.errors[w]) + of_fit.get(w, 0.0) for w in low.errors}
+        )
+        worst = max((errors.max() for errors in error.of(g).values()), default=0.0)
+        if known and worst <= fit.work.plan.tolerance:
             with fit.level(task) as level:
-                yield AtSpeed(level, errors, lambda: fit.record(number), fitted)
+                yield Solved(level, error, fit.record(number), fitted)
         else:
             yield None
 
@@ -398,9 +396,9 @@ class _Training:
             )  # fmt: skip
         else:
             assert fit
-            level = PunchLevel(work, task, fit.space, self._all)
-            solved = Solved(work, level, None, WorkDone())
-            solved.done.count(level.factor)
+            level, done = PunchLevel(work, task, fit.space, self._all), WorkDone()
+            done.count(level.factor)
+            solved = Solved(level, None, size_of(fit.space) | vars(done))
         with closing(solved):
             level = solved.level
             degree = level.space.degree

@@ -44,26 +44,13 @@ from ..profiles.power import Parabolic
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
-from .ladder import Gauge, Level, of_pressure
+from .ladder import Gauge, Level, joined, of_pressure
 from .punch import ContactStates, FittedPunch, Punch, sliding_punch
 from .solution import Ended, SolvedStates
 from .space import Space
 
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
-#: most keeps results on any number of ranks equal to 1e-9.
-_NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
-
-#: Share of that where stresses are requested: next to an edge a force counts by the little load there.
-_BESIDE_EDGES = 0.1
-
 #: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
 _NEAREST = 1e-6
-
-
-def negligible(work: Any) -> float:
-    """Relative change of the contact forces that affects no result."""
-    least = min(_NEGLIGIBLE * work.plan.tolerance, _NEGLIGIBLE_MOST)
-    return _BESIDE_EDGES * least if work.stresses else least
 
 
 class Ends:
@@ -221,13 +208,9 @@ class FreeEnds(Ends):
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
         gauge = of_pressure(level.over_flat(moments, states.contact.g), moments)
-        ends = states.ends
-        lengths = np.column_stack([ends.half_width, ends.centre])
-        return replace(
-            gauge,
-            values=np.concatenate([gauge.values, lengths], axis=1),
-            scale=np.concatenate([gauge.scale, np.tile(ends.half_width[:, None], 2)], axis=1),
-        )
+        lengths = np.column_stack([states.ends.half_width, states.ends.centre])
+        groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
+        return joined(gauge.word, groups, gauge.unresolved)
 
 
 #: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
@@ -335,17 +318,18 @@ class PunchLevel(Level):
         fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
     ) -> None:  # fmt: skip
         super().__init__(work, task, space, g)
-        self.plan, self.only = work.plan, None
+        self.plan = work.plan
+        self.only: Ended | None = None
         self.ends = ends or ends_of(work.plan)
         self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
         if fitted is not None and recovery is not None:
             self.punch: Punch = fitted
             self.fields, self.recovery, self.moments = fitted.fields, recovery, recovery.moments
             return
-        least, single = negligible(work), self.ends.single
+        single = self.ends.single
         self.punch = solved = sliding_punch(
-            space, task.response, self.plan.solver, least, self.ends.heights(self), self.ends.along(self),
-        )  # fmt: skip
+            space, task.response, self.plan.solver, self.ends.heights(self), self.ends.along(self)
+        )
         self.factor = solved.factor
         try:
             # The basis is complete before traces are taken, and the same whatever states are still to do.

@@ -59,6 +59,12 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
+def joined(word: str, groups: Sequence[tuple[NDArray, Any]], unresolved: Any = 0.0) -> Gauge:
+    """Gauge of groups of numbers, (states, n) each, with the sizes that scale their changes."""
+    values, sizes = zip(*((of, np.broadcast_to(size, of.shape)) for of, size in groups))
+    return Gauge(word, np.concatenate(values, axis=1), np.concatenate(sizes, axis=1), unresolved)
+
+
 def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
@@ -68,11 +74,9 @@ def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Ga
         moved: distance over a by which the edges of the contact seem off, on cells that no degree mends.
     """
     factor = pressure.series(_ACROSS)
-    values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
+    size = stresses.of_factor(factor)
     unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
-    return Gauge(
-        INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), unresolved
-    )
+    return joined(INTENSITIES, ((factor, size), (moments[:, 1:6], 2.0)), unresolved)
 
 
 def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:

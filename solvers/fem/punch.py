@@ -30,7 +30,7 @@ from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
-from ..approximation import barycentric
+from ..approximation import Barycentric
 from ..errors import SolveError
 from ..solids.half_plane import HalfPlane
 from ..solids.pair import PairAtSpeed
@@ -41,7 +41,10 @@ from .space import Space
 
 #: Least residual of the contact forces that can be required, relative; the last digits are rounding.
 LEAST = 1e-13
-#: That which refined solutions may bring back; what is larger takes further loads.
+#: Relative change of the contact forces for which no solution is refined. It keeps results on any number
+#: of ranks equal to 1e-9; next to an edge a force counts by the little load there.
+NEGLIGIBLE = 1e-11
+#: Residual which refined solutions may bring back; what is larger takes further loads.
 _BROUGHT_BACK = 1e-12
 #: Most loads of an iterative solver; a factor takes as many as there are contact nodes.
 LIMIT = 120
@@ -162,16 +165,17 @@ class SlidingPunch(Punch):
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
-        negligible: relative change of the contact forces that needs no refinement of a solution. The
-            first solution is refined in any case, which shows whether the others need it.
         heights: of the punch's profile over N/(2μ) at the contact nodes, (nodes,), or of several shapes
             that are combined, (shapes, nodes); None for a flat punch.
         along: gives G by g where friction varies along the contact; None where G is g.
+        negligible: relative change of the contact forces that needs no refinement of a solution. The
+            first solution is refined in any case, which shows whether the others need it.
     """
 
     def __init__(
-        self, space: Space, response: HalfPlane, solver: str = "direct", negligible: float = 0.0,
+        self, space: Space, response: HalfPlane, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
+        negligible: float = NEGLIGIBLE,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
         nodes = space.contact
@@ -431,23 +435,23 @@ class ElasticPunch(SlidingPunch):
     of all that frictions require.
 
     Args:
-        space, solver, negligible, heights: as of :class:`SlidingPunch`.
+        space, solver, heights: as of :class:`SlidingPunch`.
         response: of the plate and the punch.
     """
 
     response: PairAtSpeed
 
     def __init__(
-        self, space: Space, response: PairAtSpeed, solver: str = "direct", negligible: float = 0.0,
+        self, space: Space, response: PairAtSpeed, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: None = None,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
         # motion, which is large, spoils no digits of the rest.
         others = unit[1:]
-        punch = SlidingPunch(space, response.punch, solver, negligible, others)
+        punch = SlidingPunch(space, response.punch, solver, others)
         each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, negligible, each)
+        super().__init__(space, response.plate, solver, each)
         self.response, self._parts = response, self._parts - len(others)
         self._moving_fields = self.fields[self._parts :]
         #: Forces in the plate by each unit of v', (n, 2, n).
@@ -510,23 +514,6 @@ def sliding_punch(space: Space, response: HalfPlane, *args: Any) -> SlidingPunch
 
 
 @dataclass(frozen=True)
-class Frictions:
-    """Values of g = σ_XY/σ_YY at which punches are sampled.
-
-    Attributes:
-        g: the values, all different, (frictions,).
-        weights: barycentric weights of the polynomial through values there.
-    """
-
-    g: NDArray[np.float64]
-    weights: NDArray[np.float64]
-
-    def shares(self, g: NDArray) -> NDArray[np.float64]:
-        """Weights that interpolate values at the frictions to others, (len(g), frictions)."""
-        return barycentric(self.g, self.weights, g)
-
-
-@dataclass(frozen=True)
 class Sampled:
     """Parts of a punch at a speed, or at several, at some frictions.
 
@@ -559,16 +546,16 @@ def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
     return Sampled(*(np.asarray(sum(of_kind)) for of_kind in zip(*scaled)))
 
 
-def sampled(punch: Punch, at: Frictions, slopes: Slopes, with_fields: bool = False) -> Sampled:
+def sampled(punch: Punch, at: Barycentric, slopes: Slopes, with_fields: bool = False) -> Sampled:
     """Parts of a punch at some frictions.
 
     Args:
         punch: the punch, solved for these frictions.
-        at: the frictions.
+        at: the frictions, all different, with the polynomial through values there.
         slopes: of its fields.
         with_fields: keep the displacements.
     """
-    parts = punch.parts(at.g).swapaxes(0, 1)
+    parts = punch.parts(at.nodes).swapaxes(0, 1)
     of_slopes = np.array([slopes.of(weights) for weights in parts]).swapaxes(0, 1)
     fields = np.array([field.array_r if with_fields else [] for field in punch.fields])
     return Sampled(parts @ punch.forces[:, -1], of_slopes, parts @ fields)
@@ -580,11 +567,11 @@ class FittedPunch(Punch):
     Args:
         space: the finite element space.
         response: of the half-plane.
-        at: frictions at which the parts are known.
+        at: frictions at which the parts are known, with the polynomial through values there.
         samples: the parts there; every part at every friction is a field.
     """
 
-    def __init__(self, space: Space, response: HalfPlane, at: Frictions, samples: Sampled) -> None:
+    def __init__(self, space: Space, response: HalfPlane, at: Barycentric, samples: Sampled) -> None:
         self.space, self.response, self._at, self._count = space, response, at, len(samples.forces)
         self.fields = [
             PETSc.Vec().createWithArray(field.copy(), comm=space.comm)

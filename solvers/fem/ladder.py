@@ -24,6 +24,7 @@ from ..contact.pressure import Expansion
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
+from .punch import spread
 from .solution import Solution, SolvedStates, solution_of
 from .space import Space
 
@@ -180,8 +181,7 @@ def _picked(points: NDArray) -> NDArray[np.float64]:
         return points
     X, Y = points.T
     order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
-    picked = order[np.unique(np.linspace(0, len(order) - 1, _POINTS).astype(int))]
-    return points[np.sort(picked)]
+    return points[np.sort(spread(order, _POINTS))]
 
 
 class Level:
@@ -387,7 +387,7 @@ def climb(
     done = WorkDone() if done is None else done
     # States of friction along the contact are no family, of which some stand for the others.
     every = len(g) if VARYING in task.body.modes else PROBES
-    probes = g[np.unique(np.linspace(0, len(g) - 1, every).astype(int))]
+    probes = spread(g, every)
     to_solve = levels(degree or plan.degrees[task.number], plan.cuts, plan.fixed)
     measured: list[tuple[int, list[Gauge]]] = []
     try:

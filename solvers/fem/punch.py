@@ -54,6 +54,11 @@ _SPREAD, _TOGETHER = 33, 33
 _AT_ONCE = 64
 
 
+def spread(values: NDArray, count: int) -> NDArray:
+    """As many of the values as a count, or all, from the first to the last."""
+    return values[np.unique(np.linspace(0, len(values) - 1, count).astype(int))]
+
+
 @dataclass(frozen=True)
 class ContactStates:
     """States of a punch as sums of its fields; lengths over a, stresses over N/(2a), so forces over N/2.
@@ -211,8 +216,8 @@ class SlidingPunch(Punch):
         suffice. At opposite frictions a punch is the mirror image, with which rounding is estimated.
         Frictions that vary along the contact are no such family: each counts.
         """
-        spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
-        self._grow(g if self._along else np.concatenate([spread, -spread]), last=True)
+        some = spread(g, _SPREAD)
+        self._grow(g if self._along else np.concatenate([some, -some]), last=True)
         self._complete = True
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -333,15 +338,22 @@ class SlidingPunch(Punch):
         """Fields of the loads that have none: rough ones are checked, and refined if needed."""
         new = len(self._rough)
         b, x = self._tangential(self._loads[:, -new:]), np.column_stack(self._rough)
-        residuals = self._residuals(x, b, np.zeros(new))
-        self.factor.check(b, x, residuals)
-        if self._refines:
-            x = x + self._corrections(residuals)
-            # Loads that follow are as small as what was changed.
-            self._refines, self._left = False, max(self._left, _BROUGHT_BACK)
-        fields = [vector(self.factor.A, column) for column in x.T]
-        self.forces[-new:] = self._followed(fields, self._reactions(x))
+        fields, self.forces[-new:] = self._refined(b, x, self._refines)
         self.fields, self._rough = [*self.fields, *fields], []
+        if self._refines:  # loads that follow are as small as what was changed
+            self._refines, self._left = False, max(self._left, _BROUGHT_BACK)
+
+    def _refined(
+        self, b: NDArray, x: NDArray, refines: bool, checked: bool = True
+    ) -> tuple[list[PETSc.Vec], NDArray[np.float64]]:
+        """Fields and forces of displacements x under loads b, (rows, k), checked and refined."""
+        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
+        if checked:
+            self.factor.check(b, x, residuals)
+        if refines:
+            x = x + self._corrections(residuals)
+        fields = [vector(self.factor.A, column) for column in x.T]
+        return fields, self._followed(fields, self._reactions(x))
 
     def _followed(self, fields: Sequence[PETSc.Vec], forces: NDArray) -> NDArray[np.float64]:
         """Forces (fields, 2, n) once the far boundary moves with the fields, which it moves."""
@@ -479,21 +491,15 @@ class ElasticPunch(SlidingPunch):
         return np.array(changes)
 
     def prepare(self, g: NDArray[np.float64]) -> None:
-        spread, n = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))], len(self._moving)
+        some, n = spread(g, _SPREAD), len(self._moving)
         units = np.array([-self.fields[0].array_r, *(field.array_r for field in self._moving_fields)])
-        changes = self._changes(np.concatenate([spread, -spread])).reshape(-1, 2 * n)
+        changes = self._changes(np.concatenate([some, -some])).reshape(-1, 2 * n)
         changes /= np.linalg.norm(changes, axis=1, keepdims=True)
         _, size, rows = np.linalg.svd(changes, full_matrices=False)
         #: Combinations of displacements and tangential forces, (basis, 2 n).
         self._basis = rows[size > LEAST * size[0]]
         b = self._tangential(self._basis[:, n:].T)
-        x = self._displacements(b)
-        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
-        if np.any(g):
-            self.factor.check(b, x, residuals)
-        x += self._corrections(residuals)
-        fields = [vector(self.factor.A, column) for column in x.T]
-        forces = self._followed(fields, self._reactions(x))
+        fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
         for field, moved in zip(fields, self._basis[:, :n] @ units):
             field.setArray(field.array_r + moved)
         self.fields = [*self.fields, *fields]

@@ -14,9 +14,8 @@ and middle follow; of a parabola directly, of other profiles by the conditions o
 speed.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from functools import cache, cached_property
 from typing import Any
 
@@ -46,26 +45,13 @@ from ..profiles.power import Parabolic
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
-from .ladder import Gauge, Level, of_pressure, to_tolerance
+from .ladder import Gauge, Level, joined, of_pressure
 from .punch import ContactStates, FittedPunch, Punch, sliding_punch
-from .solution import Ended, Solution, SolvedStates, solution_of
+from .solution import Ended, SolvedStates
 from .space import Space
-
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined. The
-#: most keeps results on any number of ranks equal to 1e-9.
-_NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
-
-#: Share of that where stresses are requested: next to an edge a force counts by the little load there.
-_BESIDE_EDGES = 0.1
 
 #: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
 _NEAREST = 1e-6
-
-
-def negligible(work: Any) -> float:
-    """Relative change of the contact forces that affects no result."""
-    least = min(_NEGLIGIBLE * work.plan.tolerance, _NEGLIGIBLE_MOST)
-    return _BESIDE_EDGES * least if work.stresses else least
 
 
 class Ends:
@@ -223,18 +209,26 @@ class FreeEnds(Ends):
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
         gauge = of_pressure(level.over_flat(moments, states.contact.g), moments)
-        ends = states.ends
-        lengths = np.column_stack([ends.half_width, ends.centre])
-        return replace(
-            gauge,
-            values=np.concatenate([gauge.values, lengths], axis=1),
-            scale=np.concatenate([gauge.scale, np.tile(ends.half_width[:, None], 2)], axis=1),
-        )
+        lengths = np.column_stack([states.ends.half_width, states.ends.centre])
+        groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
+        return joined(gauge.word, groups, gauge.unresolved)
 
 
 #: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
 #: point below the level of the first shape, over N/(2μ), and slope beyond the shapes, relative.
 _Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
+
+
+def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
+    """Amplitudes of parts whose sum carries the load and has no intensity at some ends, (states, parts).
+
+    Args:
+        loads: ∫σ_YY of every part, (states, parts).
+        K: intensities of every part at these ends, one less than there are parts, (states, ends, parts).
+    """
+    b = np.zeros((*loads.shape, 1))
+    b[:, 0] = -2.0
+    return np.asarray(np.linalg.solve(np.concatenate([loads[:, None], K], axis=1), b)[..., 0])
 
 
 def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
@@ -248,13 +242,12 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -
     """
     punch = body.profile
     assert isinstance(punch, Parabolic)
-    A = np.concatenate([loads[:, None, :3], K[..., :3]], axis=1)
-    first = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
-    amplitudes = np.concatenate([first, np.zeros((len(A), loads.shape[1] - 3))], axis=1)
-    _, c1, c2 = first.T
+    amplitudes = np.zeros_like(loads)
+    amplitudes[:, :3] = without_intensity(loads[:, :3], K[..., :3])
+    _, c1, c2 = amplitudes[:, :3].T
     with np.errstate(invalid="ignore"):
         h = np.sqrt(punch.radius * c2 * body.displacement)
-    free = np.ones((len(A), 2), dtype=bool)
+    free = np.ones((len(h), 2), dtype=bool)
     return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
 
 
@@ -286,9 +279,8 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
     c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
     v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
     lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
-    A = np.stack([loads, K[:, side]], axis=1)
-    given_up = np.linalg.solve(A, np.tile([-2.0, 0.0], (len(A), 1))[..., None])[..., 0]
-    amplitudes = np.where(lifted[:, None], given_up, np.column_stack([v0, c1]))
+    balanced = without_intensity(loads, K[:, [side]])
+    amplitudes = np.where(lifted[:, None], balanced, np.column_stack([v0, c1]))
     h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
@@ -327,17 +319,18 @@ class PunchLevel(Level):
         fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
     ) -> None:  # fmt: skip
         super().__init__(work, task, space, g)
-        self.plan, self.only = work.plan, None
+        self.plan = work.plan
+        self.only: Ended | None = None
         self.ends = ends or ends_of(work.plan)
         self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
         if fitted is not None and recovery is not None:
             self.punch: Punch = fitted
             self.fields, self.recovery, self.moments = fitted.fields, recovery, recovery.moments
             return
-        least, single = negligible(work), self.ends.single
+        single = self.ends.single
         self.punch = solved = sliding_punch(
-            space, task.response, self.plan.solver, least, self.ends.heights(self), self.ends.along(self),
-        )  # fmt: skip
+            space, task.response, self.plan.solver, self.ends.heights(self), self.ends.along(self)
+        )
         self.factor = solved.factor
         try:
             # The basis is complete before traces are taken, and the same whatever states are still to do.
@@ -463,42 +456,3 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     if tests is None:
         return chebyshev
     return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
-
-
-@dataclass(frozen=True)
-class AtSpeed:
-    """States at one speed on a mesh that they share, solved to the tolerance.
-
-    Attributes:
-        level: the last level, a :class:`galinx.solvers.fem.ladder.Level`.
-        errors: gives estimated errors by word of output.quantities, (states,), at frictions (states,).
-        record: gives numbers of the work.
-        fitted: True where the speed was fitted through others.
-    """
-
-    level: Any
-    errors: Callable[[NDArray], dict[str, NDArray]]
-    record: Callable[[], dict[str, Any]]
-    fitted: bool = False
-
-    def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self.level.task, self._solved, g, load)
-
-    def _solved(self, g: NDArray, load: Any) -> list[SolvedStates]:
-        states = self.level.states(g, load)
-        errors = {word: values + states.ends.unresolved for word, values in self.errors(g).items()}
-        return [replace(states, errors=errors, fitted=self.fitted)]
-
-
-@contextmanager
-def shared_mesh(work: Discretisation, task: Task, g: NDArray, level: Any) -> Iterator[AtSpeed]:
-    """Raise the degree until the measured error of sample states is within tolerance.
-
-    Args:
-        work: gives spaces.
-        task: the speed.
-        g: all values of σ_XY/σ_YY that will be solved, sorted.
-        level: class of levels, made of ``work``, ``task``, a space and g.
-    """
-    with closing(to_tolerance(work, task, g, lambda space, g: level(work, task, space, g))) as solved:
-        yield AtSpeed(solved.level, solved.error.of, solved.record)

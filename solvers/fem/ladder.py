@@ -24,7 +24,8 @@ from ..contact.pressure import Expansion
 from ..contact.solution import Task
 from .discretisation import Discretisation
 from .displacement import Displacement
-from .solution import SolvedStates
+from .punch import spread
+from .solution import Solution, SolvedStates, solution_of
 from .space import Space
 
 #: Most points inside on which the error is measured; of more points so many are picked.
@@ -59,6 +60,12 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
+def joined(word: str, groups: Sequence[tuple[NDArray, Any]], unresolved: Any = 0.0) -> Gauge:
+    """Gauge of groups of numbers, (states, n) each, with the sizes that scale their changes."""
+    values, sizes = zip(*((of, np.broadcast_to(size, of.shape)) for of, size in groups))
+    return Gauge(word, np.concatenate(values, axis=1), np.concatenate(sizes, axis=1), unresolved)
+
+
 def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
@@ -68,11 +75,9 @@ def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Ga
         moved: distance over a by which the edges of the contact seem off, on cells that no degree mends.
     """
     factor = pressure.series(_ACROSS)
-    values, size = np.concatenate([factor, moments[:, 1:6]], axis=1), stresses.of_factor(factor)
+    size = stresses.of_factor(factor)
     unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
-    return Gauge(
-        INTENSITIES, values, np.concatenate([size, 2.0 + 0.0 * moments[:, 1:6]], axis=1), unresolved
-    )
+    return joined(INTENSITIES, ((factor, size), (moments[:, 1:6], 2.0)), unresolved)
 
 
 def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
@@ -176,8 +181,7 @@ def _picked(points: NDArray) -> NDArray[np.float64]:
         return points
     X, Y = points.T
     order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
-    picked = order[np.unique(np.linspace(0, len(order) - 1, _POINTS).astype(int))]
-    return points[np.sort(picked)]
+    return points[np.sort(spread(order, _POINTS))]
 
 
 class Level:
@@ -313,50 +317,60 @@ def around(places: NDArray, x: NDArray) -> NDArray[np.int64]:
 
 @dataclass(frozen=True)
 class Solved:
-    """A speed solved at its last degree.
+    """States at one speed on a mesh that they share, solved to the tolerance.
 
     Attributes:
-        work: the discretisation.
         level: the last degree's.
-        error: its error, None where it was not measured.
-        done: work on all degrees.
+        error: its error, an :class:`Estimate`.
+        numbers: numbers of the work and the size of the last system, as they are archived.
+        fitted: True where the speed was fitted through others.
     """
 
-    work: Any
     level: Any
     error: Any
-    done: WorkDone
+    numbers: dict[str, Any]
+    fitted: bool = False
+
+    def states(self, g: NDArray, load: Any = None) -> Solution:
+        return solution_of(self.level.task, self.solved, g, load)
+
+    def solved(self, g: NDArray, load: Any = None) -> list[SolvedStates]:
+        """States with their estimated errors, on the one mesh."""
+        states = self.level.states(g, load)
+        errors = {word: values + states.ends.unresolved for word, values in self.error.of(g).items()}
+        return [replace(states, errors=errors, fitted=self.fitted)]
 
     def record(self) -> dict[str, Any]:
-        """Numbers of the work and the size of the last system, as they are archived."""
-        space = self.level.space
-        size = {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
-        return size | vars(self.done) | (self.error.record() if self.error else {})
+        return self.numbers
 
     def close(self) -> None:
         """Free factor and fields."""
         self.level.close()
 
 
-def to_tolerance(work: Any, task: Task, g: NDArray, solve: Callable[[Space, NDArray], Any]) -> Solved:
+def to_tolerance(
+    work: Any, task: Task, g: NDArray, solve: Callable[[Space, NDArray], Any],
+    done: WorkDone | None = None,
+) -> Solved:  # fmt: skip
     """Solve a speed as :func:`climb` does, on finer cells where no degree reaches the tolerance.
 
     Args:
         work, task, g, solve: as of :func:`climb`; ``work.finer`` has the finer cells.
+        done: takes the numbers of the work.
     """
-    solved = climb(work, task, g, solve)
+    done = WorkDone() if done is None else done
+    solved = climb(work, task, g, solve, done=done)
     if solved.error.of_cells:
         solved.close()
-        share, done = work.plan.tolerance / work.finer.plan.tolerance, solved.done
-        solved = climb(work.finer, task, g, solve, None, share)
-        solved.done.add(done)
+        share = work.plan.tolerance / work.finer.plan.tolerance
+        solved = climb(work.finer, task, g, solve, share=share, done=done)
     solved.error.warn()
     return solved
 
 
 def climb(
     work: Any, task: Task, g: NDArray, solve: Callable[[Space, NDArray], Any],
-    degree: int | None = None, share: float = 1.0,
+    degree: int | None = None, share: float = 1.0, done: WorkDone | None = None,
 ) -> Solved:  # fmt: skip
     """Solve a speed, the degree raised until the measured error is within tolerance or hardly falls.
 
@@ -367,11 +381,13 @@ def climb(
         solve: gives the :class:`Level` of a space, for all values of g.
         degree: degree to begin with; the plan's if None.
         share: share of the tolerance that the error may take.
+        done: takes the numbers of the work.
     """
-    plan, done, level = work.plan, WorkDone(), None
+    plan, level = work.plan, None
+    done = WorkDone() if done is None else done
     # States of friction along the contact are no family, of which some stand for the others.
     every = len(g) if VARYING in task.body.modes else PROBES
-    probes = g[np.unique(np.linspace(0, len(g) - 1, every).astype(int))]
+    probes = spread(g, every)
     to_solve = levels(degree or plan.degrees[task.number], plan.cuts, plan.fixed)
     measured: list[tuple[int, list[Gauge]]] = []
     try:
@@ -384,12 +400,17 @@ def climb(
                 measured.append((p, level.gauges(*task.probes(probes))))
             error = MeasuredError(work, level, probes, measured, share)
             if plan.fixed or p == DEGREES[1] or not error.of_degree or error.stalls:
-                return Solved(work, level, error, done)
+                return Solved(level, error, size_of(level.space) | vars(done) | error.record())
             to_solve = [(p + 1, plan.cuts)]
     except BaseException:
         if level:
             level.close()
         raise
+
+
+def size_of(space: Space) -> dict[str, int]:
+    """Size of a system, as it is archived."""
+    return {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
 
 
 class MeasuredError(Estimate):

@@ -14,8 +14,9 @@ from ..contact import FREE_ENDS, OWN_PRESSURE, VARYING
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
 from ..contact.method import ContactStress, Solver
 from ..contact.solution import Task
-from .contact import PunchLevel, shared_mesh
+from .contact import PunchLevel
 from .discretisation import Discretisation, quiet_compiler
+from .ladder import to_tolerance
 from .own_meshes import between_kinks, over_layers
 from .prescribed_pressure import FormulaLevel, PiecesLevel, WholeLevel
 from .space import Space
@@ -72,13 +73,13 @@ class FiniteElements:
             self._progress.say(
                 f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
             )
-            mode = self.work.plan.mode
-            if not solver:
-                own = OWN.get(mode)
-                solving = (
-                    own(self.work, task, g) if own else shared_mesh(self.work, task, g, LEVELS[mode])
-                )
-                solver = stack.enter_context(solving)
+            mode, work = self.work.plan.mode, self.work
+            if not solver and mode in OWN:
+                solver = stack.enter_context(OWN[mode](work, task, g))
+            elif not solver:
+                kind = LEVELS[mode]
+                solved = to_tolerance(work, task, g, lambda space, g: kind(work, task, space, g))
+                solver = stack.enter_context(closing(solved))
             yield solver
 
     @contextmanager

@@ -43,16 +43,16 @@ from ..contact.fem_plan import (
     requirements,
 )
 from ..contact.free_ends import SHAPES, free_ends
-from ..contact.pressure import Expansion
+from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips, turns_at_ends
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.flat import Flat
-from .contact import Ends, FreeEnds, PunchLevel
+from .contact import Ends, FreeEnds, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
-from .ladder import Gauge, Solved, WorkDone, climb, to_tolerance
+from .ladder import Gauge, Solved, WorkDone, climb, joined, to_tolerance
 from .solution import Ended, Solution, SolvedStates, solution_of
 from .space import Space
 
@@ -102,8 +102,8 @@ class EndsLevel(PunchLevel):
         ends, unseen = self.lengths(g, load)
         h = ends[:, 1:]
         # Differences of the half-widths' logarithms are relative changes.
-        values = np.concatenate([np.log(h), ends[:, :1] / h, unseen[:, None]], axis=1)
-        return [Gauge(INTENSITIES, values, np.ones_like(values))]
+        groups = (np.log(h), 1.0), (ends[:, :1] / h, 1.0), (unseen[:, None], 1.0)
+        return [joined(INTENSITIES, groups)]
 
 
 #: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
@@ -211,9 +211,8 @@ class EndsBetweenKinks(Ends):
         at_kinks = [pressure.at_kink(i) for i in range(len(self._kinks))]
         σ = np.append(pressure.σ_YY(_ACROSS[off_tips(_ACROSS, self._tips)]), at_kinks)[None]
         size = float(np.abs(σ).max())
-        scale = np.concatenate([2.0 + 0.0 * moments, size + 0.0 * σ], axis=1)
         unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
-        return Gauge(INTENSITIES, np.concatenate([moments, σ], axis=1), scale, unresolved)
+        return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
 
     def turns(self, states: SolvedStates) -> Callable[[Surface], Turns]:
         def at(surface: Surface) -> Turns:
@@ -262,19 +261,6 @@ def _exponents(task: Task, g: NDArray) -> tuple[float, float]:
 GROWTH = 2.0
 
 
-@dataclass(frozen=True)
-class BalancedContact(Ended):
-    """Contact without intensities on a mesh drawn for its half-width; see :class:`Ended`.
-
-    Attributes:
-        off: logarithm of the load that makes a contact of the mesh's half-width, over the task's load.
-        lean: middle of the contact over the mesh's half-width.
-    """
-
-    off: float = 0.0
-    lean: float = 0.0
-
-
 class BalancedEnds(Ends):
     """Ends of one contact over layers, without intensities, on a mesh drawn for its half-width.
 
@@ -297,22 +283,21 @@ class BalancedEnds(Ends):
         X = self._near + h * level.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> BalancedContact:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> Ended:
         """Contact without intensities.
 
         Raises:
             SolveError: no load makes such a contact.
         """
         (parts, loads, K), h = level.parts(g), self._half_width
-        amplitudes = np.linalg.solve(np.vstack([loads, K[0]]), np.array([-2.0, 0.0, 0.0]))
+        amplitudes = without_intensity(loads, K)
         # Over its own load the punch's height is that over the task's load times their quotient.
-        _, share, slope = amplitudes.tolist()
+        _, share, slope = amplitudes[0].tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        off, lean = float(-np.log(share)), self._near / h + slope / share
-        contact = level.punch.summed(g, parts, amplitudes[None])
-        lengths = np.full(1, h * np.exp(-off / GROWTH)), np.full(1, h * lean)
-        return BalancedContact(contact, *lengths, _FREE, off=off, lean=lean)
+        half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
+        contact = level.punch.summed(g, parts, amplitudes)
+        return Ended(contact, np.full(1, half_width), np.full(1, centre), _FREE)
 
     def pressure(self, level: PunchLevel, ends: Ended) -> Expansion:
         return level.over_flat(ends.contact.tested(level.moments), ends.contact.g, 1.0)
@@ -325,15 +310,14 @@ class BalancedEnds(Ends):
     def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
         """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
         pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
-        balanced: Any = level.only
-        σ, lengths = pressure.σ_YY(_ACROSS), np.array([[balanced.off / GROWTH, balanced.lean]])
-        of_others = [2.0 + 0.0 * moments, np.ones_like(lengths)]
+        h, σ = self._half_width, pressure.σ_YY(_ACROSS)
+        # Differences of the half-widths' logarithms are relative changes.
+        lengths = np.column_stack([np.log(states.ends.half_width / h), states.ends.centre / h])
         # What the last functions add is largest where they are multiplied by most.
         factor = np.abs(pressure.series(_ACROSS)).max(axis=1)
-        ends = np.abs(pressure.series(np.array([-1.0, 1.0]))).max(axis=1)
-        values = np.concatenate([σ, moments, lengths], axis=1)
-        scale = np.concatenate([stresses.of_factor(σ), *of_others], axis=1)
-        return Gauge(INTENSITIES, values, scale, pressure.unresolved * ends / factor)
+        ends = np.abs(pressure.series(ENDS)).max(axis=1)
+        groups = (σ, stresses.of_factor(σ)), (moments, 2.0), (lengths, 1.0)
+        return joined(INTENSITIES, groups, pressure.unresolved * ends / factor)
 
 
 def scaled(task: Task, half_width: float) -> Task:
@@ -424,8 +408,8 @@ class _Search:
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
         mesh, task = self._on(h, self._work.stresses)
         state = own_state(mesh, task, self._g, self._ends(h), self._done)
-        balanced: Any = state.solved.level.only
-        return state, balanced.lean, self._moved(h, balanced.off)
+        off, lean = _balanced(state.solved.level, h)
+        return state, lean, self._moved(h, off)
 
     def _half_width(self, h: float) -> float:
         """Half-width [m] of the contact that carries the load, from a half-width near by."""
@@ -459,10 +443,10 @@ class _Search:
         while moved**2 > error:  # the shift of the middle is accurate to its square
             with closing(PunchLevel(mesh, task, mesh.space(degree), self._g, self._ends(h))) as level:
                 self._done.count(level.factor)
-                balanced: Any = level.only
-            moved, self._lean = balanced.lean - self._lean, balanced.lean
-        self._tried[h] = float(balanced.off)
-        return self._tried[h]
+                off, lean = _balanced(level, h)
+            moved, self._lean = lean - self._lean, lean
+        self._tried[h] = off
+        return off
 
     def _on(self, h: float, words: frozenset[str]) -> tuple[Discretisation, Task]:
         """Mesh drawn for a half-width [m], and the task with lengths over it."""
@@ -471,6 +455,13 @@ class _Search:
 
     def _ends(self, h: float) -> BalancedEnds:
         return BalancedEnds(self._task.body.profile, h, h * self._lean)
+
+
+def _balanced(level: PunchLevel, h: float) -> tuple[float, float]:
+    """Logarithm of the load of a contact of half-width h [m], over the task's, and its middle over h."""
+    ends = level.only
+    assert ends
+    return -GROWTH * float(np.log(ends.half_width[0] / h)), float(ends.centre[0] / h)
 
 
 @dataclass(frozen=True)
@@ -491,9 +482,8 @@ def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: Wo
         ends: ends of the contact.
         done: takes the numbers of the work.
     """
-    solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends))
-    done.add(solved.done)
-    return OwnState(replace(solved.level.states(g), errors=solved.error.of(g)), solved)
+    solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends), done)
+    return OwnState(*solved.solved(g), solved)
 
 
 class OwnMeshesAtSpeed:
@@ -568,17 +558,17 @@ def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnM
     def level(space: Space, g: NDArray) -> EndsLevel:
         return EndsLevel(work.for_ends, task, space, g, near)
 
-    with closing(climb(work.for_ends, task, g, level)) as solved:
+    done = WorkDone()
+    with closing(climb(work.for_ends, task, g, level, done=done)) as solved:
 
         def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
             of = np.array([g])
-            lengths, unseen = solved.level.lengths(of, np.array([alone.body.load]))
-            ends = EndsBetweenKinks(alone.body, tuple(lengths[0].tolist()), work.plan.tolerance)
+            (lengths,), unseen = solved.level.lengths(of, np.array([alone.body.load]))
+            ends = EndsBetweenKinks(alone.body, tuple(lengths.tolist()), work.plan.tolerance)
             mesh = work.on(ends.drawn(work.plan), refine=lambda plan: ends.drawn(on_finer_cells(plan)))
-            state = own_state(mesh, alone, of, ends, solved.done)
-            off = solved.error.of(of)[INTENSITIES] + unseen
-            state.states.errors[INTENSITIES] += off
+            state = own_state(mesh, alone, of, ends, done)
+            state.states.errors[INTENSITIES] += solved.error.of(of)[INTENSITIES] + unseen
             return state
 
-        with closing(OwnMeshesAtSpeed(task, solve, solved.done)) as at:
+        with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
             yield at

@@ -30,7 +30,7 @@ from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
-from ..approximation import barycentric
+from ..approximation import Barycentric
 from ..errors import SolveError
 from ..solids.half_plane import HalfPlane
 from ..solids.pair import PairAtSpeed
@@ -41,7 +41,10 @@ from .space import Space
 
 #: Least residual of the contact forces that can be required, relative; the last digits are rounding.
 LEAST = 1e-13
-#: That which refined solutions may bring back; what is larger takes further loads.
+#: Relative change of the contact forces for which no solution is refined. It keeps results on any number
+#: of ranks equal to 1e-9; next to an edge a force counts by the little load there.
+NEGLIGIBLE = 1e-11
+#: Residual which refined solutions may bring back; what is larger takes further loads.
 _BROUGHT_BACK = 1e-12
 #: Most loads of an iterative solver; a factor takes as many as there are contact nodes.
 LIMIT = 120
@@ -49,6 +52,11 @@ LIMIT = 120
 _SPREAD, _TOGETHER = 33, 33
 #: Loads of single nodes that are solved for at once.
 _AT_ONCE = 64
+
+
+def spread(values: NDArray, count: int) -> NDArray:
+    """As many of the values as a count, or all, from the first to the last."""
+    return values[np.unique(np.linspace(0, len(values) - 1, count).astype(int))]
 
 
 @dataclass(frozen=True)
@@ -162,16 +170,17 @@ class SlidingPunch(Punch):
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
-        negligible: relative change of the contact forces that needs no refinement of a solution. The
-            first solution is refined in any case, which shows whether the others need it.
         heights: of the punch's profile over N/(2μ) at the contact nodes, (nodes,), or of several shapes
             that are combined, (shapes, nodes); None for a flat punch.
         along: gives G by g where friction varies along the contact; None where G is g.
+        negligible: relative change of the contact forces that needs no refinement of a solution. The
+            first solution is refined in any case, which shows whether the others need it.
     """
 
     def __init__(
-        self, space: Space, response: HalfPlane, solver: str = "direct", negligible: float = 0.0,
+        self, space: Space, response: HalfPlane, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
+        negligible: float = NEGLIGIBLE,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
         nodes = space.contact
@@ -207,8 +216,8 @@ class SlidingPunch(Punch):
         suffice. At opposite frictions a punch is the mirror image, with which rounding is estimated.
         Frictions that vary along the contact are no such family: each counts.
         """
-        spread = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))]
-        self._grow(g if self._along else np.concatenate([spread, -spread]), last=True)
+        some = spread(g, _SPREAD)
+        self._grow(g if self._along else np.concatenate([some, -some]), last=True)
         self._complete = True
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -329,15 +338,22 @@ class SlidingPunch(Punch):
         """Fields of the loads that have none: rough ones are checked, and refined if needed."""
         new = len(self._rough)
         b, x = self._tangential(self._loads[:, -new:]), np.column_stack(self._rough)
-        residuals = self._residuals(x, b, np.zeros(new))
-        self.factor.check(b, x, residuals)
-        if self._refines:
-            x = x + self._corrections(residuals)
-            # Loads that follow are as small as what was changed.
-            self._refines, self._left = False, max(self._left, _BROUGHT_BACK)
-        fields = [vector(self.factor.A, column) for column in x.T]
-        self.forces[-new:] = self._followed(fields, self._reactions(x))
+        fields, self.forces[-new:] = self._refined(b, x, self._refines)
         self.fields, self._rough = [*self.fields, *fields], []
+        if self._refines:  # loads that follow are as small as what was changed
+            self._refines, self._left = False, max(self._left, _BROUGHT_BACK)
+
+    def _refined(
+        self, b: NDArray, x: NDArray, refines: bool, checked: bool = True
+    ) -> tuple[list[PETSc.Vec], NDArray[np.float64]]:
+        """Fields and forces of displacements x under loads b, (rows, k), checked and refined."""
+        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
+        if checked:
+            self.factor.check(b, x, residuals)
+        if refines:
+            x = x + self._corrections(residuals)
+        fields = [vector(self.factor.A, column) for column in x.T]
+        return fields, self._followed(fields, self._reactions(x))
 
     def _followed(self, fields: Sequence[PETSc.Vec], forces: NDArray) -> NDArray[np.float64]:
         """Forces (fields, 2, n) once the far boundary moves with the fields, which it moves."""
@@ -431,23 +447,23 @@ class ElasticPunch(SlidingPunch):
     of all that frictions require.
 
     Args:
-        space, solver, negligible, heights: as of :class:`SlidingPunch`.
+        space, solver, heights: as of :class:`SlidingPunch`.
         response: of the plate and the punch.
     """
 
     response: PairAtSpeed
 
     def __init__(
-        self, space: Space, response: PairAtSpeed, solver: str = "direct", negligible: float = 0.0,
+        self, space: Space, response: PairAtSpeed, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: None = None,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
         # motion, which is large, spoils no digits of the rest.
         others = unit[1:]
-        punch = SlidingPunch(space, response.punch, solver, negligible, others)
+        punch = SlidingPunch(space, response.punch, solver, others)
         each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, negligible, each)
+        super().__init__(space, response.plate, solver, each)
         self.response, self._parts = response, self._parts - len(others)
         self._moving_fields = self.fields[self._parts :]
         #: Forces in the plate by each unit of v', (n, 2, n).
@@ -475,21 +491,15 @@ class ElasticPunch(SlidingPunch):
         return np.array(changes)
 
     def prepare(self, g: NDArray[np.float64]) -> None:
-        spread, n = g[np.unique(np.linspace(0, len(g) - 1, _SPREAD).astype(int))], len(self._moving)
+        some, n = spread(g, _SPREAD), len(self._moving)
         units = np.array([-self.fields[0].array_r, *(field.array_r for field in self._moving_fields)])
-        changes = self._changes(np.concatenate([spread, -spread])).reshape(-1, 2 * n)
+        changes = self._changes(np.concatenate([some, -some])).reshape(-1, 2 * n)
         changes /= np.linalg.norm(changes, axis=1, keepdims=True)
         _, size, rows = np.linalg.svd(changes, full_matrices=False)
         #: Combinations of displacements and tangential forces, (basis, 2 n).
         self._basis = rows[size > LEAST * size[0]]
         b = self._tangential(self._basis[:, n:].T)
-        x = self._displacements(b)
-        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
-        if np.any(g):
-            self.factor.check(b, x, residuals)
-        x += self._corrections(residuals)
-        fields = [vector(self.factor.A, column) for column in x.T]
-        forces = self._followed(fields, self._reactions(x))
+        fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
         for field, moved in zip(fields, self._basis[:, :n] @ units):
             field.setArray(field.array_r + moved)
         self.fields = [*self.fields, *fields]
@@ -507,23 +517,6 @@ def sliding_punch(space: Space, response: HalfPlane, *args: Any) -> SlidingPunch
     """Punch of the arguments of :class:`SlidingPunch`, elastic where the response is that of a pair."""
     kind = ElasticPunch if isinstance(response, PairAtSpeed) else SlidingPunch
     return kind(space, response, *args)  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
-class Frictions:
-    """Values of g = σ_XY/σ_YY at which punches are sampled.
-
-    Attributes:
-        g: the values, all different, (frictions,).
-        weights: barycentric weights of the polynomial through values there.
-    """
-
-    g: NDArray[np.float64]
-    weights: NDArray[np.float64]
-
-    def shares(self, g: NDArray) -> NDArray[np.float64]:
-        """Weights that interpolate values at the frictions to others, (len(g), frictions)."""
-        return barycentric(self.g, self.weights, g)
 
 
 @dataclass(frozen=True)
@@ -559,16 +552,16 @@ def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
     return Sampled(*(np.asarray(sum(of_kind)) for of_kind in zip(*scaled)))
 
 
-def sampled(punch: Punch, at: Frictions, slopes: Slopes, with_fields: bool = False) -> Sampled:
+def sampled(punch: Punch, at: Barycentric, slopes: Slopes, with_fields: bool = False) -> Sampled:
     """Parts of a punch at some frictions.
 
     Args:
         punch: the punch, solved for these frictions.
-        at: the frictions.
+        at: the frictions, all different, with the polynomial through values there.
         slopes: of its fields.
         with_fields: keep the displacements.
     """
-    parts = punch.parts(at.g).swapaxes(0, 1)
+    parts = punch.parts(at.nodes).swapaxes(0, 1)
     of_slopes = np.array([slopes.of(weights) for weights in parts]).swapaxes(0, 1)
     fields = np.array([field.array_r if with_fields else [] for field in punch.fields])
     return Sampled(parts @ punch.forces[:, -1], of_slopes, parts @ fields)
@@ -580,11 +573,11 @@ class FittedPunch(Punch):
     Args:
         space: the finite element space.
         response: of the half-plane.
-        at: frictions at which the parts are known.
+        at: frictions at which the parts are known, with the polynomial through values there.
         samples: the parts there; every part at every friction is a field.
     """
 
-    def __init__(self, space: Space, response: HalfPlane, at: Frictions, samples: Sampled) -> None:
+    def __init__(self, space: Space, response: HalfPlane, at: Barycentric, samples: Sampled) -> None:
         self.space, self.response, self._at, self._count = space, response, at, len(samples.forces)
         self.fields = [
             PETSc.Vec().createWithArray(field.copy(), comm=space.comm)

@@ -17,16 +17,23 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from ..approximation import Rational, chebyshev_nodes, fit_rational, leja, polynomial_weights, rotated
+from ..approximation import (
+    Barycentric,
+    chebyshev_nodes,
+    fit_rational,
+    leja,
+    polynomial_through,
+    rotated,
+)
 from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import LADDERS, MOST, Sweep, levels
 from ..contact.solution import Task
 from ..errors import SolveError
-from .contact import AtSpeed, PunchLevel
+from .contact import PunchLevel
 from .discretisation import Discretisation
-from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb
-from .punch import FittedPunch, Frictions, Sampled, sampled, together
+from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
+from .punch import FittedPunch, Sampled, sampled, together
 from .space import Space
 
 #: Sum of absolute shares from which a fit is rejected: a pole is near.
@@ -87,10 +94,10 @@ class Fit:
     work: Discretisation
     sweep: Sweep
     space: Space
-    at: Frictions
+    at: Barycentric
     recovery: Any
     speeds: dict[int, Speed] = field(default_factory=dict)
-    rational: Rational | None = None
+    rational: Barycentric | None = None
 
     @property
     def solved(self) -> list[int]:
@@ -112,7 +119,7 @@ class Fit:
         d_left, d_right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
         # At the edge itself the force is that of a piece of half the innermost distance or so.
         d_left, d_right = np.maximum(d_left, d_left[1] / 2.0), np.maximum(d_right, d_right[-2] / 2.0)
-        local = EdgeExponents(task.response, self.at.g)
+        local = EdgeExponents(task.response, self.at.nodes)
 
         def power(from_left: NDArray, from_right: NDArray) -> NDArray[np.float64]:
             logs = np.outer(local.α, np.log(from_right)) + np.outer(local.β, np.log(from_left))
@@ -134,7 +141,7 @@ class Fit:
         if len(z) > 2:
             self.rational = fit_rational(z, self.values, _NOISE)
             if np.abs(self.rational.shares(self.sweep.z)).sum(axis=1).max() >= _LARGEST:
-                self.rational = Rational(z, polynomial_weights(z))
+                self.rational = polynomial_through(z)
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -148,7 +155,7 @@ class Fit:
         return np.concatenate(blocks, axis=1)
 
     @contextmanager
-    def level(self, task: Task, rational: Rational | None = None) -> Iterator[PunchLevel]:
+    def level(self, task: Task, rational: Barycentric | None = None) -> Iterator[PunchLevel]:
         """Level of a speed by the fit, or by another rational function through the first samples."""
         number = task.number
         if rational is None and number in self.speeds:
@@ -159,7 +166,7 @@ class Fit:
             shares = through.shares(self.sweep.z[[number]])[0]
         combined = together(self.samples, shares).scaled(*self.singular(task))
         punch = FittedPunch(self.space, task.response, self.at, combined)
-        level = PunchLevel(self.work, task, self.space, self.at.g, None, punch, self.recovery)
+        level = PunchLevel(self.work, task, self.space, self.at.nodes, None, punch, self.recovery)
         with closing(level):
             yield level
 
@@ -167,9 +174,7 @@ class Fit:
         """Numbers of the work at a speed; none was done where it is fitted."""
         if number in self.speeds:
             return self.speeds[number].record
-        space = self.space
-        size = {"cells": space.cells, "unknowns": space.size, "degree": space.degree}
-        return size | vars(WorkDone())
+        return size_of(self.space) | vars(WorkDone())
 
 
 @dataclass(frozen=True)
@@ -197,18 +202,18 @@ class Trained:
         number, fit = task.number, self.fit
         fitted, z = number not in fit.speeds, float(fit.sweep.z[number])
         covered = min(self.estimates) <= z <= max(self.estimates)
-        of_fit = self.error if fitted and self.error else {}
-
-        def errors(g: NDArray) -> dict[str, NDArray[np.float64]]:
-            """Errors of the speeds measured on both sides, the larger ones, and of the fit."""
-            places, each = np.array([*self.estimates]), list(self.estimates.values())
-            low, high = (each[i].of(g) for i in around(places, np.array([z]))[0])
-            return {word: np.maximum(low[word], high[word]) + of_fit.get(word, 0.0) for word in low}
-
         known = self.error is not None or (not fitted and covered)
-        if known and max((of.max() for of in errors(g).values()), default=0.0) <= fit.work.plan.tolerance:
+        # Errors of the speeds measured on both sides, the larger ones, and of the fit.
+        places, each = np.array([*self.estimates]), list(self.estimates.values())
+        low, high = (each[i] for i in around(places, np.array([z]))[0])
+        of_fit = self.error if fitted and self.error else {}
+        error = Estimate(
+            low.g, {w: np.maximum(low.errors[w], high.errors[w]) + of_fit.get(w, 0.0) for w in low.errors}
+        )
+        worst = max((errors.max() for errors in error.of(g).values()), default=0.0)
+        if known and worst <= fit.work.plan.tolerance:
             with fit.level(task) as level:
-                yield AtSpeed(level, errors, lambda: fit.record(number), fitted)
+                yield Solved(level, error, fit.record(number), fitted)
         else:
             yield None
 
@@ -353,7 +358,7 @@ class _Training:
         solved = [p for p, _ in levels(degree, 1, fixed=False)] if measures else [degree]
         return float(sum(p**4 for p in solved))
 
-    def _solved(self, numbers: dict[int, bool]) -> tuple[Rational | None, dict[str, float]]:
+    def _solved(self, numbers: dict[int, bool]) -> tuple[Barycentric | None, dict[str, float]]:
         """Solve speeds, shared out over the ranks, and take them in.
 
         Args:
@@ -398,9 +403,9 @@ class _Training:
             )  # fmt: skip
         else:
             assert fit
-            level = PunchLevel(work, task, fit.space, self._all)
-            solved = Solved(work, level, None, WorkDone())
-            solved.done.count(level.factor)
+            level, done = PunchLevel(work, task, fit.space, self._all), WorkDone()
+            done.count(level.factor)
+            solved = Solved(level, None, size_of(fit.space) | vars(done))
         with closing(solved):
             level = solved.level
             degree = level.space.degree
@@ -421,19 +426,19 @@ class _Training:
         g = self._sweep.g
         if self._sweep.few:
             return g
-        tried = [chebyshev_nodes(count, g[0], g[-1])[0] for count in _FRICTIONS]
+        tried = [chebyshev_nodes(count, g[0], g[-1]) for count in _FRICTIONS]
         return np.unique(np.concatenate([self._probes[0], *tried]))
 
-    def _frictions(self, level: PunchLevel) -> Frictions:
+    def _frictions(self, level: PunchLevel) -> Barycentric:
         """As many frictions as give punches at those between them accurately."""
         g, punch, probes = self._sweep.g, level.punch, np.unique(self._probes[0])
         if self._sweep.few:
-            return Frictions(g, polynomial_weights(g))
+            return polynomial_through(g)
         forces = punch.forces[:, -1]
         true = np.moveaxis(punch.parts(probes) @ forces, 1, 0)
         for count in _FRICTIONS:
-            at = Frictions(*chebyshev_nodes(count, g[0], g[-1]))
-            interpolated = at.shares(probes) @ np.moveaxis(punch.parts(at.g) @ forces, 1, 0)
+            at = polynomial_through(chebyshev_nodes(count, g[0], g[-1]))
+            interpolated = at.shares(probes) @ np.moveaxis(punch.parts(at.nodes) @ forces, 1, 0)
             off = np.abs(interpolated - true).max(axis=(1, 2)) / np.abs(true).max(axis=(1, 2))
             if off.max() <= _BETWEEN:
                 break
@@ -454,13 +459,13 @@ class _Training:
         each = [value / (FIT * max(tolerance, self._least(word))) for word, value in error.items()]
         return max(each, default=np.inf)
 
-    def _changed(self, before: Rational) -> list[int]:
+    def _changed(self, before: Barycentric) -> list[int]:
         """Numbers of the speeds whose fit changed most, a speed for each gap between solved ones."""
         fit = self._fit
         assert fit and fit.rational
         z, solved = self._sweep.z, np.sort(self._sweep.z[fit.solved])
         shares = fit.rational.shares(z)
-        shares[:, : len(before.z)] -= before.shares(z)
+        shares[:, : len(before.nodes)] -= before.shares(z)
         change = np.linalg.norm(shares @ rotated(fit.values), axis=1)
         change[fit.solved] = -1.0
         gap = np.searchsorted(solved, z)
@@ -468,7 +473,7 @@ class _Training:
         worst = [int(numbers[change[numbers].argmax()]) for numbers in gaps]
         return [number for number in worst if change[number] >= 0.0]
 
-    def _change(self, before: Rational, number: int) -> dict[str, float]:
+    def _change(self, before: Barycentric, number: int) -> dict[str, float]:
         """Largest relative change of a speed's gauges with the last samples, by word."""
         assert self._fit
         gauges: list[list[Gauge]] = []

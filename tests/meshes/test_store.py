@@ -1,16 +1,16 @@
-import os
 import random
 import sys
 
 import numpy as np
 import pytest
+from support import THOROUGH
 
 from galinx import sealed
 from galinx.meshes import MESHES, Requirements, store
 from galinx.meshes.rings import QuadMesh
 
 #: Bits that are flipped in a mesh; GALINX_THOROUGH=1 asks for as many as a release does.
-FLIPS = 5000 if os.environ.get("GALINX_THOROUGH") else 50
+FLIPS = 5000 if THOROUGH else 50
 
 
 @pytest.fixture

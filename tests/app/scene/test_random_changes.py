@@ -3,18 +3,17 @@
 GALINX_THOROUGH=1 tries as many as a release does.
 """
 
-import os
 import random
 
 import pytest
-from support import SCENE, at_most
+from support import SCENE, THOROUGH, at_most
 
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.changes import from_words
 from galinx.app.scene.read import read
 
-TEXTS = 300 if os.environ.get("GALINX_THOROUGH") else 20
+TEXTS = 300 if THOROUGH else 20
 
 KEYS = [
     "title", "solid", "solid.E", "solid.nu", "solid.material", "solid.plane", "punch.profile",

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import FEW_DEGREES, HOME, SCENE, clean_environment, command, space_on
+from support import FEW_DEGREES, HOME, SCENE, THOROUGH, clean_environment, command, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.postprocess.hdf5 import archive
@@ -20,7 +20,7 @@ from galinx.solvers.fem.versions import compiling
 
 #: Bits that are flipped in what is kept of a form, and in forms that are compiled, which takes seconds
 #: each; GALINX_THOROUGH=1 asks for as many as a release does.
-FLIPS, COMPILED = (5000, 500) if os.environ.get("GALINX_THOROUGH") else (100, 2)
+FLIPS, COMPILED = (5000, 500) if THOROUGH else (100, 2)
 
 
 @pytest.fixture

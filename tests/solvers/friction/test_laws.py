@@ -12,7 +12,7 @@ from galinx.solvers.friction.integrate import closely, exactly, work
 from galinx.solvers.parameters import build_model
 
 #: Random sets of parameters, each with a motion of its own.
-SETS = 20 if THOROUGH else 5
+SETS = 20 if THOROUGH else 2
 PLACES = 6
 
 

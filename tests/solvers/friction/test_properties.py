@@ -9,7 +9,7 @@ from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.integrate import exactly, work
 from galinx.solvers.parameters import build_model
 
-SETS = range(20 if THOROUGH else 5)
+SETS = range(20 if THOROUGH else 2)
 ALL = random.EXACT
 
 

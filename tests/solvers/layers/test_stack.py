@@ -11,7 +11,7 @@ from support import THOROUGH
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.kernel import spherical_bessel, transform
 from galinx.solvers.layers.layered import Layer, Layered, weakest
-from galinx.solvers.layers.stiffness import inverse
+from galinx.solvers.layers.stiffness import inverse, least
 from galinx.solvers.solids.isotropic import Isotropic
 
 
@@ -136,6 +136,16 @@ def test_speed_limit_at_a_wavenumber_inside_is_found():
         Y = admittance(*in_digits(solid, c), mp.mpf(below[1]))
         Z = np.linalg.inv(np.array((-1j * Y).tolist(), dtype=complex))
         assert sign * np.linalg.eigvalsh(Z)[0] > 0.0
+
+
+def test_the_smaller_eigenvalue_of_any_sign_is_that_of_lapack():
+    rng = np.random.default_rng(1)
+    Z = rng.normal(size=(200, 2, 2)) + 1j * rng.normal(size=(200, 2, 2))
+    Z = Z + Z.conj().swapaxes(1, 2) + rng.uniform(-6.0, 6.0, 200)[:, None, None] * np.eye(2)
+    wanted = np.linalg.eigvalsh(Z)
+    assert (wanted > 0.0).all(axis=1).any() and (wanted < 0.0).all(axis=1).any()
+    np.testing.assert_allclose(least(Z), wanted[:, 0], rtol=1e-13, atol=1e-13)
+    assert np.isnan(least(Z[:1] * np.nan))
 
 
 def test_layers_with_a_fault_say_so():

@@ -12,6 +12,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
+from galinx.app.scene.read import parse
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.over_time import BOTH, OF_FEM, WORKS
 from galinx.solvers.solids.isotropic import Isotropic
@@ -280,23 +281,60 @@ def test_random_starts_agree_and_the_estimate_covers_it(changes, end, tolerance,
 
 
 def random_coating(seed):
-    """A layer of 0.2 to 1.5 a, 0.3 to 5 times as stiff as what is below; c to 0.9 of their limit."""
+    """One or two layers, 0.2 to 1.5 a thick, 0.3 to 5 times as stiff as below; c to 0.9 of the limit."""
     rng = np.random.default_rng(seed)
-    changes = COATED | {
-        "layer[0].thickness": 1e-3 * rng.uniform(0.2, 1.5),
-        "layer[0].E": 2.5e9 * 10.0 ** rng.uniform(-0.5, 0.7),
-        "layer[0].nu": rng.uniform(0.0, 0.4), "layer[0].rho": 1e3 * 10.0 ** rng.uniform(-0.2, 0.3),
-        "solid.nu": rng.uniform(0.0, 0.4), "friction.mu_c": rng.uniform(0.0, 0.8), "time.end": 10.0,
-        "time.load_ramp": rng.uniform(2.0, 4.0), "solve.tolerance": 1e-3, "motion.c": 1e-3,
-    }  # fmt: skip
-    limit = galinx.template("coating", changes).solid.limit()
-    return changes | {"motion.c": rng.uniform(0.05, 0.9) * limit}
+    layers = [
+        {
+            "thickness": rng.uniform(0.2, 1.5), "E": 2.5 * 10.0 ** rng.uniform(-0.5, 0.7),
+            "nu": rng.uniform(0.0, 0.4), "rho": 1000.0 * 10.0 ** rng.uniform(-0.2, 0.3),
+        }
+        for _ in range(int(rng.integers(1, 3)))
+    ]  # fmt: skip
+    share, f, ramp, ν = (rng.uniform(*of) for of in ((0.05, 0.9), (0.0, 0.8), (2.0, 4.0), (0.0, 0.4)))
+    return layers, share, f, ramp, ν
+
+
+def coating(seed):
+    """A scene of it, below its own limit of speed."""
+    layers, share, f, ramp, ν = random_coating(seed)
+
+    def scene(c):
+        many = "".join(
+            f'[[layer]]\nthickness = "{one["thickness"]} mm"\nE = "{one["E"]} GPa"\nnu = {one["nu"]}\n'
+            f'rho = "{one["rho"]} kg/m^3"\n'
+            for one in layers
+        )
+        return parse(f"""title = "Random coating"
+[solid]
+E = "2.5 GPa"
+nu = {ν}
+rho = "1000 kg/m^3"
+{many}[punch]
+half_width = "1 mm"
+[friction]
+model = "coulomb"
+mu_c = {f}
+[motion]
+c = {c}
+strokes = ["forward"]
+X_over_L = [0.5]
+[time]
+end = 10.0
+load_ramp = {ramp}
+[solve]
+methods = ["sie", "fem"]
+tolerance = 1e-3
+[output]
+quantities = ["friction", "time"]
+""")
+
+    return scene(share * scene(1e-3).solid.limit())
 
 
 @THOROUGH
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_random_coatings_agree_and_the_estimate_covers_it(seed):
-    result = computed("coating", random_coating(seed))
+    result = galinx.compute(coating(seed))
     found = json.loads(result.attributes["comparisons"])
     print(seed, found)
     assert result.attributes["verdict"] == "PASS" and found[OF_BOTH] < found[ESTIMATE]

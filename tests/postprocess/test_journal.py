@@ -5,13 +5,14 @@ import random
 
 import numpy as np
 import pytest
+from support import THOROUGH
 
 from galinx.postprocess.compare import Comparison
 from galinx.postprocess.errors import LeftOver
 from galinx.postprocess.journal import Journal, Part
 
 #: Bits that are flipped in parts; GALINX_THOROUGH=1 asks for as many as a release does.
-FLIPS = 5000 if os.environ.get("GALINX_THOROUGH") else 50
+FLIPS = 5000 if THOROUGH else 50
 
 
 def part(start, stop):

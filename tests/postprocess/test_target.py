@@ -5,7 +5,7 @@ import socket
 
 import numpy as np
 import pytest
-from support import at_once, full_disk
+from support import at_most, full_disk
 
 from galinx import compute, template
 from galinx.app.console import Progress, new_console, print_sheet
@@ -116,7 +116,7 @@ def test_only_files_are_replaced(tmp_path, overwrite):
         before = sorted(os.listdir(tmp_path))
         for name, message in expected.items():
             for kind in (None, PAGE, LOG):
-                with at_once(), pytest.raises(Occupied, match=message):
+                with at_most(5.0), pytest.raises(Occupied, match=message):
                     Target(tmp_path / name, kind, overwrite)
     assert sorted(os.listdir(tmp_path)) == before
 
@@ -164,7 +164,7 @@ def test_what_appears_or_changes_meanwhile_is_kept(made, tmp_path):
     target = Target(path, PAGE, overwrite=True)
     path.unlink()
     os.mkfifo(path)
-    with at_once(), pytest.raises(UnwritableArchive, match="meanwhile"):
+    with at_most(5.0), pytest.raises(UnwritableArchive, match="meanwhile"):
         target.write(b"new")
     assert path.is_fifo() and os.listdir(tmp_path) == ["a"]
 

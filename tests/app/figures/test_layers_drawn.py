@@ -1,7 +1,5 @@
 """Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
 
-import sys
-
 import numpy as np
 import pytest
 from support import HOME, computed
@@ -10,8 +8,6 @@ import galinx
 from galinx.app.figures.archive import of_archive
 from galinx.app.figures.choice import Choice, size
 from galinx.app.scene.read import parse
-
-sys.path.insert(0, str(HOME / "tests" / "postprocess" / "figures"))
 
 MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
 QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}

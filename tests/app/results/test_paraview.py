@@ -38,39 +38,6 @@ def test_stresses_are_those_of_the_potentials(mode):
         assert σ_YY.max() < -0.3 if level else np.abs(σ_YY).max() < 1e-2
 
 
-def test_a_field_is_solved_once_and_for_any_scene(monkeypatch):
-    from galinx.solvers.fem.punch import SlidingPunch
-
-    made, true = [], SlidingPunch.__init__
-
-    def counted(self, space, *arguments, **options):
-        made.append(space.degree)
-        true(self, space, *arguments, **options)
-
-    monkeypatch.setattr(SlidingPunch, "__init__", counted)
-    given = template("tables4_5", {"output.quantities": ["friction"], "solve.methods": []})
-    field = state_field(given, 3, extent=2.0, degree=6)
-    assert made == [6]
-    assert set(field.data) == set(ABOUT) - {"sigma_error"}
-    # A speed that finite elements refuse does not stand in the way of the others.
-    fast = template("tables4_5", {"motion.c": [0.1, 0.95], "solve.methods": ["closed_form"]})
-    assert "sigma_error" in state_field(fast, 0, extent=2.0, degree=4).data
-    with pytest.raises(BadInput, match="is not below the Rayleigh speed"):
-        state_field(fast, len(enumerate_states(fast)) - 1)
-
-
-def test_given_tractions_of_the_users_own_have_a_field():
-    given = template("traction", {"solve.pressure": [[-1, -1], [1, -1]]})
-    found = state_field(given, 0)
-    X, Y = found.points.T / given.punch.profile.half_width
-    under = (Y > -1e-12) & (np.abs(X) < 0.9)
-    pressure = -found.data["sigma_YY"][under] * 2.0 * given.punch.profile.half_width / given.punch.load
-    np.testing.assert_allclose(pressure, 1.0, atol=1e-3)
-    unit = given.punch.load / (2.0 * given.punch.profile.half_width)
-    away = (Y < -1e-3) & (np.hypot(X, Y) <= 5.0)
-    assert found.data["sigma_error"][away].max() <= 1e-5 * unit
-
-
 def test_what_has_no_field_is_bad_input():
     given = template("tables4_5")
     count = len(enumerate_states(given))

@@ -58,29 +58,6 @@ def test_parts_of_many_speeds_are_written_and_kept_together(alone, tmp_path, mon
     equal(data, alone)
 
 
-def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypatch):
-    """Interrupted after the first part, then gone on with."""
-    monkeypatch.setattr(flow, "_PATIENCE", 1e9)
-    scene, target = template("tables4_5", MANY), tmp_path / "a.h5"
-
-    def once(self, part, keep=Journal.keep):
-        keep(self, part)
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as interrupted:
-        interrupted.setattr(Journal, "keep", once)
-        with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
-            compute(scene, Memory(), None, journal)
-    solved, keep = [], Journal.keep
-    monkeypatch.setattr(Journal, "keep", lambda self, part: solved.append(part.rows) or keep(self, part))
-    data = Memory()
-    with Journal(target, "key", resume=True) as journal:
-        kept = journal.states
-        compute(scene, data, None, journal)
-    assert kept >= 1000 and sum(rows.stop - rows.start for rows in solved) == 6 * SPEEDS - kept
-    equal(data, alone)
-
-
 def test_parts_join_in_order_and_the_worst_of_a_comparison_stays():
     def part(first, value, record=None):
         rows, values = slice(first, first + 2), np.array([first, first + 1.0])

@@ -256,15 +256,6 @@ def test_a_full_disk(sweep, tiny_disk):
     same(contents(target), whole)
 
 
-def test_a_full_disk_for_a_field(sweep, tiny_disk):
-    *_, archive = sweep
-    subprocess.run(["mount", "-o", "remount,size=100k", str(tiny_disk)], check=True)
-    done = command("fields", archive, "-o", tiny_disk / "state.hdf")
-    assert done.returncode == 3 and "Traceback" not in done.stderr
-    assert "No space left on device; it needs" in done.stderr and " are free" in done.stderr
-    assert not list(tiny_disk.iterdir())
-
-
 def test_a_folder_that_cannot_be_written(sweep, tiny_disk):
     scene, *_ = sweep
     subprocess.run(["mount", "-o", "remount,ro", str(tiny_disk)], check=True)

@@ -1,13 +1,12 @@
 """Finite elements on layered half-planes against the singular integral equation."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from agreement import check
 from support import THOROUGH
+from test_layers import COAT, GRADED, scene
 
 import galinx
 from galinx.app.scene.scene import HalfPlane
@@ -18,9 +17,6 @@ from galinx.solvers.contact import residual
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import Isotropic
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers import COAT, GRADED, scene
 
 
 def scene_of(solid, c, f, quantities=("sif",), tolerance=1e-6):

@@ -1,14 +1,14 @@
 """Contacts over layers whose ends are found: the integral equation, finite elements, archives."""
 
 import json
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from agreement import check
+from layers_cases import SUBSTRATE
 from support import THOROUGH
+from test_layers import COAT, SCENE
 
 import galinx
 from galinx.app.errors import BadInput
@@ -16,10 +16,6 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.app.scene.read import parse
 from galinx.solvers.contact.solution import FreeContact
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from layers_cases import SUBSTRATE
-from test_layers import COAT, SCENE
 
 PUNCH = '[punch]\nprofile = "parabolic"\nradius = "20 mm"\nload = {load}\n'
 

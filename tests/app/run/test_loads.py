@@ -1,12 +1,12 @@
 """A sweep of loads: every state as under its load alone, and what is alike solved once."""
 
 import re
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from support import computed
+from test_own_models import Crowned
 
 import galinx
 from galinx.app.methods import METHODS
@@ -16,7 +16,6 @@ from galinx.app.results.check import faults
 from galinx.app.results.csv import pieces
 from galinx.app.results.fields import displacement
 from galinx.solvers.contact.exact import ClosedForm, ExactSolution
-from galinx.solvers.parameters import parameter
 from galinx.solvers.profiles import PROFILES
 
 LOADS = (2e4, 5.53e4, 3e5)
@@ -182,9 +181,9 @@ def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
         asked.append(task.body.load)
         return known(task, g, load)
 
-    monkeypatch.setitem(PROFILES, "crowned", _Crowned)
+    monkeypatch.setitem(PROFILES, "crowned", Crowned)
     changes = ALL | CLOSED | {"output.quantities": ["sif", "surface"], "output.points": None}
-    changes |= {"punch.profile": "crowned", "punch.radius": 20.0, "punch.half_width": 1e-3}
+    changes |= {"punch.profile": "crowned", "punch.rise": 2.5e-8, "punch.half_width": 1e-3}
     expected = same_as_alone(changes)
     method = METHODS["closed_form"]
     alone = replace(method, made=lambda plan, progress, clock: ClosedForm(given), loads=False)
@@ -197,31 +196,12 @@ def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
 
 def test_finite_elements_press_a_profile_of_ones_own_under_every_load(monkeypatch):
     """Two sharp edges and a base that is not flat: its share of the pressure falls with the load."""
-    monkeypatch.setitem(PROFILES, "crowned", _Crowned)
-    changes = {"punch.profile": "crowned", "punch.radius": 20.0, "punch.half_width": 1e-3}
+    monkeypatch.setitem(PROFILES, "crowned", Crowned)
+    changes = {"punch.profile": "crowned", "punch.rise": 2.5e-8, "punch.half_width": 1e-3}
     quantities = {"output.quantities": ["sif", "surface"], "output.points": None}
     many = same_as_alone(ALL | ROUGH | quantities | changes)
     K = many.data["states/fem/K_I_right"].reshape(3, 2)
     assert (np.diff(K, axis=0) > 1e-3).all()
-
-
-@dataclass(frozen=True)
-class _Crowned:
-    """A parabola between two sharp corners."""
-
-    about: ClassVar[str] = "crowned"
-
-    half_width: float = parameter("half_width", "half-width a", "m", above=0.0)
-    radius: float = parameter("radius", "radius of the base", "m", above=0.0)
-
-    def height(self, X):
-        return X**2 / (2.0 * self.radius)
-
-    def slope(self, X):
-        return X / self.radius
-
-    def words(self):
-        return "crowned punch"
 
 
 def test_archives_of_loads_are_whole_and_told_in_si(tmp_path):

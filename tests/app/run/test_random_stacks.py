@@ -1,14 +1,14 @@
 """Random stacks under flat punches and cylinders: finite elements against the integral equation."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 from time import process_time
 
 import numpy as np
 import pytest
 from agreement import check
+from layers_cases import random_stack
 from support import THOROUGH
+from test_layers_fem import scene_of
 
 import galinx
 from galinx.solvers.contact.edges import under_punch
@@ -16,10 +16,6 @@ from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation
 from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, rule_of_ends
 from galinx.solvers.profiles.power import Parabolic
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers_fem import scene_of
-from test_stack import random_stack
 
 #: Share of the largest stress under the punch below which its own size is not asked for.
 VANISHING = 0.1

@@ -1,21 +1,17 @@
 """Many speeds over layers, of which finite elements solve few: all against the integral equation."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from agreement import check
+from layers_cases import random_stack
 from support import THOROUGH
+from test_layers_fem import scene_of
 
 import galinx
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers_fem import scene_of
-from test_stack import random_stack
 
 HARD, SOFT = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
 ALL = ("sif", "surface", "interfaces")

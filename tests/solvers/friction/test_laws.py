@@ -1,11 +1,10 @@
 """Every law against its equations, integrated elsewhere, and laws that are others' limits."""
 
-import os
-
 import numpy as np
 import pytest
 import random_laws as random
 import reference
+from support import THOROUGH
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.elasto_plastic import ElastoPlastic
@@ -13,7 +12,7 @@ from galinx.solvers.friction.integrate import closely, exactly, work
 from galinx.solvers.parameters import build_model
 
 #: Random sets of parameters, each with a motion of its own.
-SETS = 20 if os.environ.get("GALINX_THOROUGH") else 5
+SETS = 20 if THOROUGH else 2
 PLACES = 6
 
 

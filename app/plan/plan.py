@@ -23,12 +23,14 @@ from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
     ALONG,
+    CLOSED_FORM,
     FEM,
     INSIDE,
     INTERFACE,
     LAYER,
     LOCAL,
     POINT,
+    SIE,
     SWEPT,
 )
 from galinx.postprocess.quantities.runs import SLIDER
@@ -370,7 +372,7 @@ def _faults_of_meshes(scene: Scene, body: Contact, places: Places) -> Iterator[s
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
             f"{solve.mesh} mesh at the tolerance {solve.tolerance:g}"
         )
-    if len(points) and mixed:
+    if len(points) and mixed and not {CLOSED_FORM, SIE} & {*solve.methods}:
         yield (
             f"output.{'points' if len(places.points) else 'quantities'}: found {words()}, expected "
             'ν <= 0.49 for stresses inside from finite elements; use methods = ["closed_form"]'

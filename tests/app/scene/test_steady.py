@@ -66,3 +66,12 @@ def test_a_steep_punch_is_warned_about():
     steep = 'profile = "table"\nshape = [[-1, 1], [0, 0], [1, 1]]'
     scene = parse(CYLINDER.replace('profile = "parabolic"\nradius = "5 mm"', steep))
     assert any("slopes are up to 1," in text for text in oddities(scene))
+
+
+def test_a_contact_as_wide_as_its_cylinder_is_warned_about():
+    """Slopes under the contact are half-width over radius."""
+    changes = {"punch.radius": "5 mm", "solid.E": "2 MPa", "solid.nu": 0.4}
+    narrow, wide = (template("cylinder", changes | {"punch.load": load}) for load in ("1 N/m", "1e4 N/m"))
+    a = wide.body.half_width
+    assert a > 1e-3 and any(f"slopes of {a / 5e-3:.2g}, " in text for text in oddities(wide))
+    assert not any("slopes of" in text for text in oddities(narrow))

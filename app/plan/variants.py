@@ -151,7 +151,7 @@ def _of_variants(variants: Sequence[Variant]) -> dict[str, NDArray]:
         [len(variant.states) for variant in variants],
     )
     values = {
-        HALF_WIDTH: [scene.body.half_width for scene in scenes] if scenes[0].body.shared_ends else [],
+        HALF_WIDTH: [scene.body.half_width for scene in scenes] if not scenes[0].body.found else [],
         WAVE_SPEED: [scene.solid.c_s for scene in scenes],
     }
     return {

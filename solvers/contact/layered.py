@@ -56,7 +56,7 @@ def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> 
         )
         nodes = Contacts(_NODES, [SolvedContact(fine, coarse, 0.0)] * len(_NODES))
         return AtSpeed(task, speed, nodes, np.zeros(1))
-    if body.shared_ends is None:
+    if body.found:
         punch = Punch(body.profile, body.half_width, body.compression)
         # A place inside is in one layer with one friction and in another with the next.
         every = bool(len(task.places.points) or len(task.places.around))

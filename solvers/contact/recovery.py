@@ -84,12 +84,11 @@ def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     Returns:
         Coefficients of the quotients, (states, ``MOMENTS``).
     """
-    coefficients = np.array(p)
+    chebyshev, coefficients = np.polynomial.chebyshev, np.array(p)
     for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
         quotient = np.zeros((MOMENTS, MOMENTS))
-        for k, row in enumerate(np.eye(MOMENTS)):
-            part = np.polynomial.chebyshev.chebdiv(row[: k + 1], divisor)[0]
-            quotient[k, : len(part)] = part
+        for k in range(1, MOMENTS):
+            quotient[k, :k] = chebyshev.chebdiv(np.eye(k + 1)[k], divisor)[0]
         coefficients = np.where(zeros[:, [end]], coefficients @ quotient, coefficients)
     return coefficients
 
@@ -669,7 +668,7 @@ class KinkedPressure(Pressure):
             largest(pressure, [*between(ends)[open_]], ends=False),
             largest(pressure, [*self._chart.surface_position(pieces[~open_])]),
             *((-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)),
-            (-np.inf, np.nan),
+            *zip(pressure(self.kinks).tolist(), self.kinks.tolist()),
         )
         return np.array(top[:1]), np.array(top[1:])
 

@@ -54,6 +54,16 @@ class Contact:
         yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
         ends: ``SHARP``, ``FREE``, ``ONE_FREE`` or ``PRESCRIBED``.
         found: True if an end of the contact is free: the half-width then depends on the state.
+        fem_mode: mode of finite elements, "" where that depends on the profile and the solid.
+        modes: modes by which quantities and rules that apply are selected.
+        flat: True if the punch is flat and not tilted.
+        finite: True if all stresses are finite: both ends are free, and the profile has no tip.
+        growth_exponent: exponent of the load by which similar contacts grow, those of a flat punch, of a
+            power of |X| on a uniform solid, and under a prescribed pressure; None if other loads make
+            others.
+        knots: positions X/a between which a prescribed pressure is linear; none under a punch.
+        friction_kinks: positions X/a at which friction along the contact is not smooth, in any state.
+        tips: positions from the punch's axis [m] at which stresses inside the contact are infinite.
     """
 
     solid: Solid
@@ -64,8 +74,14 @@ class Contact:
 
     ends: ClassVar[str]
     found: ClassVar[bool] = False
-    #: Mode of finite elements, "" where that depends on the profile and the solid.
     fem_mode: ClassVar[str] = ""
+    modes: ClassVar[Any] = (PUNCH,)
+    flat: ClassVar[Any] = False
+    finite: ClassVar[Any] = False
+    growth_exponent: ClassVar[Any] = None
+    knots: ClassVar[Any] = ()
+    friction_kinks: ClassVar[Any] = ()
+    tips: ClassVar[Any] = ()
 
     @property
     def half_width(self) -> Any:
@@ -73,38 +89,9 @@ class Contact:
         return half_width(self.profile)
 
     @property
-    def flat(self) -> bool:
-        """True if the punch is flat and not tilted."""
-        return False
-
-    @property
-    def growth_exponent(self) -> float | None:
-        """Exponent of the load by which similar contacts grow; None if other loads make others.
-
-        Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
-        prescribed pressure.
-        """
-        return None
-
-    @property
     def alike(self) -> bool:
         """True if contacts under all loads are similar: they differ in size alone."""
         return self.growth_exponent is not None
-
-    @property
-    def finite(self) -> bool:
-        """True if all stresses are finite: both ends are free, and the profile has no tip."""
-        return False
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Modes by which quantities and rules that apply are selected."""
-        return (PUNCH,)
-
-    @property
-    def knots(self) -> tuple[float, ...]:
-        """Positions X/a between which a prescribed pressure is linear; none under a punch."""
-        return ()
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -157,11 +144,6 @@ class Contact:
         """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with means g."""
         return np.asarray(g)[:, None]
 
-    @property
-    def friction_kinks(self) -> tuple[float, ...]:
-        """Positions over a at which friction along the contact is not smooth, in any state."""
-        return ()
-
     def edges(self, response: HalfPlane, g: NDArray) -> Any:
         """Local analysis of sharp ends with frictions g, (states,): exponents α and β."""
         return EdgeExponents(response, g)
@@ -193,19 +175,9 @@ class Contact:
         return len(self.solid.depths) > 0
 
     @property
-    def shared_ends(self) -> tuple[Any, float] | None:
-        """Half-width and middle [m] of the contacts of all states; None where each has its own."""
-        return self.half_width, 0.0
-
-    @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:
         """Unit of interfaces' depths, "1" over a half-width that all states share or "m", and these."""
         return "1", self.solid.depths / self.half_width
-
-    @property
-    def tips(self) -> tuple[float, ...]:
-        """Positions from the punch's axis [m] at which stresses inside the contact are infinite."""
-        return ()
 
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         """True where stresses at the left and the right end are infinite, (states, 2).
@@ -310,8 +282,7 @@ class VaryingContact(SharpContact):
 
     along: Mapping[float, Along] = field(default_factory=dict)
 
-    modes = (PUNCH, VARYING)  # type: ignore[assignment]
-    fem_mode = VARYING
+    modes, fem_mode = (PUNCH, VARYING), VARYING
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -360,7 +331,7 @@ class PrescribedContact(SharpContact):
 class FreeEndContact(Contact):
     """Contact of which the pressure determines an end, or both."""
 
-    found, shared_ends = True, None
+    found = True
 
     @property
     def tips(self) -> tuple[float, ...]:

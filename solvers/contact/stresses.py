@@ -367,14 +367,13 @@ def extreme_in_plane(
         return np.where(np.isnan(σ) | np.logical_or.reduce(near), -np.inf, sign * σ)
 
     turns = surface.turns or turns_at_ends(surface, solution.local)
-    candidates = [(counted(turns.X, turns.σ[0]), turns.X)]
     curves = counted(surface.places.X, surface.σ_XX)
+    samples = curves.max(axis=1)[:, None], surface.places.X[curves.argmax(axis=1)][:, None]
+    candidates = [(counted(turns.X, turns.σ[0]), turns.X), samples]
     if turns.between is not None:
         X, σ = turns.between[:, int(sign < 0.0), :, None]
         candidates.append((counted(X, σ), X))
         curves = np.where(np.isfinite(σ) & surface.places.under, -np.inf, curves)
-    best = curves.argmax(axis=1)
-    candidates.append((curves.max(axis=1)[:, None], surface.places.X[best][:, None]))
     candidates.append(on_surface(surface.places.X, curves, turns))
     height, place = highest(*(np.concatenate(of, axis=1) for of in zip(*candidates)))
     return sign * height, place

@@ -249,7 +249,7 @@ def _summit(values: NDArray) -> NDArray[np.float64]:
 
 #: Halvings towards the end of a zone, and factor of the distance between places along the other
 #: coordinate in each: these have to follow a largest stress that moves.
-_HALVINGS, _NEARER = 20, 0.6
+_HALVINGS, _NEARER = 20, 0.7
 
 
 def _farthest(
@@ -542,8 +542,9 @@ _ACCURACY = 1e-4
 _NEARLY = 0.98
 #: Least depth over a of places at which errors are estimated: nearer to ends one place would be all.
 _SHALLOWEST = 0.05
-#: Least depth over a, of the first depth of sampling, at which stresses are evaluated.
-_LEAST_DEPTH = 0.3
+#: Least distance from the surface, and from an interface, over that of the next depth of sampling, at
+#: which stresses inside are evaluated.
+_LEAST_DEPTH, _NEXT_TO_FACE = 0.3, 1e-6
 
 
 def sampled_depths(interfaces: NDArray) -> list[NDArray[np.float64]]:
@@ -648,10 +649,12 @@ class StrengthOfLayers:
         if values[best] < _NEARLY * faces:
             return -np.inf, 0.0, 0.0
         top = 0.0 if layer == 0 else float(interfaces[layer - 1])
-        # Between the first depth and the face above stresses near the surface vary ever faster.
-        above = top + _LEAST_DEPTH * (depths[0] - top)
+        # Between the first depth and the surface stresses vary ever faster.
+        above = top + (_NEXT_TO_FACE if layer else _LEAST_DEPTH) * (depths[0] - top)
         bottom = float(interfaces[layer]) if layer < len(interfaces) else float(depths[-1])
-        lower = depths[best + 1] if best + 1 < len(depths) else bottom - 1e-6 * (bottom - depths[-1])
+        lower = (
+            depths[best + 1] if best + 1 < len(depths) else bottom - _NEXT_TO_FACE * (bottom - depths[-1])
+        )
         upper = depths[best - 1] if best else above
         found = minimize_scalar(
             lambda depth: -self._at_depth(state, depth)[0], bounds=(upper, lower), method="bounded",

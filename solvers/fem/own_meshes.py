@@ -49,7 +49,6 @@ from ..contact.free_ends import (
     free_ends,
     gaps_of,
     slopes_towards_ends,
-    turns_at_ends,
 )
 from ..contact.pressure import ENDS, Expansion
 from ..contact.solution import Contact, Places, Surface, Task, Turns
@@ -60,7 +59,7 @@ from ..profiles.flat import Flat
 from .contact import Ends, FreeEnds, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, Solved, WorkDone, climb, joined, to_tolerance
-from .solution import Ended, Solution, SolvedStates, solution_of
+from .solution import Solution, SolvedEnds, SolvedStates, solution_of
 from .space import Space
 
 #: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
@@ -176,11 +175,11 @@ class EndsBetweenKinks(Ends):
         X = self._centre + self._half_width * level.r
         return np.asarray(self._body.profile.height(X) / self._body.displacement)
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
         half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
-        return Ended(level.punch.states(g), half_width, centre, _FREE)
+        return SolvedEnds(level.punch.states(g), half_width, centre, _FREE)
 
-    def pressure(self, level: PunchLevel, ends: Ended) -> KinkedPressure:
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> KinkedPressure:
         space, contact, profile = level.space, ends.contact, self._body.profile
         return KinkedPressure(
             space.contact.s, space.degree, space.chart, contact.normal[0], self._places,
@@ -221,31 +220,27 @@ class EndsBetweenKinks(Ends):
         unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
         return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
 
-    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns]:
-        def at(surface: Surface) -> Turns:
-            """Stresses at both ends, and under kinks where they are finite."""
-            X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
-            σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
-            u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
-            g, response = float(states.contact.g[0]), states.task.response
-            under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        """Limits of stresses at both ends, and under kinks where they are finite."""
+        X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
+        σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+        u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
+        g, response = float(states.contact.g[0]), states.task.response
+        under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
 
-            def in_plane(r: NDArray) -> NDArray[np.float64]:
-                r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
-                σ = pressure.σ_YY(r)
-                return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
+        def in_plane(r: NDArray) -> NDArray[np.float64]:
+            r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
+            σ = pressure.σ_YY(r)
+            return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
 
-            between = None
-            if len(X):
-                places = np.array([-1.0, *X, 1.0])
-                _, between = at_and_between(places, 1, in_plane)
-                # Nearer to ends and kinks the limits there stand for the stress.
-                near = np.abs(between[0][..., None] - places).min(axis=-1) < self.nearest(pressure)
-                between[1, near] = np.nan
-            ends = turns_at_ends(surface, states.local)
-            return ends.joined(Turns(X[None], under[:, None], between))
-
-        return at
+        between = None
+        if len(X):
+            places = np.array([-1.0, *X, 1.0])
+            _, between = at_and_between(places, 1, in_plane)
+            # Nearer to ends and kinks the limits there stand for the stress.
+            near = np.abs(between[0][..., None] - places).min(axis=-1) < self.nearest(pressure)
+            between[1, near] = np.nan
+        return super().turns(states, surface).joined(Turns(X[None], under[:, None], between))
 
 
 def _gentle(plan: FemPlan) -> Refinement:
@@ -292,7 +287,7 @@ class BalancedEnds(Ends):
         X = self._near + h * level.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
         """Contact without intensities.
 
         Raises:
@@ -306,9 +301,9 @@ class BalancedEnds(Ends):
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
         half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
         contact = level.punch.summed(g, parts, amplitudes)
-        return Ended(contact, np.full(1, half_width), np.full(1, centre), _FREE)
+        return SolvedEnds(contact, np.full(1, half_width), np.full(1, centre), _FREE)
 
-    def pressure(self, level: PunchLevel, ends: Ended) -> Expansion:
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
         return level.over_flat(ends.contact.tested(level.moments), ends.contact.g, 1.0)
 
     def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
@@ -492,7 +487,8 @@ def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: Wo
         done: takes the numbers of the work.
     """
     solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends), done)
-    return OwnState(*solved.solved(g), solved)
+    (states,) = solved.on_mesh(g)
+    return OwnState(states, solved)
 
 
 class OwnMeshesAtSpeed:

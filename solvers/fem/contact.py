@@ -38,7 +38,7 @@ from ..contact.recovery import (
     without_zeros,
 )
 from ..contact.solution import Contact, Task
-from ..contact.stresses import Surface, Turns
+from ..contact.stresses import Surface, Turns, turns_at_ends
 from ..errors import SolveError
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
@@ -47,7 +47,7 @@ from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, joined, of_pressure
 from .punch import ContactStates, FittedPunch, Punch, sliding_punch
-from .solution import Ended, SolvedStates
+from .solution import SolvedEnds, SolvedStates
 from .space import Space
 
 #: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
@@ -68,7 +68,7 @@ class Ends:
         """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
         raise NotImplementedError
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
         """Contacts with frictions g = σ_XY/σ_YY, (states,), under the load of the body for each.
 
         Raises:
@@ -76,7 +76,7 @@ class Ends:
         """
         raise NotImplementedError
 
-    def pressure(self, level: "PunchLevel", ends: Ended) -> Any:
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Any:
         """Pressure of contacts from their nodal forces."""
         raise NotImplementedError
 
@@ -100,9 +100,9 @@ class Ends:
         """Least distance over a from free ends and kinks at which stresses are evaluated."""
         return _NEAREST
 
-    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns] | None:
-        """Function for limits of stresses on a surface; None for limits at free ends alone."""
-        return None
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        """Limits of stresses on a surface at free ends."""
+        return turns_at_ends(surface, states.local)
 
 
 class SharpEnds(Ends):
@@ -112,12 +112,12 @@ class SharpEnds(Ends):
         body = level.task.body
         return None if body.flat else body.height(level.r)
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
         contact = level.punch.states(g, share=level.task.body.load / body.load)
         half_width = np.full(len(g), float(body.half_width))
-        return Ended(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
+        return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
 
-    def pressure(self, level: "PunchLevel", ends: Ended) -> Expansion:
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
         return level.over_flat(ends.contact.tested(level.moments), ends.contact.g)
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
@@ -143,7 +143,7 @@ class VaryingEnds(SharpEnds):
         facets = ContactFacets(nodes.s, level.space.degree, level.space.chart)
         return cache(lambda g: facets.product(along[g]))
 
-    def pressure(self, level: "PunchLevel", ends: Ended) -> Expansion:
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
         return self._pressure(level, ends.contact, _NEXT)
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
@@ -191,16 +191,16 @@ class FreeEnds(Ends):
     def heights(self, level: "PunchLevel") -> NDArray[np.float64]:
         return heights_of_shapes(level.r, self._shapes)
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
         (parts, loads, K), local = level.parts(g), EdgeExponents(level.task.response, g)
         solve = _SOLVES.get(type(body.profile), _smooth)
         amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = level.punch.summed(g, parts, amplitudes)
-        return Ended(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
+        return SolvedEnds(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
 
-    def pressure(self, level: "PunchLevel", ends: Ended) -> Expansion:
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
         contact, free = ends.contact, ends.free
         whole = level.over_flat(contact.tested(level.moments), contact.g)
         smooth = without_zeros(whole.c, free)
@@ -320,7 +320,7 @@ class PunchLevel(Level):
     ) -> None:  # fmt: skip
         super().__init__(work, task, space, g)
         self.plan = work.plan
-        self.only: Ended | None = None
+        self.only: SolvedEnds | None = None
         self.ends = ends or ends_of(work.plan)
         self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
         if fitted is not None and recovery is not None:
@@ -342,7 +342,7 @@ class PunchLevel(Level):
             if single:
                 solved.destroy()
 
-    def _summed(self, ends: Ended) -> Ended:
+    def _summed(self, ends: SolvedEnds) -> SolvedEnds:
         """The only state, by its own displacement and nodal forces."""
         field, contact = self.fields[0].duplicate(), ends.contact
         field.zeroEntries()
@@ -362,8 +362,10 @@ class PunchLevel(Level):
         return self._tests(self.r)
 
     @cached_property
-    def recovery(self) -> ContactRecovery:
-        """Maps from nodal forces to moments, raw pressure and exponents."""
+    def recovery(self) -> ContactRecovery | None:  # type: ignore[override]
+        """Maps from nodal forces to moments, raw pressure and exponents; none on a mesh of its own."""
+        if self.ends.single:
+            return None
         space, X = self.space, self.task.places.X
         return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
 
@@ -402,12 +404,13 @@ class PunchLevel(Level):
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         body = self.task.body.loaded(load)
         ends = self.only or self.ends.solved(self, g, body)
-        states = SolvedStates(
-            self.task, body, ends, self.ends.pressure(self, ends), self.displacement,
-            None if self.ends.single else lambda: self.recovery,
-        )  # fmt: skip
-        nearest = self.ends.nearest(states.pressure)
-        return replace(states, turns=self.ends.turns(states), nearest=nearest)
+        return SolvedStates(self, body, ends, self.ends.pressure(self, ends))
+
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
+        return self.ends.turns(states, surface) if states.ends.free.any() else None
+
+    def nearest(self, states: SolvedStates) -> float:
+        return self.ends.nearest(states.pressure)
 
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""

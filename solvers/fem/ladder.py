@@ -22,6 +22,7 @@ from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before,
 from ..contact.fem_plan import levels
 from ..contact.pressure import Expansion
 from ..contact.solution import Task
+from ..contact.stresses import Surface, Turns, turns_at_ends
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .punch import spread
@@ -197,11 +198,13 @@ class Level:
         factor: of the linear system, with numbers of its work.
         fields: displacements over N/(2μ), whose combinations are the states.
         mirrored: True where :meth:`rounding` is that of mirror images, not only a bound on rounding.
+        recovery: maps from nodal forces to raw pressure and exponents, None without any.
     """
 
     factor: Any
     fields: Sequence[Any]
     mirrored: bool
+    recovery: Any = None
 
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         self.work, self.task, self.space, self.g = work, task, space, g
@@ -232,6 +235,14 @@ class Level:
             SolveError: no contact carries the load.
         """
         raise NotImplementedError
+
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
+        """Limits of stresses on a surface, None where there are none."""
+        return turns_at_ends(surface, states.local) if states.ends.free.any() else None
+
+    def nearest(self, states: SolvedStates) -> float:
+        """Least distance over a from free ends and kinks at which stresses are evaluated."""
+        return 1.0
 
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Gauges of states, of the requested stresses; arguments as of :meth:`states`."""
@@ -332,9 +343,9 @@ class Solved:
     fitted: bool = False
 
     def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self.level.task, self.solved, g, load)
+        return solution_of(self.level.task, self.on_mesh, g, load)
 
-    def solved(self, g: NDArray, load: Any = None) -> list[SolvedStates]:
+    def on_mesh(self, g: NDArray, load: Any = None) -> list[SolvedStates]:
         """States with their estimated errors, on the one mesh."""
         states = self.level.states(g, load)
         errors = {word: values + states.ends.unresolved for word, values in self.error.of(g).items()}
@@ -383,8 +394,8 @@ def climb(
         share: share of the tolerance that the error may take.
         done: takes the numbers of the work.
     """
-    plan, level = work.plan, None
-    done = WorkDone() if done is None else done
+    plan, done = work.plan, WorkDone() if done is None else done
+    level: Any = None
     # States of friction along the contact are no family, of which some stand for the others.
     every = len(g) if VARYING in task.body.modes else PROBES
     probes = spread(g, every)

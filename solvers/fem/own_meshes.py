@@ -46,14 +46,14 @@ from ..contact.free_ends import SHAPES, free_ends
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task
-from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips, turns_at_ends
+from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.flat import Flat
 from .contact import Ends, FreeEnds, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, Solved, WorkDone, climb, joined, to_tolerance
-from .solution import Ended, Solution, SolvedStates, solution_of
+from .solution import Solution, SolvedEnds, SolvedStates, solution_of
 from .space import Space
 
 #: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
@@ -169,11 +169,11 @@ class EndsBetweenKinks(Ends):
         X = self._centre + self._half_width * level.r
         return np.asarray(self._body.profile.height(X) / self._body.displacement)
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
         half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
-        return Ended(level.punch.states(g), half_width, centre, _FREE)
+        return SolvedEnds(level.punch.states(g), half_width, centre, _FREE)
 
-    def pressure(self, level: PunchLevel, ends: Ended) -> KinkedPressure:
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> KinkedPressure:
         space, contact, profile = level.space, ends.contact, self._body.profile
         return KinkedPressure(
             space.contact.s, space.degree, space.chart, contact.normal[0], self._places,
@@ -214,29 +214,25 @@ class EndsBetweenKinks(Ends):
         unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
         return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
 
-    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns]:
-        def at(surface: Surface) -> Turns:
-            """Stresses at both ends, and under kinks where they are finite."""
-            X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
-            σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
-            u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
-            g, response = float(states.contact.g[0]), states.task.response
-            under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        """Limits of stresses at both ends, and under kinks where they are finite."""
+        X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
+        σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+        u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
+        g, response = float(states.contact.g[0]), states.task.response
+        under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
 
-            def in_plane(r: NDArray) -> NDArray[np.float64]:
-                r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
-                σ = pressure.σ_YY(r)
-                return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
+        def in_plane(r: NDArray) -> NDArray[np.float64]:
+            r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
+            σ = pressure.σ_YY(r)
+            return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
 
-            between = None
-            if len(X):
-                places = np.array([-1.0, *X, 1.0])
-                # Nearer to ends and kinks the limits there stand for the stress.
-                _, between = at_and_between(places, in_plane, nearest=self.nearest(pressure))
-            ends = turns_at_ends(surface, states.local)
-            return ends.joined(Turns(X[None], under[:, None], between))
-
-        return at
+        between = None
+        if len(X):
+            places = np.array([-1.0, *X, 1.0])
+            # Nearer to ends and kinks the limits there stand for the stress.
+            _, between = at_and_between(places, in_plane, nearest=self.nearest(pressure))
+        return super().turns(states, surface).joined(Turns(X[None], under[:, None], between))
 
 
 def _gentle(plan: FemPlan) -> Refinement:
@@ -283,7 +279,7 @@ class BalancedEnds(Ends):
         X = self._near + h * level.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> Ended:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
         """Contact without intensities.
 
         Raises:
@@ -297,9 +293,9 @@ class BalancedEnds(Ends):
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
         half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
         contact = level.punch.summed(g, parts, amplitudes)
-        return Ended(contact, np.full(1, half_width), np.full(1, centre), _FREE)
+        return SolvedEnds(contact, np.full(1, half_width), np.full(1, centre), _FREE)
 
-    def pressure(self, level: PunchLevel, ends: Ended) -> Expansion:
+    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
         return level.over_flat(ends.contact.tested(level.moments), ends.contact.g, 1.0)
 
     def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
@@ -483,7 +479,8 @@ def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: Wo
         done: takes the numbers of the work.
     """
     solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends), done)
-    return OwnState(*solved.solved(g), solved)
+    (states,) = solved.on_mesh(g)
+    return OwnState(states, solved)
 
 
 class OwnMeshesAtSpeed:

@@ -5,7 +5,6 @@ The pressure is the user's own, σ_XY = g σ_YY: over a uniform half-plane piece
 mode ``traction`` it is that of a flat punch by its closed form (:class:`FormulaLevel`).
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -24,7 +23,7 @@ from .displacement import Displacement
 from .fields import TOGETHER, Gradients, Slopes
 from .ladder import Level
 from .punch import ContactStates
-from .solution import Ended, SolvedStates
+from .solution import SolvedEnds, SolvedStates
 from .space import Space
 from .traction import LinearLoads, LoadedHalfPlane, Pieces
 
@@ -79,21 +78,20 @@ class LoadsLevel(Level):
         # The first field of a load has a normal resultant, the second an equal tangential one.
         units = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
         forces = np.asarray(np.kron(self.resultants[:, None, None], units), dtype=np.float64)
-        body, none, weights = self.task.body.loaded(load), np.zeros(len(g)), self.weights(g)
-        contact = ContactStates(weights, forces, g, np.full(len(g), np.nan))
-        ends = Ended(contact, none + float(body.half_width), none, np.zeros((len(g), 2), dtype=bool))
-        return SolvedStates(
-            self.task, body, ends, self.pressure(g), self.displacement, turns=self.turns(g, weights)
-        )
+        body, none = self.task.body.loaded(load), np.zeros(len(g))
+        contact = ContactStates(self.weights(g), forces, g, np.full(len(g), np.nan))
+        ends = SolvedEnds(contact, none + float(body.half_width), none, np.zeros((len(g), 2), dtype=bool))
+        return SolvedStates(self, body, ends, self.pressure(g))
 
-    def turns(self, g: NDArray, weights: NDArray) -> Callable[[Surface], Turns] | None:
-        """Function for limits of stresses at knots, and between these."""
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
+        """Limits of stresses at knots, and between these."""
+        g, weights = states.contact.g, states.contact.weights
 
         def σ_XX(X: NDArray) -> NDArray[np.float64]:
             at = self.displacement_at(replace(self.task, places=Places(X, np.empty((0, 2)))))
             return at.surface(g, weights, self.prescribed(X)).σ_XX
 
-        return lambda surface: turns_at_knots(self.prescribed, g, σ_XX)
+        return turns_at_knots(self.prescribed, g, σ_XX)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Zeros: the mirror image of a load is no load, so rounding is not measured."""
@@ -117,7 +115,7 @@ class FormulaLevel(LoadsLevel):
     def pressure(self, g: NDArray) -> Pressure:
         return FlatPunch(self.task.response, g[:, None])
 
-    def turns(self, g: NDArray, weights: NDArray) -> None:
+    def turns(self, states: SolvedStates, surface: Surface) -> None:
         return None
 
 

@@ -150,12 +150,12 @@ class Punch:
             flat: states of a flat punch, whatever the profile is.
             share: factor of the profile's heights in each state: smaller for a larger load.
         """
-        g = np.atleast_1d(np.asarray(g, dtype=float))
-        parts = self.parts(g)[:, : 1 if flat else None]
-        loads, heights = self.loads(parts), np.asarray(share, dtype=float) * np.ones(len(g))
+        values = np.atleast_1d(np.asarray(g, dtype=float))
+        parts = self.parts(values)[:, : 1 if flat else None]
+        loads, heights = self.loads(parts), np.asarray(share, dtype=float) * np.ones(len(values))
         # ∫ σ_YY d(X/a) = -2 over N/(2a)
         v0 = (-2.0 - heights * loads[:, 1:].sum(axis=1)) / loads[:, 0]
-        return self.summed(g, parts, np.column_stack([v0, *[heights] * (parts.shape[1] - 1)]))
+        return self.summed(values, parts, np.column_stack([v0, *[heights] * (parts.shape[1] - 1)]))
 
     def destroy(self) -> None:
         """Free factor and fields."""
@@ -216,8 +216,8 @@ class SlidingPunch(Punch):
         suffice. At opposite frictions a punch is the mirror image, with which rounding is estimated.
         Frictions that vary along the contact are no such family: each counts.
         """
-        some = spread(g, _SPREAD)
-        self._grow(g if self._along else np.concatenate([some, -some]), last=True)
+        sample = spread(g, _SPREAD)
+        self._grow(g if self._along else np.concatenate([sample, -sample]), last=True)
         self._complete = True
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -235,12 +235,12 @@ class SlidingPunch(Punch):
         V, R = self._loads, self.forces[:, 1].T
         count = V.shape[1]
         projected = V.T @ R
-        for some in np.split(g, range(_TOGETHER, len(g), _TOGETHER)) if self._along else [g]:
+        for batch in np.split(g, range(_TOGETHER, len(g), _TOGETHER)) if self._along else [g]:
             if self._along:
-                G: Any = np.array([self._along(value) for value in some.tolist()])
+                G: Any = np.array([self._along(value) for value in batch.tolist()])
                 H = V.T @ (G @ R)
             else:
-                G, H = some[:, None, None], some[:, None, None] * projected
+                G, H = batch[:, None, None], batch[:, None, None] * projected
             R0, TV = H[..., : self._parts], H[..., self._parts :]
             yield G, np.linalg.solve(np.eye(count) - TV, R0)
 
@@ -491,9 +491,9 @@ class ElasticPunch(SlidingPunch):
         return np.array(changes)
 
     def prepare(self, g: NDArray[np.float64]) -> None:
-        some, n = spread(g, _SPREAD), len(self._moving)
+        sample, n = spread(g, _SPREAD), len(self._moving)
         units = np.array([-self.fields[0].array_r, *(field.array_r for field in self._moving_fields)])
-        changes = self._changes(np.concatenate([some, -some])).reshape(-1, 2 * n)
+        changes = self._changes(np.concatenate([sample, -sample])).reshape(-1, 2 * n)
         changes /= np.linalg.norm(changes, axis=1, keepdims=True)
         _, size, rows = np.linalg.svd(changes, full_matrices=False)
         #: Combinations of displacements and tangential forces, (basis, 2 n).

@@ -15,17 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.edges import Exponents
-from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
-from ..contact.stresses import Places, Surface, Turns, together, turns_at_ends
+from ..contact.stresses import Places, Surface, together
 from ..contact.yielding import Strength, StrengthOfLayers
 from .displacement import Displacement
 from .punch import ContactStates
 
 
 @dataclass(frozen=True)
-class Ended:
+class SolvedEnds:
     """Contacts with their ends, as sums of a punch's parts.
 
     Attributes:
@@ -47,28 +46,30 @@ class SolvedStates:
     """States solved on one mesh; lengths over each contact's half-width, from its middle.
 
     Attributes:
-        task: the speed, and places of stresses; with lengths over the half-width of a mesh drawn for it.
+        level: the solved degree, a :class:`galinx.solvers.fem.ladder.Level`.
         body: the sliding contact, under the load of each state.
         ends: the contacts with their ends.
         pressure: contact pressure, a :class:`galinx.solvers.contact.pressure.Pressure`.
-        displacement: stresses by the fields.
-        recovery: gives the maps from nodal forces to raw pressure and exponents, if there are any.
-        turns: limits of stresses on a surface, by that surface; None for limits at free ends alone.
-        nearest: least distance over a from free ends and kinks at which stresses are evaluated.
         errors: estimated relative errors, (states,), by word of output.quantities.
         fitted: True where the speed was fitted through others.
     """
 
-    task: Task
+    level: Any
     body: Contact
-    ends: Ended
+    ends: SolvedEnds
     pressure: Any
-    displacement: Displacement
-    recovery: Callable[[], ContactRecovery] | None = None
-    turns: Callable[[Surface], Turns] | None = None
-    nearest: float = 1.0
     errors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     fitted: bool = False
+
+    @property
+    def task(self) -> Task:
+        """The speed, and places of stresses; with lengths over the half-width of a mesh drawn for it."""
+        return self.level.task
+
+    @property
+    def displacement(self) -> Displacement:
+        """Stresses by the fields."""
+        return self.level.displacement
 
     @property
     def contact(self) -> ContactStates:
@@ -84,16 +85,11 @@ class SolvedStates:
     @cached_property
     def on_surface(self) -> Surface:
         """Stresses on the surface, with limits at ends and kinks."""
-        contact, X = self.contact, self.task.places.X
-        raw = contact.tested(self.recovery().raw) if self.recovery else None
-        surface = self.displacement.surface(contact.g, contact.weights, self.pressure.σ_YY(X), raw)
-        if self.turns:
-            return replace(surface, turns=self.turns(surface))
-        return (
-            replace(surface, turns=turns_at_ends(surface, self.local))
-            if self.ends.free.any()
-            else surface
-        )
+        contact, recovery = self.contact, self.level.recovery
+        raw = contact.tested(recovery.raw) if recovery else None
+        σ_YY = self.pressure.σ_YY(self.task.places.X)
+        surface = self.displacement.surface(contact.g, contact.weights, σ_YY, raw)
+        return replace(surface, turns=self.level.turns(self, surface))
 
     @cached_property
     def below(self) -> NDArray[np.float64]:
@@ -103,7 +99,7 @@ class SolvedStates:
     @property
     def raw_exponents(self) -> NDArray[np.float64]:
         """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
-        return self.recovery().exponents(self.contact.normal)  # type: ignore[misc]
+        return self.level.recovery.exponents(self.contact.normal)
 
     @property
     def of_fit(self) -> NDArray[np.float64]:
@@ -113,7 +109,7 @@ class SolvedStates:
     @property
     def centre_of_pressure(self) -> NDArray[np.float64]:
         """Centre of pressure over the half-width, from the middle, (states,)."""
-        moments = self.contact.tested(self.recovery().moments[:, :2])  # type: ignore[misc]
+        moments = self.contact.tested(self.level.recovery.moments[:, :2])
         return np.asarray(moments[:, 1] / moments[:, 0])
 
     @property
@@ -243,7 +239,7 @@ class Solution:
         turns = self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
         return Strength(
             self._stresses, self.body, self.task.response, self.g, self.local, self.half_width, turns,
-            max(states.nearest for states in self.solved),
+            max(states.level.nearest(states) for states in self.solved),
         )  # fmt: skip
 
     def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:

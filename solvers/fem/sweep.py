@@ -232,7 +232,7 @@ def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -
     while True:
         training = _Training(work, tasks, say, degree, lost)
         try:
-            return training.done()
+            return training.run()
         except _HigherDegree as higher:
             degree, lost = higher.args[0], training.spent
             if lost > training.allowed:
@@ -275,7 +275,7 @@ class _Training:
         self._fit: Fit | None = None
         self._estimates: dict[float, Estimate] = {}
 
-    def done(self) -> Trained | None:
+    def run(self) -> Trained | None:
         """Train the fit; it serves the solved speeds alone where it does not become good enough."""
         tasks, tolerance = self._tasks, self._work.plan.tolerance
         # The fastest needs the highest degree: it is solved first, by every rank for itself.

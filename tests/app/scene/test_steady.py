@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.results.result import compute
 from galinx.app.scene.read import parse

@@ -21,9 +21,8 @@ from galinx.postprocess.hdf5 import archive
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.punch import SlidingPunch
 
-#: GALINX_THOROUGH=1 asks for as many kills and signals as a release does.
-#: What a run says that was stopped or killed: rank 0 of its finished states where it can, run.sh of a rank
-#: that is gone, and so may MPI.
+#: What a run says that was stopped or killed: rank 0 of its finished states where it can, run.sh of a
+#: rank that is gone, and so may MPI.
 SAID = re.compile(
     r"(\[.*\n)*(?=.)(error: interrupted; (\d+ finished states are kept, go on with --resume"
     r"|nothing was (finished|written))\n)?"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import AT_INTERFACES
-from galinx.solvers.contact.stresses import extreme
+from galinx.solvers.contact.extremes import extreme
 from galinx.solvers.parameters import Range
 
 from .quantity import (

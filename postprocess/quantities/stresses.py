@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import BELOW, ON_SURFACE, VARYING
-from galinx.solvers.contact.free_ends import extreme_in_plane
 from galinx.solvers.contact.solution import OUT_OF_PLANE
-from galinx.solvers.contact.stresses import principal, von_mises
+from galinx.solvers.contact.stresses import extreme_in_plane, principal, von_mises
 from galinx.solvers.parameters import Range
 
 from .quantity import (

@@ -37,12 +37,6 @@ def test_stresses_inside_are_those_of_the_potentials(tolerance, limit, speeds):
         assert error.max() <= limit
 
 
-def test_nothing_inside_is_computed_unasked(tables_run):
-    data = tables_run.data
-    assert not any(name.startswith("interior/") for name in data)
-    assert "stresses inside: not in output.quantities" in data["run/skipped"]
-
-
 @pytest.mark.parametrize("mesh", ["graded", "box"])
 def test_other_meshes_and_given_tractions(mesh):
     points = with_points(random_points(40, 3))

@@ -1,16 +1,15 @@
 """What laws promise on random motions: independence of the rate, memory, drift, work, mirror images."""
 
-import os
-
 import numpy as np
 import pytest
 import random_laws as random
+from support import THOROUGH
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.integrate import exactly, work
 from galinx.solvers.parameters import build_model
 
-SETS = range(20 if os.environ.get("GALINX_THOROUGH") else 5)
+SETS = range(20 if THOROUGH else 2)
 ALL = random.EXACT
 
 

@@ -227,12 +227,24 @@ def spaced(x: NDArray, turn: float, most: int = _MARKERS) -> NDArray[np.int64]:
     return finite[np.unique(np.abs(x[finite, None] - wanted).argmin(axis=0))]
 
 
+def _power(panel: Panel) -> int:
+    """Power of ten over which numbers are neither long nor short; a multiple of three."""
+    if "y" in panel.log or panel.map or not panel.curves:
+        return 0
+    values = np.concatenate([np.ravel(curve.y) for curve in panel.curves])
+    values = np.abs(values[np.isfinite(values)])
+    largest = float(values.max()) if len(values) else 0.0
+    if panel.ylim:
+        largest = min(largest, float(np.abs(panel.ylim).max()))
+    return 3 * floor(log10(largest) / 3.0) if largest and not _SHORT <= largest < _LONG else 0
+
+
 class _Drawn:
     """A panel on its axes: what is drawn does not change with its place; texts are folded to fit."""
 
     def __init__(self, axis: Axes, panel: Panel, letter: str) -> None:
         self.axis, self.panel, self.letter, self.legend = axis, panel, letter, None
-        self.power = self._power()
+        self.power = _power(panel)
         for low, high in panel.bands:
             axis.axvspan(low, high, color="#F2F2F2", linewidth=0.0, zorder=-1)
         for x in panel.at_x:
@@ -272,17 +284,6 @@ class _Drawn:
                     handles=entries, loc="upper center", borderaxespad=0.0, labelspacing=0.2,
                     columnspacing=1.2,
                 )  # fmt: skip
-
-    def _power(self) -> int:
-        """Power of ten over which numbers are neither long nor short; a multiple of three."""
-        if "y" in self.panel.log or self.panel.map or not self.panel.curves:
-            return 0
-        values = np.concatenate([np.ravel(curve.y) for curve in self.panel.curves])
-        values = np.abs(values[np.isfinite(values)])
-        largest = float(values.max()) if len(values) else 0.0
-        if self.panel.ylim:
-            largest = min(largest, float(np.abs(self.panel.ylim).max()))
-        return 3 * floor(log10(largest) / 3.0) if largest and not _SHORT <= largest < _LONG else 0
 
     def _curve(self, curve: Curve) -> Line2D:
         y = np.asarray(curve.y) / 10.0**self.power
@@ -585,14 +586,14 @@ class Film:
         self._panels, self.frames = panels, frames
         first = panels(0)
         self.figure = render(first, size, columns=len(first), high=0.85)
-        self._count = len(first)
+        self._count, self._scales = len(first), [10.0 ** _power(panel) for panel in first]
 
     def show(self, frame: int) -> None:
         """Draw a frame."""
-        for axis, panel in zip(self.figure.axes[: self._count], self._panels(frame)):
+        for axis, panel, scale in zip(self.figure.axes, self._panels(frame), self._scales):
             curves = [line for line in axis.lines if line.get_gid() == "curve"]
             for line, curve in zip(curves, panel.curves):
-                line.set_data(curve.x, curve.y)
+                line.set_data(curve.x, np.asarray(curve.y) / scale)
             if panel.map:
                 axis.images[0].set_data(panel.map.values)
             letter = axis.get_title(loc="left")[:5] if self._count > 1 else ""

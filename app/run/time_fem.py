@@ -77,7 +77,7 @@ def _beside(run: Steps, response: HalfPlane) -> _Datasets:
     u_X = run.watched[0][1:, : len(_ENDS)]
     left, right = response.σ_XX(u_X, 0.0 * u_X, 0.0 * u_X).T
     return {
-        rows.WORK.path: run.work_of_load + run.work_of_friction, rows.ENERGY.path: run.energy,
+        rows.WORK.path: run.work, rows.ENERGY.path: run.energy,
         rows.ABSORBED.path: run.absorbed, rows.OF_LOAD[FEM].path: run.work_of_load,
         rows.OF_FRICTION[FEM].path: run.work_of_friction, rows.LEFT[FEM].path: left,
         rows.RIGHT[FEM].path: right,

@@ -242,6 +242,11 @@ class Steps:
     absorbed: NDArray[np.float64]
     watched: tuple[NDArray[np.float64], ...] = ()
 
+    @property
+    def work(self) -> NDArray[np.float64]:
+        """Work of load and friction together, over N²/(4μ), (steps,)."""
+        return self.work_of_load + self.work_of_friction
+
 
 @dataclass
 class _State:
@@ -285,12 +290,7 @@ class SlidingInTime:
             steady: begin in the steady motion under load and friction at t = 0, not at rest.
             watching: functions that record the motion, at first and after each step.
         """
-        u, w, a = np.zeros((3, self._motion.size))
-        state = _State(u, w, a, np.zeros(3))
-        if steady:
-            punch = PunchConstraint(self._K, self._motion, self._clock)
-            state.u, _ = punch.solve(np.zeros(self._motion.size), g(0.0), -2.0 * load(0.0))
-            punch.destroy()
+        state = self._steady(g(0.0), load(0.0)) if steady else self._rest()
         first_v0, first_energy = -state.u[self._Y[0]], self._energy(state)
         records, t, direction = [], 0.0, ways[0].direction
         watched = [[watch(state.u, state.w, direction) for watch in watching]]
@@ -309,6 +309,17 @@ class SlidingInTime:
             times, v0, forces, np.cumsum(by_load), np.cumsum(by_friction), energy - first_energy,
             np.cumsum(absorbed), tuple(map(np.array, zip(*watched))),
         )  # fmt: skip
+
+    def _rest(self) -> _State:
+        u, w, a = np.zeros((3, self._motion.size))
+        return _State(u, w, a, np.zeros(3))
+
+    def _steady(self, g: float, load: float) -> _State:
+        state = self._rest()
+        punch = PunchConstraint(self._K, self._motion, self._clock)
+        state.u, _ = punch.solve(state.u, g, -2.0 * load)
+        punch.destroy()
+        return state
 
     def _turn(self, state: _State, change: int, g: float, load: float) -> None:
         """Turn the punch round: velocities seen from it jump, and accelerations change."""

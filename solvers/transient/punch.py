@@ -24,10 +24,10 @@ from ..solids.half_plane import HalfPlane
 from .history import History
 from .line_load import both_sides, interpolation
 from .march import FrictionInterpolation, Radau, Residual, march
-from .transform import Basis, Transformed, Weighted, divided, double_exponential, response_at
+from .transform import Basis, Transformed, Weighted, divided, double_exponential
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
-_NEAR, _EVEN, _POINTS = 24, 0.125, 14
+_NEAR, _EVEN, _POINTS = 24, 0.25, 14
 #: Steps of the double exponential rule along the contact, or its part on one side.
 _STEPS = 161
 #: Points of the pressure in its effect beside the contact.
@@ -119,8 +119,7 @@ class AlongSurface:
     def _tables(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each."""
         ahead, behind = (
-            np.array([response_at(kernel, self._x, s, True)[2:] for s in self._s])
-            for kernel in self._kernels
+            np.array([kernel(self._x, s, True)[2:] for s in self._s]) for kernel in self._kernels
         )
         return ahead, behind
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..contact.edges import EdgeExponents
 from ..contact.equation import gauss, jacobi
 from ..solids.half_plane import HalfPlane
-from .line_load import Side, both_sides, interpolation
+from .line_load import both_sides, interpolation
 
 #: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
 #: shifted contacts.
@@ -254,14 +254,9 @@ class Transformed:
         between = interpolation(_SAMPLES, (self._x[short] - middle) / half)
         x, values = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
-            sampled = np.array([response_at(kernel, x, s) for s in self.s])
+            sampled = np.array([kernel(x, s, False) for s in self.s])
             whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
             whole[..., ~short] = sampled[..., :-_SAMPLES]
             whole[..., short] = sampled[..., -_SAMPLES:] @ between.T
             values.append(whole)
         return values[0], values[1]
-
-
-def response_at(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
-    """HalfPlane at any s: for Im s < 0 the conjugate, as the response in time is real; (4, n)."""
-    return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

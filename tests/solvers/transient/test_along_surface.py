@@ -8,7 +8,7 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.line_load import both_sides
 from galinx.solvers.transient.punch import ON_SURFACE, AlongSurface
-from galinx.solvers.transient.transform import Transformed, response_at
+from galinx.solvers.transient.transform import Transformed
 
 SOLID = Isotropic(1.0, 0.25, 1.0)
 TERMS, SOME = 14, ON_SURFACE[::4]
@@ -33,7 +33,7 @@ def test_beside_the_contact_it_is_that_of_the_kernel():
     σ = (w * (basis.pressure.polynomials(loads) @ a)[..., 0])[:, None]
     ahead, behind = both_sides(SOLID.response(0.5), SOLID.limit(), 1)
     kernels = np.array([
-        [response_at(behind, loads - X[0], at, True)[2:], response_at(ahead, X[1] - loads, at, True)[2:]]
+        [behind(loads - X[0], at, True)[2:], ahead(X[1] - loads, at, True)[2:]]
         for at in s
     ])  # fmt: skip
     by_σ_XY = g * np.array([-1.0, 1.0])[:, None] * kernels[:, :, 1]  # behind it that of the mirror image

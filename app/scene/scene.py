@@ -5,7 +5,7 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, pairwise, product
@@ -147,27 +147,25 @@ class Friction:
         """Number of laws."""
         return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
 
+    @property
+    def _every(self) -> Iterable[tuple[Any, ...]]:
+        """Parameters of every law; the last changes fastest."""
+        return self._listed if self.vary else product(*self.parameters.values())
+
     def laws(self) -> Iterator[FrictionLaw]:
-        """Every law by itself; the last parameter changes fastest.
+        """Every law by itself, in the order of :meth:`columns`.
 
         Raises:
             ValueError: a law refuses its parameters.
         """
-        for values in self._listed if self.vary else product(*self.parameters.values()):
+        for values in self._every:
             yield build_model(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
         """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
-        single = [key for key, parameter in parameters(self.law).items() if parameter.single]
-        if self.vary:
-            columns = dict(zip(self.parameters, zip(*self._listed)))
-            return {key: np.array(columns[key]) for key in self.parameters if key in single}
-        inner, columns_ = self.count, {}
-        for key, values in self.parameters.items():
-            inner //= len(values)
-            if key in single:
-                columns_[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
-        return columns_
+        of_law = parameters(self.law)
+        columns = zip(self.parameters, zip(*self._every))
+        return {key: np.array(values) for key, values in columns if of_law[key].single}
 
     def together(self, columns: dict[str, NDArray], rows: slice) -> FrictionLaw:
         """A law whose parameters are arrays, which stands for many laws at once.

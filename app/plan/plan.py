@@ -237,7 +237,7 @@ class Plan:
             for first in range(run.start, run.stop, self.chunk)
         ]
 
-    def load(self, rows: slice) -> NDArray[np.float64]:
+    def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
         """Load of the states of these rows [N/m], (rows,)."""
         return self.tasks.order.load(rows)
 

@@ -93,7 +93,7 @@ class Order:
         for speed in self.speeds:
             yield tuple(by_speed[speed])
 
-    def load(self, rows: slice) -> NDArray[np.float64]:
+    def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
         """Load of the states of these rows [N/m], (rows,)."""
         return np.array(self.loads)[self.numbers[1, rows]]
 

@@ -312,7 +312,7 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.i
     method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
     held, g = data[states.INDENTATION.path], data[states.RATIO.path]
     for task, rows in _tasks(looked_at, selected):
-        load = np.concatenate([plan.load(slice(row, row + 1)) for row in rows.tolist()])
+        load = plan.load(rows)
         body = plan.body.loaded(load)
         try:
             with method.at(task, np.unique(g[rows])) as solver:

@@ -405,12 +405,10 @@ def _parts(
 
 def _placed(part: Part, variant: Variant) -> Part:
     """A part of a variant with the places of its states and of its speed among those of all."""
-    if variant.alone:
-        return part
     (first, speed), record = variant.first, part.record
     if record:
         record = record | {"speed": record["speed"] + speed}
-        if "failure" in record:
+        if "failure" in record and not variant.alone:
             record["failure"] = f"{record['failure']}, {variant.scene.variant}"
     return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
 

@@ -111,7 +111,7 @@ class Work:
         """
         g, load = self.g[rows], None
         if len(task.loads) > 1:
-            load = np.concatenate([self.plan.load(slice(row, row + 1)) for row in rows.tolist()])
+            load = self.plan.load(rows)
         body = task.body.loaded(load)
         local = task.body.local_exponents(task.response, g, load)
         data = self._of(LOCAL, Edges(local, g, task.places), body)

@@ -349,6 +349,10 @@ def _with_constants(table: Any) -> Any:
     return (LIBRARY.get(table["material"]) or next(iter(LIBRARY.values()))).constants | table
 
 
+#: Keys of friction along the contact.
+_BESIDE_ALONG = {"along", "sign", "pre_sliding"}
+
+
 def _fill_in_friction(tree: dict[str, Any]) -> list[str]:
     """Make parameters of a law of other keys that say the same; returns the faults of both together.
 
@@ -358,11 +362,13 @@ def _fill_in_friction(tree: dict[str, Any]) -> list[str]:
     friction = tree.get("friction")
     if not isinstance(friction, dict):
         return []
-    if "along" in friction and (others := sorted(friction.keys() - {"along", "sign", "pre_sliding"})):
-        return [f"friction: along gives f itself; take {', '.join(others)} away"]
+    faults: list[str] = []
+    if "along" in friction and (others := sorted(friction.keys() - _BESIDE_ALONG)):
+        faults.append(f"friction: along gives f itself; take {', '.join(others)} away")
+        tree["friction"] = {key: friction[key] for key in friction.keys() & _BESIDE_ALONG}
 
     def over_load(stiffness: tuple[float, ...]) -> list[float]:
-        punch = tree.get("punch", {})
+        punch = tree["punch"] if isinstance(tree.get("punch"), dict) else {}
         load = SECTIONS["punch"].keys(punch)["load"]
         loads = load.kind(punch["load"]) if "load" in punch else load.default
         if len(loads) > 1:
@@ -372,7 +378,6 @@ def _fill_in_friction(tree: dict[str, Any]) -> list[str]:
             )
         return [value / loads[0] for value in stiffness]
 
-    faults: list[str] = []
     others_of: tuple[tuple[str, str, dict[str, str], Callable[[Any], Any]], ...] = (
         ("sigma0", "sigma0_over_load", {}, over_load),
         ("along", "mu_c", {"model": "coulomb"}, lambda rows: tabulated(rows, 1.0).mean),
@@ -391,7 +396,7 @@ def _fill_in_friction(tree: dict[str, Any]) -> list[str]:
             continue
         # What cannot be read is a fault of its own key, and the parameter is not missing besides.
         tree["friction"] = friction | {parameter: 1.0}
-        with suppress(ValueError, TypeError):
+        with suppress(ValueError):
             tree["friction"][parameter] = made(kinds[key].kind(friction[key]))
     return faults
 

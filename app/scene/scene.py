@@ -5,7 +5,7 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, pairwise, product
@@ -147,27 +147,25 @@ class Friction:
         """Number of laws."""
         return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
 
+    @property
+    def _every(self) -> Iterable[tuple[Any, ...]]:
+        """Parameters of every law; the last changes fastest."""
+        return self._listed if self.vary else product(*self.parameters.values())
+
     def laws(self) -> Iterator[FrictionLaw]:
-        """Every law by itself; the last parameter changes fastest.
+        """Every law by itself, in the order of :meth:`columns`.
 
         Raises:
             ValueError: a law refuses its parameters.
         """
-        for values in self._listed if self.vary else product(*self.parameters.values()):
+        for values in self._every:
             yield build_model(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
         """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
-        single = [key for key, parameter in parameters(self.law).items() if parameter.single]
-        if self.vary:
-            columns = dict(zip(self.parameters, zip(*self._listed)))
-            return {key: np.array(columns[key]) for key in self.parameters if key in single}
-        inner, columns_ = self.count, {}
-        for key, values in self.parameters.items():
-            inner //= len(values)
-            if key in single:
-                columns_[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
-        return columns_
+        of_law = parameters(self.law)
+        columns = zip(self.parameters, zip(*self._every))
+        return {key: np.array(values) for key, values in columns if of_law[key].single}
 
     def together(self, columns: dict[str, NDArray], rows: slice) -> FrictionLaw:
         """A law whose parameters are arrays, which stands for many laws at once.
@@ -417,67 +415,57 @@ def usual_quantities(scene: Scene) -> tuple[str, ...]:
 
 def contradictions(scene: Scene) -> list[str]:
     """Faults of keys that exclude or need one another, one sentence each."""
-    faults: list[str] = []
     quantities, solve = set(scene.output.quantities), scene.solve
-    faults += _of_motion(scene)
-    if (contact := sorted(quantities - FRICTIONS)) and not solve.methods:
-        faults.append(
-            f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
-            "closed_form, fem or both"
-        )
-    if (SLIDER in quantities) != (scene.slider is not None):
-        faults.append(
-            'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
-            "drive_speed and duration"
-        )
-    if (TIME in quantities) != (scene.time is not None):
-        faults.append('time: the quantity "time" and the section [time] go together, with end')
-    if ("interior" in quantities) != bool(scene.output.points or scene.output.map):
-        faults.append(
-            'output: the quantity "interior" and output.points or output.map go together, as in points = '
-            "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
-            "to, number)"
-        )
-    if "yield" in quantities and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes:
-        faults.append(
-            'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
-            '"205 MPa", or a material that has one: stresses at sharp edges have no largest value'
-        )
-    if "yield" in quantities and not scene.solid.knows_σ_ZZ:
-        faults.append(
-            'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
-            "without which σ_ZZ is not known in plane strain"
-        )
-    if scene.elastic_punch:
-        faults += _of_elastic_punch(scene, scene.elastic_punch.solid)
-    if AT_INTERFACES in quantities and not scene.layers:
-        faults.append(
-            'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are'
-        )
-    varies = scene.friction.along is not None or scene.friction.state == ADVECTED
-    if varies and (found := _not_varying(scene)):
-        faults.append(
+    contact, fixed = sorted(quantities - FRICTIONS), solve.degree is not None
+    of_yield = YIELD in quantities
+    faults = {
+        f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
+        "closed_form, fem or both": contact and not solve.methods,
+        'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
+        "drive_speed and duration": (SLIDER in quantities) != (scene.slider is not None),
+        'time: the quantity "time" and the section [time] go together, with end': (
+            (TIME in quantities) != (scene.time is not None)
+        ),
+        'output: the quantity "interior" and output.points or output.map go together, as in points = '
+        "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
+        "to, number)": ("interior" in quantities) != bool(scene.output.points or scene.output.map),
+        'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
+        '"205 MPa", or a material that has one: stresses at sharp edges have no largest value': (
+            of_yield and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes
+        ),
+        'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
+        "without which σ_ZZ is not known in plane strain": of_yield and not scene.solid.knows_σ_ZZ,
+        'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are': (
+            AT_INTERFACES in quantities and not scene.layers
+        ),
+        f"solve.cuts: found {solve.cuts} without solve.degree, which it needs": (
+            not fixed and solve.cuts != 1
+        ),
+        'solve.degree needs solve.mode = "contact"': fixed and solve.mode == "traction",
+        'solve.pressure needs solve.mode = "traction"': (
+            solve.pressure != "closed_form" and solve.mode != "traction"
+        ),
+    }
+    of_keys = (text for text, holds in faults.items() if holds)
+    return [*_of_motion(scene), *of_keys, *_of_elastic_punch(scene), *_along_the_contact(scene)]
+
+
+def _along_the_contact(scene: Scene) -> Iterator[str]:
+    """Faults of friction that varies along the contact, one sentence each."""
+    if scene.friction.along is None and scene.friction.state != ADVECTED:
+        return
+    if found := _not_varying(scene):
+        yield (
             f"friction varies along the contact, but found {found}; expected steady sliding of a flat "
             "punch that is not tilted on a solid without layers, with a direct solver"
         )
-    elif varies and FEM in solve.methods:
+    elif FEM in scene.solve.methods:
         try:
             crowded = crowded_kinks(scene.body.friction_kinks)
         except ValueError as error:
             crowded = str(error)
         if crowded:
-            faults.append(
-                f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
-            )
-    fixed = solve.degree is not None
-    if not fixed and solve.cuts != 1:
-        faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")
-    if fixed and solve.mode == "traction":
-        faults.append('solve.degree needs solve.mode = "contact"')
-    own = solve.pressure != "closed_form"
-    if own and solve.mode != "traction":
-        faults.append('solve.pressure needs solve.mode = "traction"')
-    return faults
+            yield f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
 
 
 def _not_varying(scene: Scene) -> str:
@@ -500,8 +488,11 @@ def _not_varying(scene: Scene) -> str:
     return " and ".join(reason for reason, holds in reasons.items() if holds)
 
 
-def _of_elastic_punch(scene: Scene, solid: Solid) -> Iterator[str]:
+def _of_elastic_punch(scene: Scene) -> Iterator[str]:
     """Faults of section [punch.solid], one sentence each."""
+    if scene.elastic_punch is None:
+        return
+    solid = scene.elastic_punch.solid
     if solid.plane != scene.half_plane.solid.plane:
         yield f'punch.solid.plane: found "{solid.plane}", expected that of [solid], "{scene.solid.plane}"'
     if scene.solve.mode == "traction":

@@ -14,7 +14,6 @@ from support import THOROUGH, computed
 
 from galinx import compute, template
 from galinx.app.results.report import markup
-from galinx.app.scene.read import parse
 from galinx.postprocess.tables import BESIDE, state_columns
 
 CHROMIUM = shutil.which("chromium")
@@ -155,31 +154,3 @@ def test_everything_on_a_page_does_what_it_says(name, dimensionless, tmp_path):
         states = len(result.data["states/f"])
         assert told["states"] == min(states, told["last"] + 1) and told["held"] == min(2, states)
         assert told["zoomed"] and told["whole again"]
-
-
-def cells(result):
-    return {
-        (column.head, column.unit): np.asarray(column.values)
-        for column in state_columns(result.data, result.units())
-    }
-
-
-def test_the_largest_tension_of_a_round_punch_is_that_at_the_end_itself():
-    """A cylinder of steel, f = 0.15, slowly: 2 f p₀ by friction, and more by Poisson's ratio."""
-    text = (
-        "[solid]\nE = 2.1e11\nnu = 0.3\nrho = 7850\nplane = 'strain'\n"
-        "[punch]\nprofile = 'parabolic'\nradius = 0.005\nload = 1e5\n"
-        "[friction]\nmodel = 'coulomb'\nmu_c = 0.15\n[motion]\nspeed = 1.0\nstrokes = ['forward']\n"
-        "X_over_L = [1.0]\n[solve]\nmethods = ['closed_form']\n[output]\nquantities = ['surface']\n"
-    )
-    scene = parse(text)
-    result = compute(scene)
-    (tension,), (p0,) = (
-        cells(result)[head, "MPa"] for head in ("largest tension σ_XX", "peak pressure")
-    )  # fmt: skip
-    # The surface's own stress next to the end, where it is largest.
-    X, σ = (result.data[f"surface/{path}"] for path in ("X_over_a", "closed_form/sigma_XX"))
-    beside = (
-        p0 * σ[0, np.abs(X + 1.000001).argmin()] / result.data["states/closed_form/largest_pressure"][0]
-    )
-    assert tension == pytest.approx(beside, rel=5e-3) and tension > 2.0 * 0.15 * p0

@@ -274,8 +274,10 @@ def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
     assert result.comparisons["largest contact pressure, relative"] < estimate < 1.0
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, *(1e-8,) * THOROUGH])
-@pytest.mark.parametrize("exponent", [1.2, 1.35, 1.6])
+@pytest.mark.parametrize(
+    "exponent, tolerance",
+    itertools.product((1.2, 1.35, 1.6), (1e-3, 1e-5, 1e-8)) if THOROUGH else [(1.2, 1e-5), (1.6, 1e-3)],
+)
 def test_the_error_of_the_pressure_at_a_cusp_is_in_the_estimate(exponent, tolerance):
     """It is a limit, and there is less in it than in the pressure beside it."""
     changes = {

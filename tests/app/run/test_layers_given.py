@@ -29,7 +29,7 @@ def scene(layers=COAT, mu=0.4, tolerance=1e-6, methods=("sie",), quantities=("si
     return parse(text.replace("[output]", given) + more)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.9])
+@pytest.mark.parametrize("share", [0.0, 0.9] if THOROUGH else [0.9])
 def test_layers_of_one_solid_are_the_half_plane(share):
     from layers_cases import SUBSTRATE
 

@@ -25,6 +25,7 @@ from galinx.postprocess.quantities.quantity import (
 )
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.contact import FREE_ENDS, INTENSITIES, YIELD
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
     BESIDES,
@@ -61,7 +62,6 @@ from galinx.solvers.contact.solution import (
     Contact,
     Places,
 )
-from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.contact.yielding_of_layers import places as yield_places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent

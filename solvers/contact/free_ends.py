@@ -38,7 +38,7 @@ from ..profiles import check_reach
 from . import ends
 from .edges import under_punch
 from .estimate import SAFETY
-from .panelled import Panels
+from .panels import Panels
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure, largest
 from .recovery import ContactFacets, jacobi_in_chebyshev, jacobi_norms

@@ -33,7 +33,7 @@ from scipy.special import gammaln, roots_legendre
 
 from ..approximation import lagrange
 from .edges import under_punch
-from .panelled import Panels
+from .panels import Panels
 from .pressure import Expansion, Functions
 
 #: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or

@@ -31,8 +31,8 @@ from scipy.special import log1p
 class Potential(Protocol):
     """Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt below the surface, Im z < 0, of a pressure under the punch.
 
-    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform. Beside the contact Φ goes on above
-    the surface.
+    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform. Beside the contact Φ
+    goes on above the surface.
     """
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
@@ -378,7 +378,7 @@ def mean_and_difference(Φ: Potential, z: NDArray, square: NDArray) -> NDArray[n
     """
     distance = np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
     close = np.abs(square) <= (_APART / 2.0 * distance) ** 2
-    result = np.empty(0)
+    result = np.empty(0, dtype=complex)
     for evaluate, there in ((_around, close), (_apart, ~close)):
         columns = there.any(axis=tuple(range(z.ndim - 1)))
         if not columns.any():

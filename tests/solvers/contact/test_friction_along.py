@@ -9,8 +9,8 @@ from random_solids import random_solid
 
 from galinx.solvers.contact.along import FlatAlong
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.contacts import contacts_of
 from galinx.solvers.contact.solution import make_contact
-from galinx.solvers.contact.uniform import contacts_of
 from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.maxwell_slip import MaxwellSlip

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact.equation import Equation, converged_pressure
-from galinx.solvers.contact.panelled import Panels
+from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.recovery import Stretch, from_moments
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.layered import Layer, Layered

@@ -20,7 +20,7 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Pressure
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.late_time import approach

@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, jumps
-from ..profiles.flat import Flat
-from ..profiles.power import Parabolic
+from ..profiles.punches import Flat, Parabolic
 from ..solids.half_plane import HalfPlane
 from .closed_form import FlatPunch, FreeEnds, Weighted, in_plane
 from .ends import Punch, Rule, free_ends

@@ -38,7 +38,7 @@ from ..layers.kernel import REACH, Kernel, Level, Scaled
 from ..layers.layered import Layered, LayersAtSpeed
 from ..layers.stiffness import Medium
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
-from ..profiles.flat import Flat
+from ..profiles.punches import Flat
 from .closed_form import FreeEnds
 from .contacts import Contacts, Group, contacts, off_tips, panels_of
 from .edges import EdgeExponents

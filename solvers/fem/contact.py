@@ -38,8 +38,7 @@ from ..contact.recovery import (
 )
 from ..contact.solution import Contact, Surface, Task, Turns
 from ..errors import SolveError
-from ..profiles.flat import Flat
-from ..profiles.power import Parabolic
+from ..profiles.punches import Flat, Parabolic
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes

@@ -58,7 +58,7 @@ from ..contact.solution import Contact, Places, Surface, Task, Turns
 from ..contact.stresses import NEAR_TIP, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
-from ..profiles.flat import Flat
+from ..profiles.punches import Flat
 from .contact import Ends, FreeEnds, PunchLevel, SolvedEnds
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, Ladder, MeasuredError, WorkDone, climbed, solved_to_tolerance

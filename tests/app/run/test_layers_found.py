@@ -20,7 +20,7 @@ from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation
 from galinx.solvers.contact.on_layers import LayersUnderPunch, rule_of_ends
 from galinx.solvers.contact.solution import FreeContact
-from galinx.solvers.profiles.power import Parabolic
+from galinx.solvers.profiles.punches import Parabolic
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
 from layers_cases import SUBSTRATE

@@ -13,7 +13,7 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.postprocess.schema import ATTRIBUTES
 from galinx.solvers.solids import Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 #: Stiffness [Pa] of fibres askew to the surface.
 SKEW = [40e9, 12e9, 15e9, 16e9, 6e9, 13e9]

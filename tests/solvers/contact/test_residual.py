@@ -10,8 +10,7 @@ from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.on_layers import LayersUnderPunch
 from galinx.solvers.layers.kernel import Kernel, Scaled
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.power import Parabolic, Wedge
+from galinx.solvers.profiles.punches import Flat, Parabolic, Wedge
 from galinx.solvers.solids.isotropic import Isotropic
 
 POINTS = np.array([[0.3, -0.01], [-1.5, -0.4], [0.9, -3.0], [4.0, -2.0]])

@@ -10,7 +10,7 @@ from support import space_on
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem.forms import FORMS
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 DEGREE = 3
 FIBRES = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.7e9, 1.5e3, np.radians(30.0)).response(0.3)

@@ -19,7 +19,7 @@ from galinx.solvers.contact.equation import (
 from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.isotropic import Isotropic
 
 #: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the

@@ -314,19 +314,6 @@ def converged_contact(
     return replace(now, before=before.pressure, change=change)
 
 
-def converged_pressure(equation: Equation, tolerance: float) -> SolvedContact:
-    """Contact with the pressure of an equation, to a relative tolerance.
-
-    Raises:
-        SolveError: the tolerance was not reached; the message says by how much.
-    """
-
-    def at_resolution(resolution: Resolution) -> SolvedContact:
-        return SolvedContact(equation.g, equation.pressure(resolution))
-
-    return converged_contact(equation, at_resolution, tolerance)
-
-
 def resolutions(rough: bool) -> Iterator[Resolution]:
     """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
     if rough:

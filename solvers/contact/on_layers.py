@@ -98,54 +98,32 @@ def finest(resolution: Resolution) -> float:
     return min(resolution if isinstance(resolution, float) else _PANEL / resolution, _LONGEST)
 
 
-#: Positions on which kernels are held at once, over those of a rule.
-_TOGETHER = 200
-
-
 @dataclass(frozen=True)
 class Kinked(Pressure):
     """Pressure between free ends under a slope with kinks.
 
     Attributes:
+        α, β: exponents of edges.
         alone: σ₀, the pressure on the surface's solid alone.
+        on_panels: σ₀ over the weight of edges.
         more: the pressure that layers add.
-        finest: longest panel on which integrals of σ₀ with kernels are done.
-        rough: True where kernels have a logarithm at 0.
-        kinks: places of the kinks.
-        tips: kinks at which the pressure is infinite.
+        near, kinks, tips: see :class:`galinx.solvers.contact.pressure.Pressure`.
     """
 
+    α: float
+    β: float
     alone: FreeEnds
+    on_panels: Expansion
     more: Expansion
-    finest: float
-    rough: bool
+    near: float
     kinks: tuple[float, ...]
     tips: tuple[float, ...]
 
     #: Both ends are free.
     free = np.array([True, True])  # type: ignore[assignment]
 
-    @property
-    def near(self) -> float:  # type: ignore[override]
-        """|r| up to which p can be evaluated."""
-        return self.more.near
-
-    @property
-    def α(self) -> float:  # type: ignore[override]
-        """Exponent at the right end, that of an edge."""
-        return float(self.more.α)
-
-    @property
-    def β(self) -> float:  # type: ignore[override]
-        """Exponent at the left end, that of an edge."""
-        return float(self.more.β)
-
-    @cached_property
-    def _alone(self) -> Expansion:
-        return on_panels(self.alone, self.finest, self.kinks)
-
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return without_weight(self.alone, off_tips(r, self.tips)) + self.more.series(r)
+        return _without_weight(self.alone, off_tips(r, self.tips)) + self.more.series(r)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         values, under = self.more.rest(r, near), np.abs(r) < 1.0
@@ -155,34 +133,23 @@ class Kinked(Pressure):
         return values
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        return self.more.integral(kernel, r) + integral(self._alone, kernel, r, self.rough)
+        return self.more.integral(kernel, r) + self.on_panels.integral(kernel, r)
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        fine = on_panels(self.alone, min(finest, self.finest), self.kinks)
+        panels: Panels = self.on_panels.functions
+        fine = _on_panels(self.alone, replace(panels, finest=min(finest, panels.finest)))
         (t, σ), (t_alone, σ_alone) = self.more.points(finest), fine.points(np.inf)
         return np.append(t, t_alone), np.append(σ, σ_alone)
 
 
-def without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
+def _without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
     """σ₀ over the weight of edges, whose exponents are 1 less, which is 0 from both ends on."""
     return (1.0 - r) * (1.0 + r) * alone.series(r)
 
 
-def on_panels(alone: FreeEnds, finest: float, places: tuple[float, ...]) -> Expansion:
-    """σ₀ by its values on panels that get shorter towards its kinks."""
-    panels = Panels(alone.α - 1.0, alone.β - 1.0, finest, places)
-    return Expansion(panels.α, panels.β, without_weight(alone, panels.t), panels)
-
-
-def integral(
-    pressure: Expansion, kernel: Callable[[NDArray], NDArray], r: NDArray, rough: bool
-) -> NDArray[np.float64]:
-    """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
-    if rough:
-        return pressure.integral(kernel, r)
-    t, σ = pressure.points(np.inf)
-    batches = [r[first : first + _TOGETHER] for first in range(0, len(r), _TOGETHER)]
-    return np.concatenate([np.einsum("rtf,t->rf", kernel(part[:, None] - t), σ) for part in batches])
+def _on_panels(alone: FreeEnds, panels: Panels) -> Expansion:
+    """σ₀ over the weight of edges by its values on panels."""
+    return Expansion(panels.α, panels.β, _without_weight(alone, panels.t), panels)
 
 
 def kinked(
@@ -208,16 +175,16 @@ def kinked(
         panels, whole - mean, slope, equation.n, equation.Q, places, cusp=cusp(profile),
     )  # fmt: skip
     carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
-    longest, rough = finest(resolution), equation.kernel.rough
-    on_surface = on_panels(alone, longest, places)
+    fine = Panels(equation.α, equation.β, finest(resolution), places, rough=equation.kernel.rough)
+    on_panels = _on_panels(alone, fine)
 
     def of_layers(r: NDArray) -> NDArray[np.float64]:
-        return mean - integral(on_surface, equation.K, r, rough)[:, 0]
+        return mean - on_panels.integral(equation.K, r)[:, 0]
 
     more = replace(equation, slope=of_layers, kinks=places)
     tips = places if jumps(profile) else ()
     added, taken = vanishing(more, resolution, -2.0 - carried)
-    return Kinked(alone, added, longest, rough, places, tips), taken
+    return Kinked(added.α, added.β, alone, on_panels, added, added.near, places, tips), taken
 
 
 #: Accuracy of a half-width at rest, over which others are given.

@@ -35,6 +35,8 @@ _TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, 5, 0.
 #: Panels towards a place where a kernel is rough: their grading and number; distance over a panel's
 #: length within which a place is near it.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
+#: Positions on which kernels are held at once, over those of a rule.
+_TOGETHER = 200
 #: Distance from a free end within which a pressure is continued, and up to which it is fitted for that.
 _MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
@@ -107,6 +109,7 @@ class Panels(Functions):
         finest: longest panel in t.
         kinks, steps, grading, reach: as in :func:`ends_of_panels`.
         nodes: points of a panel.
+        rough: True if kernels in integrals may have a logarithm at 0.
     """
 
     α: float
@@ -117,6 +120,7 @@ class Panels(Functions):
     grading: float = _TO_KINK
     reach: float = _REACH
     nodes: int = NODES
+    rough: bool = True
 
     @cached_property
     def ends(self) -> NDArray[np.float64]:
@@ -279,10 +283,14 @@ class Panels(Functions):
         self, p: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray
     ) -> NDArray[np.float64]:
         """Integrals with a kernel, see :meth:`.pressure.Pressure.integral`."""
-        under = np.abs(r) < 1.0
-        beside = np.einsum("rtf,t->rf", kernel(r[~under, None] - self.t), self.weights * p)
-        integrals = np.empty((len(r), beside.shape[-1]))
-        integrals[~under] = beside
+        under, forces = (np.abs(r) < 1.0) & self.rough, self.weights * p
+        rows = np.flatnonzero(~under)
+        parts = [
+            np.einsum("rtf,t->rf", kernel(r[some, None] - self.t), forces)
+            for some in np.array_split(rows, len(rows) // _TOGETHER + 1)
+        ]
+        integrals = np.empty((len(r), parts[0].shape[-1]))
+        integrals[rows] = np.concatenate(parts)
         for i, x in zip(np.flatnonzero(under), stretched(r[under]).tolist()):
             integrals[i] = p @ self.row(kernel, x)
         return integrals

@@ -3,7 +3,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from layers_cases import COAT, SUBSTRATE, equation
+from layers_cases import COAT, SUBSTRATE, converged_pressure, equation
 from layers_reference import plane_strain, punch
 from support import THOROUGH
 
@@ -14,7 +14,6 @@ from galinx.solvers.contact.equation import (
     UNIFORM,
     Equation,
     Jacobi,
-    converged_pressure,
 )
 from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Expansion

@@ -3,7 +3,7 @@
 import mpmath as mp
 import numpy as np
 
-from galinx.solvers.contact.equation import Equation, SolvedContact, converged_contact
+from galinx.solvers.contact.equation import Equation, SolvedContact, converged
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -22,9 +22,7 @@ def equation(solid, V2, g, slope=flat, tolerance=1e-13):
 
 def converged_pressure(equation, tolerance):
     """Contact with the pressure of an equation, to a relative tolerance."""
-    return converged_contact(
-        equation, lambda at: SolvedContact(equation.g, equation.pressure(at)), tolerance
-    )
+    return converged(equation, lambda at: SolvedContact(equation.g, equation.pressure(at)), tolerance)
 
 
 def constants(solid):

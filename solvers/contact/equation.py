@@ -263,43 +263,18 @@ class SolvedContact:
 
 
 def converged(
-    at_resolution: Callable[[Resolution], Any],
-    moved: Callable[[Any, Any], float],
-    tolerance: float,
-    rough: bool,
-) -> tuple[Any, Any, float]:
-    """Result to a relative tolerance by finer and finer resolutions, that before, and their difference.
-
-    Args:
-        at_resolution: gives the result at a resolution.
-        moved: relative difference of a result from the one before.
-        tolerance: the tolerance.
-        rough: True where the kernel is rough.
-
-    Raises:
-        SolveError: the tolerance was not reached; the message says by how much.
-    """
-    before, error = None, np.inf
-    for resolution in resolutions(rough):
-        now = at_resolution(resolution)
-        if before is not None:
-            error = moved(now, before)
-            if error <= max(tolerance / 4.0, _ROUNDING):
-                return now, before, error
-        before = now
-    raise SolveError(
-        f"with the most unknowns the pressure still changes by {error:.2g}, expected {tolerance:g}: "
-        "the uppermost layer is very thin over the contact's width; take a larger tolerance"
-    )
-
-
-def converged_contact(
     equation: Equation, at_resolution: Callable[[Resolution], SolvedContact], tolerance: float
 ) -> SolvedContact:
-    """Contact to a relative tolerance; ``equation`` is one of its pressure.
+    """Contact to a relative tolerance, by finer and finer resolutions.
+
+    Args:
+        equation: of its pressure.
+        at_resolution: gives the contact at a resolution.
+        tolerance: the tolerance.
 
     Raises:
-        SolveError: the tolerance was not reached, or an exponent is too close to -1 to be resolved.
+        SolveError: the tolerance was not reached; the message says by how much. Or an exponent is too
+            close to -1 to be resolved.
     """
     least = 1.0 + min(equation.α, equation.β)
     if not least >= _STRONGEST:
@@ -307,11 +282,18 @@ def converged_contact(
             f"the pressure's exponent at an edge is -1 + {least:.2g}, expected at least -1 + "
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
-    now, before, change = converged(
-        at_resolution, lambda now, before: max(now.moved(before), now.change), tolerance,
-        equation.kernel.rough,
-    )  # fmt: skip
-    return replace(now, before=before.pressure, change=change)
+    before, error = None, np.inf
+    for resolution in resolutions(equation.kernel.rough):
+        now = at_resolution(resolution)
+        if before is not None:
+            error = max(now.moved(before), now.change)
+            if error <= max(tolerance / 4.0, _ROUNDING):
+                return replace(now, before=before.pressure, change=error)
+        before = now
+    raise SolveError(
+        f"with the most unknowns the pressure still changes by {error:.2g}, expected {tolerance:g}: "
+        "the uppermost layer is very thin over the contact's width; take a larger tolerance"
+    )
 
 
 def resolutions(rough: bool) -> Iterator[Resolution]:

@@ -43,7 +43,7 @@ from .closed_form import FreeEnds
 from .contacts import Contacts, Group, contacts, off_tips, panels_of
 from .edges import EdgeExponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
-from .equation import Equation, Resolution, SolvedContact, converged, converged_contact
+from .equation import Equation, Resolution, SolvedContact, converged
 from .panels import Panels
 from .pressure import ENDS, Expansion, Pressure, joined_largest
 
@@ -287,16 +287,21 @@ class LayersUnderPunch:
             SolveError: no contact carries the load, or it is not resolved.
         """
 
+        contact = self.unchecked(g, h)
+        m, h = contact.centre, contact.half_width
+        check_reach(self.punch.profile, self.punch.unit * (m - h), self.punch.unit * (m + h))
+        return contact
+
+    def unchecked(self, g: float, h: float = 1.0) -> SolvedContact:
+        """The contact with a friction, which may be wider than what is known of the punch."""
+
         def at_resolution(resolution: Resolution) -> SolvedContact:
             nonlocal h
             contact = self._at_resolution(g, h, resolution)
             h = contact.half_width
             return contact
 
-        contact = converged_contact(self._equation(g, 1.0), at_resolution, self.tolerance)
-        low, high = (self.punch.unit * (contact.centre + side * h) for side in (-1.0, 1.0))
-        check_reach(self.punch.profile, low, high)
-        return contact
+        return converged(self._equation(g, 1.0), at_resolution, self.tolerance)
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
@@ -309,39 +314,13 @@ class LayersUnderPunch:
             return SolvedContact(
                 g, self._equation(g, 1.0, self.punch.slope(0.0, 1.0)).pressure(resolution)
             )
-        m, h = self._lengths(g, h, resolution)
+        m, h = free_ends(self.punch, lambda h: rule_of_ends(self._equation(g, h), resolution), h)
         equation = self._equation(g, h, self.punch.slope(m, h))
         if self.punch.kinks(m, h):
             pressure, taken = kinked(equation, resolution, self.punch, m, h)
         else:
             pressure, taken = vanishing(equation, resolution)
         return SolvedContact(g, pressure, h, m, taken)
-
-    def _lengths(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
-        """Middle and half-width of a contact with two free ends, from a half-width on."""
-        return free_ends(self.punch, lambda h: rule_of_ends(self._equation(g, h), resolution), h)
-
-    def half_width(self) -> float:
-        """Half-width of the contact without friction; its pressure is not computed.
-
-        Raises:
-            SolveError: no contact carries the load, or it is not resolved.
-        """
-        h = 1.0
-
-        def at_resolution(resolution: Resolution) -> float:
-            nonlocal h
-            if self.tilted:
-                h = self._tilted(0.0, h, resolution).half_width
-            else:
-                _, h = self._lengths(0.0, h, resolution)
-            return h
-
-        return float(
-            converged(
-                at_resolution, lambda h, before: abs(h / before - 1.0), self.tolerance, self.kernel.rough
-            )[0]
-        )
 
     def _tilted(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
         """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
@@ -408,8 +387,8 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     # That on the surface's solid alone is near enough to measure lengths by.
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
-    speed = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
-    return unit * speed.half_width()
+    layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
+    return unit * layers.unchecked(0.0).half_width
 
 
 def _unresolved(each: Sequence[SolvedContact]) -> float:

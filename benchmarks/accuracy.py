@@ -30,7 +30,7 @@ from galinx.solvers.contact.recovery import contact_recovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 HOME = Path(__file__).parent.parent
 PAGE = HOME / "docs" / "verification.md"

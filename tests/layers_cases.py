@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 from random_solids import orthotropic
 
-from galinx.solvers.contact.equation import Equation
+from galinx.solvers.contact.equation import Equation, SolvedContact, converged
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
@@ -20,6 +20,11 @@ def equation(solid, V2, g, slope=flat, tolerance=1e-13):
     """Of a punch of half-width 1 at the speed √V2."""
     response = solid.response(V2**0.5 / solid.c_s)
     return Equation(response, Kernel(response.stack(1.0), tolerance), g, slope)
+
+
+def converged_pressure(equation, tolerance):
+    """Contact with the pressure of an equation, to a relative tolerance."""
+    return converged(equation, lambda at: SolvedContact(equation.g, equation.pressure(at)), tolerance)
 
 
 def constants(solid):

@@ -53,8 +53,8 @@ PURE = {
 TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
 SOLUTIONS = (
     FORMULA, "solvers.contact.exact", "solvers.contact.layered",
-    "solvers.contact.equation", "solvers.contact.uniform", "solvers.contact.free_on_layers",
-    "solvers.contact.panels", "solvers.friction",
+    "solvers.contact.equation", "solvers.contact.contacts", "solvers.contact.on_layers",
+    "solvers.friction",
 )  # fmt: skip
 #: What both share, and so has no solution either.
 SHARED = "solvers/contact/pressure.py"

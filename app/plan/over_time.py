@@ -19,7 +19,7 @@ from galinx.postprocess.over_time import OF_SIE, rules
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Leg, follow
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.history import Drive, Load, Way

@@ -35,6 +35,7 @@ from galinx.postprocess.quantities.quantity import (
 )
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.solvers.contact import FREE_ENDS, INTENSITIES, YIELD
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
     BESIDES,
@@ -74,7 +75,6 @@ from galinx.solvers.contact.solution import (
     Places,
     Task,
 )
-from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent

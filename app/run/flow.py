@@ -31,7 +31,7 @@ from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import SOLIDS, Solid
 from galinx.solvers.transient.late_time import approach
 

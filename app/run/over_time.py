@@ -16,8 +16,10 @@ from galinx.postprocess.over_time import COMPARED, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.equation import ContactsAtSpeed
+from galinx.solvers.contact.ends import Punch
+from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Pressure
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.history import Drive
@@ -107,15 +109,17 @@ def _steady_centres(starts: Starts, solid: Solid, c: float, ratios: NDArray) -> 
     response: Any = starts.response(solid, c)
     if len(response.depths):
         stack, accuracy = response.stack(response.a), 0.1 * starts.tolerance
-        nodes, _ = ContactsAtSpeed(response.surface, stack, np.zeros_like, accuracy).solved(different)
-        return np.asarray((nodes.at(different) @ nodes.read(_centre))[which])
+        punch = Punch(Flat(response.a), response.a, 1.0)
+        solved, _ = LayersUnderPunch(response.surface, stack, accuracy, punch).solved(different)
+        weights = weights_between(np.array([contact.g for contact in solved]), different)
+        return np.asarray((weights @ [_centre(contact.pressure) for contact in solved])[which])
     punches = [FlatPunch(response, ratio) for ratio in different]
     return np.array([punch.β - punch.α for punch in punches])[which]
 
 
-def _centre(pressure: Pressure) -> NDArray[np.float64]:
+def _centre(pressure: Pressure) -> float:
     t, forces = pressure.points(0.5)  # the rule's length over a
-    return np.array(forces @ t / forces.sum())
+    return float(forces @ t / forces.sum())
 
 
 #: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;

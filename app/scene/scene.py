@@ -30,7 +30,7 @@ from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import Parameter, build_model, parameters
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles import Profile, half_width
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 

@@ -22,15 +22,10 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import values
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.power import Parabolic, Power, Wedge
-from galinx.solvers.profiles.rounded_flat import RoundedFlat
-from galinx.solvers.profiles.table import Table
+from galinx.solvers.profiles.punches import Flat, Parabolic, Power, RoundedFlat, Table, Wedge
 from galinx.solvers.solids import SOLIDS
-from galinx.solvers.solids.anisotropic import Anisotropic
-from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Anisotropic, Cubic, Orthotropic
 from galinx.solvers.solids.solid import Solid
 
 #: Share of all scenes that may FAIL by an estimate alone.

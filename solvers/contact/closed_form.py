@@ -1,17 +1,25 @@
-"""Closed form of a rigid flat punch that slides over a half-plane at constant speed (Eqs 38-58).
+"""Exact pressures of rigid punches that slide over a uniform half-plane at constant speed.
 
 Lengths are divided by the half-width a, stresses by N/(2a); positions r = X/a. ``g`` is the signed
 ratio σ_XY/σ_YY under the punch: g = -f for a punch that drags the surface along with it.
 
-Parabolic and tilted flat punches have pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is an
-integer. Cauchy's integral of such a pressure is elementary, so that stresses on and below the surface are
-exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
+**Flat punches** have the closed form of Eqs 38-58.
+
+**Parabolic and tilted flat punches** have pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is
+an integer. Cauchy's integral of such a pressure is elementary, so that stresses on and below the surface
+are exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
 
     Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt = (X(z) q(z) - [X q])/sin(πα),
 
 [X q] the part of X q that does not vanish at infinity.
+
+**Any punch between two free ends** (:class:`FreeEnds`). With f = μ v,X under the punch, a + b = 1 the
+exponents of the pressure, N̂ = n + g n₁₂ and C(y) of :mod:`.panels`, where w = (1 - s)^-a (1 + s)^-b,
+
+    Φ(z) = -(sin πa/(π N̂)) X(z) ∫ w f/(t - z) dt = -(sin πa/(π N̂)) e^(-iπa) C(y).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,6 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
+from .panels import Panels, stretched
 from .pressure import Pressure
 
 #: Newton's steps for the logarithm of a distance; at a double root they halve the error.
@@ -187,3 +196,81 @@ class Weighted(Pressure):
         for coefficient in reversed(self._powers):
             total = (total + coefficient) * y
         return total
+
+
+#: Distance from a cusp of the pressure that counts as none, and that from which it is extrapolated.
+_AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
+
+
+@dataclass(frozen=True)
+class FreeEnds(Pressure):
+    """Pressure of a contact [-1, 1] with two free ends, over N/(2h).
+
+    Attributes:
+        panels: quadrature over the contact.
+        f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
+        slope: function that gives μ v,X over N/(2h) at any positions in the contact.
+        n, Q: n + g n₁₂ and g q of the half-plane.
+        kinks, tips: see :class:`galinx.solvers.contact.pressure.Pressure`.
+        cusp: exponent below 1 of the pressure's change by the distance from a kink; 0 for none.
+    """
+
+    panels: Panels
+    f: NDArray[np.float64]
+    slope: Any
+    n: float
+    Q: float
+    kinks: Sequence[float] = ()
+    tips: Sequence[float] = ()
+    cusp: float = 0.0
+
+    K_I = np.zeros(2)  # type: ignore[assignment]
+
+    @property
+    def α(self) -> float:  # type: ignore[override]
+        """Exponent at the right end, positive."""
+        return -self.panels.α
+
+    @property
+    def β(self) -> float:  # type: ignore[override]
+        """Exponent at the left end, positive."""
+        return -self.panels.β
+
+    @property
+    def _factor(self) -> float:
+        return float(np.sin(np.pi * self.α) / (np.pi * self.n))
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        p, inside = np.zeros(np.shape(r)), np.abs(r) < 1.0
+        at = r[inside]
+        f = self.slope(at)
+        # Without f(r) nothing cancels towards the ends.
+        C = self.panels.cauchy(self.f - f[:, None], stretched(at))
+        stress = -self._factor * np.sin(np.pi * self.α) * C
+        for kink in self.kinks if self.cusp else ():
+            at_cusp = np.abs(at - kink) < _AT_CUSP
+            if at_cusp.any():  # the part of the smallest panel that is missed there is not small
+                stress[at_cusp] = self._at_cusp(kink)
+        p[inside] = stress * (1.0 - at) ** -self.α * (1.0 + at) ** -self.β
+        return p
+
+    def _at_cusp(self, at: float) -> float:
+        """Contact stress at a cusp: σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
+        d = _BESIDE_CUSP * np.array([-1.0, 1.0])
+        near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
+        return near + (near - far) / (2.0**self.cusp - 1.0)
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        transform, inside, beside = np.empty(r.shape), np.abs(r) < 1.0, np.abs(r) > 1.0
+        under, end = r[inside], ~inside & ~beside
+        transform[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
+        transform[end] = self.slope(r[end]) / self.n
+        transform[beside] = self.at(r[beside] - 0.0j).real
+        return transform
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
+        flat = np.ravel(z).astype(complex)
+        y = np.log((1.0 + flat) / (1.0 - flat))
+        C = self.panels.cauchy(self.f, y.real - 1j * (-y.imag % (2.0 * np.pi)))
+        return (-self._factor * np.exp(-1j * np.pi * self.α) * C).reshape(np.shape(z))

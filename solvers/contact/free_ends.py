@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..profiles import check_reach
 from . import ends
-from .panelled import Panels
+from .panels import Panels
 from .recovery import products
 
 #: Number of shapes: two determine the factors, the third measures their error.

@@ -85,9 +85,6 @@ class LinearPressure(Pressure):
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return self._sum(piece.at() for piece in self._pieces(z))
 
-    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return np.zeros_like(edges.α), np.zeros_like(edges.β)
-
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return self.hilbert(r)
 

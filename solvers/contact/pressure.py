@@ -4,7 +4,7 @@ What all pressures have in common is their value, their intensities and the sear
 Methods differ in how they find the factor.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -49,8 +49,9 @@ class Pressure:
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r; 0 beside the contact, NaN at an end where it is infinite."""
         r = np.asarray(r, dtype=float)
+        at = np.clip(r, -1.0, 1.0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            stress = (1.0 - r) ** self.α * (1.0 + r) ** self.β * self.series(r)
+            stress = (1.0 - at) ** self.α * (1.0 + at) ** self.β * self.series(at)
         stress = np.where(np.abs(r) <= 1.0, stress, 0.0)
         at_end = np.any(np.abs(r) == 1.0)
         return np.where(np.isinf(stress), np.nan, stress) if at_end else stress
@@ -64,7 +65,12 @@ class Pressure:
         """
         exponents = np.concatenate([np.atleast_1d(self.β), np.atleast_1d(self.α)], axis=-1)
         K = -0.5 * self.series(ENDS) * 2.0 ** (self.α + self.β + 1.0)
-        return np.where(exponents < 0.0, K, 0.0)
+        return np.where((exponents < 0.0) & ~self.free, K, 0.0)
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """True where the left and the right end are free, (..., 2)."""
+        return np.concatenate([np.atleast_1d(self.β), np.atleast_1d(self.α)], axis=-1) > 0.0
 
     @property
     def bends(self) -> Sequence[float] | NDArray:
@@ -74,7 +80,7 @@ class Pressure:
     @property
     def finite(self) -> bool:
         """True if the pressure vanishes at both ends and has no tip, in all states."""
-        return bool(np.all(np.minimum(self.α, self.β) > 0.0)) and not len(self.tips)
+        return bool(np.all(self.free)) and not len(self.tips)
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
@@ -86,7 +92,7 @@ class Pressure:
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface; NaN at an end where it is infinite."""
         transform, close = self.rest(r, self.near), np.abs(r) <= self.near
-        transform[close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
+        transform[..., close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
         return transform
 
     def transforms(self, g: Any, r: NDArray) -> tuple[Any, NDArray, Any]:
@@ -96,10 +102,6 @@ class Pressure:
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")
-
-    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Exponents α and β at other frictions, (states,), by the local analysis of sharp edges there."""
-        return edges.α, edges.β
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
@@ -112,10 +114,6 @@ class Pressure:
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
         raise NotImplementedError
-
-    def continued(self, free: tuple[bool, bool]) -> "Pressure":
-        """Pressure continued to zero at free ends, left and right, where it resolves them less well."""
-        return self
 
 
 class Functions:
@@ -134,7 +132,7 @@ class Functions:
         return 1.0
 
     def continued(self, c: NDArray, free: tuple[bool, bool]) -> NDArray[np.float64]:
-        """Coefficients of :meth:`Pressure.continued`."""
+        """Coefficients of a pressure that falls to zero at free ends, where it is resolved less well."""
         return c
 
 
@@ -146,16 +144,26 @@ class Expansion(Pressure):
         α, β: exponents at the right and the left end, numbers or (states, 1).
         c: coefficients over N/(2a), (functions,) or (states, functions).
         functions: functions f_k, which know their integrals.
+        ends: True where the left and the right end are free; None where the exponents say so.
     """
 
     α: Any
     β: Any
     c: NDArray[np.float64]
     functions: Any
+    ends: tuple[bool, bool] | None = None
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        return super().free if self.ends is None else np.array(self.ends)
+
+    def sum(self, amplitudes: NDArray) -> "Expansion":
+        """Sum of the states with amplitudes, (states,)."""
+        return replace(self, c=amplitudes @ self.c)
 
     @property
     def near(self) -> float:  # type: ignore[override]
-        return float(self.functions.near(len(self.c)))
+        return float(self.functions.near(self.c.shape[-1]))
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         return np.asarray(self.functions.sum(self.c, r))
@@ -166,9 +174,7 @@ class Expansion(Pressure):
         exponents = (
             np.broadcast_to(np.ravel(exponent), len(c)).tolist() for exponent in (self.α, self.β)
         )
-        each = [Pressure.largest(replace(self, α=α, β=β, c=row)) for α, β, row in zip(*exponents, c)]
-        value, place = np.concatenate(each, axis=1)
-        return value, place
+        return joined_largest(replace(self, α=α, β=β, c=row) for α, β, row in zip(*exponents, c))
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return np.asarray(self.functions.rest(self.c, r, near))
@@ -180,8 +186,9 @@ class Expansion(Pressure):
         t, forces = self.functions.points(self.c, finest)
         return t, forces
 
-    def continued(self, free: tuple[bool, bool]) -> "Expansion":
-        return replace(self, c=self.functions.continued(self.c, free))
+    def ending(self, free: tuple[bool, bool]) -> "Expansion":
+        """Pressure that falls to zero at free ends, left and right."""
+        return replace(self, c=self.functions.continued(self.c, free), ends=free)
 
     @property
     def unresolved(self) -> NDArray[np.float64]:
@@ -196,6 +203,12 @@ class Expansion(Pressure):
             length: misplacement of each edge over a.
         """
         return np.asarray(self.functions.moved_edges(self, r, length))
+
+
+def joined_largest(each: Iterable[Pressure]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest pressures over N/(2a) and places of several states, one after the other, (states,) each."""
+    value, place = np.concatenate([Pressure.largest(pressure) for pressure in each], axis=1)
+    return value, place
 
 
 def largest_of(

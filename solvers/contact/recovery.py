@@ -39,7 +39,7 @@ from ..approximation import lagrange
 from .edges import under_punch
 from .estimate import SAFETY
 from .extremes import between, largest
-from .panelled import Panels
+from .panels import Panels
 from .pressure import Expansion, Functions, Pressure
 
 #: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or

@@ -365,7 +365,7 @@ class FreeEndContact(Contact):
         if self.layered:
             each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
             return np.array(each) if np.ndim(self.load) else each[0]
-        from .uniform import contacts
+        from .contacts import contacts
 
         g = np.zeros(np.size(self.load))
         rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
@@ -373,7 +373,7 @@ class FreeEndContact(Contact):
 
     def _at_rest(self, load: float) -> float:
         """Half-width [m] on layers at rest, under a load N per depth [N/m]."""
-        from .free_on_layers import half_width_at_rest
+        from .on_layers import half_width_at_rest
 
         profile: Any = self.profile
         solid: Any = self.solid
@@ -388,13 +388,13 @@ class OneFreeContact(FreeEndContact):
     def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
         free = super()._free_ends(response, g, compression)
         if not self.layered:
-            from .uniform import contacts  # SciPy's special functions, a slow import
+            from .contacts import contacts  # SciPy's special functions, a slow import
 
             with suppress(SolveError):  # the method that solves reports it
                 of = contacts(response, g, self.profile, compression).of
                 free = np.column_stack([of("β"), of("α")]) > 0.0
             return free
-        from .free_on_layers import free_edges
+        from .on_layers import free_edges
 
         for i, N in enumerate(np.broadcast_to(compression, g.shape).tolist()):
             with suppress(SolveError):

@@ -40,8 +40,7 @@ from ..contact.recovery import (
 from ..contact.solution import Contact, Task
 from ..contact.stresses import Surface, Turns, turns_at_ends
 from ..errors import SolveError
-from ..profiles.flat import Flat
-from ..profiles.power import Parabolic
+from ..profiles.punches import Flat, Parabolic
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes

@@ -49,7 +49,7 @@ from ..contact.solution import Contact, Task
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
-from ..profiles.flat import Flat
+from ..profiles.punches import Flat
 from .contact import Ends, FreeEnds, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, Solved, WorkDone, climb, joined, to_tolerance

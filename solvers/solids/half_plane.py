@@ -378,7 +378,7 @@ def mean_and_difference(Φ: Potential, z: NDArray, square: NDArray) -> NDArray[n
     """
     distance = np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
     close = np.abs(square) <= (_APART / 2.0 * distance) ** 2
-    result = np.empty(0)
+    result = np.empty(0, dtype=complex)
     for evaluate, there in ((_around, close), (_apart, ~close)):
         columns = there.any(axis=tuple(range(z.ndim - 1)))
         if not columns.any():

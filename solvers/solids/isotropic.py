@@ -17,7 +17,7 @@ from galinx.texts import with_prefix
 from ..approximation import bisected
 from ..parameters import check, parameter
 from .half_plane import Roots, UniformHalfPlane
-from .solid import SOLIDS, Solid, density, in_plane, modulus
+from .solid import Solid, density, in_plane, modulus
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
 INCOMPRESSIBLE = 0.04
@@ -232,6 +232,3 @@ def rayleigh_speed(κ: float) -> float:
     The zero in (0, 1) of R(c)/c², found to the last digits.
     """
     return bisected(lambda c: MovingFrame(κ, c).r > 0.0, 1.0 - 1e-15, 0.1)
-
-
-SOLIDS.register("isotropic", Isotropic)

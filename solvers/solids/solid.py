@@ -114,7 +114,7 @@ class Solid(Protocol):
         """The solid in a sentence's middle, with units."""
 
 
-#: Solids by the name that scenes use; every solid adds itself.
+#: Solids by the name that scenes use.
 SOLIDS: Registry[type[Solid]] = Registry("kind of solid", kind=Solid)
 
 

@@ -7,9 +7,9 @@ from support import THOROUGH, computed
 
 import galinx
 from galinx.app.scene.read import parse
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
-from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from galinx.solvers.profiles import cusp

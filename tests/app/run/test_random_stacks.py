@@ -14,8 +14,8 @@ import galinx
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation
-from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed, rule_of_ends
-from galinx.solvers.profiles.power import Parabolic
+from galinx.solvers.contact.on_layers import LayersUnderPunch, rule_of_ends
+from galinx.solvers.profiles.punches import Parabolic
 
 #: Share of the largest stress under the punch below which its own size is not asked for.
 VANISHING = 0.1
@@ -34,10 +34,10 @@ def cylinder(seed, graded, quantities, tolerance):
     f = np.random.default_rng(2000 + seed).uniform(-1.0, 1.0)
     base = scene_of(solid, c, f, quantities, tolerance)
     load, response = 1e-3, solid.response(0.0)
-    speed = FreeContactsAtSpeed(response, response.stack(1.0), np.zeros_like, 1e-4)
-    equation = Equation(response, speed.kernel, 0.0, np.zeros_like)
     punch = Punch(Parabolic(1.0), 1.0, load / solid.μ)
-    s, lifting, carrying = rule_of_ends(equation, 0.5 if speed.kernel.rough else 60)(())
+    kernel = LayersUnderPunch(response, response.stack(1.0), 1e-4, punch).kernel
+    equation = Equation(response, kernel, 0.0, np.zeros_like)
+    s, lifting, carrying = rule_of_ends(equation, 0.5 if kernel.rough else 60)(())
     m = -(lifting @ s) / lifting.sum()
     profile = Parabolic(float(carrying @ punch.slope(m, 1.0)(s)) / 2.0)
     return replace(base, punch=replace(base.punch, profile=profile, loads=(load,)))

@@ -10,7 +10,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 #: Stiffness [Pa] of fibres askew to the surface.
 SKEW = [40e9, 12e9, 15e9, 16e9, 6e9, 13e9]

@@ -13,7 +13,7 @@ from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.contact import stresses
 from galinx.solvers.parameters import values
 from galinx.solvers.solids import SOLIDS, Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
 #: Frictions of both signs, more than are sampled themselves.

@@ -12,7 +12,7 @@ from stroh import Stroh
 from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import FlatPunch, Weighted
-from galinx.solvers.contact.uniform import contacts
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids.half_plane import mean_and_difference

@@ -15,9 +15,7 @@ from galinx.solvers.contact.solution import (
     SOLVED,
     make_contact,
 )
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.power import Parabolic, Wedge
-from galinx.solvers.profiles.rounded_flat import RoundedFlat
+from galinx.solvers.profiles.punches import Flat, Parabolic, RoundedFlat, Wedge
 from galinx.solvers.solids.isotropic import Isotropic
 
 SOLID = Isotropic(E=1e9, ν=0.3, ρ=1000.0)

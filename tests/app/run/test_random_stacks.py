@@ -49,7 +49,9 @@ if THOROUGH:
              for kind in (flat, cylinder) for n in range(15) for graded in (False, True)]  # fmt: skip
 
 
-@pytest.mark.parametrize("kind, seed, graded, tolerance", CASES, ids=str)
+@pytest.mark.parametrize(
+    "kind, seed, graded, tolerance", CASES, ids=lambda value: getattr(value, "__name__", str(value))
+)
 def test_all_is_within_the_tolerance_and_the_estimate(kind, seed, graded, tolerance):
     """GALINX_THOROUGH=1 prints the table of docs/verification.md, by pytest -s -k flat."""
     start = process_time()

@@ -16,19 +16,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes import MESHES, Requirements, store
+from galinx.meshes import MESHES, Requirements
 from galinx.postprocess.compare import FINITE as FINITE_RULE
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
     ALONG,
+    CLOSED_FORM,
     FEM,
     INSIDE,
     INTERFACE,
     LAYER,
     LOCAL,
     POINT,
+    SIE,
     SWEPT,
 )
 from galinx.postprocess.quantities.runs import SLIDER
@@ -73,7 +75,7 @@ from galinx.solvers.contact.solution import (
     Task,
 )
 from galinx.solvers.contact.uniform import contacts
-from galinx.solvers.contact.yielding_of_layers import places as yield_places
+from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent
 from galinx.solvers.rays import NEAR
@@ -370,7 +372,7 @@ def _faults_of_meshes(scene: Scene, body: Contact, places: Places) -> Iterator[s
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
             f"{solve.mesh} mesh at the tolerance {solve.tolerance:g}"
         )
-    if len(points) and mixed:
+    if len(points) and mixed and not {CLOSED_FORM, SIE} & {*solve.methods}:
         yield (
             f"output.{'points' if len(places.points) else 'quantities'}: found {words()}, expected "
             'ν <= 0.49 for stresses inside from finite elements; use methods = ["closed_form"]'
@@ -727,7 +729,7 @@ def make_plan(
         warnings += warnings_of(fem)
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
-    skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
+    skipped = (*_skipped(scene, body, methods, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
@@ -800,7 +802,6 @@ def _skipped(
     scene: Scene,
     body: Contact,
     methods: tuple[str, ...],
-    fem: FemPlan | None,
     quantities: Iterable[Quantity],
 ) -> list[str]:
     """Messages about work that is not done, with the reason."""
@@ -813,8 +814,6 @@ def _skipped(
         for name, kind in METHODS.items()
         if name not in methods and (scene.layers or not kind.of_layers)
     ]
-    if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
-        skipped.append("gmsh: an earlier run made the same mesh")
     words = {quantity.asked_by for quantity in quantities}
     for word, what in _PLACES.items():
         if word not in words:

@@ -7,7 +7,7 @@ the friction of every state, which :func:`enumerate_states` computes along the s
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, nan
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -286,7 +286,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         **{key: np.full(f.size, value) for key, value in scene.swept.items()},
         **{key: column[law] for key, column in friction.columns().items()},
         "speed": np.where(np.isnan(own), np.multiply(order.given, scene.solid.c_s)[speed], own),
-        **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},
+        **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": _crossings(scene, lengths, half_widths[load], c),
         "f": f,
@@ -294,9 +294,13 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     }
 
 
-def _flutter(solid: Solid) -> list[float]:
-    """Flutter thresholds of both signs of σ_XY/σ_YY; NaN for none, or of a solid without ``flutter``."""
-    return [g if isfinite(g) else nan for g in getattr(solid, "flutter", (nan, nan))]
+def _flutter(solid: Solid, c: NDArray) -> NDArray[np.float64]:
+    """Flutter thresholds of both signs of σ_XY/σ_YY, (2, states); NaN for none, or for a solid without
+    ``flutter``."""
+    flutter = getattr(solid, "flutter", lambda c: (nan, nan))
+    speeds, of = np.unique(c, return_inverse=True)
+    each = np.array([flutter(speed) for speed in speeds.tolist()])
+    return np.where(np.isfinite(each), each, nan)[of].T
 
 
 def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:

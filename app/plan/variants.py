@@ -134,7 +134,7 @@ def _of_variants(variants: Sequence[Variant]) -> dict[str, NDArray]:
     """Columns of what an archive of a single problem has once, where variants differ in it."""
     scenes, counts = zip(*((variant.scene, len(variant.states)) for variant in variants))
     values = {WAVE_SPEED: [scene.solid.c_s for scene in scenes]}
-    if scenes[0].body.shared_ends:
+    if not scenes[0].body.found:
         values = {HALF_WIDTH: [scene.body.half_width for scene in scenes]} | values
     return {
         row.path.partition("/")[2]: np.repeat(each, counts)

@@ -80,7 +80,7 @@ def _solid(solid: Solid) -> dict[str, Any]:
 
 
 #: Libraries that numbers depend on, by the module that holds the version.
-_LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "gmsh", "h5py")
+_LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "h5py")
 
 
 def libraries() -> dict[str, str]:

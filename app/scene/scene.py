@@ -575,6 +575,16 @@ def _unusual_contact(scene: Scene) -> Iterator[str]:
             f"m, usual is at least {_ATOMS:g} m: that is no more than a few atoms, where a solid is no "
             "continuum; is the load as meant?"
         )
+    # Slopes that are keys themselves have warnings of their own.
+    if scene.body.ends == FREE and not {"slope", "shape"} & parameters(scene.punch.profile).keys():
+        widest = scene.body.loaded(max(loads)).half_width
+        slope = float(np.abs(scene.punch.profile.slope(np.array([-widest, widest]))).max())
+        if slope > _STEEP:
+            yield (
+                f"punch: under the load {max(loads):g} N/m the contact at rest reaches to slopes of "
+                f"{slope:.2g}, half-width {widest:.3g} m; linear theory takes slopes below {_STEEP:g}; "
+                "are load, profile and modulus as meant?"
+            )
     points = getattr(scene.punch.profile, "shape", ())
     steepest = max((abs((z1 - z0) / (x1 - x0)) for (x0, z0), (x1, z1) in pairwise(points)), default=0.0)
     if steepest > _STEEP:

@@ -57,7 +57,7 @@ _PROCEDURE = (
 _BLOCK = (
     "Fig 4. The block that stands for the half-plane (scene box), W = 200 a wide and H = 100 a high, "
     "so that the punch is 2a/W = 0.01 and 2a/H = 0.02 of it, as the study has it, and the finer zone "
-    "under the punch (orange), whose cells are graded towards its edges. The study has 145 106 "
+    "under the punch (black), whose cells are graded towards its edges. The study has 145 106 "
     "quadrilaterals with mid-side nodes; these are {cells} of a high degree."
 )
 _SINE = (

@@ -85,14 +85,3 @@ def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
     assert any(
         "conjugate gradients" in line and "one of a higher degree" in line for line in lines(scene, plan)
     )
-
-
-def test_memory_that_is_not_there_is_warned_of(monkeypatch):
-    monkeypatch.setattr(planning, "free_memory", lambda: 3e9)
-    for solver in ("direct", "auto", "boomeramg"):
-        scene = template("tables4_5", LARGE | {"solve.solver": solver})
-        assert any(
-            re.search(r"need about \S+ GB, of which this machine has 3 GB free", warning)
-            for warning in make_plan(scene).warnings
-        )
-    assert not make_plan(template("tables4_5")).warnings

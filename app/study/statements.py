@@ -202,7 +202,7 @@ def _near(r: Results) -> _Decided:
     shares = [
         np.interp(place, r.places, r.loop(**law)[0]) / law["mu_c"] for law in r.over("mu_c", REFERENCE)
     ]
-    yield shares[0] >= 1.0 - NEAR and _falls(shares), f"f/μ_C = {_to(shares)} there with μ_C"
+    yield bool(shares[0] >= 1.0 - NEAR) and _falls(shares), f"f/μ_C = {_to(shares)} there with μ_C"
 
 
 @_says(("3", "f of FM1 and FM2: the difference grows with μ_C and falls with σ₀l/N (6b, c)"))

@@ -104,14 +104,14 @@ class Results:
         """Contact stress of a state over N/(2a) where pressures are compared."""
         return self.pressure[self.state(**state), self.under]
 
-    def loop(self, **law: float) -> NDArray[np.float64]:
+    def loop(self, **law: Any) -> NDArray[np.float64]:
         """f along FM1, BM1 and FM2 of a law, each in the order of travel, (3, steps)."""
         row = self.data[runs.LOOP_OF_STATE.path][self.state(**law)]
         return self.data[runs.LOOP_F.path][row].reshape(3, -1)
 
     def lean(self, name: str, X: float) -> tuple[list[float], ...]:
         """-σ_YY near -a and a, and σ_XX behind and ahead, while a parameter of the milder law grows."""
-        laws = self.over(name, MILDER)
+        laws: list[dict[str, Any]] = [*self.over(name, MILDER)]
         pressures = (
             [-float(self.pressure[self.state(X=X, **law), at]) for law in laws]
             for at in (self.left, self.right)
@@ -202,7 +202,7 @@ def _near(r: Results) -> _Decided:
     shares = [
         np.interp(place, r.places, r.loop(**law)[0]) / law["mu_c"] for law in r.over("mu_c", REFERENCE)
     ]
-    yield shares[0] >= 1.0 - NEAR and _falls(shares), f"f/μ_C = {_to(shares)} there with μ_C"
+    yield bool(shares[0] >= 1.0 - NEAR) and _falls(shares), f"f/μ_C = {_to(shares)} there with μ_C"
 
 
 @_says(("3", "f of FM1 and FM2: the difference grows with μ_C and falls with σ₀l/N (6b, c)"))
@@ -230,7 +230,7 @@ def _sooner(r: Results) -> _Decided:
     ("5b", "the same: FM2"),
 )  # fmt: skip
 def _exponent(r: Results) -> _Decided:
-    first, _, second = np.moveaxis([r.loop(**law) for law in r.over("delta", MILDER)], 1, 0)
+    first, _, second = np.moveaxis(np.array([r.loop(**law) for law in r.over("delta", MILDER)]), 1, 0)
     lower, share = np.diff(first, axis=0)[:, 1:].max(), first[:, -1] / MILDER["mu_c"]
     yield lower < 0.0 and _falls(share), f"lower by {-lower:.1g} at least; f/μ_C at L {_to(share)}"
     higher = np.any(np.diff(second, axis=0) > 0.0, axis=0)

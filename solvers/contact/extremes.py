@@ -13,9 +13,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
-#: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
+#: Places at which a function is evaluated about a top; samples of a curve that a polynomial follows;
 #: places at which the polynomial is compared first; most tops of a curve that are refined.
-_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
+_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(13) + 0.5) / 13.0), 9, 65, 3
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
 GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
@@ -25,13 +25,15 @@ _SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 def summit(u: NDArray, values: NDArray, low: NDArray, high: NDArray) -> tuple[NDArray, NDArray]:
     """Largest values of polynomials between ``low`` and ``high``, and their places, (m,) each.
 
+    A polynomial is one degree less than goes through all values: two of these may be all but the same.
+
     Args:
-        u, values: places, and values there, through which the polynomials go, (m, n).
+        u, values: places, and values there, (m, n).
         low, high: bounds, (m,).
     """
     middle, half = (low + high) / 2.0, (high - low) / 2.0
-    powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1])
-    c = np.linalg.solve(powers, values[..., None])[..., 0].T
+    powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1] - 1)
+    c = (np.linalg.pinv(powers) @ values[..., None])[..., 0].T
     grid = np.linspace(-1.0, 1.0, _COMPARED)
     t = grid[polyval(grid, c).argmax(axis=1)]
     first, second = polyder(c), polyder(c, 2)
@@ -100,7 +102,7 @@ def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float
             window = start[:, None] + np.arange(_THROUGH)
             nodes = u[window]
             low, high = (
-                np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-1, 1)
+                np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-2, 2)
             )
             height[usable], place[usable] = summit(
                 nodes, curves[usable][np.arange(len(k))[:, None], window], low, high

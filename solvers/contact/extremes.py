@@ -33,7 +33,8 @@ def summit(u: NDArray, values: NDArray, low: NDArray, high: NDArray) -> tuple[ND
     """
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1] - 1)
-    c = (np.linalg.pinv(powers) @ values[..., None])[..., 0].T
+    Q, R = np.linalg.qr(powers)
+    c = np.linalg.solve(R, np.swapaxes(Q, 1, 2) @ values[..., None])[..., 0].T
     grid = np.linspace(-1.0, 1.0, _COMPARED)
     t = grid[polyval(grid, c).argmax(axis=1)]
     first, second = polyder(c), polyder(c, 2)

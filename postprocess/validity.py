@@ -82,7 +82,7 @@ class Validity:
         if RATIO.path in data and all(row.path in data for row in of.FLUTTER.values()):
             g = data[RATIO.path]
             threshold = np.where(g > 0.0, *(data[of.FLUTTER[sign].path] for sign in of.SIGNS))
-            steep = np.abs(g) >= threshold
+            steep = (np.abs(g) >= threshold) & (g != 0.0)
             self._count("ratio", steep, np.abs(g))
             self._steep |= {*threshold[steep].tolist()}
         for name, ends in (("slip", of.SLIP_REVERSED), ("strain", of.STRAIN)):
@@ -135,11 +135,18 @@ class Validity:
         ):
             yield f"the steady state is reported, but {text}"
         if "ratio" in worst:
-            least = " or ".join(f"{threshold:.3g}" for threshold in sorted(self._steep))
-            yield (
-                f"|σ_XY/σ_YY| is up to {worst['ratio']}, and at least {least} in {states['ratio']}: from "
-                "there on such an interface may flutter at short waves"
-            )
+            up_to, steep = f"|σ_XY/σ_YY| is up to {worst['ratio']}", sorted(self._steep)
+            if steep[0] > 0.0:
+                least = " or ".join(f"{threshold:.3g}" for threshold in steep)
+                yield (
+                    f"{up_to}, and at least {least} in {states['ratio']}: from there on such an "
+                    "interface may flutter at short waves"
+                )
+            else:
+                yield (
+                    f"{up_to} in {states['ratio']}: short waves between these two bodies grow under any "
+                    "friction; such an interface may flutter"
+                )
         if "slip" in worst:
             yield (
                 f"slip has turned round up to {worst['slip']} a from an edge, beyond {WIDE:g} a in "

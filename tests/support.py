@@ -142,21 +142,6 @@ def full_disk(size):
         signal.signal(signal.SIGXFSZ, earlier)
 
 
-@contextmanager
-def at_once(seconds=5):
-    """The block ends by itself; one that waits for somebody is ended with a failure."""
-
-    def late(*_):
-        raise TimeoutError("it waits")
-
-    signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-
-
 def widest(text):
     """Length of the longest line."""
     return max(map(len, text.splitlines()))
@@ -171,8 +156,8 @@ def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
     from galinx.solvers.fem.space import Space, distribute
 
     comm, kind = comm or MPI.COMM_SELF, MESHES[mesh]
-    piece = kind.build(refinement, 1, comm.rank, comm.size)
-    return Space(*distribute(piece, comm), TAGS, kind.chart, degree, form, 0 if kind.walls else 8)
+    cells = None if comm.rank else kind.build(refinement)
+    return Space(*distribute(cells, comm), TAGS, kind.chart, degree, form, 0 if kind.walls else 8)
 
 
 def small_punch(c=0.6, **options):

@@ -9,7 +9,7 @@ from support import FEW_DEGREES, HOME, SCENE, clean_environment
 
 #: Files that a user may have for reasons of their own, named like rooms and libraries of the program.
 NAMESAKES = (
-    "app", "meshes", "solvers", "numpy", "mpi4py", "click", "h5py", "gmsh", "socket", "json", "resource",
+    "app", "meshes", "solvers", "numpy", "mpi4py", "click", "h5py", "socket", "json", "resource",
 )  # fmt: skip
 
 
@@ -52,16 +52,6 @@ def test_files_of_the_current_folder_are_no_libraries(tmp_path, path, arguments)
     assert (tmp_path / f"{SCENE.stem}.h5").exists() == ("run" in arguments)
 
 
-def test_python_alone_takes_no_file_of_the_current_folder_for_a_library(tmp_path):
-    for name in NAMESAKES:
-        (tmp_path / f"{name}.py").write_text("raise SystemExit('no library')\n", encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "galinx", "plan", str(SCENE)], cwd=tmp_path, env=clean_environment(),
-        capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
-    assert done.returncode == 0 and not done.stderr
-
-
 def test_the_script_is_found_through_links_and_in_spite_of_cdpath(tmp_path):
     (tmp_path / "galinx").symlink_to(HOME / "run.sh")
     (tmp_path / "tree").symlink_to(HOME)
@@ -97,6 +87,5 @@ def test_ranks_share_cores_only_where_there_are_too_few(mpirun_that_tells):
             capture_output=True, text=True, timeout=60,
         )  # fmt: skip
         assert done.returncode == 3
-        assert done.stderr.splitlines() == [
-            f"{ranks} {told}", "error: mpirun could not start the ranks; its own words are above"
-        ]  # fmt: skip
+        assert done.stdout == f"{ranks} {told}\n"
+        assert done.stderr.startswith("error: ranks could not be started, or were killed")

@@ -79,9 +79,7 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
         with journal, archive.Writer(target, journal.folder) as writer:
             if journal.states and not progress.quiet:
                 say(f"resume: {counted(journal.states, 'state')} of an interrupted run taken over")
-            with process.leaving(
-                lambda: _keep_finished(journal), "what is finished is kept, go on with --resume"
-            ):
+            with process.leaving(lambda: _keep_finished(journal)):
                 with clock("other"):
                     attributes = compute(scene, writer, progress, journal, clock)
                 process.too_late()

@@ -6,6 +6,7 @@ programs, csv.
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -250,7 +251,7 @@ def plot(
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
     from ..figures import choice
-    from ..figures.archive import in_units, write
+    from ..figures.archive import write
     from ..figures.files import Files
     from ..figures.measured import read as read_measured
     from ..results.result import load
@@ -271,9 +272,8 @@ def plot(
     )
     result = load(archive)
     if ranks.is_root():
-        selection = in_units(selection, result.units(dimensionless))
-        written = write(result.data, result.scene, selection, files)
-        _print_files(written)
+        selection = replace(selection, units=result.units(dimensionless))
+        _print_files(write(result.data, result.scene, selection, files))
     return errors.GOOD
 
 

@@ -17,9 +17,8 @@ from galinx.texts import counted
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene
-from .plan import check_states, interface_grid, lines, make_plan
+from .plan import Plan, interface_grid, lines, make_plan, too_many
 from .states import States, enumerate_states, order
-from .task import Plan
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,8 @@ def make_variants(
         BadInput: an output has no answer by the scene's methods, or not the same answers in all variants.
     """
     scenes = scene.each
-    check_states(sum(len(order(variant)) for variant in scenes))
+    for fault in too_many(sum(len(order(variant)) for variant in scenes)):
+        raise BadInput(fault)
     plans, along = [], positions_along(scene)
     for variant in scenes:
         try:

@@ -27,7 +27,7 @@ from galinx.solvers.friction.along import Along, advected, tabulated
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.parameters import build_model, parameters
+from galinx.solvers.parameters import Parameter, build_model, parameters
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles import Profile, half_width
 from galinx.solvers.profiles.flat import Flat
@@ -35,7 +35,6 @@ from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
 from ..errors import listed
-from .values import Spread
 
 
 @dataclass(frozen=True)
@@ -230,11 +229,14 @@ class Solve:
 
 @dataclass(frozen=True)
 class Output:
-    """[output]: names of groups of quantities, and points of stresses inside the solid, over a."""
+    """[output]: names of groups of quantities, and points of stresses inside the solid, over a.
+
+    The map has first and last position and number of positions, along X and along Y.
+    """
 
     quantities: tuple[str, ...]
     points: tuple[tuple[float, float], ...] = ()
-    map: tuple[Spread, Spread] | None = None
+    map: tuple[tuple[float, float, int], ...] | None = None
 
     @property
     def inside(self) -> NDArray[np.float64]:
@@ -242,7 +244,7 @@ class Output:
         single = np.reshape(np.array(self.points, dtype=float), (-1, 2))
         if self.map is None:
             return single
-        X, Y = np.meshgrid(*(np.linspace(axis.first, axis.last, axis.count) for axis in self.map))
+        X, Y = np.meshgrid(*(np.linspace(*axis) for axis in self.map))
         return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
@@ -535,33 +537,63 @@ def _of_motion(scene: Scene) -> Iterator[str]:
 
 def oddities(scene: Scene) -> list[str]:
     """Warnings about unusual values, one sentence a key: the unit may be another than meant."""
-    warnings = []
-    for path, numbers, unit, (low, high) in _usual(scene):
-        odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0 has no unit
-        of_unit, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
-        if len(odd) == 1:
-            warnings.append(f"{path} = {odd[0]}{of_unit} is unusual, {usual}; is its unit as meant?")
-        elif odd:
-            warnings.append(
-                f"{path} = {listed(odd)}{of_unit} are unusual, {usual}; is their unit as meant?"
-            )
-    return [*warnings, *_too_much(scene), *_too_small(scene), *_too_steep(scene)]
+    return [*_unusual_numbers(scene), *_unusual_contact(scene)]
 
 
-def _too_much(scene: Scene) -> Iterator[str]:
-    """Warning about a mean pressure that no solid bears: load and half-width do not fit one another."""
-    loads = scene.punch.loads
+def _unusual_numbers(scene: Scene) -> Iterator[str]:
+    """Warnings about numbers beyond their usual range."""
+    pre_sliding = Parameter("pre_sliding", "", "m", usual=_STROKE)
+    given: list[tuple[str, dict[str, Parameter], dict[str, Any]]] = [
+        ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
+        ("friction", parameters(scene.friction.law), scene.friction.values),
+    ]
+    models: dict[str, Any] = {"solid": scene.solid, "punch": scene.punch.profile}
+    if punch := scene.elastic_punch:
+        models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
+    given[1:1] = [(name, parameters(model), constants(model)) for name, model in models.items()]
+    for section, described, values in given:
+        for key, parameter in described.items():
+            if not parameter.usual:
+                continue
+            low, high = parameter.usual
+            numbers = np.atleast_1d(values[key]).tolist()
+            odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0: no unit
+            if odd:
+                are, their = ("is", "its unit") if len(odd) == 1 else ("are", "their unit")
+                yield (
+                    f"{section}.{key} = {listed(odd)}{f' {parameter.unit}' * bool(parameter.unit)} {are} "
+                    f"unusual, usual is {low:g} to {high:g}; is {their} as meant?"
+                )
+
+
+def _unusual_contact(scene: Scene) -> Iterator[str]:
+    """Warnings about loads and shapes for which no linear theory of a continuum is meant."""
+    loads, μ = scene.punch.loads, scene.solid.μ
     mean = scene.body.loaded(max(loads)).stress
-    if mean > _PRESSED * scene.solid.μ:
+    if mean > _PRESSED * μ:
         of_load = f" at N = {max(loads):g} N/m" * (len(loads) > 1)
         yield (
-            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / scene.solid.μ:.2g} "
+            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / μ:.2g} "
             f"times the shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
         )
-
-
-def _too_steep(scene: Scene) -> Iterator[str]:
-    """Warning about the slopes of a punch that is given by points: linear theory takes them for small."""
+    # Of a flat punch the key of its half-width warns.
+    a = scene.body.loaded(min(loads)).half_width if scene.body.ends == FREE else _ATOMS
+    if a < _ATOMS:
+        yield (
+            f"punch: under the load {min(loads):g} N/m the half-width of the contact at rest is {a:.2g} "
+            f"m, usual is at least {_ATOMS:g} m: that is no more than a few atoms, where a solid is no "
+            "continuum; is the load as meant?"
+        )
+    # Slopes that are keys themselves have warnings of their own.
+    if scene.body.ends == FREE and not {"slope", "shape"} & parameters(scene.punch.profile).keys():
+        widest = scene.body.loaded(max(loads)).half_width
+        slope = float(np.abs(scene.punch.profile.slope(np.array([-widest, widest]))).max())
+        if slope > _STEEP:
+            yield (
+                f"punch: under the load {max(loads):g} N/m the contact at rest reaches to slopes of "
+                f"{slope:.2g}, half-width {widest:.3g} m; linear theory takes slopes below {_STEEP:g}; "
+                "are load, profile and modulus as meant?"
+            )
     points = getattr(scene.punch.profile, "shape", ())
     steepest = max((abs((z1 - z0) / (x1 - x0)) for (x0, z0), (x1, z1) in pairwise(points)), default=0.0)
     if steepest > _STEEP:
@@ -569,35 +601,3 @@ def _too_steep(scene: Scene) -> Iterator[str]:
             f"punch.shape: slopes are up to {steepest:.3g}, usual is less than {_STEEP:g}; are the units "
             "of both columns as meant? Without one they are m"
         )
-
-
-def _too_small(scene: Scene) -> Iterator[str]:
-    """Warning about a contact with free ends that is a few atoms wide; for a flat punch its key warns."""
-    if scene.body.ends != FREE:
-        return
-    load = min(scene.punch.loads)
-    a = scene.body.loaded(load).half_width
-    if a < _ATOMS:
-        yield (
-            f"punch: under the load {load:g} N/m the half-width of the contact at rest is {a:.2g} m, "
-            f"usual is at least {_ATOMS:g} m: that is no more than a few atoms, where a solid is no "
-            "continuum; is the load as meant?"
-        )
-
-
-def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, float]]]:
-    """Numbers of a scene with their path, values, unit and usual range."""
-    yield "friction.pre_sliding", [scene.friction.pre_sliding], "m", _STROKE
-    punch = scene.elastic_punch
-    models = {"solid": scene.solid, "punch": scene.punch.profile}
-    if punch:
-        models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
-    given = [
-        *((name, parameters(model), constants(model)) for name, model in models.items()),
-        ("friction", parameters(scene.friction.law), scene.friction.values),
-    ]
-    for section, parameters_, values in given:
-        for key, parameter in parameters_.items():
-            if parameter.usual:
-                numbers = np.atleast_1d(values[key]).tolist()
-                yield f"{section}.{key}", numbers, parameter.unit, parameter.usual

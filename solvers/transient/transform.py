@@ -158,8 +158,6 @@ _EVEN = 0.125
 #: Points at which the response is sampled in the last panel before distance 2; the overlap of tests and
 #: pressures has shorter panels there.
 _SAMPLES = 24
-#: Points of the pressure in its effect beside the contact.
-_FEW = 96
 
 
 class Transformed:
@@ -228,48 +226,6 @@ class Transformed:
         both = shared(self._x, tests, basis.pressure)
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         return (ahead @ flat[0] + behind @ flat[1]).reshape(-1, tests.terms, self._terms)
-
-    def strains(self, basis: Basis, beyond: float) -> NDArray[np.complex128]:
-        """û,X of each polynomial of the pressure on the surface beyond both ends, (s, 2, terms).
-
-        Args:
-            basis: of the pressure.
-            beyond: distance over a from the ends.
-        """
-        X, w = self._few.rule(_FEW)
-        at, weights = basis.pressure.rule(_FEW)
-        trials = weights[:, None] * basis.pressure.polynomials(at)
-        pressure = w[:, None] * self._few.polynomials(X) @ (self._few.polynomials(at).T @ trials)
-        g = basis.g
-        ahead, behind = self._slopes(beyond)
-        return np.stack(
-            [(behind[:, 2] - g * behind[:, 3]) @ pressure, (ahead[:, 2] + g * ahead[:, 3]) @ pressure],
-            axis=1,
-        )  # fmt: skip
-
-    def _slopes(self, beyond: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Slopes at both points beside the contact by line loads under it, (s, 4, loads) each.
-
-        Ahead of the contact first, then behind it.
-        """
-        if beyond not in self._beside:
-            X, _ = self._few.rule(_FEW)
-            self._beside[beyond] = tuple(
-                np.array([response_at(kernel, 1.0 + beyond - sign * X, s, True) for s in self.s])
-                for kernel, sign in zip(self._kernels, (1.0, -1.0))
-            )
-        ahead, behind = self._beside[beyond]
-        return ahead, behind
-
-    @cached_property
-    def _few(self) -> Weighted:
-        """Polynomials that represent the pressure in its effect beside the contact."""
-        return Weighted(-0.5, -0.5, _FEW)
-
-    @cached_property
-    def _beside(self) -> dict[float, tuple[NDArray[np.complex128], ...]]:
-        """Slopes beside the contact by the distance from it; they do not depend on friction."""
-        return {}
 
     @cached_property
     def _grid(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -59,21 +59,6 @@ def test_indentation_is_alike_at_all_tolerances(mesh, tolerance, c):
     assert result.data["states/fem/v0"][0] == pytest.approx(exact, rel=0.1 * tolerance)
 
 
-def test_it_is_that_of_the_punch(tables_run):
-    u = tables_run.displacement(7)
-    a, domain = tables_run.scene.punch.profile.half_width, u.function_space.mesh
-    X, Y, _ = domain.geometry.x.T / a
-    assert Y.max() <= 1e-12 and X.min() == pytest.approx(-X.max(), rel=1e-9)
-    assert min(X.max(), -Y.min()) > 10.0
-    X_wider = tables_run.displacement(7, extent=50.0).function_space.mesh.geometry.x[:, 0] / a
-    assert X_wider.max() > 50.0
-    nodes = np.reshape(u.x.array, (-1, 2))
-    v0 = tables_run.data["states/fem/v0"][7]
-    under = np.isclose(nodes[:, 1], -v0, rtol=1e-9, atol=0.0)
-    assert under.sum() > 50 and nodes[:, 1].min() > -1.5 * v0
-    assert u.name == "displacement"
-
-
 def test_what_has_no_displacement_is_bad_input():
     from galinx.app.results.fields import displacement
 

@@ -106,19 +106,3 @@ def test_a_cylinder_is_told_in_twenty_lines_the_answer_among_the_first_ten(tmp_p
         "500 m/s",
     ):
         assert word in first
-
-
-def test_a_failure_begins_with_what_failed_where_and_what_to_do(result):
-    from galinx.postprocess.compare import checked, failed
-
-    text = "estimated error of K_I and moments, relative"
-    attributes = {
-        "verdict": "FAIL", "load": N, "comparisons": f'{{"{text}": 3e-05}}',
-        "verdict_reasons": f'["{text}: 3.0e-05, at most 1e-06"]',
-    }  # fmt: skip
-    data = {path: np.repeat(result.data[path], 2) for path in ("states/c", "states/f")}
-    data |= {"states/fem/estimate": np.array([1e-9, 3e-5])}
-    first, last = failed(data, attributes)
-    assert first.startswith(f"{text}: 3.0e-05, 30 times what is wanted, 1e-06, in state 1 (c = ")
-    assert "solve.tolerance=1e-07" in last and "solve.tolerance=1e-04 accepts" in last
-    assert checked(attributes) == "numbers checked: estimated error 3e-05, wanted 1e-06 (dimensionless)"

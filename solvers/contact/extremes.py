@@ -13,11 +13,14 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
-#: Places at which a function is evaluated about a top; samples of a curve that a polynomial follows;
+#: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
 #: places at which the polynomial is compared first; most tops of a curve that are refined.
-_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(13) + 0.5) / 13.0), 9, 65, 3
+_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
 GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
+#: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
+#: which it is left out.
+_COINCIDE = 0.1
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
 _SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 
@@ -25,16 +28,13 @@ _SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 def summit(u: NDArray, values: NDArray, low: NDArray, high: NDArray) -> tuple[NDArray, NDArray]:
     """Largest values of polynomials between ``low`` and ``high``, and their places, (m,) each.
 
-    A polynomial is one degree less than goes through all values: two of these may be all but the same.
-
     Args:
-        u, values: places, and values there, (m, n).
+        u, values: places, and values there, through which the polynomials go, (m, n).
         low, high: bounds, (m,).
     """
     middle, half = (low + high) / 2.0, (high - low) / 2.0
-    powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1] - 1)
-    Q, R = np.linalg.qr(powers)
-    c = np.linalg.solve(R, np.swapaxes(Q, 1, 2) @ values[..., None])[..., 0].T
+    powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1])
+    c = np.linalg.solve(powers, values[..., None])[..., 0].T
     grid = np.linspace(-1.0, 1.0, _COMPARED)
     t = grid[polyval(grid, c).argmax(axis=1)]
     first, second = polyder(c), polyder(c, 2)
@@ -103,7 +103,7 @@ def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float
             window = start[:, None] + np.arange(_THROUGH)
             nodes = u[window]
             low, high = (
-                np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-2, 2)
+                np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-1, 1)
             )
             height[usable], place[usable] = summit(
                 nodes, curves[usable][np.arange(len(k))[:, None], window], low, high
@@ -134,8 +134,10 @@ def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float6
         values: (..., n).
         X: rising positions, (n,).
     """
-    curves = sign * values.reshape(-1, len(X))
-    heights, places = tops(X, curves)
+    curves, gaps = sign * values.reshape(-1, len(X)), np.diff(X)
+    # Of two samples that all but coincide one is left out: no polynomial goes through both.
+    apart = np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
+    heights, places = tops(X[apart], curves[:, apart])
     heights = np.column_stack([curves.max(axis=1), heights])
     places = np.column_stack([X[curves.argmax(axis=1)], places])
     best = heights.argmax(axis=1)[:, None]

@@ -82,11 +82,6 @@ class Rule:
         return self.limit if self.tolerances is None else self.tolerances * tolerance
 
 
-def largest_of(row: Quantity) -> Callable[[dict[str, Any], Any], float]:
-    """Measure of a rule: the largest value of a quantity over all states."""
-    return lambda data, _: float(data[row.path].max())
-
-
 def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
     """False next to an infinite pressure of the closed form, by states and positions, (states, n).
 
@@ -312,7 +307,9 @@ def _not_finite(data: dict[str, Any], _: float) -> float | None:
 
 def largest(row: Quantity, text: str, tolerances: float | None = 1.0, **options: Any) -> Rule:
     """Rule on the largest value of a quantity over all states."""
-    return Rule(text, (row,), largest_of(row), tolerances=tolerances, **options)
+    return Rule(
+        text, (row,), lambda data, _: float(data[row.path].max()), tolerances=tolerances, **options
+    )  # fmt: skip
 
 
 def _estimate(row: Quantity, what: str, own_pressure: bool = True) -> Rule:

@@ -18,6 +18,9 @@ from numpy.typing import NDArray
 _NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
 GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
+#: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
+#: which it is left out.
+_COINCIDE = 0.1
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
 _SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 
@@ -131,8 +134,10 @@ def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float6
         values: (..., n).
         X: rising positions, (n,).
     """
-    curves = sign * values.reshape(-1, len(X))
-    heights, places = tops(X, curves)
+    curves, gaps = sign * values.reshape(-1, len(X)), np.diff(X)
+    # Of two samples that all but coincide one is left out: no polynomial goes through both.
+    apart = np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
+    heights, places = tops(X[apart], curves[:, apart])
     heights = np.column_stack([curves.max(axis=1), heights])
     places = np.column_stack([X[curves.argmax(axis=1)], places])
     best = heights.argmax(axis=1)[:, None]

@@ -69,7 +69,8 @@ def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> Pr
         return None
     graded, top = graded_from_the_surface(solid), solid.layers[0]
     stretch = Stretch(kind.length, graded, graded and top.bottom.μ > top.solid.μ)  # type: ignore[union-attr]
-    return PressureMoments(stretch, kind.moments(required) + _MORE_GRADED * graded)
+    count = kind.moments(required) + _MORE_GRADED * graded + stretch.of_ends
+    return PressureMoments(stretch, count)
 
 
 def no_nearer(required: Requirements, distance: float) -> Requirements:

@@ -308,8 +308,13 @@ class Stretch(Functions):
         ζ = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
         return np.asarray(np.clip(ζ / np.arcsinh(2.0 / self.h), -1.0, 1.0))
 
-    def functions(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Functions of the ends, then ``count`` polynomials of ζ, at r, (len(r), functions)."""
+    @property
+    def of_ends(self) -> int:
+        """Number of functions of both ends, which stand before the polynomials of ζ."""
+        return _OF_ENDS * self.graded
+
+    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Values of ``count`` functions at r, those of the ends among them, (len(r), count)."""
         if not self.graded:
             return chebyshev(self(r), count)
         r = np.clip(r, -1.0, 1.0)  # a contact node at an edge may be a rounding beyond it
@@ -317,23 +322,15 @@ class Stretch(Functions):
             x = np.log1p(r) - np.log1p(-r)
         return _rule(-0.5, -0.5, self).interpolated(_orthonormal(self, count), x)
 
-    def of_ends(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Functions as in :meth:`functions`, before they are orthonormal, (len(r), functions)."""
+    def dependent(self, r: NDArray, count: int) -> NDArray[np.float64]:
+        """Functions as in :meth:`values`, before they are orthonormal, (len(r), count)."""
         columns = []
         for d in (1.0 - r, 1.0 + r):
             d = np.maximum(d, 0.0)
             u = d / (d + _SHARE * self.h)
             log = np.log(np.maximum(u, np.finfo(float).tiny))
             columns += [u**n * log**m for n in range(1, _POWERS + 1) for m in range(1, n + 1)]
-        return np.column_stack([*columns, chebyshev(self(r), count)])
-
-    def polynomials(self, functions: int) -> int:
-        """Number of polynomials among a number of functions."""
-        return functions - _OF_ENDS * self.graded
-
-    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Values of ``count`` functions at r, those of the ends among them, (len(r), count)."""
-        return self.functions(r, self.polynomials(count))
+        return np.column_stack([*columns, chebyshev(self(r), count - self.of_ends)])
 
     def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Coefficients of the smooth factor, (states, functions); see :class:`Polynomials`.
@@ -403,7 +400,7 @@ def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
         Values at the points of the quadrature, (points, functions).
     """
     rule = _rule(-0.5, -0.5, stretch)
-    f, root = stretch.of_ends(rule.t, count), np.sqrt(rule.weights)[:, None]
+    f, root = stretch.dependent(rule.t, count), np.sqrt(rule.weights)[:, None]
     for _ in range(_TIMES):
         f = f @ np.linalg.inv(np.linalg.qr(f * root, mode="r"))
     return np.asarray(f)

@@ -390,10 +390,11 @@ def zones(
 _HARDLY = 1.0 - 1e-9
 
 
+@dataclass(frozen=True)
 class Strength:
     """Yield of states at one speed on a uniform solid.
 
-    Args:
+    Attributes:
         field: function that gives the stresses of the states by any method.
         body: punch or prescribed pressure, and solid, with a yield strength for all but stresses.
         response: response of the half-plane at this speed.
@@ -404,25 +405,27 @@ class Strength:
         nearest: least distance over a from such places at which the field is accurate.
     """
 
-    def __init__(
-        self,
-        field: Field,
-        body: Contact,
-        response: HalfPlane,
-        g: NDArray,
-        local: Any,
-        half_width: NDArray | None = None,
-        turns: Turns | None = None,
-        nearest: float = 1.0,
-    ) -> None:
-        self._field, self._body, self._local = field, body, local
-        self._turns, self._nearest = turns, nearest
-        ends = body.pressure.values[[0, -1]] if body.pressure else np.zeros(2)
-        #: True for states whose stress is infinite where the pressure ends in a jump, (states,).
-        self.infinite = (response.strain(g, 0.0, 1.0) != 0.0) & bool(ends.any())
-        unit = body.stress if half_width is None else body.load / (2.0 * half_width)
-        #: Yield strength over N/(2a), (states,); infinite where it is not given.
-        self.strength = np.broadcast_to((body.yield_strength or np.inf) / unit, np.shape(g))
+    field: Field
+    body: Contact
+    response: HalfPlane
+    g: NDArray[np.float64]
+    local: Any
+    half_width: NDArray[np.float64] | None = None
+    turns: Turns | None = None
+    nearest: float = 1.0
+
+    @property
+    def infinite(self) -> NDArray[np.bool_]:
+        """True for states whose stress is infinite where the pressure ends in a jump, (states,)."""
+        jump = self.body.pressure is not None and bool(self.body.pressure.values[[0, -1]].any())
+        return (self.response.strain(self.g, 0.0, 1.0) != 0.0) & jump
+
+    @property
+    def strength(self) -> NDArray[np.float64]:
+        """Yield strength over N/(2a), (states,); infinite where it is not given."""
+        body, a = self.body, self.half_width
+        unit = body.stress if a is None else body.load / (2.0 * a)
+        return np.broadcast_to((body.yield_strength or np.inf) / unit, np.shape(self.g))
 
     @cached_property
     def von_mises(self) -> Peak:
@@ -441,10 +444,10 @@ class Strength:
         Stresses are proportional to the load; under a punch of the height c|X|^k to its power 1 - 1/k,
         because the contact grows, too.
         """
-        k = exponent(self._body.profile) if self._body.found else None
+        k = exponent(self.body.profile) if self.body.found else None
         power = k / (k - 1.0) if k else 1.0
         allowed = (self.strength / self.von_mises.value) ** power
-        return np.where(self.infinite, 0.0, self._body.load * allowed)
+        return np.where(self.infinite, 0.0, self.body.load * allowed)
 
     @property
     def reach(self) -> NDArray[np.float64]:
@@ -463,51 +466,51 @@ class Strength:
     @cached_property
     def _zones(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         there = _known(self._von_mises_of(self._sampled)) / self.strength[:, None]
-        return zones(self._over_strength, there, np.column_stack([self._local.β, self._local.α]))
+        return zones(self._over_strength, there, np.column_stack([self.local.β, self.local.α]))
 
     @cached_property
     def _levels(self) -> Levels | None:
-        knots = _knots(self._body)
+        knots = _knots(self.body)
         return None if knots is None else Levels(knots)
 
     @cached_property
     def _sampled(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a) at :func:`places`, (3, states, n)."""
-        return self._field(places(self._body)[None])
+        return self.field(places(self.body)[None])
 
     def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
         XX, YY, XY = σ
-        return von_mises(XX, YY, XY, self._body.solid.σ_ZZ(XX, YY, XY))
+        return von_mises(XX, YY, XY, self.body.solid.σ_ZZ(XX, YY, XY))
 
     def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
-        return self._von_mises_of(self._field(points)) / self.strength[:, None]
+        return self._von_mises_of(self.field(points)) / self.strength[:, None]
 
     @cached_property
     def _around_turns(self) -> tuple[NDArray, NDArray, NDArray] | None:
         """Places around turns of the stresses, steps between them, and stresses; None without turns."""
-        if self._turns is None:
+        if self.turns is None:
             return None
-        centres = np.where(np.isnan(self._turns.X), self._turns.X[:, :1], self._turns.X)
+        centres = np.where(np.isnan(self.turns.X), self.turns.X[:, :1], self.turns.X)
         if np.array_equal(centres, np.broadcast_to(centres[:1], centres.shape)):
             centres = centres[:1]
-        at, steps = circles(centres, self._nearest)
-        return at, steps, self._field(at)
+        at, steps = circles(centres, self.nearest)
+        return at, steps, self.field(at)
 
     def _peak(self, measure: Callable[[NDArray], NDArray]) -> Peak:
         """Peak of a measure of the stresses (3, states, n)."""
         assert self._levels
         at, steps, there = self._levels.places[None], self._levels.steps, _known(measure(self._sampled))
-        turns, around = self._turns, self._around_turns
+        turns, around = self.turns, self._around_turns
         if turns is None or around is None:
-            best = peak(lambda points: measure(self._field(points)), at, steps, there)
+            best = peak(lambda points: measure(self.field(points)), at, steps, there)
         else:
             more, more_steps, σ = around
 
             def stress(points: NDArray) -> NDArray[np.float64]:
                 """Measure, NaN nearer to turns than the field is accurate."""
                 distance = np.hypot(points[..., None, 0] - turns.X[:, None], points[..., None, 1])
-                near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self._nearest * _HARDLY
-                return np.where(near, np.nan, measure(self._field(points)))
+                near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self.nearest * _HARDLY
+                return np.where(near, np.nan, measure(self.field(points)))
 
             at = np.concatenate([np.broadcast_to(at, (len(more), *at.shape[1:])), more], axis=1)
             there = np.concatenate([there, _known(measure(σ))], axis=1)

@@ -457,4 +457,4 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     tests = plan.tests
     if tests is None:
         return chebyshev
-    return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
+    return lambda r: tests.stretch.values(r, tests.count + more * tests.a_degree)

@@ -40,6 +40,13 @@ def test_a_sampled_curve_is_highest_between_its_samples():
         np.testing.assert_allclose(at, places.T, atol=1e-6)
 
 
+def test_noise_of_samples_that_all_but_coincide_is_not_magnified():
+    X = np.unique([*np.linspace(-2.0, 2.0, 41), *(np.linspace(-2.0, 2.0, 41)[1:-1] + 1e-9)])
+    noise = 1e-8 * np.random.default_rng(0).uniform(-1.0, 1.0, X.shape)
+    value, at = extreme(np.exp(-((X - 0.07) ** 2)) + noise, X, 1.0)
+    assert value == pytest.approx(1.0, abs=1e-7) and at == pytest.approx(0.07, abs=1e-5)
+
+
 def test_no_polynomial_goes_through_samples_of_two_pieces():
     u = np.linspace(-1.0, 1.0, 41)
     curve = np.where(u < 0.0, 1.0 - (u + 0.12) ** 2, -5.0 + u)[None]

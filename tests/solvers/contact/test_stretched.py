@@ -28,7 +28,7 @@ def read(pressure, stretch, count):
     """The same from its moments."""
     panels = Panels(pressure.α, pressure.β, 0.03)
     forces = panels.weights * pressure.series(panels.t)
-    moments = stretch.functions(panels.t, count).T @ forces
+    moments = stretch.values(panels.t, count + stretch.of_ends).T @ forces
     return from_moments(moments[None], np.array([pressure.α]), np.array([pressure.β]), stretch)
 
 
@@ -70,10 +70,10 @@ def test_what_functions_leave_out_of_a_steeper_solid_is_in_what_they_say_of_them
 def test_functions_are_orthonormal_and_the_same_wherever_they_are_asked_for(pressure):
     stretch = Stretch(0.36, graded=True)
     rule = Panels(-0.5, -0.5, 0.3 * 0.36)
-    f = stretch.functions(rule.t, 28)
+    f = stretch.values(rule.t, 28 + stretch.of_ends)
     assert np.abs((f * rule.weights[:, None]).T @ f - np.eye(f.shape[1])).max() <= 1e-9
     finer = Panels(-0.5, -0.5, 0.02)
-    f = stretch.functions(finer.t, 28)
+    f = stretch.values(finer.t, 28 + stretch.of_ends)
     assert np.abs((f * finer.weights[:, None]).T @ f - np.eye(f.shape[1])).max() <= 1e-6
 
 
@@ -83,7 +83,7 @@ HALF = np.array([-0.5])
 def of_flat_punch(stretch, polynomials, middle=0.0, half_width=1.0):
     """The pressure that has a flat punch's moments, by Gauss and Chebyshev's rule in its own contact."""
     nodes = np.cos(np.pi * (np.arange(16000) + 0.5) / 16000)
-    f = stretch.functions(middle + half_width * nodes, polynomials)
+    f = stretch.values(middle + half_width * nodes, polynomials + stretch.of_ends)
     return from_moments(f.mean(axis=0)[None], HALF, HALF, stretch)
 
 
@@ -103,7 +103,8 @@ def test_moved_edges_are_those_of_a_contact_that_ends_elsewhere(graded, polynomi
 @pytest.mark.parametrize("graded", [False, True])
 def test_a_node_that_rounding_moves_beyond_an_edge_counts_as_at_the_edge(graded):
     """Logarithms of the distance from the edge were no numbers there, nor was any intensity."""
-    functions = Stretch(4.0, graded).functions
+    stretch = Stretch(4.0, graded)
+    functions = lambda r, count: stretch.values(r, count + stretch.of_ends)  # noqa: E731
     beyond = np.nextafter(ENDS, 2.0 * ENDS)
     np.testing.assert_array_equal(functions(beyond, 20), functions(ENDS, 20))
     assert np.isfinite(functions(ENDS, 20)).all()

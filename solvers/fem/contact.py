@@ -332,7 +332,7 @@ class PunchLevel(Level):
         )
         self.factor = solved.factor
         try:
-            # The basis is complete before traces are taken, and the same whatever states are still to do.
+            # The basis is the same whatever states are still to do.
             solved.prepare(g)
             self.fields = solved.fields
             if single:

@@ -244,7 +244,7 @@ class InteriorGradients(Gradients):
     def _gradients(self, batch: "_Batch", values: NDArray) -> NDArray[np.float64]:
         """Gradients of fields at a batch's points, from their values at the nodes of all cells."""
         of_batch = np.searchsorted(self._cells, batch.cells)
-        return batch.gradients(self._nodes, (values[i] for i in of_batch.tolist()), values.shape[-1])
+        return batch.gradients(self._nodes, (values[i] for i in of_batch), values.shape[-1])
 
 
 class _Batch:

@@ -45,7 +45,7 @@ from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, joined, of_pressure
-from .punch import ContactStates, FittedPunch, Punch, sliding_punch
+from .punch import ContactStates, Punch, sliding_punch
 from .solution import SolvedEnds, SolvedStates
 from .space import Space
 
@@ -304,41 +304,41 @@ class PunchLevel(Level):
     Args:
         work, task, space, g: as of :class:`galinx.solvers.fem.ladder.Level`.
         ends: ends of the contacts; by the plan if None.
-        fitted: punch fitted through other speeds; it is solved if None.
-        recovery: maps from contact forces to pressure on this space; computed if None.
 
     Attributes:
+        punch: the punch.
         plan: plan of the finite elements.
         ends: ends of the contacts.
         only: the single state on a mesh of its own; None on a mesh of all contacts.
     """
 
+    punch: Punch
+
     def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray, ends: Ends | None = None,
-        fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
-    ) -> None:  # fmt: skip
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, ends: Ends | None = None
+    ) -> None:
         super().__init__(work, task, space, g)
         self.plan = work.plan
         self.only: SolvedEnds | None = None
         self.ends = ends or ends_of(work.plan)
         self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
-        if fitted is not None and recovery is not None:
-            self.punch: Punch = fitted
-            self.fields, self.recovery, self.moments = fitted.fields, recovery, recovery.moments
-            return
-        single = self.ends.single
+        self._solve()
+
+    def _solve(self) -> None:
+        """Solve for the parts of the punch, and for the only state where there is one."""
+        ends, task = self.ends, self.task
         self.punch = solved = sliding_punch(
-            space, task.response, self.plan.solver, self.ends.heights(self), self.ends.along(self)
+            self.space, task.response, self.plan.solver, ends.heights(self), ends.along(self)
         )
         self.factor = solved.factor
         try:
-            # The basis is complete before traces are taken, and the same whatever states are still to do.
-            solved.prepare(g)
+            # The fields are the same whatever states are still to do.
+            solved.prepare(self.g)
             self.fields = solved.fields
-            if single:
-                self.only = self._summed(self.ends.solved(self, g, task.body))
+            if ends.single:
+                self.only = self._summed(ends.solved(self, self.g, task.body))
         finally:
-            if single:
+            if ends.single:
                 solved.destroy()
 
     def _summed(self, ends: SolvedEnds) -> SolvedEnds:
@@ -379,8 +379,8 @@ class PunchLevel(Level):
         return self.stress_gauges.displacement.slopes if self.work.stresses else nowhere
 
     def displacement_at(self, task: Task) -> Displacement:
-        slopes = self.punch.slopes if isinstance(self.punch, FittedPunch) else None
-        return Displacement(task, self.space, self.fields, slopes, self.ends.continuation(self))
+        continuation = self.ends.continuation(self)
+        return Displacement(task, self.space, self.fields, continuation=continuation)
 
     @property
     def mirrored(self) -> bool:  # type: ignore[override]

@@ -50,11 +50,8 @@ class LoadsLevel(Level):
         """Solve for the fields of all loads."""
         self._loaded = loaded = LoadedHalfPlane(self.space, self.task.response)
         self._load(loaded)
-        self.factor, self.fields, self.resultants = (
-            loaded.factor,
-            loaded.fields,
-            np.array(loaded.resultants),
-        )
+        self.factor, self.fields = loaded.factor, loaded.fields
+        self.resultants = np.array(loaded.resultants)
 
     def _load(self, loaded: LoadedHalfPlane) -> None:
         """Add the loads."""

@@ -32,6 +32,7 @@ from ..contact.solution import Task
 from ..errors import SolveError
 from .contact import PunchLevel
 from .discretisation import Discretisation
+from .displacement import Displacement
 from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
 from .punch import FittedPunch, Sampled, sampled, together
 from .space import Space
@@ -166,8 +167,7 @@ class Fit:
             shares = through.shares(self.sweep.z[[number]])[0]
         combined = together(self.samples, shares).scaled(*self.singular(task))
         punch = FittedPunch(self.space, task.response, self.at, combined)
-        level = PunchLevel(self.work, task, self.space, self.at.nodes, None, punch, self.recovery)
-        with closing(level):
+        with closing(FittedLevel(self, task, punch)) as level:
             yield level
 
     def record(self, number: int) -> dict[str, Any]:
@@ -175,6 +175,23 @@ class Fit:
         if number in self.speeds:
             return self.speeds[number].record
         return size_of(self.space) | vars(WorkDone())
+
+
+class FittedLevel(PunchLevel):
+    """Punch at a speed to which its parts were interpolated; see :class:`PunchLevel`."""
+
+    punch: FittedPunch
+
+    def __init__(self, fit: Fit, task: Task, punch: FittedPunch) -> None:
+        self.punch, self.fields = punch, punch.fields
+        self.recovery, self.moments = fit.recovery, fit.recovery.moments
+        super().__init__(fit.work, task, fit.space, fit.at.nodes)
+
+    def _solve(self) -> None:
+        """Solve nothing."""
+
+    def displacement_at(self, task: Task) -> Displacement:
+        return Displacement(task, self.space, self.fields, self.punch.slopes)
 
 
 @dataclass(frozen=True)

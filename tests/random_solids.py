@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from galinx.solvers.solids.anisotropic import Anisotropic
-from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Anisotropic, Cubic, Orthotropic
 
 
 def orthotropic(rng, stiffest=40.0):

@@ -142,21 +142,6 @@ def full_disk(size):
         signal.signal(signal.SIGXFSZ, earlier)
 
 
-@contextmanager
-def at_once(seconds=5):
-    """The block ends by itself; one that waits for somebody is ended with a failure."""
-
-    def late(*_):
-        raise TimeoutError("it waits")
-
-    signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-
-
 def widest(text):
     """Length of the longest line."""
     return max(map(len, text.splitlines()))

@@ -9,10 +9,11 @@ from support import HOME
 ROOMS = ("app", "meshes", "solvers", "postprocess")
 #: Libraries that are met in one place only.
 ONE_PLACE = {
+    "gmsh": {"meshes/store.py"},
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/versions.py"},
     "matplotlib": {"app/figures/"},
-    "jinja2": {"postprocess/page/"},
+    "jinja2": {"app/results/report.py"},
     "xarray": {"app/results/result.py"},
     "tomlkit": {"app/scene/changes.py"},
     "pint": {"app/scene/units.py"},
@@ -52,8 +53,8 @@ PURE = {
 TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
 SOLUTIONS = (
     FORMULA, "solvers.contact.exact", "solvers.contact.layered",
-    "solvers.contact.equation", "solvers.contact.uniform", "solvers.contact.free_on_layers",
-    "solvers.contact.panels", "solvers.friction",
+    "solvers.contact.equation", "solvers.contact.contacts", "solvers.contact.on_layers",
+    "solvers.friction",
 )  # fmt: skip
 #: What both share, and so has no solution either.
 SHARED = "solvers/contact/pressure.py"

@@ -52,16 +52,6 @@ def test_files_of_the_current_folder_are_no_libraries(tmp_path, path, arguments)
     assert (tmp_path / f"{SCENE.stem}.h5").exists() == ("run" in arguments)
 
 
-def test_python_alone_takes_no_file_of_the_current_folder_for_a_library(tmp_path):
-    for name in NAMESAKES:
-        (tmp_path / f"{name}.py").write_text("raise SystemExit('no library')\n", encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "galinx", "plan", str(SCENE)], cwd=tmp_path, env=clean_environment(),
-        capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
-    assert done.returncode == 0 and not done.stderr
-
-
 def test_the_script_is_found_through_links_and_in_spite_of_cdpath(tmp_path):
     (tmp_path / "galinx").symlink_to(HOME / "run.sh")
     (tmp_path / "tree").symlink_to(HOME)

@@ -1,24 +1,17 @@
-import re
 from dataclasses import replace
-from itertools import islice
 
 import all_kinds
 import friction_law
 import h5py
 import matrix
-import mechanics
 import numpy as np
 import pytest
 import random_scenes
 import resolution
-from all_kinds import Judged
 from random_scenes import Ratios
-from row import Row, Verdict, honest, reached, scene, solved
+from row import Row, Verdict, honest, reached
 
-from galinx.app.scene.read import parse
 from galinx.postprocess.target import Folder
-from galinx.solvers.profiles import PROFILES
-from galinx.solvers.solids import SOLIDS
 
 
 def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
@@ -64,26 +57,6 @@ def test_verdicts_can_fail():
     assert not reached(true, 3e-8, "here").holds and reached(true, 5e-8, "here").holds
 
 
-def test_beyond_the_rayleigh_speed_is_judged():
-    assert mechanics._beyond_rayleigh(0.9194016867619661).holds
-    assert not mechanics._beyond_rayleigh(0.5).holds
-
-
-def test_scenes_of_rows():
-    assert len(solved(c=[0.1, 0.2], methods='["closed_form"]')["states/f"]) == 4
-    with pytest.raises(KeyError, match="speed"):
-        scene(speed=1.0)
-
-
-def test_random_scenes_are_those_of_their_seed():
-    def drawn(seed):
-        rng = np.random.default_rng(seed)
-        return [random_scenes._drawn(rng, kind, True) for kind in ("confocal", "box", "fixed degree")]
-
-    assert drawn(3) == drawn(3) != drawn(4)
-    assert all(parse(scene(**parameters)) for parameters in drawn(3))
-
-
 @pytest.mark.parametrize(
     "found, holds",
     [
@@ -100,39 +73,3 @@ def test_estimates_are_bounds_and_tight(found, holds):
 
     assert good(found, found, found) == holds
     assert not good(found, found, [*found, 101.0]) and not good(found, found, found, [0.9])
-
-
-def test_scenes_of_all_kinds_are_those_of_their_seed():
-    def drawn(seed):
-        return list(islice(all_kinds.scenes(seed), 60))
-
-    texts = drawn(5)
-    assert texts == drawn(5) != drawn(6)
-    for name in (*PROFILES, *SOLIDS):
-        assert any(f'= "{name}"' in text for text in texts), name
-    assert any("[[layer]]" in text and "to = {" in text for text in texts)
-    assert all(parse(text) for text in texts)
-
-
-@pytest.mark.parametrize(
-    "below, alone, holds",
-    [(0, 0, (True, True)), (1, 0, (False, True)), (0, 3, (True, True)), (0, 4, (True, False))],
-)
-def test_scenes_of_all_kinds_are_counted(below, alone, holds):
-    found = [Judged("", True, False, {"estimate": 0.9}) for _ in range(below)]
-    found += [Judged("", False, True, {"estimate": 3.0}) for _ in range(alone)]
-    found += [Judged("", False, False, {"estimate": 0.1})]  # what FAILs says so already
-    found += [Judged("", True, False, {"estimate": 2.0, "estimate inside": 5.0})] * (100 - len(found))
-    made = all_kinds.row(found, 1)
-    assert tuple(verdict.holds for verdict in made.verdicts) == holds
-    assert f"{below} of 100" in made.verdicts[0].text and f"{alone} of 100" in made.verdicts[1].text
-
-
-def test_what_the_verdict_compares_judges_the_estimates():
-    """A box's walls are seen by its estimate; at a tolerance that they do not allow all FAILs."""
-    text = next(text for text in all_kinds.scenes(0) if '"isotropic"' in text and '"flat"' in text)
-    text = re.sub(r"tilt = .*", "tilt = 0.0", re.sub(r"tolerance = .*", "tolerance = 1e-3", text))
-    boxed = re.sub(r"mesh = .*", 'mesh = "box"', text)
-    good, bad = all_kinds.judged(text), all_kinds.judged(boxed)
-    assert good.passed and not good.alone and min(good.ratios.values()) >= 1.0
-    assert not bad.passed and not bad.below

@@ -8,9 +8,7 @@ import pytest
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
-from galinx.postprocess.quantities import QUANTITIES, Quantity
-from galinx.registry import Registry
-from galinx.texts import counted, unseen
+from galinx.texts import unseen
 
 
 @pytest.mark.parametrize("code", [0, 7, 10, 27, 127, 0x9B, 0x2028, 0x202E, 0x2066, 0x061C, 0xD800])
@@ -42,15 +40,6 @@ def test_a_scene_with_one_is_refused_at_the_start(text, fault):
     assert fault in str(caught.value)
 
 
-def test_names_of_ones_own_models_have_none():
-    with pytest.raises(ValueError, match=r"law 'a\\x00': character 2 is the control character U\+0000"):
-        Registry("law").register("a\0", object())
-    for quantity in (Quantity("states/\0", "1", "one"), Quantity("states/x", "1\0", "one")):
-        with pytest.raises(ValueError, match=r"control character U\+0000"):
-            QUANTITIES.add(quantity)
-    assert "states/x" not in QUANTITIES
-
-
 @pytest.mark.parametrize(
     "registry, model, fault",
     [
@@ -71,8 +60,3 @@ def test_what_is_no_model_is_refused_where_it_is_registered(registry, model, fau
     with pytest.raises(TypeError, match="expected a text for its name"):
         models.register(7, next(iter(models.values())))
     assert "mine" not in models and 7 not in models
-
-
-def test_one_thing_is_no_several():
-    assert [counted(n, "state") for n in (0, 1, 2)] == ["0 states", "1 state", "2 states"]
-    assert counted(3, "start from rest", "starts from rest") == "3 starts from rest"

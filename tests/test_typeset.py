@@ -2,7 +2,7 @@
 
 import pytest
 
-from galinx.texts import folded, number, plain, unit
+from galinx.texts import folded, number, plain
 
 
 @pytest.mark.parametrize(
@@ -15,11 +15,6 @@ from galinx.texts import folded, number, plain, unit
 )  # fmt: skip
 def test_numbers_are_typeset(value, shown):
     assert plain(f"${number(value)}$") == shown
-
-
-def test_units_are_typeset():
-    assert plain(f"${unit('1/m')}$") == "\u202fm⁻¹" and plain(f"${unit('N/m')}$") == "\u202fN/m"
-    assert unit("N/(2a)") == r"\,N/(2a)" and unit("1") == unit("none") == ""
 
 
 def test_formulas_become_plain_text():

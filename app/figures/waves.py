@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.layers.layered import dispersion
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
 from galinx.texts import plain
 

@@ -22,19 +22,18 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM
 from galinx.postprocess.quantities.stresses import STRESSES_INSIDE
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
+from galinx.solvers.contact.contacts import Contacts, contacts_of
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.fem_plan import FemPlan
 from galinx.solvers.contact.solution import GIVEN_ENDS, Task
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
-from galinx.solvers.contact.uniform import Contacts, contacts_of
 
 from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed, listed
 from ..methods import METHODS
-from ..plan.plan import farthest_inside, make_plan
+from ..plan.plan import Plan, farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
-from ..plan.task import Plan
 from ..plan.variants import of_state
 from ..scene.scene import FRICTIONS, Output, Scene
 

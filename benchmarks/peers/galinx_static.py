@@ -45,7 +45,7 @@ def solve(
     cells = kind.build(Refinement(levels, ratio, 1, widths))
     check_cells(cells)
     space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.chart, degree, terms=moments)
-    punch = SlidingPunch(space, MovingFrame(KAPPA, 0.0), negligible=NEGLIGIBLE, left=NEGLIGIBLE)
+    punch = SlidingPunch(space, MovingFrame(KAPPA, 0.0), negligible=NEGLIGIBLE)
     recovery = contact_recovery(space.contact.s, degree, space.chart, np.zeros(0))
     found = punch.states(G).normal[0] @ recovery.moments[:, :6]
     punch.destroy()

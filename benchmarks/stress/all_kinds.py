@@ -22,15 +22,10 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import values
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.power import Parabolic, Power, Wedge
-from galinx.solvers.profiles.rounded_flat import RoundedFlat
-from galinx.solvers.profiles.table import Table
+from galinx.solvers.profiles.punches import Flat, Parabolic, Power, RoundedFlat, Table, Wedge
 from galinx.solvers.solids import SOLIDS
-from galinx.solvers.solids.anisotropic import Anisotropic
-from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Anisotropic, Cubic, Orthotropic
 from galinx.solvers.solids.solid import Solid
 
 #: Share of all scenes that may FAIL by an estimate alone.
@@ -40,11 +35,18 @@ ALONE = 0.03
 #: layers the integral equation's own estimate counts, too.
 TRUTHS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "estimate": (
-        ("K_I", "ends", "largest pressure", "K_I of layers", "sigma_YY of layers", "ends over layers"),
+        (
+            "K_I",
+            "ends",
+            "largest pressure",
+            "K_I over layers",
+            "sigma_YY over layers",
+            "ends over layers",
+        ),
         ("estimate of the integral equation",),
     ),
-    "estimate of sigma_XX": (("sigma_XX", "sigma_XX of layers"), ("estimate of sigma_XX, sie",)),
-    "estimate inside": (("stresses inside", "stresses inside layers"), ("estimate inside, sie",)),
+    "estimate of sigma_XX": (("sigma_XX", "sigma_XX over layers"), ("estimate of sigma_XX, sie",)),
+    "estimate inside": (("stresses inside", "stresses inside over layers"), ("estimate inside, sie",)),
     "estimate at interfaces, fem": (("stresses at interfaces",), ("estimate at interfaces, sie",)),
 }
 

@@ -1,27 +1,35 @@
-"""Closed form of a rigid flat punch that slides over a half-plane at constant speed (Eqs 38-58).
+"""Exact pressures of rigid punches that slide over a uniform half-plane at constant speed.
 
 Lengths are divided by the half-width a, stresses by N/(2a); positions r = X/a. ``g`` is the signed
 ratio σ_XY/σ_YY under the punch: g = -f for a punch that drags the surface along with it.
 
-Parabolic and tilted flat punches have pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is an
-integer. Cauchy's integral of such a pressure is elementary, so that stresses on and below the surface are
-exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
+**Flat punches** have the closed form of Eqs 38-58.
+
+**Parabolic and tilted flat punches** have pressures (1 - s)^α (1 + s)^β (A + B s) whose exponents' sum is
+an integer. Cauchy's integral of such a pressure is elementary, so that stresses on and below the surface
+are exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
 
     Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt = (X(z) q(z) - [X q])/sin(πα),
 
 [X q] the part of X q that does not vanish at infinity.
+
+**Any punch between two free ends** (:class:`FreeEnds`). With f = μ v,X under the punch, a + b = 1 the
+exponents of the pressure, N̂ = n + g n₁₂ and C(y) of :mod:`.panels`, where w = (1 - s)^-a (1 + s)^-b,
+
+    Φ(z) = -(sin πa/(π N̂)) X(z) ∫ w f/(t - z) dt = -(sin πa/(π N̂)) e^(-iπa) C(y).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import log1p
 
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
+from .panels import Panels, stretched
 from .pressure import Pressure
 
 #: Newton's steps for the logarithm of a distance; at a double root they halve the error.
@@ -75,10 +83,6 @@ class FlatPunch(EdgeExponents, Pressure):
         """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
 
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """Change of Φ, see :class:`galinx.solvers.solids.half_plane.Potential`."""
-        return self.at(z) * _growth(self.α, self.β, z, step, share)
-
     def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distances from X = -a and X = a, under the punch, within which -μ u,X over N/(2a) is large.
 
@@ -113,14 +117,6 @@ class FlatPunch(EdgeExponents, Pressure):
                 break
             t = moved
         return np.exp(t)
-
-
-def _growth(α: Any, β: Any, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-    """Relative change of (z - 1)^α (z + 1)^β for a step share·step, over share."""
-    by_right, by_left = step / (z - 1.0), step / (z + 1.0)
-    if share == 0.0:
-        return α * by_right + β * by_left
-    return np.expm1(α * log1p(share * by_right) + β * log1p(share * by_left)) / share
 
 
 #: |z| from which powers of 1/z serve, and their number: 3^-36 is below rounding.
@@ -166,28 +162,16 @@ class Weighted(Pressure):
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         far = np.abs(z) > _FAR
-        near = (self._X(z) * (self.A + self.B * z) - self._polynomial(z)) / self._sin
-        return np.where(far, self._far(np.where(far, z, np.inf)), near)
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        growth = _growth(self.α, self.β, z, step, share)
-        moved = z + share * step
-        near = self._X(z) * (growth * (self.A + self.B * moved) + self.B * step)
-        near = (near - self._leading * step) / self._sin
-        far = np.minimum(np.abs(z), np.abs(moved)) > _FAR
-        return np.where(far, self._far_change(np.where(far, z, np.inf), step, share), near)
+        X = np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
+        Φ = (X * (self.A + self.B * z) - self._polynomial(z)) / self._sin
+        columns = far.any(axis=tuple(range(z.ndim - 1)))
+        if columns.any():
+            Φ[..., columns] = np.where(far[..., columns], self._far(z[..., columns]), Φ[..., columns])
+        return Φ
 
     @property
     def _sin(self) -> Any:
         return np.sin(np.pi * self.α)
-
-    def _X(self, z: NDArray) -> NDArray[np.complex128]:
-        return np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
-
-    @property
-    def _leading(self) -> Any:
-        """Coefficient of z in [X q]; 0 for the orders 0 and -1, of which [X q] is a constant."""
-        return self.A if self.order == 1 else 0.0
 
     def _polynomial(self, z: Any) -> Any:
         """Polynomial [X q] at z; B vanishes where the order is 0 or 1."""
@@ -213,10 +197,80 @@ class Weighted(Pressure):
             total = (total + coefficient) * y
         return total
 
-    def _far_change(self, z: NDArray, step: NDArray, share: complex) -> Any:
-        with np.errstate(invalid="ignore"):
-            y, other = 1.0 / z, 1.0 / (z + share * step)
-        value, divided = 0.0, 0.0  # of the sum so far at y, and its divided difference
-        for coefficient in reversed(self._powers):
-            value, divided = (value + coefficient) * y, (value + coefficient) + divided * other
-        return -step * y * other * divided
+
+#: Distance from a cusp of the pressure that counts as none, and that from which it is extrapolated.
+_AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
+
+
+@dataclass(frozen=True)
+class FreeEnds(Pressure):
+    """Pressure of a contact [-1, 1] with two free ends, over N/(2h).
+
+    Attributes:
+        panels: quadrature over the contact.
+        f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
+        slope: function that gives μ v,X over N/(2h) at any positions in the contact.
+        n, Q: n + g n₁₂ and g q of the half-plane.
+        kinks, tips: see :class:`galinx.solvers.contact.pressure.Pressure`.
+        cusp: exponent below 1 of the pressure's change by the distance from a kink; 0 for none.
+    """
+
+    panels: Panels
+    f: NDArray[np.float64]
+    slope: Any
+    n: float
+    Q: float
+    kinks: Sequence[float] = ()
+    tips: Sequence[float] = ()
+    cusp: float = 0.0
+
+    K_I = np.zeros(2)  # type: ignore[assignment]
+
+    @property
+    def α(self) -> float:  # type: ignore[override]
+        """Exponent at the right end, positive."""
+        return -self.panels.α
+
+    @property
+    def β(self) -> float:  # type: ignore[override]
+        """Exponent at the left end, positive."""
+        return -self.panels.β
+
+    @property
+    def _factor(self) -> float:
+        return float(np.sin(np.pi * self.α) / (np.pi * self.n))
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        p, inside = np.zeros(np.shape(r)), np.abs(r) < 1.0
+        at = r[inside]
+        f = self.slope(at)
+        # Without f(r) nothing cancels towards the ends.
+        C = self.panels.cauchy(self.f - f[:, None], stretched(at))
+        stress = -self._factor * np.sin(np.pi * self.α) * C
+        for kink in self.kinks if self.cusp else ():
+            at_cusp = np.abs(at - kink) < _AT_CUSP
+            if at_cusp.any():  # the part of the smallest panel that is missed there is not small
+                stress[at_cusp] = self._at_cusp(kink)
+        p[inside] = stress * (1.0 - at) ** -self.α * (1.0 + at) ** -self.β
+        return p
+
+    def _at_cusp(self, at: float) -> float:
+        """Contact stress at a cusp: σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
+        d = _BESIDE_CUSP * np.array([-1.0, 1.0])
+        near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
+        return near + (near - far) / (2.0**self.cusp - 1.0)
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        transform, inside, beside = np.empty(r.shape), np.abs(r) < 1.0, np.abs(r) > 1.0
+        under, end = r[inside], ~inside & ~beside
+        transform[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
+        transform[end] = self.slope(r[end]) / self.n
+        transform[beside] = self.at(r[beside] - 0.0j).real
+        return transform
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
+        flat = np.ravel(z).astype(complex)
+        y = np.log((1.0 + flat) / (1.0 - flat))
+        C = self.panels.cauchy(self.f, y.real - 1j * (-y.imag % (2.0 * np.pi)))
+        return (-self._factor * np.exp(-1j * np.pi * self.α) * C).reshape(np.shape(z))

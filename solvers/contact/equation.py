@@ -4,15 +4,13 @@
 
 σ = σ_YY, n̂ = n + g n₁₂ of the surface's solid, K of :mod:`galinx.solvers.layers.kernel`. The dominant
 part is that of a half-plane, and so are the exponents. The pressure is a sum of Jacobi polynomials under
-their weight; its integrals with K are done by Gauss's rule. Where K is rough, panels replace them.
+their weight; its integrals with K are done by Gauss's rule. Where K is rough, with a logarithm and a jump
+at 0, the pressure without its weight has terms like (1 - t) log(1 - t) towards the ends, which no
+polynomial follows: values on panels replace them.
 
 A prescribed pressure is linear between knots (:mod:`.prescribed_pressure`). It is integrated by Gauss's
 rule on pieces between knots, as short as the kernel requires; where the kernel has a logarithm, graded
 towards it. The part of the half-plane of the surface's solid is known exactly.
-
-Any number of frictions at one speed share the kernels, which do not depend on friction
-(:class:`ContactsAtSpeed`). A pressure without its weight is an analytic function of g = σ_XY/σ_YY: beyond
-a few frictions the equation is solved at Chebyshev's points in g, and interpolated between them.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -24,13 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..approximation import barycentric
 from ..errors import SolveError
-from ..layers.kernel import Kernel, Scaled
-from ..layers.layered import LayersAtSpeed
-from .panelled import Panels
-from .panelled import parts as panelled
-from .pressure import ENDS, Expansion, Functions, Pressure
+from .panels import TO_BEND, Panels
+from .pressure import ENDS, Expansion, Functions
 
 #: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
 _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
@@ -73,7 +67,7 @@ class Jacobi(Functions):
         return jacobi(count, self.α, self.β, r)
 
     def _rule(self, c: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        t, w = gauss(max(_FINE, 2 * len(c)), self.α, self.β)
+        t, w = gauss(max(_FINE, 2 * c.shape[-1]), self.α, self.β)
         return t, w, self.sum(c, t)
 
     def rest(self, c: NDArray, r: NDArray, near: float) -> NDArray[np.float64]:
@@ -124,28 +118,6 @@ _ROUNDING = 2e-12
 _COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
 
 
-@dataclass(frozen=True)
-class Parts:
-    """Pressures whose sums are other pressures.
-
-    Attributes:
-        coefficients: of each pressure, (unknowns, parts).
-        made: makes a pressure of coefficients, (unknowns,).
-    """
-
-    coefficients: NDArray[np.float64]
-    made: Callable[[NDArray], Pressure]
-
-    def pressure(self, amplitudes: NDArray) -> Pressure:
-        """Sum of the parts with amplitudes, (parts,)."""
-        return self.made(self.coefficients @ amplitudes)
-
-    @property
-    def ends(self) -> NDArray[np.float64]:
-        """Values of p at the left and the right end, (2, parts)."""
-        return np.stack([self.made(c).series(ENDS) for c in self.coefficients.T], axis=-1)
-
-
 class _NoLayers:
     """Kernel of a uniform half-plane, whose equation has none."""
 
@@ -169,6 +141,7 @@ class Equation:
         g: σ_XY/σ_YY under the punch.
         slope: μ v,X under the punch over N/(2a) at given r.
         kinks: places r next to which the slope is not smooth.
+        adjoint: True for the adjoint equation but for its sign: -q for q, and -K(-x) for K(x).
     """
 
     response: Any
@@ -176,69 +149,98 @@ class Equation:
     g: float
     slope: Slope
     kinks: tuple[float, ...] = ()
+    adjoint: bool = False
 
     @property
     def n(self) -> float:
         """n̂ = n + g n₁₂, dimensionless."""
         return float(self.response.n + self.g * self.response.n12)
 
+    @property
+    def Q(self) -> float:
+        """Factor g q of the pressure, dimensionless."""
+        return float(self.g * self.response.q) * (-1.0 if self.adjoint else 1.0)
+
+    def K(self, x: NDArray) -> NDArray[np.float64]:
+        """Kernel of the layers at x, (..., 1)."""
+        sign = -1.0 if self.adjoint else 1.0
+        by_kernel = self.kernel(sign * x)
+        return np.asarray(sign * (by_kernel[..., 3:] + self.g * by_kernel[..., 2:3]))
+
     @cached_property
     def α(self) -> float:
         """Exponent at X = a, that of the surface's solid, dimensionless."""
-        return float(-0.5 - np.arctan2(self.g * self.response.q, self.n) / np.pi)
+        return float(-0.5 - np.arctan2(self.Q, self.n) / np.pi)
 
     @property
     def β(self) -> float:
         """Exponent at X = -a, dimensionless."""
         return -1.0 - self.α
 
-    def pressure(self, resolution: Resolution) -> Pressure:
+    def pressure(self, resolution: Resolution) -> Expansion:
         """Pressure with resultant -2 at a resolution."""
-        return self.parts(resolution, [self.slope], [-2.0]).pressure(np.ones(1))
+        return self.pressures(resolution, [self.slope], [-2.0]).sum(np.ones(1))
 
-    def parts(self, resolution: Resolution, slopes: Sequence[Slope], loads: Sequence[float]) -> Parts:
-        """Pressures under several slopes with resultants ``loads``, whose sums are other pressures."""
+    def pressures(
+        self, resolution: Resolution, slopes: Sequence[Slope], loads: Sequence[float]
+    ) -> Expansion:
+        """Pressures under several slopes with resultants ``loads``, as many states, at a resolution."""
         if isinstance(resolution, float):
-            panels, values = panelled(self, resolution, slopes, loads)
-            return Parts(values, panels.pressure)
-        c = self._coefficients(resolution, slopes, loads)
-        return Parts(c, lambda c: Expansion(self.α, self.β, c, Jacobi(self.α, self.β)))
-
-    def _coefficients(
-        self, terms: int, slopes: Sequence[Slope], loads: Sequence[float]
-    ) -> NDArray[np.float64]:
-        """Coefficients of ``terms`` polynomials for each slope and load, (terms, slopes)."""
-        t, w = gauss(terms, self.α, self.β)
-        r, _ = gauss(terms - 1, -self.α, -self.β)
-        P = jacobi(terms, self.α, self.β, t)
-        A = np.empty((terms, terms))
+            return self._by_panels(resolution, slopes, loads)
+        t, w = gauss(resolution, self.α, self.β)
+        r, _ = gauss(resolution - 1, -self.α, -self.β)
+        P = jacobi(resolution, self.α, self.β, t)
+        A = np.empty((resolution, resolution))
         A[:-1] = self.n / np.pi * (w / (t - r[:, None])) @ P
-        by_kernel = self.kernel(r[:, None] - t)
-        A[:-1] += (w * (by_kernel[..., 3] + self.g * by_kernel[..., 2])) @ P
+        A[:-1] += (w * self.K(r[:, None] - t)[..., 0]) @ P
         A[-1] = w @ P
         b = np.vstack([np.stack([slope(r) for slope in slopes], axis=-1), loads])
-        return np.asarray(np.linalg.solve(A, b))
+        return Expansion(self.α, self.β, np.linalg.solve(A, b).T, Jacobi(self.α, self.β))
+
+    def _by_panels(self, finest: float, slopes: Sequence[Slope], loads: Sequence[float]) -> Expansion:
+        """Pressures by their values on panels, with which the dominant part is regular:
+
+            (n̂/π) ∫ w(t) (p(t) - p(r))/(t - r) dt,
+
+        for what p(r) alone contributes is what the exponents make vanish.
+        """
+        panels = Panels(self.α, self.β, finest, self.kinks, TO_BEND)
+        x, n = panels.x, self.n
+        apart = panels.apart(x[:, None], x - x[:, None])
+        np.fill_diagonal(apart, np.inf)
+        A = n / np.pi * panels.weights / apart
+        A -= np.diag(A.sum(axis=1))
+        for panel, D in enumerate(panels.derivative):
+            own = panels.of(panel)
+            A[own, own] += n / np.pi * panels.weights[own, None] * D
+        for i, at in enumerate(x.tolist()):
+            A[i] += panels.row(self.K, at)[:, 0]
+        scale = 1.0 / panels.weight(x)
+        A = np.vstack([A * scale[:, None], panels.weights])
+        b = np.vstack([np.stack([slope(panels.t) * scale for slope in slopes], axis=-1), loads])
+        return Expansion(self.α, self.β, np.linalg.lstsq(A, b, rcond=None)[0].T, panels)
 
 
 @dataclass(frozen=True)
 class SolvedContact:
-    """A contact with its pressure; lengths are over a unit that all states share.
+    """Contact with one friction; lengths are over a unit that all states share.
 
     Attributes:
+        g: σ_XY/σ_YY.
         pressure: the pressure.
-        before: the pressure with fewer unknowns; None at a single resolution.
-        change: relative change of the pressure and its intensities with the number of unknowns.
         half_width: of the contact.
         centre: its middle, from the punch's axis.
-        free: True where the left and the right end are free, and were solved for.
+        change: relative change of the pressure and its intensities with the number of unknowns, at one
+            resolution that by which intensities at free ends were removed.
+        before: the pressure with fewer unknowns; None at a single resolution.
     """
 
-    pressure: Pressure
-    before: Any = None
-    change: float = 0.0
+    g: float
+    pressure: Any
     half_width: float = 1.0
     centre: float = 0.0
-    free: tuple[bool, bool] = (False, False)
+    change: float = 0.0
+    before: Any = None
 
     def moved(self, before: "SolvedContact") -> float:
         """Relative change of lengths and pressure since ``before``; next to free ends with a factor.
@@ -246,55 +248,33 @@ class SolvedContact:
         In-plane stresses follow the pressure with such a factor there.
         """
         lengths = max(abs(self.half_width - before.half_width), abs(self.centre - before.centre))
-        ends = [side * (1.0 - _NEXT_TO_END) for side, free in zip((-1.0, 1.0), self.free) if free]
-        at = np.concatenate([*ends, _ACROSS])
+        free = np.ravel(self.pressure.free)
+        at = np.concatenate([*(ENDS[free, None] * (1.0 - _NEXT_TO_END)), _ACROSS])
         earlier, later = (
             (1.0 - at) ** p.α * (1.0 + at) ** p.β * p.series(at) for p in (before.pressure, self.pressure)
         )
         near = np.abs(earlier - later)[: -len(_ACROSS)].max(initial=0.0) / np.abs(later).max()
-        of_pressure = change(before.pressure, self.pressure)
+        at = np.concatenate([ENDS, _LOOKED_AT])
+        for tip in self.pressure.tips:
+            at = at[np.abs(at - tip) > NEAR_TIP]
+        earlier, later = before.pressure.series(at), self.pressure.series(at)
+        of_pressure = float(np.abs(earlier - later).max() / np.abs(later).max())
         return max(of_pressure, lengths / self.half_width, _MORE_AT_ENDS * float(near))
 
 
 def converged(
-    at_resolution: Callable[[Resolution], SolvedContact], tolerance: float, rough: bool
+    equation: Equation, at_resolution: Callable[[Resolution], SolvedContact], tolerance: float
 ) -> SolvedContact:
     """Contact to a relative tolerance, by finer and finer resolutions.
 
     Args:
-        at_resolution: gives the contact at a resolution; its ``change`` is that by a correction.
+        equation: of its pressure.
+        at_resolution: gives the contact at a resolution.
         tolerance: the tolerance.
-        rough: True where the kernel is rough.
 
     Raises:
-        SolveError: the tolerance was not reached; the message says by how much.
-    """
-    before, error = None, np.inf
-    for resolution in resolutions(rough):
-        now = at_resolution(resolution)
-        if before is not None:
-            error = max(now.moved(before), now.change)
-            if is_converged(error, tolerance):
-                return replace(now, before=before.pressure, change=error)
-        before = now
-    raise not_converged(error, tolerance)
-
-
-def converged_pressure(equation: Equation, tolerance: float) -> SolvedContact:
-    """Contact with the pressure of an equation, to a relative tolerance.
-
-    Raises:
-        SolveError: the tolerance was not reached; the message says by how much.
-    """
-    check_exponents(equation)
-    return converged(lambda at: SolvedContact(equation.pressure(at)), tolerance, equation.kernel.rough)
-
-
-def check_exponents(equation: Equation) -> None:
-    """Check that the pressure can be resolved up to its edges.
-
-    Raises:
-        SolveError: an exponent is too close to -1.
+        SolveError: the tolerance was not reached; the message says by how much. Or an exponent is too
+            close to -1 to be resolved.
     """
     least = 1.0 + min(equation.α, equation.β)
     if not least >= _STRONGEST:
@@ -302,17 +282,16 @@ def check_exponents(equation: Equation) -> None:
             f"the pressure's exponent at an edge is -1 + {least:.2g}, expected at least -1 + "
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
-
-
-def is_converged(moved: float, tolerance: float) -> bool:
-    """Return True if a relative change with the resolution is small enough."""
-    return moved <= tolerance / 4.0 or moved <= _ROUNDING
-
-
-def not_converged(moved: float, tolerance: float) -> SolveError:
-    """Error of a pressure that still changes with the most unknowns."""
-    return SolveError(
-        f"with the most unknowns the pressure still changes by {moved:.2g}, expected {tolerance:g}: "
+    before, error = None, np.inf
+    for resolution in resolutions(equation.kernel.rough):
+        now = at_resolution(resolution)
+        if before is not None:
+            error = max(now.moved(before), now.change)
+            if error <= max(tolerance / 4.0, _ROUNDING):
+                return replace(now, before=before.pressure, change=error)
+        before = now
+    raise SolveError(
+        f"with the most unknowns the pressure still changes by {error:.2g}, expected {tolerance:g}: "
         "the uppermost layer is very thin over the contact's width; take a larger tolerance"
     )
 
@@ -328,158 +307,3 @@ def resolutions(rough: bool) -> Iterator[Resolution]:
         yield terms
         terms = int(_MORE * terms)
     yield MOST
-
-
-def change(before: Pressure, now: Pressure) -> float:
-    """Largest change of intensities and p, relative to the largest |p|; not next to tips."""
-    at = np.concatenate([ENDS, _LOOKED_AT])
-    for tip in now.tips:
-        at = at[np.abs(at - tip) > NEAR_TIP]
-    earlier, later = before.series(at), now.series(at)
-    return float(np.abs(earlier - later).max() / np.abs(later).max())
-
-
-#: Chebyshev's points in g at first and at most; the last coefficients estimate the error.
-_FEW, _MANY, _LAST = 9, 65, 2
-
-
-@dataclass(frozen=True)
-class ContactsAtSpeed:
-    """Contacts with any friction at one speed, which share kernels.
-
-    Attributes:
-        response: of the surface's solid.
-        stack: layers with their substrate, lengths over a.
-        slope: μ v,X under the punch over N/(2a) at given r.
-        tolerance: relative.
-    """
-
-    response: Any
-    stack: LayersAtSpeed
-    slope: Callable[[NDArray], NDArray]
-    tolerance: float
-
-    @cached_property
-    def kernel(self) -> Kernel:
-        return Kernel(self.stack, self.tolerance / 1e3)
-
-    def solved(self, g: NDArray) -> tuple["Contacts", NDArray[np.float64]]:
-        """Pressures from which those at all of ``g`` are interpolated, and the error of that, (1,).
-
-        Args:
-            g: σ_XY/σ_YY, sorted, (states,).
-        """
-        if len(g) <= _FEW:
-            return Contacts(g, self._each(g)), np.zeros(1)
-        count = _FEW
-        middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
-        while True:
-            nodes = middle + half * np.cos(np.pi * np.arange(count) / (count - 1))
-            frictions = Contacts(nodes, self._each(nodes))
-            error = frictions.unresolved
-            if error <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
-                return frictions, np.array([error])
-            count = 2 * count - 1
-
-    def _each(self, g: NDArray) -> list[SolvedContact]:
-        equations = (Equation(self.response, self.kernel, value, self.slope) for value in g.tolist())
-        return [converged_pressure(equation, self.tolerance) for equation in equations]
-
-    def scaled(self, h: float) -> Scaled:
-        """The kernel of a contact of the half-width h."""
-        return Scaled(self.kernel, h)
-
-    @property
-    def rounding(self) -> float:
-        """Relative error of the pressure by that of the kernel."""
-        return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
-
-
-@dataclass(frozen=True)
-class Contacts:
-    """Contacts with several frictions, from which those with others are interpolated.
-
-    Attributes:
-        g: σ_XY/σ_YY, (nodes,).
-        each: contacts, one for each g.
-    """
-
-    g: NDArray[np.float64]
-    each: list[SolvedContact]
-
-    @property
-    def near(self) -> float:
-        """|r| up to which p of all pressures can be evaluated."""
-        return min(p.near for contact in self.each for p in (contact.pressure, contact.before))
-
-    @cached_property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-width of every contact, (nodes,)."""
-        return np.array([contact.half_width for contact in self.each])
-
-    @cached_property
-    def centre(self) -> NDArray[np.float64]:
-        """Middle of every contact, (nodes,)."""
-        return np.array([contact.centre for contact in self.each])
-
-    @cached_property
-    def free(self) -> NDArray[np.float64]:
-        """1 where the left and the right end are free, 0 where they are not, (nodes, 2)."""
-        return np.array([contact.free for contact in self.each], dtype=float)
-
-    @cached_property
-    def tips(self) -> NDArray[np.float64]:
-        """Places at which the pressure is infinite inside the contact, (nodes, k); infinity for none."""
-        each = [contact.pressure.tips for contact in self.each]
-        places = np.full((len(each), max(map(len, each))), np.inf)
-        for row, tips in zip(places, each):
-            row[: len(tips)] = tips
-        return places
-
-    def read(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
-        """Values of a function of every pressure, (nodes, ...)."""
-        return np.array([what(contact.pressure) for contact in self.each])
-
-    def both(self, what: Callable[[Any], NDArray]) -> NDArray[np.float64]:
-        """Values of a function of every pressure, and of that with fewer unknowns, (2, nodes, ...)."""
-        return self.of_each(lambda pressure, g, h: what(pressure))
-
-    def of_each(self, what: Callable[[Any, float, float], NDArray]) -> NDArray[np.float64]:
-        """Values of a function of pressure, friction and half-width, (2, nodes, ...).
-
-        Those of every contact come first, then those of the pressures with fewer unknowns.
-        """
-        nodes = list(zip(self.each, self.g.tolist(), self.half_width.tolist()))
-        return np.array(
-            [
-                [what(contact.pressure, g, h) for contact, g, h in nodes],
-                [what(contact.before, g, h) for contact, g, h in nodes],
-            ]
-        )
-
-    @cached_property
-    def unresolved(self) -> float:
-        """Relative error of pressures interpolated in g, from their last Chebyshev coefficients."""
-        values = self.smooth
-        x = np.cos(np.pi * np.arange(len(self.g)) / (len(self.g) - 1))
-        c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
-        return float(np.abs(c[-_LAST:]).max() / np.abs(values).max())
-
-    @property
-    def smooth(self) -> NDArray[np.float64]:
-        """Samples of every contact that are smooth in g, (nodes, n)."""
-        r = np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
-        pressures = self.read(lambda pressure: pressure.series(r))
-        lengths = np.column_stack([self.half_width, self.centre]) / self.half_width.max()
-        return np.column_stack([pressures / np.abs(pressures).max(), lengths])
-
-    def at(self, g: NDArray) -> NDArray[np.float64]:
-        """Weights that interpolate values of every pressure to other frictions, (states, nodes)."""
-        weights = (-1.0) ** np.arange(len(self.g))
-        weights[[0, -1]] /= 2.0
-        return barycentric(self.g, weights, g)
-
-    @property
-    def change(self) -> float:
-        """Largest relative change of a pressure with the number of unknowns."""
-        return max(contact.change for contact in self.each)

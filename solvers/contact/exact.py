@@ -1,6 +1,6 @@
 """Closed form as a method: exact solutions of contacts on uniform half-planes, and collocated ones.
 
-Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.uniform`.
+Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contacts`.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .closed_form import FlatPunch
+from .contacts import Contacts, Group, contacts_of
 from .edges import Exponents
-from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Surface, Task, Turns, solved_once, together
-from .uniform import Contacts, Group, contacts_of
+from .solution import Task, solved_once
+from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_knots
 from .yielding import Strength
 
 #: Most points inside whose potentials are held in memory at a time.
@@ -77,12 +77,17 @@ class ExactSolution:
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
 
+    @property
+    def places(self) -> Places:
+        """Places at which stresses are evaluated."""
+        return self.task.places
+
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
         flat = self.task.body.edges(self.task.response, self.g)
-        α, β = map(self._of, "αβ")
-        return Exponents(flat.α + (α > 0.0), flat.β + (β > 0.0))
+        free_left, free_right = self._of("free").T
+        return Exponents(flat.α + free_right, flat.β + free_left)
 
     @property
     def half_width(self) -> NDArray[np.float64]:
@@ -136,7 +141,7 @@ class ExactSolution:
         def of_group(group: Group) -> NDArray[np.float64]:
             loaded = body.loaded(load[group.rows] if np.ndim(load) else load)
             return of_contact(
-                self.task.response, self._g[group.rows], group, loaded, group.contact_stress,
+                self.task.response, group.g, group, loaded, group.contact_stress,
                 (group.centre, group.half_width), group.pressure.kinks,
             )  # fmt: skip
 
@@ -149,9 +154,9 @@ class ExactSolution:
         def of_group(group: Group) -> NDArray[np.float64]:
             kinks = np.append(group.pressure.kinks, group.pressure.breaks)
             return of_field(
-                self.task.response, self._g[group.rows], (group.α, group.β), group.contact_stress,
+                self.task.response, group.g, (group.α, group.β), group.contact_stress,
                 lambda X, Y: self.contacts.stresses_of(group, X[None], Y[None]),
-                self.task.places.points, kinks,
+                self.places.points, kinks,
             )  # fmt: skip
 
         return self.contacts.joined(of_group)[self._rows]
@@ -159,14 +164,17 @@ class ExactSolution:
     @cached_property
     def surface(self) -> Surface:
         """Stresses on the surface."""
-        places = self.task.places
+        places = self.places
         σ_XX, σ_YY = self.contacts.on_surface(places.X)
-        turns = self._turns
+        surface = Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX)
+        return replace(surface, turns=self._limits(surface)).of(self._rows)
+
+    def _limits(self, surface: Surface) -> Turns | None:
+        """Limits of the stresses at ends, kinks and knots, wherever they are finite."""
         if self._body.knots:  # a prescribed pressure is that of all states
-            turns = turns_at_knots(
-                self.contacts.groups[0].pressure, self._g, lambda X: self.contacts.on_surface(X)[0]
-            )
-        return Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX, turns=turns).of(self._rows)
+            pressure: Any = self.contacts.groups[0].pressure
+            return turns_at_knots(pressure, self._g, lambda X: self.contacts.on_surface(X)[0])
+        return self._turns
 
     @cached_property
     def _turns(self) -> Turns | None:
@@ -181,16 +189,15 @@ class ExactSolution:
         between = None
         if kinks:
             places = np.array([-1.0, *kinks, 1.0])
-            _, between = at_and_between(
-                places, len(group.rows), lambda r: self.contacts.surface_of(group, r)[0]
-            )
-        σ = np.array([σ_XX, σ_YY, self._g[group.rows, None] * σ_YY])
+            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            _, between = at_and_between(places, lambda r: self.contacts.surface_of(group, r)[0], infinite)
+        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
         return Turns(np.tile(X, (len(group.rows), 1)), σ, between)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
-        points = self.task.places.points
+        points = self.places.points
         σ = np.empty((3, len(self._g), len(points)))
         for first in range(0, len(points), _TOGETHER):
             batch = slice(first, first + _TOGETHER)

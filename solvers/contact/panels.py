@@ -1,368 +1,375 @@
-"""Pressure under any slope of a contact with two free ends, by quadrature in panels.
+"""Functions over a contact by their values on panels in x = log((1 + t)/(1 - t)), and what follows.
 
-With f = μ v,X under the punch over the contact [-1, 1], w = (1 - s)^a (1 + s)^b, a + b = 1, and
-N̂ = n + g n₁₂ the potential of the pressure that vanishes at both ends is
+In x both ends of the contact [-1, 1] lie at infinity, and what goes with a power or a logarithm of the
+distance from an end is smooth. With the weight w = (1 - t)^α (1 + t)^β, α + β = -1, Cauchy's integral is
+a convolution,
 
-    Φ(z) = -(sin πa/(π N̂)) X(z) ∫ f(t)/(w(t) (t - z)) dt,     X = (z - 1)^a (z + 1)^b.
+    ∫ w f/(t - z) dt = w(z) C(y),   C(y) = ∫ f e^(kξ)/(e^ξ - 1) dx,   ξ = x - y,   k = 1 + β,
 
-In the coordinate x = log((1 - t)/(1 + t)), which resolves both ends alike, this is a convolution,
-
-    Φ = -(sin πa/(π N̂)) e^(-iπa) T(y),   T(y) = ∫ f e^(b ξ)/(1 - e^ξ) dx,   ξ = x - y,
-
-y = log((1 - z)/(1 + z)), 0 < Im y <= π below the surface. Panels end where the slope or its derivative
-jumps; in one that is near y the smooth rest of the integrand is a sum of Legendre polynomials, whose
-Cauchy integrals are Legendre's functions of the second kind.
+y = log((1 + z)/(1 - z)), -π <= Im y < 0 below the surface. In a panel that is near y the smooth rest of
+the integrand is a sum of Legendre polynomials, whose Cauchy integrals are Legendre's functions of the
+second kind.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
-from .pressure import Pressure
+from .pressure import Functions
 
-#: Gauss points of a panel, their weights, and from values there to coefficients of Legendre polynomials.
-_NODES = 20
-_τ, _w, _TO_LEGENDRE = legendre_panel(_NODES)
+#: Points of a panel, and of one of a slope, which is exact to the last digits.
+NODES, _OF_SLOPES = 14, 20
+#: |x| beyond which functions are those at the ends: of pressures, of slopes.
+_REACH, _REACH_OF_SLOPES = 26.0, 40.0
+#: Longest panels up to some |x|, and of slopes over these.
+_LONGEST, _SLOPES = ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0)), 0.8
+#: Panels towards a kink: their grading, and their number where the pressure itself is infinite or has a
+#: cusp, and where only the pressure that layers add is resolved; both for slopes.
+_TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, 5, 0.5, 46
+#: Panels towards a place where a kernel is rough: their grading and number; distance over a panel's
+#: length within which a place is near it.
+_GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
+#: Positions on which kernels are held at once, over those of a rule.
+_TOGETHER = 200
+#: Distance from a free end within which a pressure is continued, and up to which it is fitted for that.
+_MENDED, _KNOWN = 1e-4, 1e-2
+_ξ, _ω = legendre.leggauss(14)
 
-#: Longest panel; |x| beyond which f is that of the end and the integral is exact; grading next to a place
-#: where the slope is not smooth, and its steps.
-_LONGEST, _REACH, _GRADING, _STEPS = 2.0, 40.0, 0.5, 46
+#: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel; |1 - e^ξ| below
+#: which it is formed without cancellation; kernels at once, which stay in a core's cache.
+_ELLIPSE, _CLOSE, _AT_ONCE = 2.4, 0.1, 20_000
 
-#: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel.
-_NEAR = 2.4
-
-#: |y| beyond which exponentials would overflow; |1 - e^ξ| below which it is formed without cancellation.
-_FAR, _CLOSE = 200.0, 0.1
-
-#: Kernels at once: these and what becomes of them stay in a core's cache.
-_AT_ONCE = 20_000
-
-#: Distance from a cusp of the pressure that counts as none, and that from which it is extrapolated.
-_AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
-
-#: Gauss points along a short step, from its start to its end, over which the derivative is summed.
-_along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
+_legendre_panel = lru_cache(legendre_panel)
 
 
-def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
-    """Ends of the panels in x, growing, (panels + 1,).
+@lru_cache(maxsize=16)
+def ends_of_panels(
+    finest: float,
+    kinks: tuple[float, ...] = (),
+    steps: int = TO_TIP,
+    grading: float = _TO_KINK,
+    reach: float = _REACH,
+) -> NDArray[np.float64]:
+    """Ends of panels in x, (panels + 1,).
+
+    No panel is longer than ``finest`` in t, nor than ``finest`` times the usual length in x.
 
     Args:
-        kinks: positions in (-1, 1) at which the slope or its derivative jumps.
-        rough: True if the slope beside them is a power that is not smooth.
+        finest: longest panel.
+        kinks: places in t towards which panels get shorter.
+        steps: number of panels that do, to either side; -1 for panels that only end there.
+        grading: length of a panel over that of the next.
+        reach: |x| up to which there are panels.
     """
-    inside = kinks[np.abs(kinks) < 1.0]
-    at = np.sort(np.log1p(-inside) - np.log1p(inside))
-    at = at[np.abs(at) < _REACH]
-    if rough:
-        steps = _GRADING ** np.arange(_STEPS)
-        at = np.concatenate([at, *(x + np.concatenate([-steps, steps]) for x in at)])
-    fixed = np.unique(np.concatenate([[-_REACH, _REACH], at]))
-    gaps = np.diff(fixed)
-    count = np.ceil(gaps / _LONGEST).astype(int)
-    number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    starts = np.repeat(fixed[:-1], count) + number * np.repeat(gaps / count, count)
-    return np.append(starts, _REACH)
+    half = [0.0]
+    while half[-1] < reach - 1e-9:
+        half.append(min(half[-1] + float(_longest(half[-1], finest)), reach))
+    ends = np.concatenate([-np.array(half[:0:-1]), half])
+    at = stretched(np.array(kinks, dtype=float))
+    at = at[np.abs(at) < reach]
+    if not len(at):
+        return ends
+    towards = np.append(grading ** np.arange(steps + 1), 0.0)
+    graded = (at[:, None] + np.concatenate([-towards, towards])).ravel()
+    others = ends[np.abs(ends[:, None] - at).min(axis=1) > 1.0]
+    ends = np.unique(np.concatenate([others, graded[np.abs(graded) < reach], [-reach, reach]]))
+    while True:
+        middle = (ends[1:] + ends[:-1]) / 2.0
+        long = np.diff(ends) > 1.5 * _longest(middle, finest)
+        if not long.any():
+            return ends
+        ends = np.sort(np.append(ends, middle[long]))
+
+
+def _longest(x: Any, finest: float) -> NDArray[np.float64]:
+    """Longest panel in x at places x, with the shape of x."""
+    limits, lengths = np.array(_LONGEST).T
+    longest = lengths[np.searchsorted(limits, np.abs(x), side="right")]
+    return np.asarray(np.minimum(finest * longest, 2.0 * finest * np.cosh(np.abs(x) / 2.0) ** 2))
+
+
+def stretched(r: NDArray) -> NDArray[np.float64]:
+    """Coordinate x at positions r in [-1, 1], of their shape."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.log1p(r) - np.log1p(-r))
 
 
 @dataclass(frozen=True)
-class Panels:
-    """Quadrature over the contact, in panels of x = log((1 - t)/(1 + t)).
+class Panels(Functions):
+    """Rule on panels for integrals with the weight (1 - t)^α (1 + t)^β.
 
     Attributes:
-        a: exponent of w at the right end, in (0, 1).
-        ends: ends of the panels in x, (panels + 1,).
+        α, β: exponents; their sum is -1 where a pressure has edges, and 1 where it has free ends.
+        finest: longest panel in t.
+        kinks, steps, grading, reach: as in :func:`ends_of_panels`.
+        nodes: points of a panel.
+        rough: True if kernels in integrals may have a logarithm at 0.
     """
 
-    a: float
-    ends: NDArray[np.float64]
-
-    @property
-    def b(self) -> float:
-        return 1.0 - self.a
+    α: float
+    β: float
+    finest: float
+    kinks: tuple[float, ...] = ()
+    steps: int = TO_TIP
+    grading: float = _TO_KINK
+    reach: float = _REACH
+    nodes: int = NODES
+    rough: bool = True
 
     @cached_property
-    def middle(self) -> NDArray[np.float64]:
-        return (self.ends[1:] + self.ends[:-1]) / 2.0
+    def ends(self) -> NDArray[np.float64]:
+        return ends_of_panels(self.finest, self.kinks, self.steps, self.grading, self.reach)
 
     @cached_property
     def half(self) -> NDArray[np.float64]:
         return np.diff(self.ends) / 2.0
 
     @cached_property
+    def middle(self) -> NDArray[np.float64]:
+        return (self.ends[1:] + self.ends[:-1]) / 2.0
+
+    @cached_property
     def x(self) -> NDArray[np.float64]:
-        """Gauss points, (panels, nodes)."""
-        return self.middle[:, None] + self.half[:, None] * _τ
+        """Points in x, (n,)."""
+        τ, _, _ = _legendre_panel(self.nodes)
+        return (self.middle[:, None] + self.half[:, None] * τ).ravel()
+
+    @cached_property
+    def dx(self) -> NDArray[np.float64]:
+        """Weights of integrals over x, (n,)."""
+        _, w, _ = _legendre_panel(self.nodes)
+        return np.asarray((self.half[:, None] * w).ravel())
 
     @cached_property
     def t(self) -> NDArray[np.float64]:
-        """Positions in the contact, with both ends as the last two: (panels·nodes + 2,)."""
-        return np.append(-np.tanh(self.x / 2.0).ravel(), [1.0, -1.0])
+        return np.tanh(self.x / 2.0)
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
-        """Weights of ∫ F(t)/w(t) dt = Σ weights·F, F at :attr:`t`, (panels·nodes + 2,)."""
-        density = np.exp(self.b * self.x - np.logaddexp(0.0, self.x))
-        inner = self.half[:, None] * _w * density
-        tails = np.exp(-_REACH * np.array([self.b, self.a])) / [self.b, self.a]
-        return np.append(inner.ravel(), tails)
+        """Weights of integrals over t with (1 - t)^α (1 + t)^β, (n,); beyond the reach included."""
+        weights = self.dx * self.density(self.x)
+        beyond = 2.0 / (1.0 + np.exp(self.reach))
+        weights[-1] += 2.0**self.β * beyond ** (1.0 + self.α) / (1.0 + self.α)
+        weights[0] += 2.0**self.α * beyond ** (1.0 + self.β) / (1.0 + self.β)
+        return weights
 
-    def transform(self, f: NDArray, y: NDArray) -> NDArray[Any]:
-        """Transform T(y), (points,); a principal value where y is real.
+    def density(self, x: NDArray) -> NDArray[np.float64]:
+        """Weight times dt/dx; 1 - t = 2/(1 + e^x), and dt/dx is half the product of 1 - t and 1 + t."""
+        log = -(1.0 + self.α) * np.logaddexp(0.0, x) - (1.0 + self.β) * np.logaddexp(0.0, -x)
+        return np.asarray(2.0 ** (self.α + self.β + 1.0) * np.exp(log))
+
+    def weight(self, x: NDArray) -> NDArray[np.float64]:
+        """(1 - t)^α (1 + t)^β at x, with the shape of x."""
+        log = -self.α * np.logaddexp(0.0, x) - self.β * np.logaddexp(0.0, -x)
+        return np.asarray(2.0 ** (self.α + self.β) * np.exp(log))
+
+    def apart(self, x: Any, δ: NDArray) -> NDArray[np.float64]:
+        """t(x + δ) - t(x), to all digits."""
+        return np.asarray(np.sinh(δ / 2.0) / (np.cosh(x / 2.0) * np.cosh((x + δ) / 2.0)))
+
+    def basis(self, x: NDArray, panel: int) -> NDArray[np.float64]:
+        """Matrix from values at a panel's points to those at its places x, (len(x), nodes)."""
+        τ = (x - self.middle[panel]) / self.half[panel]
+        return np.asarray(legendre.legvander(τ, self.nodes - 1) @ _legendre_panel(self.nodes)[2])
+
+    def interpolated(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
+        """Values at places x of functions p with values (n, ...) at the points, shape of x and (...)."""
+        inside = np.clip(x, -self.reach, self.reach)
+        values = np.empty((*inside.shape, *p.shape[1:]))
+        panels = np.clip(np.searchsorted(self.ends, inside) - 1, 0, len(self.half) - 1)
+        for panel in np.unique(panels).tolist():
+            rows = panels == panel
+            values[rows] = self.basis(inside[rows], panel) @ p[self.of(panel)]
+        return values
+
+    def of(self, panel: int) -> slice:
+        """Numbers of a panel's points."""
+        return slice(panel * self.nodes, (panel + 1) * self.nodes)
+
+    @cached_property
+    def derivative(self) -> NDArray[np.float64]:
+        """Matrices from values in a panel to slopes dp/dt at its points, (panels, nodes, nodes)."""
+        τ, _, to_legendre = _legendre_panel(self.nodes)
+        of_τ = legendre.legvander(τ, self.nodes - 2) @ legendre.legder(to_legendre)
+        slope = 1.0 / (2.0 * np.cosh(self.x / 2.0) ** 2)
+        return of_τ / self.half[:, None, None] / slope.reshape(-1, self.nodes, 1)
+
+    def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:
+        """Weights of values at the points in ∫ kernel(t(x) - t) w(t) … dt, (n, functions).
+
+        The kernel may be rough where t = t(x).
+        """
+        away = -self.apart(x, self.x - x)
+        away[away == 0.0] = 1.0  # the panels near x are replaced below
+        by_rule = kernel(away)
+        integrals = by_rule * self.weights[:, None]
+        for panel, half in enumerate(self.half.tolist()):
+            low, high = self.ends[panel], self.ends[panel + 1]
+            if low - _NEAR * 2.0 * half <= x <= high + _NEAR * 2.0 * half:
+                δ, weights = self._towards(x, float(low), float(high))
+                places, near = x + δ, self.of(panel)
+                values = kernel(-self.apart(x, δ)) * (weights * self.density(places))[:, None]
+                beyond = self.weights[near] - self.dx[near] * self.density(self.x[near])
+                integrals[near] = self.basis(places, panel).T @ values
+                integrals[near] += beyond[:, None] * by_rule[near]
+        return np.asarray(integrals)
+
+    @staticmethod
+    def _towards(x: float, low: float, high: float) -> tuple[NDArray, NDArray]:
+        """Distances from a place and weights on a panel, graded towards it or the nearer end."""
+        steps = np.concatenate([[0.0], _GRADING ** np.arange(_STEPS, -1, -1.0)])
+        middle, half = (steps[1:] + steps[:-1]) / 2.0, np.diff(steps) / 2.0
+        s, ds = (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
+        at = min(max(x, low), high)
+        parts = [((at - x) + (end - at) * s, abs(end - at) * ds) for end in (low, high) if end != at]
+        places, weights = (np.concatenate(numbers) for numbers in zip(*parts))
+        return places, weights
+
+    def cauchy(self, f: NDArray, y: NDArray) -> NDArray[Any]:
+        """Cauchy's integral of w f over w, C(y), (points,); a principal value where y is real.
 
         Args:
-            f: values at :attr:`t`, (n,), or (points, n) if f differs from y to y.
+            f: values at the points, (n,), or (points, n) if f differs from y to y.
             y: (points,).
         """
-        return self._transform(f, y, False)
-
-    def derivative(self, f: NDArray, y: NDArray) -> NDArray[np.complex128]:
-        """Derivative dT/dy off the real axis, (points,), for f at :attr:`t`, (n,)."""
-        return self._transform(f, y, True)
-
-    def _transform(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
+        k, ends = 1.0 + self.β, f[..., [0, -1]]
+        x, rule = self.x, np.broadcast_to(f * (np.exp(k * self.x) * self.dx), (len(y), len(self.x)))
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
-        near = np.abs(ζ + root) < _NEAR
-        rule = f[..., :-2] * (np.exp(self.b * self.x) * self.half[:, None] * _w).ravel()
-        integral = np.concatenate([
-            _sums(self.b, self.x, y[of], near[of], rule if f.ndim == 1 else rule[of], derived)
-            for of in _blocks(len(y), self.x.size)
-        ])  # fmt: skip
+        near, step = np.abs(ζ + root) < _ELLIPSE, max(_AT_ONCE // len(x), 1)
+        integral = np.zeros(len(y), dtype=np.result_type(y, float))
+        for start in range(0, len(y), step):
+            rows = slice(start, start + step)
+            left_out = np.repeat(near[rows], self.nodes, axis=1)
+            kernel = np.where(left_out, 0.0, _kernel(x, y[rows], left_out))
+            integral[rows] = np.einsum("ij,ij->i", kernel, rule[rows])
+        integral *= np.exp(-k * y)
         point, panel = np.nonzero(near)
-        ξ = self.x[panel] - y[point][:, None]
-        simple, double = _smooth(self.b, ξ, derived)
-        values = f[..., :-2].reshape(*f.shape[:-1], *self.x.shape)
+        ξ = x.reshape(-1, self.nodes)[panel] - y[point][:, None]
+        values = f.reshape(*f.shape[:-1], len(self.half), self.nodes)
         of_panel = values[panel] if f.ndim == 1 else values[point, panel]
         # The distance from the end at which two panels meet is the same number, and logarithms cancel.
         from_start, from_end = (y[point] - self.ends[panel + i] for i in (0, 1))
-        Q, Q_derived = _second_kind(ζ[point, panel], from_start, from_end, self.half[panel], derived)
-        near_part = -2.0 * np.einsum("ik,ik->i", (of_panel * simple) @ _TO_LEGENDRE.T, Q)
-        if derived:
-            twice = np.einsum("ik,ik->i", (of_panel * double) @ _TO_LEGENDRE.T, Q_derived)
-            near_part = near_part - 2.0 * twice / self.half[panel]
-        np.add.at(integral := integral.astype(np.result_type(integral, near_part)), point, near_part)
-        return integral + self._tails(f, y, derived)
+        Q = _second_kind(ζ[point, panel], from_start, from_end, self.nodes)
+        coefficients = (of_panel * _without_pole(k, ξ)) @ _legendre_panel(self.nodes)[2].T
+        np.add.at(integral, point, -2.0 * np.einsum("ik,ik->i", coefficients, Q))
+        # Beyond the panels f is that of the ends: two terms of a series.
+        for end, rate, ξ, sign in ((0, k, -self.reach - y, -1.0), (1, 1.0 - k, y - self.reach, 1.0)):
+            for power in (rate, rate + 1.0):
+                integral = integral + sign * ends[..., end] * np.exp(power * ξ) / power
+        return integral
 
-    def _tails(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
-        """Part of T or -dT/dy beyond the panels, where f is that of the ends: two terms of a series."""
-        tails: Any = 0.0
-        for value, rate, ξ, sign in (
-            (f[..., -2], self.b, -_REACH - y, 1.0), (f[..., -1], self.a, y - _REACH, -1.0)
-        ):  # fmt: skip
-            for k in (rate, rate + 1.0):
-                term = np.exp(k * ξ) / k
-                tails = tails + value * (-k * term if derived else sign * term)
-        return tails
+    # As functions of an :class:`.pressure.Expansion`, whose coefficients are values at the points.
+
+    def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
+        p = self.interpolated(c.T, stretched(r))
+        return np.moveaxis(p, -1, 0) if c.ndim > 1 else p
+
+    def rest(self, p: NDArray, r: NDArray, near: float) -> NDArray[np.float64]:
+        """Hilbert transform without that of the weight, see :meth:`.pressure.Pressure.rest`."""
+        values, under = np.empty(len(r)), np.abs(r) < 1.0
+        values[~under] = (self.weights * p / (self.t - r[~under, None])).sum(axis=1)
+        x = stretched(r[under])
+        values[under] = self.weight(x) * self.cauchy(p - self.interpolated(p, x)[:, None], x)
+        return values / np.pi
+
+    def integral(
+        self, p: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray
+    ) -> NDArray[np.float64]:
+        """Integrals with a kernel, see :meth:`.pressure.Pressure.integral`."""
+        under, forces = (np.abs(r) < 1.0) & self.rough, self.weights * p
+        rows = np.flatnonzero(~under)
+        parts = [
+            np.einsum("rtf,t->rf", kernel(r[some, None] - self.t), forces)
+            for some in np.array_split(rows, len(rows) // _TOGETHER + 1)
+        ]
+        integrals = np.empty((len(r), parts[0].shape[-1]))
+        integrals[rows] = np.concatenate(parts)
+        for i, x in zip(np.flatnonzero(under), stretched(r[under]).tolist()):
+            integrals[i] = p @ self.row(kernel, x)
+        return integrals
+
+    def points(self, p: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Rule for other integrals, see :meth:`.pressure.Pressure.points`."""
+        fine = replace(self, finest=min(finest, self.finest))
+        return fine.t, fine.weights * self.interpolated(p, fine.x)
+
+    def continued(self, p: NDArray, free: tuple[bool, bool]) -> NDArray[np.float64]:
+        """Values that fall to zero at free ends, left and right, like d and d log d.
+
+        Nearer to an end than ``_MENDED`` a fit of such terms replaces p; the equation, which is weighted
+        there as edges need it, resolves p only relative to the largest p.
+        """
+        continued = p.copy()
+        for x in [side * self.x for side, is_free in zip((-1.0, 1.0), free) if is_free]:
+            d = 2.0 / (1.0 + np.exp(x))
+            fitted, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
+            c, *_ = np.linalg.lstsq(_to_end(d[fitted]), p[fitted] / d[fitted], rcond=None)
+            continued[near] = d[near] * (_to_end(d[near]) @ c)
+        return continued
 
 
-def _blocks(points: int, nodes: int) -> list[slice]:
-    """Parts of so many points, at least one, each with about :data:`_AT_ONCE` kernels."""
-    step = max(_AT_ONCE // nodes, 1)
-    return [slice(start, start + step) for start in range(0, max(points, 1), step)]
+def _to_end(d: NDArray) -> NDArray[np.float64]:
+    """Terms of a pressure over its weight and d at distances d from a free end, (len(d), terms)."""
+    log = np.log(d)
+    return np.column_stack([np.ones_like(d), log, d, d * log, d * log**2, d**2, d**2 * log])
 
 
-def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derived: bool) -> NDArray[Any]:
-    """Sums of :func:`_kernel` at x - y over the panels that are not near, (points,).
-
-    Args:
-        b: exponent of the kernel.
-        x: Gauss points, (panels, nodes).
-        y: (points,).
-        near: panels that are left out, (points, panels).
-        rule: weights times values times e^(bx), (panels·nodes,) or (points, panels·nodes).
-        derived: True for the kernel's negative derivative.
-    """
-    far = np.abs(y.real) > _FAR
-    at = np.where(far, 0.0, y)
+def _kernel(x: NDArray, y: NDArray, left_out: NDArray) -> NDArray[Any]:
+    """1/(e^ξ - 1), ξ = x - y, (points, n), but for places that are left out."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        rest = 1.0 - np.exp(x) * np.exp(-at)[:, None, None]
-        factor = 1.0 / rest
-        close = (rest.real**2 + rest.imag**2 < _CLOSE**2) & ~near[..., None]
-        point, *node = np.nonzero(close)
-        factor[close] = _pole(x[tuple(node)] - y[point])
-        # k = e^(bξ) R with R = 1/(1 - e^ξ), and k' = k (b - 1 + R).
-        kernel = factor * (1.0 - b - factor) if derived else factor
-    kernel[far] = _kernel(b, x - y[far, None, None], derived) * np.exp(-b * x)
-    kernel[near] = 0.0
-    of_point = "j" if rule.ndim == 1 else "ij"
-    sums = np.einsum(f"ij,{of_point}->i", kernel.reshape(len(y), x.size), rule)
-    return np.where(far, 1.0, np.exp(-b * at)) * sums
-
-
-def _pole(ξ: NDArray) -> NDArray[Any]:
-    """1/(1 - e^ξ) next to its pole, |ξ| about :data:`_CLOSE` at most: Bernoulli's series."""
+        rest = np.exp(x) * np.exp(-y)[:, None] - 1.0
+        kernel = 1.0 / rest
+    point, node = np.nonzero((rest.real**2 + rest.imag**2 < _CLOSE**2) & ~left_out)
+    ξ = x[node] - y[point]
     of = ξ * ξ
-    return 0.5 - 1.0 / ξ - ξ * (1 / 12 - of * (1 / 720 - of * (1 / 30240 - of / 1209600)))
+    # Bernoulli's series next to the pole.
+    kernel[point, node] = 1.0 / ξ - 0.5 + ξ * (1 / 12 - of * (1 / 720 - of * (1 / 30240 - of / 1209600)))
+    return kernel
 
 
-def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:
-    """Kernel k = e^(bξ)/(1 - e^ξ), or -dk/dξ, stable for every ξ."""
-    lower = ξ.real < 0.0
-    falling = np.where(lower, ξ, -ξ)
-    E, rest = np.exp(falling), -np.expm1(falling)
-    # For ξ > 0: k = -e^(-(1 - b) ξ)/(1 - e^(-ξ)).
-    kernel = np.where(lower, 1.0, -1.0) * np.exp(np.where(lower, b, 1.0 - b) * falling) / rest
-    if not derived:
-        return kernel
-    # k' = k (b + e^ξ/(1 - e^ξ))
-    inner = np.where(lower, E, -1.0) / rest
-    return -kernel * (b + inner)
-
-
-def _smooth(b: float, ξ: NDArray, derived: bool) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Smooth factors of 1/ξ and 1/ξ² in the kernel, or in its negative derivative.
-
-    The kernel is κ/ξ with κ = -e^(bξ) ξ/(e^ξ - 1); its negative derivative is κ/ξ² - κ'/ξ.
-    """
+def _without_pole(k: float, ξ: NDArray) -> NDArray[Any]:
+    """Smooth factor e^(kξ) ξ/(e^ξ - 1) of 1/ξ."""
     small = np.abs(ξ) < 1e-3
     safe = np.where(small, 1.0, ξ)
-    E = np.expm1(safe)
-    ratio = np.where(small, 1.0 - ξ / 2.0 + ξ**2 / 12.0 - ξ**4 / 720.0, safe / E)  # ξ/(e^ξ - 1)
-    κ = -np.exp(b * ξ) * ratio
-    if not derived:
-        return κ, κ
-    slope = np.where(small, -0.5 + ξ / 6.0 - ξ**3 / 180.0, (E - safe * (E + 1.0)) / E**2)
-    return np.exp(b * ξ) * (b * ratio + slope), κ
+    ratio = np.where(small, 1.0 - ξ / 2.0 + ξ**2 / 12.0 - ξ**4 / 720.0, safe / np.expm1(safe))
+    return np.exp(k * ξ) * ratio
 
 
-def _second_kind(
-    ζ: NDArray, from_start: NDArray, from_end: NDArray, half: NDArray, derived: bool
-) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Legendre's functions of the second kind Q_k(ζ), and dQ_k/dζ: (n, nodes) each.
+def _second_kind(ζ: NDArray, from_start: NDArray, from_end: NDArray, count: int) -> NDArray[Any]:
+    """Legendre's functions of the second kind Q_k(ζ), (n, count).
 
     ∫ P_k(τ)/(τ - ζ) dτ = -2 Q_k, principal values for real ζ.
 
     Args:
         ζ: in a panel's own coordinate, (n,).
-        from_start, from_end: distances from its ends, of which ``half`` is half the difference, (n,).
-        half: half its length.
-        derived: True to compute derivatives.
+        from_start, from_end: distances from its ends, (n,).
+        count: number of functions.
     """
-    from_start, from_end = _off(from_start), _off(from_end)
-    if np.iscomplexobj(ζ):
-        first = 0.5 * (np.log(from_start) - np.log(from_end))
-    else:
-        first = 0.5 * np.log(np.abs(from_start / from_end))
+    # None is 0: infinite logarithms of two panels would not cancel.
+    start, end = (np.where(np.abs(d) < 1e-300, 1e-300, d) for d in (from_start, from_end))
+    first = 0.5 * np.log(start / end if np.iscomplexobj(ζ) else np.abs(start / end))
     Q = [first, ζ * first - 1.0]
-    for k in range(1, _NODES - 1):
+    for k in range(1, count - 1):
         Q.append(((2 * k + 1) * ζ * Q[k] - k * Q[k - 1]) / (k + 1))
-    if not derived:
-        return np.stack(Q, axis=-1), np.stack(Q, axis=-1)
-    steepness = -(half**2) / (from_start * from_end)
-    D = [steepness, first + ζ * steepness]
-    for k in range(1, _NODES - 1):
-        D.append(D[k - 1] + (2 * k + 1) * Q[k])
-    return np.stack(Q, axis=-1), np.stack(D, axis=-1)
+    return np.stack(Q, axis=-1)
 
 
-def _off(distance: NDArray) -> NDArray[Any]:
-    """Distances from a panel's end, none 0: infinite logarithms of two panels would not cancel."""
-    return np.where(np.abs(distance) < 1e-300, 1e-300, distance)
+def panels_of_slope(a: float, kinks: Sequence[float], rough: bool) -> Panels:
+    """Panels for integrals of a slope over the weight of a pressure between free ends.
 
-
-@dataclass(frozen=True)
-class FreeEnds(Pressure):
-    """Pressure of a contact [-1, 1] with two free ends, over N/(2h).
-
-    Attributes:
-        panels: quadrature over the contact.
-        f: μ v,X under the punch over N/(2h) at the panels' points, with ∫ f/w = 0.
-        slope: function that gives μ v,X over N/(2h) at any positions in the contact.
-        n, Q: n + g n₁₂ and g q of the half-plane.
-        kinks, tips: see :class:`galinx.solvers.contact.pressure.Pressure`.
-        cusp: exponent below 1 of the pressure's change by the distance from a kink; 0 for none.
+    Args:
+        a: exponent of the pressure at the right end.
+        kinks: places over the half-width at which the slope or its derivative jumps.
+        rough: True if the slope beside them is a power that is not smooth.
     """
-
-    panels: Panels
-    f: NDArray[np.float64]
-    slope: Any
-    n: float
-    Q: float
-    kinks: Sequence[float] = ()
-    tips: Sequence[float] = ()
-    cusp: float = 0.0
-
-    K_I = np.zeros(2)  # type: ignore[assignment]
-
-    @property
-    def α(self) -> float:  # type: ignore[override]
-        """Exponent at the right end, positive."""
-        return self.panels.a
-
-    @property
-    def β(self) -> float:  # type: ignore[override]
-        """Exponent at the left end, positive."""
-        return self.panels.b
-
-    @property
-    def _factor(self) -> float:
-        return float(np.sin(np.pi * self.panels.a) / (np.pi * self.n))
-
-    def series(self, r: NDArray) -> NDArray[np.float64]:
-        p, inside = np.zeros(np.shape(r)), np.abs(r) < 1.0
-        at = r[inside]
-        f = self.slope(at)
-        # Without f(r) nothing cancels towards the ends.
-        T = self.panels.transform(self.f - f[:, None], np.log1p(-at) - np.log1p(at))
-        stress = -self._factor * np.sin(np.pi * self.panels.a) * T
-        for kink in self.kinks if self.cusp else ():
-            at_cusp = np.abs(at - kink) < _AT_CUSP
-            if at_cusp.any():  # the part of the smallest panel that is missed there is not small
-                stress[at_cusp] = self._at_cusp(kink)
-        p[inside] = stress * (1.0 - at) ** -self.α * (1.0 + at) ** -self.β
-        return p
-
-    def _at_cusp(self, at: float) -> float:
-        """Contact stress at a cusp: σ + C d^exponent extrapolated to d = 0, the mean of both sides."""
-        d = _BESIDE_CUSP * np.array([-1.0, 1.0])
-        near, far = (float(self.σ_YY(at + step).mean()) for step in (d, 2.0 * d))
-        return near + (near - far) / (2.0**self.cusp - 1.0)
-
-    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
-        transform, inside, beside = np.empty(r.shape), np.abs(r) < 1.0, np.abs(r) > 1.0
-        under, end = r[inside], ~inside & ~beside
-        transform[inside] = (self.slope(under) + self.Q * self.σ_YY(under)) / self.n
-        transform[end] = self.slope(r[end]) / self.n
-        transform[beside] = self.at(r[beside] - 0.0j).real
-        return transform
-
-    def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
-        flat = np.ravel(z).astype(complex)
-        value = self._phase * self.panels.transform(self.f, _logarithm(flat))
-        return value.reshape(np.shape(z))
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        shape = np.broadcast_shapes(np.shape(z), np.shape(step))
-        z, step = (np.ravel(part).astype(complex) for part in np.broadcast_arrays(z, step))
-        change, stepped = np.zeros(z.shape, dtype=complex), step != 0.0
-        z, step = z[stepped], step[stepped]
-        δ: NDArray = -step / (1.0 - z) - step / (1.0 + z)
-        if share != 0.0:
-            δ = (_log1p(-share * step / (1.0 - z)) - _log1p(share * step / (1.0 + z))) / share
-        y = _logarithm(z)
-        for node, weight in zip(_along, _along_weights):
-            change[stepped] += weight * δ * self.panels.derivative(self.f, y + node * share * δ)
-        return (self._phase * change).reshape(shape)
-
-    @property
-    def _phase(self) -> complex:
-        return complex(-self._factor * np.exp(-1j * np.pi * self.panels.a))
-
-
-def _logarithm(z: NDArray) -> NDArray[np.complex128]:
-    """Coordinate y = log((1 - z)/(1 + z)), 0 < Im y <= π below the surface and beside the contact."""
-    y = np.log((1.0 - z) / (1.0 + z))
-    return y.real + 1j * np.abs(y.imag)
-
-
-def _log1p(x: NDArray) -> NDArray[np.complex128]:
-    from scipy.special import log1p  # NumPy's loses digits for small complex arguments
-
-    return np.asarray(log1p(x))
+    steps = _STEPS_OF_SLOPES if rough else -1
+    return Panels(
+        -a, a - 1.0, _SLOPES, tuple(kinks), steps, _TO_KINK_OF_SLOPES, _REACH_OF_SLOPES, _OF_SLOPES
+    )

@@ -4,7 +4,7 @@ What all pressures have in common is their value, their intensities and the sear
 Methods differ in how they find the factor.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,14 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .edges import weights_hilbert
-
-#: Places at which the pressure is sampled for its largest value, and places about kinks; most tops that
-#: are refined. Where there is a kink: places between a top's neighbours, and least distance of these.
-_SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
-_BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
-_TOPS, _BETWEEN, _AT_KINK = 5, 21, 1e-6
-#: Rounds of refinement by parabolas through three places, factor of each, and least distance of these.
-_HALVINGS, _NEARER, _NEAREST, _THREE = 6, 8.0, 3e-5, np.array([-1.0, 0.0, 1.0])
+from .extremes import FINER, between, largest
 
 #: Both ends of a contact, over its half-width.
 ENDS = np.array([-1.0, 1.0])
@@ -56,8 +49,9 @@ class Pressure:
     def σ_YY(self, r: ArrayLike) -> NDArray[np.float64]:
         """Contact stress over N/(2a) at r; 0 beside the contact, NaN at an end where it is infinite."""
         r = np.asarray(r, dtype=float)
+        at = np.clip(r, -1.0, 1.0)
         with np.errstate(invalid="ignore", divide="ignore"):
-            stress = (1.0 - r) ** self.α * (1.0 + r) ** self.β * self.series(r)
+            stress = (1.0 - at) ** self.α * (1.0 + at) ** self.β * self.series(at)
         stress = np.where(np.abs(r) <= 1.0, stress, 0.0)
         at_end = np.any(np.abs(r) == 1.0)
         return np.where(np.isinf(stress), np.nan, stress) if at_end else stress
@@ -71,7 +65,12 @@ class Pressure:
         """
         exponents = np.concatenate([np.atleast_1d(self.β), np.atleast_1d(self.α)], axis=-1)
         K = -0.5 * self.series(ENDS) * 2.0 ** (self.α + self.β + 1.0)
-        return np.where(exponents < 0.0, K, 0.0)
+        return np.where((exponents < 0.0) & ~self.free, K, 0.0)
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """True where the left and the right end are free, (..., 2)."""
+        return np.concatenate([np.atleast_1d(self.β), np.atleast_1d(self.α)], axis=-1) > 0.0
 
     @property
     def bends(self) -> Sequence[float] | NDArray:
@@ -81,19 +80,19 @@ class Pressure:
     @property
     def finite(self) -> bool:
         """True if the pressure vanishes at both ends and has no tip, in all states."""
-        return bool(np.all(np.minimum(self.α, self.β) > 0.0)) and not len(self.tips)
+        return bool(np.all(self.free)) and not len(self.tips)
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
         if not self.finite:
             return np.full(1, np.nan), np.full(1, np.nan)
-        top, at = largest(lambda r: -self.σ_YY(r), self.kinks)
+        top, at = largest_of(lambda r: -self.σ_YY(r), self.kinks)
         return np.array([top]), np.array([at])
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface; NaN at an end where it is infinite."""
         transform, close = self.rest(r, self.near), np.abs(r) <= self.near
-        transform[close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
+        transform[..., close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
         return transform
 
     def transforms(self, g: Any, r: NDArray) -> tuple[Any, NDArray, Any]:
@@ -103,10 +102,6 @@ class Pressure:
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")
-
-    def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Exponents α and β at other frictions, (states,), by the local analysis of sharp edges there."""
-        return edges.α, edges.β
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
@@ -119,10 +114,6 @@ class Pressure:
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """t and weights times σ_YY for integrals with functions that vary over ``finest``, (n,) each."""
         raise NotImplementedError
-
-    def continued(self, free: tuple[bool, bool]) -> "Pressure":
-        """Pressure continued to zero at free ends, left and right, where it resolves them less well."""
-        return self
 
 
 class Functions:
@@ -141,7 +132,7 @@ class Functions:
         return 1.0
 
     def continued(self, c: NDArray, free: tuple[bool, bool]) -> NDArray[np.float64]:
-        """Coefficients of :meth:`Pressure.continued`."""
+        """Coefficients of a pressure that falls to zero at free ends, where it is resolved less well."""
         return c
 
 
@@ -153,16 +144,26 @@ class Expansion(Pressure):
         α, β: exponents at the right and the left end, numbers or (states, 1).
         c: coefficients over N/(2a), (functions,) or (states, functions).
         functions: functions f_k, which know their integrals.
+        ends: True where the left and the right end are free; None where the exponents say so.
     """
 
     α: Any
     β: Any
     c: NDArray[np.float64]
     functions: Any
+    ends: tuple[bool, bool] | None = None
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        return super().free if self.ends is None else np.array(self.ends)
+
+    def sum(self, amplitudes: NDArray) -> "Expansion":
+        """Sum of the states with amplitudes, (states,)."""
+        return replace(self, c=amplitudes @ self.c)
 
     @property
     def near(self) -> float:  # type: ignore[override]
-        return float(self.functions.near(len(self.c)))
+        return float(self.functions.near(self.c.shape[-1]))
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         return np.asarray(self.functions.sum(self.c, r))
@@ -173,9 +174,7 @@ class Expansion(Pressure):
         exponents = (
             np.broadcast_to(np.ravel(exponent), len(c)).tolist() for exponent in (self.α, self.β)
         )
-        each = [Pressure.largest(replace(self, α=α, β=β, c=row)) for α, β, row in zip(*exponents, c)]
-        value, place = np.concatenate(each, axis=1)
-        return value, place
+        return joined_largest(replace(self, α=α, β=β, c=row) for α, β, row in zip(*exponents, c))
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return np.asarray(self.functions.rest(self.c, r, near))
@@ -187,8 +186,9 @@ class Expansion(Pressure):
         t, forces = self.functions.points(self.c, finest)
         return t, forces
 
-    def continued(self, free: tuple[bool, bool]) -> "Expansion":
-        return replace(self, c=self.functions.continued(self.c, free))
+    def ending(self, free: tuple[bool, bool]) -> "Expansion":
+        """Pressure that falls to zero at free ends, left and right."""
+        return replace(self, c=self.functions.continued(self.c, free), ends=free)
 
     @property
     def unresolved(self) -> NDArray[np.float64]:
@@ -205,54 +205,21 @@ class Expansion(Pressure):
         return np.asarray(self.functions.moved_edges(self, r, length))
 
 
-def largest(
-    pressure: Callable[[NDArray], NDArray],
-    kinks: Sequence[float] | NDArray = (),
-    places: NDArray = _SAMPLES,
+def joined_largest(each: Iterable[Pressure]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest pressures over N/(2a) and places of several states, one after the other, (states,) each."""
+    value, place = np.concatenate([Pressure.largest(pressure) for pressure in each], axis=1)
+    return value, place
+
+
+def largest_of(
+    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] | NDArray
 ) -> tuple[float, float]:
-    """Largest pressure of a state under a punch and its place, by a search about several tops.
+    """Largest pressure of a state under a punch, and its place.
 
     Args:
-        pressure: at r in (-1, 1), (points,).
+        pressure: at r in (-1, 1), (points,); 0 at both ends.
         kinks: places at which it is not smooth.
-        places: places at which it is sampled besides, (n,).
     """
-    beside = np.ravel(np.add.outer(np.array(kinks, dtype=float), _BESIDE_KINKS))
-    r = np.unique(np.concatenate([places, beside[np.abs(beside) < 1.0]]))
-    p = pressure(r)
-    tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
-    if not len(tops):  # nearer to an end than all samples
-        tops = np.clip([p.argmax()], 1, len(p) - 2)
-    tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    return max(_nearer(pressure, r[i - 1 : i + 2], np.asarray(kinks)) for i in tops.tolist())
-
-
-def _nearer(
-    pressure: Callable[[NDArray], NDArray], three: NDArray, kinks: NDArray
-) -> tuple[float, float]:
-    """Largest pressure about the middle one of three places, and its place.
-
-    It is that of ever closer parabolas; as long as there is a kink about, of ever finer samples.
-    """
-    while len(inside := kinks[(kinks >= three[0]) & (kinks <= three[2])]):
-        step = (three[2] - three[0]) / (_BETWEEN - 1)
-        r = np.union1d(np.linspace(three[0], three[2], _BETWEEN), inside)
-        p = pressure(r)
-        i = int(np.clip(np.argmax(p), 1, len(r) - 2))
-        three = r[i - 1 : i + 2]
-        if step < _AT_KINK:  # where the largest pressure may have a cusp
-            return float(p.max()), float(r[p.argmax()])
-    low, high = three[[0, 2]]
-    half = (high - low) / 2.0
-    least = min(_NEAREST, half)
-    for _ in range(_HALVINGS):
-        p = pressure(three)
-        slopes = np.diff(p) / np.diff(three)
-        bend = (slopes[1] - slopes[0]) / (three[2] - three[0])
-        top = (three[0] + three[1]) / 2.0 - slopes[0] / (2.0 * bend) if bend < 0.0 else np.nan
-        if not three[0] < top < three[2]:
-            top = three[p.argmax()]
-        value = p[0] + slopes[0] * (top - three[0]) + bend * (top - three[0]) * (top - three[1])
-        half = max(half / _NEARER, least)
-        three = np.clip(top, low + half, high - half) + half * _THREE
-    return float(value), float(top)
+    turns = np.array([-1.0, *np.sort(kinks), 1.0])
+    at_kinks = zip(pressure(turns[1:-1]).tolist(), turns[1:-1].tolist())
+    return max(largest(pressure, [*between(turns, FINER)], ends=False), *at_kinks, (-np.inf, np.nan))

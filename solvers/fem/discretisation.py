@@ -12,6 +12,7 @@ from mpi4py import MPI
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS
+from galinx.meshes.store import obtain
 
 from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, YIELD
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned, with_friction_kinks
@@ -118,9 +119,13 @@ class Discretisation:
     def _made(self, cuts: int) -> tuple[Any, Any]:
         plan, comm = self.plan, self.comm
         check_cells(plan.pattern)
-        whole = plan.drawn is not None or cuts == 1
-        mesh = plan.pattern if whole or comm.rank else plan.kind.build(plan.refinement, cuts)
-        return distribute(mesh if comm.rank == 0 else None, comm)
+        if comm.rank:
+            return distribute(None, comm)
+        if plan.drawn is not None:  # no other run has the same
+            return distribute(plan.pattern, comm)
+        if cuts > 1:  # Gmsh's copy of a cut mesh would only be large
+            return distribute(plan.kind.build(plan.refinement, cuts), comm)
+        return distribute(obtain(plan.pattern), comm)
 
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:

@@ -396,14 +396,12 @@ class Level:
         """Absolute error of u,X, σ_YY and σ_XY under a pressure with the resultant of a punch, 2."""
         return 2.0 * (self._transform.error / np.pi + self._table.error)
 
-    def read(
-        self, t: NDArray, σ: NDArray, g: float, X: NDArray, size: float = 1.0
-    ) -> NDArray[np.float64]:
-        """u,X times μ, σ_YY and σ_XY at positions, (3, n).
+    def read(self, t: NDArray, σ: NDArray, g: Any, X: NDArray, size: float = 1.0) -> NDArray[np.float64]:
+        """u,X times μ, σ_YY and σ_XY at positions, (3, ..., n).
 
         Args:
             t, σ: points of the pressure's rule, and weights times σ_YY there.
-            g: σ_XY/σ_YY on top.
+            g: σ_XY/σ_YY on top, (...).
             X: positions.
             size: unit over a of ``t``, ``X`` and stresses.
         """
@@ -412,4 +410,4 @@ class Level:
             rows = slice(start, start + step)
             fields[rows] = size * np.einsum("t,xtf->xf", σ, self._table(size * (X[rows, None] - t)))
         by_shear, by_pressure = fields[:, 0::2], fields[:, 1::2]
-        return np.asarray((g * by_shear + by_pressure).T)
+        return np.moveaxis(np.multiply.outer(g, by_shear.T) + by_pressure.T, -2, 0)

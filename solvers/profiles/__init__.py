@@ -1,11 +1,6 @@
 """Profiles of punches, by the name that scenes use."""
 
-from . import (  # noqa: F401 - each adds its profile
-    flat,
-    power,
-    rounded_flat,
-    table,
-)
+from . import punches  # noqa: F401 - adds its profiles
 from .profile import (
     PROFILES,
     Profile,

@@ -17,7 +17,7 @@ from galinx.texts import with_prefix
 from ..approximation import bisected
 from ..parameters import check, parameter
 from .half_plane import Roots, UniformHalfPlane
-from .solid import SOLIDS, Solid, density, in_plane, modulus
+from .solid import Solid, density, in_plane, modulus
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
 INCOMPRESSIBLE = 0.04
@@ -67,8 +67,7 @@ class Isotropic(Solid):
         """Rayleigh speed over the shear wave speed."""
         return rayleigh_speed(self.κ)
 
-    @property
-    def flutter(self) -> tuple[float, float]:
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
         """Least σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else infinite.
 
         By n and q the condition is β_d = ∓ i g (2w - 1), with w = (1 + k - k c²)/(1 + β_s β_d).
@@ -233,6 +232,3 @@ def rayleigh_speed(κ: float) -> float:
     The zero in (0, 1) of R(c)/c², found to the last digits.
     """
     return bisected(lambda c: MovingFrame(κ, c).r > 0.0, 1.0 - 1e-15, 0.1)
-
-
-SOLIDS.register("isotropic", Isotropic)

@@ -1,7 +1,7 @@
-"""Solids given by their stiffness in the plane, and their half-plane seen from a load that moves over it.
+"""Orthotropic, cubic and anisotropic solids, and their half-plane seen from a load that moves over it.
 
-Orthotropic, cubic and anisotropic solids share this base. With the stiffness C over c₆₆ in the frame of
-the scene, c the speed over √(c₆₆/ρ) and
+They share a base, :class:`PlaneSolid`, for solids given by their stiffness in the plane. With the
+stiffness C over c₆₆ in the frame of the scene, c the speed over √(c₆₆/ρ) and
 
     Q = [[c₁₁ - c², c₁₆], [c₁₆, c₆₆ - c²]],  R = [[c₁₆, c₁₂], [c₆₆, c₂₆]],  T = [[c₆₆, c₂₆], [c₂₆, c₂₂]]
 
@@ -17,14 +17,17 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi, sin
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.texts import with_prefix
+
 from ..approximation import bisected
+from ..parameters import check, numbers, parameter
 from .half_plane import Roots, UniformHalfPlane
-from .solid import Solid
+from .solid import USUAL_STIFFNESS, Solid, angle, density, in_plane, modulus
 
 
 @dataclass(frozen=True)
@@ -197,14 +200,13 @@ class PlaneSolid(Solid):
         return self._limit
 
     @cached_property
-    def flutter(self) -> tuple[float, float]:
-        """Least σ_XY/σ_YY of either sign from which on short waves grow, infinite for none."""
-        from ..transient.admittance import (
-            Admittance,  # loaded where it is needed
-            thresholds,
-        )
+    def _flutter(self) -> tuple[float, float]:
+        from ..transient.flutter import Side, thresholds  # loaded where it is needed
 
-        return thresholds(Admittance.of(self._at_rest))
+        return thresholds(Side.of(self))
+
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
+        return self._flutter
 
     def response(self, c: float, a: float = 1.0) -> AnisotropicFrame:
         """The half-plane at a speed over ``c_s``; it has no length, whatever a is.
@@ -262,3 +264,176 @@ def check_minors(matrix: NDArray, meaning: dict[tuple[int, ...], str]) -> None:
                 f"{constants}: found {minor:.3g}, expected a number > 0; with these constants some "
                 "deformation would release energy instead of storing it"
             )
+
+
+def _modulus(key: str, about: str) -> float:
+    return modulus(key, about, f"{key[0]}_{{{key[1:]}}}")
+
+
+def _ratio(key: str, one: int, other: int) -> float:
+    about = f"Poisson's ratio: contraction along {other} over extension along {one} where {one} is pulled"
+    return parameter(key, about, symbol=rf"\nu_{{{one}{other}}}")
+
+
+@dataclass(frozen=True)
+class Orthotropic(PlaneSolid):
+    """A solid with three planes of symmetry, whose axis 3 is Z.
+
+    Raises:
+        ValueError: a constant is outside its range, or together they are no elastic solid.
+    """
+
+    about: ClassVar[str] = "with axes 1 and 2 in the plane, at an angle, 3 along Z"
+
+    E1: float = _modulus("E1", "Young's modulus along axis 1")
+    E2: float = _modulus("E2", "Young's modulus along axis 2")
+    E3: float = _modulus("E3", "Young's modulus along axis 3")
+    ν12: float = _ratio("nu12", 1, 2)
+    ν13: float = _ratio("nu13", 1, 3)
+    ν23: float = _ratio("nu23", 2, 3)
+    G12: float = _modulus("G12", "shear modulus in the plane of axes 1 and 2")
+    ρ: float = density()
+    angle: float = angle("axis 1")
+    plane: str = in_plane()
+
+    def __post_init__(self) -> None:
+        check(self)
+        meaning = {
+            (0, 1): "1 - nu12² E2/E1",
+            (0, 2): "1 - nu13² E3/E1",
+            (1, 2): "1 - nu23² E3/E2",
+            (0, 1, 2): "1 - nu12² E2/E1 - nu13² E3/E1 - nu23² E3/E2 - 2 nu12 nu13 nu23 E3/E1",
+        }
+        check_minors(self._compliance, meaning)
+
+    @property
+    def _compliance(self) -> NDArray[np.float64]:
+        """ε₁, ε₂, ε₃ by σ₁, σ₂, σ₃ [1/Pa]."""
+        s12, s13, s23 = -self.ν12 / self.E1, -self.ν13 / self.E1, -self.ν23 / self.E2
+        return np.array([[1.0 / self.E1, s12, s13], [s12, 1.0 / self.E2, s23], [s13, s23, 1.0 / self.E3]])
+
+    @cached_property
+    def stiffness(self) -> NDArray[np.float64]:
+        of_axes = np.zeros((3, 3))
+        count = 3 if self.plane == "strain" else 2
+        of_axes[:2, :2] = np.linalg.inv(self._compliance[:count, :count])[:2, :2]
+        of_axes[2, 2] = self.G12
+        return rotated(of_axes, self.angle)
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane: no strain along axis 3, or 0 in plane stress."""
+        σ_1, σ_2 = along_axes(σ_XX, σ_YY, σ_XY, self.angle)
+        held = self.E3 * (self.plane == "strain")
+        return held * (self.ν13 / self.E1 * σ_1 + self.ν23 / self.E2 * σ_2)
+
+    def words(self) -> str:
+        E1, E2, E3, G12 = (with_prefix(value, "Pa") for value in (self.E1, self.E2, self.E3, self.G12))
+        return (
+            f"E1 = {E1}, E2 = {E2}, E3 = {E3}, ν12 = {self.ν12:g}, ν13 = {self.ν13:g}, "
+            f"ν23 = {self.ν23:g}, G12 = {G12}, axis 1 at {self.angle:g}° from X, ρ = {self.ρ:g} kg/m³ "
+            f"in plane {self.plane}"
+        )
+
+
+@dataclass(frozen=True)
+class Cubic(PlaneSolid):
+    """A cubic crystal whose axis [001] is Z.
+
+    Raises:
+        ValueError: a constant is outside its range, or together they are no elastic solid.
+    """
+
+    about: ClassVar[str] = "with [100] and [010] in the plane, at an angle, [001] along Z"
+
+    c11: float = modulus("c11", "stiffness c11", "c_{11}")
+    c12: float = parameter("c12", "stiffness c12", "Pa", symbol="c_{12}")
+    c44: float = modulus("c44", "stiffness c44", "c_{44}")
+    ρ: float = density()
+    angle: float = angle("[100]")
+    plane: str = in_plane()
+
+    def __post_init__(self) -> None:
+        check(self)
+        normal = np.full((3, 3), self.c12) + (self.c11 - self.c12) * np.eye(3)
+        check_minors(normal, {(0, 1): "1 - (c12/c11)²", (0, 1, 2): "(1 - c12/c11)² (1 + 2 c12/c11)"})
+
+    @cached_property
+    def stiffness(self) -> NDArray[np.float64]:
+        c11, c12 = self.c11, self.c12
+        if self.plane == "stress":
+            c11, c12 = c11 - c12**2 / c11, c12 - c12**2 / self.c11
+        return rotated(np.array([[c11, c12, 0.0], [c12, c11, 0.0], [0.0, 0.0, self.c44]]), self.angle)
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane: no strain along [001], or 0 in plane stress."""
+        share = self.c12 / (self.c11 + self.c12) if self.plane == "strain" else 0.0
+        return share * (σ_XX + σ_YY)
+
+    def words(self) -> str:
+        c11, c12, c44 = (with_prefix(value, "Pa") for value in (self.c11, self.c12, self.c44))
+        return (
+            f"c11 = {c11}, c12 = {c12}, c44 = {c44}, [100] at {self.angle:g}° from X, "
+            f"ρ = {self.ρ:g} kg/m³ in plane {self.plane}"
+        )
+
+
+@dataclass(frozen=True)
+class Anisotropic(PlaneSolid):
+    """A solid by its stiffness in the plane.
+
+    Raises:
+        ValueError: a constant is not finite, or together they are no elastic solid.
+    """
+
+    about: ClassVar[str] = "by its stiffness in the frame of the scene, X the motion, Y up"
+
+    constants: tuple[float, ...] = numbers(
+        "stiffness", "stiffness c11, c12, c16, c22, c26, c66", "Pa", 6, usual=USUAL_STIFFNESS,
+        note="σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY with no strain along Z; in plane stress with no "
+        "stress along Z",
+    )  # fmt: skip
+    ρ: float = density()
+    along_Z: tuple[float, ...] = numbers(
+        "stiffness_Z", "stiffness c13, c23, c36", "Pa", 3, optional=True,
+        note="determines σ_ZZ in plane strain, which is NaN without it",
+    )  # fmt: skip
+    plane: str = in_plane()
+
+    def __post_init__(self) -> None:
+        check(self)
+        for name, value in zip(("c11", "c22", "c66"), np.diag(self.stiffness).tolist()):
+            if value <= 0.0:
+                raise ValueError(f"stiffness: found {name} = {value:g} Pa, expected a number > 0")
+        rows = "[[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]]"
+        meaning = {
+            (0, 1): "stiffness: 1 - c12²/(c11 c22)",
+            (0, 2): "stiffness: 1 - c16²/(c11 c66)",
+            (1, 2): "stiffness: 1 - c26²/(c22 c66)",
+            (0, 1, 2): f"stiffness: the determinant of {rows} over c11 c22 c66",
+        }
+        check_minors(self.stiffness, meaning)
+
+    @cached_property
+    def stiffness(self) -> NDArray[np.float64]:
+        c11, c12, c16, c22, c26, c66 = self.constants
+        return np.array([[c11, c12, c16], [c12, c22, c26], [c16, c26, c66]])
+
+    @property
+    def knows_σ_ZZ(self) -> bool:
+        return self.plane == "stress" or bool(self.along_Z)
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        """Normal stress out of the plane: no strain along Z, or 0 in plane stress; NaN if not known."""
+        if self.plane == "stress":
+            return 0.0 * σ_XX
+        if not self.knows_σ_ZZ:
+            return np.full(np.shape(σ_XX), np.nan)
+        by_XX, by_YY, by_XY = np.linalg.solve(self.stiffness, self.along_Z)
+        return by_XX * σ_XX + by_YY * σ_YY + by_XY * σ_XY
+
+    def words(self) -> str:
+        names = ("c11", "c12", "c16", "c22", "c26", "c66")
+        constants = ", ".join(
+            f"{name} = {with_prefix(value, 'Pa')}" for name, value in zip(names, self.constants)
+        )
+        return f"{constants}, ρ = {self.ρ:g} kg/m³ in plane {self.plane}"

@@ -85,16 +85,6 @@ def test_a_file_of_ones_own_that_fails_is_named_with_its_line(tmp_path, text, me
     assert done.stderr.startswith("error: mine.py fails: ") and message in done.stderr
 
 
-@pytest.mark.parametrize(
-    "words", [("run", SCENE), ("show", "a.h5/"), ("report", "a.h5"), ("csv", "a.h5"), ("init", "box")]
-)
-def test_a_name_with_a_slash_at_its_end_is_no_files(tmp_path, words):
-    options = () if words[0] == "show" else ("-o", "new/")
-    done = here(*words, *options, cwd=tmp_path)
-    assert done.returncode == 2 and "the name of a folder; expected a file's" in done.stderr
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.parametrize("name", ["", *cli.commands])
 def test_help(name):
     done = here(*filter(None, [name]), "--help")

@@ -7,11 +7,11 @@ import os
 import random
 
 import pytest
-from support import SCENE, at_most, called
+from support import SCENE, THOROUGH, at_most, called
 
 from galinx.app.cli import cli
 
-LINES = 1000 if os.environ.get("GALINX_THOROUGH") else 40
+LINES = 1000 if THOROUGH else 40
 
 #: A scene that is computed in a moment.
 QUICK = """title = "quick"

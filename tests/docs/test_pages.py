@@ -10,7 +10,6 @@ import h5py
 import pytest
 from examples import (
     DOCS,
-    NOT_RUN,
     PAGES,
     Shelf,
     blocks,
@@ -20,12 +19,10 @@ from examples import (
     name_of,
     quotes,
     run_page,
-    words_of,
 )
 from quotes import fault
 from support import HOME, clean_environment
 
-from galinx.app.cli import cli
 from galinx.app.scene.changes import changed
 from galinx.app.scene.library import templates
 from galinx.app.scene.read import parse
@@ -85,16 +82,6 @@ def test_the_first_command_reproduces_the_study(page, outputs, folder):
     }
 
 
-def test_only_long_words_are_left_out():
-    assert NOT_RUN == ("test", "bench", "stress", "docs")
-    script = (HOME / "run.sh").read_text(encoding="utf-8")
-    for word in NOT_RUN:
-        assert f'"${{1:-}}" = {word} ]' in script or word in cli.commands, f"run.sh does not know {word}"
-    shown = [command for page in PAGES for command in commands(page)]
-    assert len(shown) > 50
-    assert sum(words_of(command)[:1] not in ([word] for word in NOT_RUN) for command in shown) > 45
-
-
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "toml")], ids=name_of)
 def test_scenes_of_a_page_are_valid(page):
     for block in blocks(page, "toml"):
@@ -128,13 +115,6 @@ def test_matlab_reads_datasets_that_exist(page):
     read = re.findall(r"h5read\('[^']+', '/([^']+)'\)", "\n".join(blocks(page, "matlab")))
     assert read
     assert set(read) <= table().keys()
-
-
-@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "bash")], ids=name_of)
-def test_shell_scripts_of_a_page_parse(page):
-    for block in blocks(page, "bash"):
-        done = subprocess.run(["bash", "-n"], input=block, capture_output=True, text=True)
-        assert done.returncode == 0, f"{page.name}: {done.stderr}"
 
 
 def test_the_notebook_runs(tmp_path):

@@ -50,29 +50,6 @@ def test_no_symbol_and_no_word_stands_twice_in_the_glossary():
         assert name in found
 
 
-def test_every_parameter_of_a_scene_is_in_the_glossary():
-    """The models' own: what has a symbol."""
-    from galinx.solvers.friction import LAWS
-    from galinx.solvers.parameters import parameters
-    from galinx.solvers.profiles import PROFILES
-    from galinx.solvers.solids import SOLIDS
-
-    text = (DOCS / "glossary.md").read_text(encoding="utf-8")
-    models = [LAWS["dahl"], PROFILES["flat"], SOLIDS["isotropic"]]
-    keys = [key for model in models for key, known in parameters(model).items() if not known.options]
-    assert len(keys) >= 6
-    assert not [key for key in keys if not re.search(rf"`(\w+\.)?{key}`", text)]
-
-
-def test_the_gallery_shows_figures_of_scenes_that_are_there():
-    known = runpy.run_path(str(DOCS / "gallery.py"))["SHOWN"]
-    scenes = {path.stem for path in (HOME / "scenes").glob("*.toml")}
-    pictures = {path.stem for path in (DOCS / "figures" / "gallery").glob("*.png")}
-    assert known.keys() <= scenes and pictures == set(known)
-    page = (DOCS / "gallery.md").read_text(encoding="utf-8")
-    assert all(f"`scenes/{name}.toml`" in page or f"`{name}`" in page for name in scenes)
-
-
 def test_formulas_are_typeset_without_a_network():
     """What the page becomes, and that all that it loads is in the site."""
     made = runpy.run_path(str(DOCS / "mathjax.py"))

@@ -74,15 +74,3 @@ def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
     for cells, corner in ((first, 0), (last, 2)):
         found, expected = fine.points[cells[:, corner]], whole.points[whole.cells[:, corner]]
         np.testing.assert_allclose(found, expected, rtol=1e-14, atol=1e-14)
-
-
-def test_a_curve_under_the_punch_costs_few_cells_and_spares_a_degree():
-    for name in ("confocal", "graded", "box"):
-        kind, straight, curved = MESHES[name], Requirements(1e-6), Requirements(1e-6, bends=True)
-        cells = [len(kind.build(kind.refinement(wanted)).cells) for wanted in (straight, curved)]
-        assert cells[0] < cells[1] <= cells[0] + 4 * kind.refinement(straight).sectors
-        assert kind.degree(curved, 1.0) == kind.degree(straight, 1.0) - 1
-    # Squares all over have no rings that could be cut.
-    kind = MESHES["uniform"]
-    assert kind.refinement(Requirements(1e-6)) == kind.refinement(Requirements(1e-6, bends=True))
-    assert kind.degree(Requirements(1e-6), 1.0) == kind.degree(Requirements(1e-6, bends=True), 1.0)

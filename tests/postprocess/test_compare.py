@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 
@@ -69,6 +71,12 @@ def test_what_disagrees_is_measured(path, value, name, wanted):
     assert sum(found.values()) == pytest.approx(wanted)
 
 
+def test_where_the_pressure_is_small_a_tenth_of_the_mean_is_its_size():
+    exact, fem = (np.array([[np.nan, -1.0, σ, -1.0, np.nan]]) for σ in (-0.02, -0.04))
+    found = archive(**{"surface/closed_form/sigma_YY": exact, "surface/fem/sigma_YY": fem})
+    assert found["sigma_YY"] == pytest.approx(0.2)
+
+
 def test_tension_is_flagged_and_nothing_else_is():
     pulled = np.array([[np.nan, -1.0, 0.25, -1.0, np.nan]])
     assert "tension" not in archive()
@@ -125,6 +133,59 @@ def test_nodal_forces_are_compared_with_the_resultant_of_a_pressure_that_is_put_
         }
     )
     assert found["resultant"] == pytest.approx(wanted)
+
+
+def test_stresses_at_interfaces_are_compared_over_the_largest_along_each():
+    """In-plane stress over itself or the traction there, of two interfaces."""
+    size = {"sigma_YY": 2.0, "sigma_XY": 1.0, "sigma_XX_above": 4.0, "sigma_XX_below": 0.5}
+    along = np.array([[[0.1, -1.0, 0.3], [0.01, 0.02, -0.1]]])
+    rows = {f"interfaces/{by}/{name}": top * along for by in ("fem", "sie") for name, top in size.items()}
+    for name, over in (("sigma_XX_above", 4.0), ("sigma_XX_below", 2.0)):
+        off = rows[f"interfaces/fem/{name}"] + [[[0.0, 0.0, 0.0], [0.0, 0.01, 0.0]]]
+        found = archive(**rows | {f"interfaces/fem/{name}": off})["stresses at interfaces"]
+        assert found == pytest.approx(0.01 / (0.1 * over))
+
+
+#: Rules whose limit is another than the tolerance, with it at tolerances of 1e-6 and 1e-3.
+LIMITS = {
+    "force balance": (1e-9, 1e-9), "resultant": (1e-9, 1e-9), "resultant over layers": (1e-9, 1e-9),
+    "finite": (0.0, 0.0), "tension": (0.0, 0.0),
+    "residual": (1e-8, 1e-8), "residual inside": (1e-8, 1e-8),
+    "residual of finite elements": (1e-5, 1e-2), "slope under the punch": (1e-5, 1e-2),
+    "sigma_YY of found ends": (1e-5, 1e-2), "sigma_YY of found ends over layers": (1e-5, 1e-2),
+    "exponents": (None, None),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", compare.RULES)
+def test_a_rule_allows_the_tolerance_or_what_is_said_of_it(name):
+    for tolerance, wanted in zip((1e-6, 1e-3), LIMITS.get(name, (1e-6, 1e-3))):
+        assert compare.RULES[name].allowed(tolerance) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_failures_are_told_by_how_much_they_exceed_their_limits():
+    """The worst first, and the tolerance that would accept it."""
+    rules = compare.RULES
+    told = {
+        rules[name].text: value for name, value in (("K_I", 4e-6), ("estimate", 3e-5), ("residual", 2e-6))
+    }
+    reasons = [
+        f"{text}: {value:.1e}, at most {1e-8 if 'closed form' in text else 1e-6:.0e}"
+        for text, value in told.items()
+    ]
+    attributes = {"comparisons": json.dumps(told), "verdict_reasons": json.dumps(reasons)}
+    attributes |= {"verdict": "FAIL", "load": 1.0}
+    data = {"states/c": np.array([0.1, 0.2]), "states/f": np.array([0.3, 0.3])}
+    data |= {"states/fem/estimate": np.array([1e-9, 3e-5])}
+    residual, first, second, last = compare.failed(data, attributes)
+    assert "2.0e-06, 2e+02 times what is wanted, 1e-08" in residual
+    text = rules["estimate"].text
+    assert first.startswith(f"{text}: 3.0e-05, 30 times what is wanted, 1e-06, in state 1 (c = ")
+    assert "4.0e-06, 4 times" in second
+    assert "solve.tolerance=1e-07 computes" in last and "solve.tolerance=1e-03 accepts" in last
+    assert compare.failed({}, attributes | {"verdict": "PASS"}) == []
+    told = compare.checked(attributes)
+    assert "agree to 4e-06, estimated error 3e-05, residual 2e-06, wanted 1e-06" in told
 
 
 def depths(exact, fem, **others):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support import computed
 
-from galinx.postprocess.tables import LIMIT, inner_sheet, loops_sheet, sliders_sheet, states_sheet
+from galinx.postprocess.tables import loops_sheet, sliders_sheet, states_sheet
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
@@ -43,12 +43,6 @@ def test_loops_tell_what_they_take_by_what_tells_them_apart():
     )
 
 
-def test_of_many_loops_the_first_are_told():
-    many = {"friction.mu_c": np.linspace(0.1, 0.9, LIMIT + 5).tolist(), "output.quantities": ["friction"]}
-    result = computed("tables4_5", many)
-    assert len(loops_sheet(result.data, result.units()).rows) == LIMIT
-
-
 def test_sliders_tell_their_stick_slip():
     result = computed("slider", {"slider.duration": 15.0})
     data = result.data
@@ -57,23 +51,3 @@ def test_sliders_tell_their_stick_slip():
     assert float(row[2]) == pytest.approx(data["slider/period"][0], rel=1e-5)
     other = computed("tables4_5", {"output.quantities": ["friction"]})
     assert not sliders_sheet(other.data, other.units()).rows
-
-
-def test_what_a_law_remembers_is_told_but_where_that_is_f():
-    data = computed("minor_loops", {}).data
-    sheet, z = inner_sheet(data), data["states/inner_state"]
-    assert len(sheet.rows) == len(z) and z.shape[1] == 3
-    for n in range(3):
-        np.testing.assert_allclose(np.array(cells(sheet, f"z{n + 1}"), float), z[:, n], rtol=1e-5)
-    dahl = computed("tables4_5", {"output.quantities": ["friction"]}).data
-    assert not inner_sheet(dahl).rows
-
-
-def test_loops_of_several_loads_say_which_is_theirs():
-    loads = {"output.quantities": ["friction"], "punch.load": [2e3, 4e3]}
-    result = computed("tables4_5", loads)
-    data = result.data
-    assert "N = 2 N/mm" in loops_sheet(data, result.units()).notes[0]
-    half = computed("tables4_5", loads | {"punch.load": 1e3}).data
-    np.testing.assert_allclose(data["loops/dissipated"], 2.0 * half["loops/dissipated"], rtol=1e-14)
-    assert "load [N/mm]" in states_sheet(data, result.units()).columns

@@ -5,9 +5,9 @@ import socket
 
 import numpy as np
 import pytest
-from support import at_once, full_disk
+from support import at_most, full_disk
 
-from galinx import compute, load, template
+from galinx import compute, template
 from galinx.app.console import Progress, new_console, print_sheet
 from galinx.app.figures import files
 from galinx.app.figures.render import Panel
@@ -64,14 +64,6 @@ def test_each_kind_knows_its_own_files_and_no_other(made, tmp_path):
     assert [kind for kind in made if kind.of(tmp_path / "empty")] == [LOG]
 
 
-def test_foreign_files_that_look_alike_are_no_ones_own(made, tmp_path):
-    for kind, path in made.items():
-        start = path.read_bytes()[:9]
-        for content in (start + b" and more", b"x" + path.read_bytes(), FOREIGN):
-            (tmp_path / "other").write_bytes(content)
-            assert not kind.of(tmp_path / "other"), (kind.noun, content[:20])
-
-
 def test_what_one_makes_is_made_again_and_all_else_is_kept(made, tmp_path):
     for kind, path in made.items():
         own, foreign = tmp_path / "own", tmp_path / "foreign"
@@ -124,7 +116,7 @@ def test_only_files_are_replaced(tmp_path, overwrite):
         before = sorted(os.listdir(tmp_path))
         for name, message in expected.items():
             for kind in (None, PAGE, LOG):
-                with at_once(), pytest.raises(Occupied, match=message):
+                with at_most(5.0), pytest.raises(Occupied, match=message):
                     Target(tmp_path / name, kind, overwrite)
     assert sorted(os.listdir(tmp_path)) == before
 
@@ -172,35 +164,9 @@ def test_what_appears_or_changes_meanwhile_is_kept(made, tmp_path):
     target = Target(path, PAGE, overwrite=True)
     path.unlink()
     os.mkfifo(path)
-    with at_once(), pytest.raises(UnwritableArchive, match="meanwhile"):
+    with at_most(5.0), pytest.raises(UnwritableArchive, match="meanwhile"):
         target.write(b"new")
     assert path.is_fifo() and os.listdir(tmp_path) == ["a"]
-
-
-def test_what_appears_at_the_last_moment_is_kept(tmp_path, monkeypatch):
-    target, link = Target(tmp_path / "a"), os.link
-
-    def appears(source, path):
-        path.write_bytes(FOREIGN)
-        link(source, path)
-
-    monkeypatch.setattr(os, "link", appears)
-    with pytest.raises(UnwritableArchive, match="meanwhile"):
-        target.write(b"new")
-    assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
-
-
-def test_a_folder_that_is_gone_meanwhile_is_said(tmp_path):
-    (tmp_path / "a").mkdir()
-    target = Target(tmp_path / "a" / "b")
-    (tmp_path / "a").rmdir()
-    with pytest.raises(UnwritableArchive, match="No such file or directory"):
-        target.write(b"new")
-
-
-def test_a_name_that_is_too_long_is_said(tmp_path):
-    with pytest.raises(UnwritableArchive, match="File name too long"):
-        Target(tmp_path / (300 * "n"))
 
 
 def test_a_full_disk_is_said_and_leaves_what_was_there(tmp_path):
@@ -230,13 +196,6 @@ def test_a_file_of_pieces_is_written_whole_or_not_at_all(tmp_path):
     assert (tmp_path / "a").read_bytes() == b"onetwo" and os.listdir(tmp_path) == ["a"]
 
 
-def test_what_is_protected_is_kept(tmp_path, monkeypatch):
-    (tmp_path / "a").write_bytes(FOREIGN)
-    monkeypatch.setattr(os, "access", lambda path, mode: mode != os.W_OK)  # root may write everything
-    with pytest.raises(Occupied, match="a is protected against writing"):
-        Target(tmp_path / "a", overwrite=True)
-
-
 def test_a_folder_is_made_and_nothing_else_is_taken_for_one(tmp_path):
     Folder(tmp_path / "a" / "b").target("c", PAGE).write(b"new")
     assert (tmp_path / "a" / "b" / "c").read_bytes() == b"new"
@@ -246,16 +205,6 @@ def test_a_folder_is_made_and_nothing_else_is_taken_for_one(tmp_path):
             Folder(tmp_path / name)
     with pytest.raises(Occupied, match="also"):
         Folder(tmp_path / "a", inputs=[tmp_path / "a" / "in"]).target("in", PAGE)
-
-
-def test_no_figure_is_written_where_one_cannot_be(made, tmp_path):
-    result = compute(template("table1"))
-    (tmp_path / "a_friction.png").write_bytes(FOREIGN)
-    with pytest.raises(Occupied, match=r"a_friction.png exists and is not a figure of galinx"):
-        result.plot(tmp_path, "a")
-    assert os.listdir(tmp_path) == ["a_friction.png"]
-    assert len(result.plot(tmp_path, "a", overwrite=True)) == 2
-    assert len(result.plot(tmp_path, "a")) == 2
 
 
 def test_a_log_that_cannot_grow_ends_and_the_run_goes_on(tmp_path, capsys):
@@ -271,13 +220,3 @@ def test_a_log_that_cannot_grow_ends_and_the_run_goes_on(tmp_path, capsys):
     with Progress(log=log) as progress:
         progress.note("four")
     assert log.read_bytes().startswith(before) and log.read_bytes().endswith(b" four\n")
-
-
-def test_an_archive_is_no_output_of_its_own(made, tmp_path):
-    path = tmp_path / "a.h5"
-    path.write_bytes(made[ARCHIVE].read_bytes())
-    result = load(path)
-    for write in (result.report, result.save, result.fields):
-        with pytest.raises(Occupied, match="also"):
-            write(path, overwrite=True)
-    assert path.read_bytes() == made[ARCHIVE].read_bytes()

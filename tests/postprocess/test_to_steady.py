@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.postprocess.over_time import distances_from_steady, from_steady, times_near_steady
+from galinx.postprocess.over_time import from_steady, times_near_steady
 
 
 def test_times_are_found_between_steps_and_told_like_1_over_t_beyond():
@@ -21,16 +21,6 @@ def test_what_does_not_fall_like_1_over_t_yet_is_not_told():
     load = np.clip(t / 3.0, 0.0, 1.0)
     off = np.array([0.6 - 0.02 * t, 0.3 + 0.0 * t, 0.5 - t / 25.0])
     assert np.isnan(times_near_steady(t, load, off)).all()
-
-
-def test_where_K_I_cannot_be_told_nothing_is_near():
-    nan = np.full((1, 3), np.nan)
-    data = {
-        "time/t": np.array([1.0, 2.0, 3.0]), "time/load": np.ones(3), "time/steady_K_I": np.array([0.3]),
-        "time/steady_centre": np.array([0.0]), "time/fem/K_I_left": nan, "time/fem/K_I_right": nan,
-        "time/fem/centre_of_pressure": np.zeros((1, 3)),
-    }  # fmt: skip
-    assert all(np.isnan(values).all() for values in distances_from_steady(data, "fem").values())
 
 
 def test_the_largest_difference_is_taken():

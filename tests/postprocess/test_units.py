@@ -5,7 +5,7 @@ import pytest
 from support import computed
 
 from galinx.postprocess.quantities import table
-from galinx.postprocess.units import engineering, number, prefixed
+from galinx.postprocess.units import number, prefixed
 
 #: What units that may stand in a result are in SI, as powers of m, kg and s, and their sizes.
 _PASCAL, _METRE, _SECOND = (-1, 1, -2), (1, 0, 0), (0, 0, 1)
@@ -145,8 +145,3 @@ def test_prefixes_are_those_of_engineers(unit, size, expected):
 )  # fmt: skip
 def test_numbers_have_reasonable_digits(value, text):
     assert number(value) == text
-
-
-def test_one_number_has_a_prefix_of_its_own():
-    assert [engineering(x, "Pa") for x in (1.138e11, -2.5e-7, 0.0)] == ["113.8 GPa", "−250 nPa", "0 Pa"]
-    assert engineering(1e5, "N/m") == "100 N/mm"

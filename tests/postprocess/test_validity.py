@@ -70,12 +70,6 @@ def test_the_studys_fast_strokes_are_warned_about_and_its_slow_ones_are_not():
     assert not told({"motion.c": 4.786e-7}) and not told({"motion.c": 0.0})
 
 
-def test_steep_friction_is_told():
-    (warning,) = told({"motion.c": 0.0, "friction.mu_c": 2.0})
-    f = np.abs(computed("tables4_5", CLOSED | {"motion.c": 0.0, "friction.mu_c": 2.0}).data["states/f"])
-    assert f"is up to {f.max():.3g}, and at least 1 in {(f >= 1.0).sum()} state" in warning
-
-
 def test_a_load_that_no_linear_solid_carries_is_told():
     soft = {"motion.c": 0.0, "solid.E": "1 MPa", "punch.load": "500 N/m"}
     usual, slip, strain = told(soft)
@@ -105,24 +99,6 @@ def test_tension_and_its_place_are_told():
     np.testing.assert_allclose(data["states/closed_form/tension_X_over_a"], 0.52, atol=0.02)
     (warning,) = json.loads(result.attributes["warnings"])
     assert warning.startswith("the punch would have to pull, by up to 0.25 N/(2a), at X/a = 0.5")
-
-
-def test_a_state_is_pulled_once_whichever_methods_say_so():
-    nan, two = np.array([np.nan, 0.1]), np.array([0.0, 0.2])
-    for methods in (["sie"], ["sie", "fem"], ["closed_form", "fem"]):
-        validity = Validity()
-        tension = {f"states/{method}/tension": two for method in methods}
-        validity.see(tension | {f"states/{method}/tension_X_over_a": nan for method in methods})
-        (text,) = validity.words()
-        assert "by up to 0.2 N/(2a), at X/a = 0.1, in 1 state:" in text
-
-
-def test_nothing_is_said_of_what_holds_or_is_not_known():
-    validity = Validity()
-    nan = np.full(3, np.nan)
-    validity.see({"states/wave_crossings": nan, "states/g": np.array([0.1, -0.9, 0.0])})
-    validity.see({f"states/closed_form/slip_reversed_{side}": nan for side in ("left", "right")})
-    assert validity.words() == []
 
 
 def test_what_several_parts_say_is_one_sentence():
@@ -192,9 +168,3 @@ def test_strokes_are_held_against_the_time_that_steady_motion_takes():
         "it, at c = 0.9, and the stroke lasts 80 a/c_s (8e-05 s)"
     ]
     assert slow.words() == []
-
-
-def test_where_motion_never_is_steady_no_time_is_told():
-    """The closed form is formal beyond the speed of the wave along the surface."""
-    never = Steady(lambda c, g: np.inf, 1e-6)
-    assert never.words(0.95, 0.0, 1.0) == never.words(0.95, 0.0, 1e9, too_short=True) == ""

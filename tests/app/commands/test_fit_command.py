@@ -52,12 +52,6 @@ def test_sections_of_every_kind_are_read_by_scenes(here, law, more):
     assert parse(section + REST).friction.count == 1
 
 
-def test_any_motion_is_fitted_and_other_columns_are_left_alone(here):
-    assert called("fit", "coulomb", "motion.csv", "-o", "out") == 0
-    section = (here / "out" / "friction.toml").read_text(encoding="utf-8")
-    assert parse(section + REST).friction.parameters["mu_c"][0] == pytest.approx(0.3, rel=1e-9)
-
-
 def test_all_laws_are_compared_and_the_first_sample_is_told(here, capsys):
     assert called("fit", "slip.csv", "motion.csv", "--fix", "delta=1") == 0
     said = capsys.readouterr().out
@@ -101,16 +95,6 @@ def test_a_law_goes_into_a_scene_that_stays_as_it_was_written(here, capsys):
     assert "delta = 1.0  # dimensionless, given" in new
     friction = parse(new).friction
     assert friction.pre_sliding == 2e-4 and friction.parameters["mu_c"][0] == pytest.approx(0.4, abs=2e-3)
-
-
-def test_a_scene_with_faults_and_one_of_another_name_are_left_alone(here, capsys):
-    (here / "scene.toml").write_text(SCENE.replace("c = 0.1", "c = 2"), encoding="utf-8")
-    assert called("fit", "slip.csv", "--into", "scene.toml") == 2
-    assert "motion.c" in capsys.readouterr().err and not (here / "fit").exists()
-    (here / "scene.toml").write_text(SCENE, encoding="utf-8")
-    (here / "new.toml").write_text("mine", encoding="utf-8")
-    assert called("fit", "slip.csv", "--into", "scene.toml", "-o", "new.toml") == 2
-    assert (here / "new.toml").read_text(encoding="utf-8") == "mine"
 
 
 @pytest.mark.parametrize(

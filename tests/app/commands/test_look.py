@@ -5,8 +5,6 @@ import re
 import shutil
 from pathlib import Path
 
-import h5py
-import numpy as np
 import pytest
 from support import computed, here
 from tampering import opened
@@ -27,12 +25,6 @@ def test_show_as_json(archive):
     assert plain["closed_form"]["K_I"] == pytest.approx(0.3160757828331318)
 
 
-def test_show_fits_a_terminal(archive):
-    shown = here("show", archive)
-    assert shown.returncode == 0 and "…" not in shown.stdout and "\x1b" not in shown.stdout
-    assert max(map(len, shown.stdout.splitlines())) <= 80
-
-
 @pytest.mark.parametrize("columns", [40, 60, 200])
 def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
     """Nothing is cut: every column is there once, those that states are called by in every part."""
@@ -48,14 +40,6 @@ def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
     assert "μ_C = 0.7" in re.sub(r"\s+", " ", shown)
 
 
-def test_plot(archive, tmp_path):
-    done = here("plot", archive, "-o", tmp_path)
-    assert done.returncode == 0, done.stderr
-    for name in ("friction", "surface"):
-        assert (tmp_path / f"{archive.stem}_{name}.png").stat().st_size > 10_000
-        assert (tmp_path / f"{archive.stem}_{name}.pdf").read_bytes().startswith(b"%PDF")
-
-
 @pytest.mark.parametrize(
     "text, found", [("3", [3]), ("0,4,2", [0, 4, 2]), ("0-2, 1,5 - 5", [0, 1, 2, 5]), ("7-7", [7])]
 )
@@ -67,17 +51,6 @@ def test_states_are_named_by_numbers_and_ranges(text, found):
 def test_what_names_no_states_is_refused(text):
     with pytest.raises(BadInput, match=r"^--states: found "):
         options.numbers(text)
-
-
-def test_several_states_for_paraview(archive, tmp_path):
-    done = here("fields", archive, "--states", "0,3", "--extent", "2", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    path = tmp_path / f"{archive.stem}_0,3.hdf"
-    with h5py.File(path) as file:
-        assert file["VTKHDF/Steps/Values"][:].tolist() == [0.0, 3.0]
-        assert np.abs(file["VTKHDF/Points"][:]).max() == pytest.approx(2e-3, rel=1e-12)
-    done = here("fields", archive, "--states", "0", "--state", "3", cwd=tmp_path)
-    assert done.returncode == 2 and "exclude each other" in done.stderr
 
 
 def test_check_tells_damage_from_contradictions(archive, tmp_path):

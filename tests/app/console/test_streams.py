@@ -10,7 +10,6 @@ import pytest
 from support import called
 
 from galinx.app.console import (
-    Progress,
     bare,
     new_console,
     plain,
@@ -47,13 +46,6 @@ def test_whoever_prints_prints_plain_text(capsys):
     assert out == f"{SHOWN} out\n{SHOWN}\n" and err == f"{SHOWN} err\n{SHOWN}\n"
 
 
-def test_a_json_text_stays_one(capsys):
-    with plain_streams():
-        print(json.dumps({"title": "a\x9b\u202eb"}, ensure_ascii=False))
-    out = capsys.readouterr().out
-    assert is_plain(out) and json.loads(out) == {"title": "a\x9b\u202eb"}
-
-
 @pytest.mark.parametrize("colours", [False, True])
 def test_tables_and_verdicts_have_no_colours_but_their_own(colours, monkeypatch):
     monkeypatch.setenv("TERM", "xterm-256color")
@@ -67,13 +59,6 @@ def test_tables_and_verdicts_have_no_colours_but_their_own(colours, monkeypatch)
     assert is_plain(re.sub("\x1b\\[[0-9;]*m", "", said) if colours else said)
     for first in "tcrnkwv":
         assert f"{first} {SHOWN}" in said
-
-
-def test_progress_and_its_log_are_plain(tmp_path, capsys):
-    with Progress(verbose=True, log=tmp_path / "log") as progress:
-        progress.say(EVIL)
-    logged = (tmp_path / "log").read_text(encoding="utf-8")
-    assert SHOWN in capsys.readouterr().err and SHOWN in logged and is_plain(logged)
 
 
 @pytest.mark.parametrize(

@@ -36,13 +36,6 @@ def on_a_terminal(*arguments, cwd, **environment):
     return said.decode()
 
 
-def test_a_run_ends_with_times_and_what_to_try_next(archives):
-    path, said = archives[0]
-    assert re.search(r"^time: [\d.]+ s", said, re.MULTILINE)
-    assert said.splitlines()[-1] == f"next: ./run.sh report {path}"
-    assert "\x1b" not in said
-
-
 @pytest.mark.parametrize(
     "arguments", [("check",), ("plan", SCENE), ("init",), ("materials",)], ids=lambda a: a[0]
 )
@@ -50,14 +43,6 @@ def test_output_fits_80_columns_without_colours(archive, arguments):
     where = (archive.name,) if arguments == ("check",) else ()
     done = here(*arguments, *where, cwd=archive.parent, COLUMNS="80")
     assert done.returncode == 0 and widest(done.stdout) <= 80 and "\x1b" not in done.stdout
-
-
-@pytest.mark.parametrize("columns", ["0", "1", "-5", "many", "39"])
-def test_a_width_that_holds_nothing_is_another(archive, columns):
-    for words in (("show", archive), ("plan", SCENE)):
-        done = here(*words, COLUMNS=columns)
-        assert done.returncode == 0, done.stderr
-    assert "FM1" in here("show", archive, COLUMNS=columns).stdout
 
 
 def test_colours_on_a_terminal_unless_unwanted(archive, tmp_path):
@@ -71,13 +56,6 @@ def test_progress_is_drawn_on_a_terminal_unless_quiet(tmp_path):
     said = on_a_terminal("run", SCENE, "-o", "a.h5", "--set", "solve.tolerance=1e-2", cwd=tmp_path)
     assert "finite elements at c = 0.6 (2 of 2)" in said and "%" in said
     assert on_a_terminal("run", SCENE, "-o", "b.h5", "--quiet", *CLOSED, *SLOW, cwd=tmp_path) == ""
-
-
-def test_quiet_says_warnings_only(tmp_path):
-    done = here("run", SCENE, "-o", tmp_path / "a.h5", "-q", *CLOSED, *SLOW)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    done = here("run", SCENE, "-o", tmp_path / "b.h5", "-q", *CLOSED, "--set", "motion.c=0.915")
-    assert done.stdout == "" and "within 1 % of the Rayleigh speed" in done.stderr
 
 
 def test_verbose_and_log_tell_every_step(tmp_path):
@@ -99,11 +77,3 @@ def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
         env=clean_environment(), capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.stderr == "" and done.stdout.endswith(("0\n", "141\n"))
-
-
-def test_options_that_contradict_and_logs_that_cannot_be_written_are_refused(tmp_path):
-    both = here("run", SCENE, "-q", "-v", cwd=tmp_path)
-    assert both.returncode == 2 and "exclude each other" in both.stderr
-    nowhere = here("run", SCENE, "--log", tmp_path / "no" / "l.txt", "-o", "a.h5", cwd=tmp_path)
-    assert nowhere.returncode == 2 and "no does not exist" in nowhere.stderr
-    assert "Traceback" not in nowhere.stderr and not (tmp_path / "a.h5").exists()

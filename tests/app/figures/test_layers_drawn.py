@@ -1,19 +1,13 @@
 """Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
 
-import sys
-
 import numpy as np
 import pytest
 from support import HOME, computed
 
 import galinx
-from galinx.app.errors import BadInput
-from galinx.app.figures.archive import names, of_archive
+from galinx.app.figures.archive import of_archive
 from galinx.app.figures.choice import Choice, size
 from galinx.app.scene.read import parse
-
-sys.path.insert(0, str(HOME / "tests" / "postprocess" / "figures"))
-from legible import faults
 
 MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
 QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
@@ -56,26 +50,6 @@ def test_curves_are_what_the_archive_holds_on_both_sides(coated):
     assert "jumps" in drawing.caption and not drawing.left_out
 
 
-def test_what_is_chosen_is_drawn(coated):
-    drawing = drawn(coated, "interfaces", states=(1,), quantities=("sigma_XX_below",), size=size("3.5in"))
-    (axis,) = drawing.figure.axes
-    (line,) = curves(axis)
-    held = coated.data["interfaces/sie/sigma_XX_below"][1, 0]
-    assert set(line.get_ydata()) <= set(held)
-    assert drawing.left_out == ""
-    with pytest.raises(BadInput, match="sigma_ZZZ"):
-        drawn(coated, "interfaces", quantities=("sigma_ZZZ",))
-
-
-def test_in_megapascals_curves_have_the_unit(coated):
-    axes = [
-        drawn(coated, "interfaces", units=coated.units(plain)).figure.axes[1] for plain in (True, False)
-    ]
-    plain, scaled = (curves(axis)[0].get_ydata() for axis in axes)
-    assert scaled == pytest.approx(1e-6 * coated.scene.body.stress * plain)
-    assert "(N/2a)" in axes[0].get_ylabel() and "MPa" in axes[1].get_ylabel()
-
-
 def test_interfaces_are_lines_in_maps(coated):
     drawing = drawn(coated, "inside", quantities=("von_mises",))
     maps = [axis for axis in drawing.figure.axes if axis.images]
@@ -106,18 +80,6 @@ def test_finite_elements_are_markers_and_only_some_of_many_interfaces_are_shown(
     assert inside.any() and off[inside].max() < 1e-2
     wide = drawn(run, "interfaces", size=size("10in"))
     assert np.reshape(wide.figure.axes, (3, -1)).shape[1] == 4
-
-
-def test_they_can_be_read_in_print(coated):
-    for name in ("interfaces", "inside"):
-        for width in ("3.5in", "7in"):
-            if name == "interfaces" or width == "7in":
-                assert not [*faults(drawn(coated, name, size=size(width)).figure)]
-
-
-def test_uniform_solids_have_no_such_figure():
-    run = computed(changes={"solve.methods": ["closed_form"]})
-    assert "interfaces" not in names(run.data, run.scene)
 
 
 def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():

@@ -12,10 +12,12 @@ from support import computed, here
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
 from galinx.app.figures.archive import of_archive, write
-from galinx.app.figures.choice import Archive, Choice, size
+from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
+from galinx.app.figures.render import Curve, Film, Panel
+from galinx.app.figures.style import Look
 from galinx.postprocess.errors import Occupied
-from galinx.postprocess.target import GIF, MP4, SVG
+from galinx.postprocess.target import GIF, MP4
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
@@ -64,15 +66,6 @@ def test_what_a_figure_leaves_out_is_said(fast, tmp_path):
     assert not chosen.left_out  # nothing of what was asked for
 
 
-def test_a_sweep_shows_the_ends_of_its_lists(sweep):
-    drawing = drawn(sweep, "friction")
-    legends = [axis.get_legend() for axis in drawing.figure.axes]
-    told = [[text.get_text() for text in legend.get_texts()] for legend in legends]
-    assert [len(labels) for labels in told] == [4, 3]
-    assert r"\mu_C = 0.2" in told[0][0] and r"\mu_C = 0.8" in told[0][-1]
-    assert "states not shown" in drawing.left_out
-
-
 def test_numbers_are_drawn_over_what_is_swept_most(sweep):
     """Four coefficients are more than three speeds; these tell the curves apart."""
     drawing = drawn(sweep, "parameters")
@@ -89,78 +82,20 @@ def test_numbers_are_drawn_over_what_is_swept_most(sweep):
     assert "σ₀ l/N = 20\u202f000 m⁻¹, FM1, X/L = 0.8" in drawing.caption.replace("\u202fm", " m")
 
 
-def test_columns_that_show_the_same_are_drawn_once_and_named(sweep):
-    drawing = drawn(sweep, "parameters")
-    told = drawing.caption.split("same up to a factor: ")[1]
-    assert {"g", "K_I_left", "K_I_right"} <= set(told.rstrip(".").split(", "))
-    labels = [axis.get_ylabel() for axis in drawing.figure.axes]
-    assert len(labels) == len(set(labels)) > 3
+def test_small_numbers_of_a_film_are_over_the_power_of_its_axis():
+    look = Look("black", "-", "")
 
+    def panels(frame):
+        y = 1e-3 * np.array([1.0, 2.0, 3.0]) * (1.0 + 0.1 * frame)
+        return [Panel("x", "length", "m", curves=[Curve(np.arange(3.0), y, look)], ylim=(0.0, 4e-3))]
 
-def test_any_column_can_be_drawn_over_any_other(sweep):
-    drawing = drawn(sweep, "parameters", x="sigma0_over_load", y=("alpha", "K_I"), by="mu_c")
-    assert len(drawing.figure.axes) == 2 and len(drawing.figure.legends[0].get_texts()) == 4
-    (axis,) = drawn(sweep, "parameters", x="f", y=("K_I",), by="c").figure.axes
-    assert axis.get_xlabel() == "friction coefficient F/N"
-    (axis,) = drawn(sweep, "parameters", x="speed", y=("K_I",)).figure.axes
-    assert axis.get_xlabel() == "speed $V$ (m/s)"
-    assert curves(axis)[0].get_xdata()[-1] == pytest.approx(0.9 * sweep.scene.solid.c_s)
-
-
-def test_a_quantity_of_ones_own_is_drawn_by_itself(sweep, monkeypatch):
-    from galinx.postprocess.quantities.quantity import QUANTITIES, STATE, Quantity
-
-    row = Quantity("states/wear", "m", "depth of wear, by hand", (STATE,))
-    monkeypatch.setitem(QUANTITIES, row.path, row)
-    data = sweep.data | {row.path: 1e-5 * sweep.data["states/mu_c"] ** 2}
-    drawing = next(d for d in of_archive(data, sweep.scene, Choice(figures=("parameters",))))
-    labels = [axis.get_ylabel().replace("\n", " ") for axis in drawing.figure.axes]
-    assert any(label.startswith("depth of wear ($10^{-6}$ m") for label in labels)
-
-
-def test_speeds_are_also_told_in_metres_per_second(fast):
-    figure = drawn(fast, "parameters").figure
-    (beside,) = figure.axes[0].child_axes
-    assert beside.get_xlabel() == "speed (m/s)"
-    figure.canvas.draw()
-    c_s = fast.scene.solid.c_s
-    assert beside.get_xlim() == pytest.approx([c_s * c for c in figure.axes[0].get_xlim()])
-
-
-def test_over_layers_lines_are_of_the_integral_equation_and_equal_steps_of_speed_are_equal():
-    speeds = {"from": 1.0, "to": 800.0, "number": 5}
-    changes = {"motion.speed": speeds, "friction.mu_c": 0.4, "solve.tolerance": 1e-2}
-    changes |= {"solve.methods": ["sie", "fem"], "output.quantities": ["friction", "sif"]}
-    figure = drawn(computed("coating", changes), "parameters").figure
-    (legend,) = figure.legends
-    assert "lines: integral equation" in [text.get_text() for text in legend.get_texts()]
-    assert {axis.get_xscale() for axis in figure.axes} == {"linear"}
-    changes["motion.speed"] = speeds | {"spacing": "log"}
-    figure = drawn(computed("coating", changes), "parameters").figure
-    assert {axis.get_xscale() for axis in figure.axes} == {"log"}
-
-
-def test_a_single_map_is_a_figure_of_its_own(strokes):
-    drawing = drawn(strokes, "inside", states=(2,), quantities=("von_mises",))
-    (axis,) = drawing.figure.axes
-    assert (
-        drawing.figure.get_figwidth() * 25.4 == pytest.approx(85.0)
-        and len(axis.images) == 1
-        and axis.collections
-    )
-    label = axis.child_axes[0].get_ylabel()
-    assert label.startswith("von Mises") and "\n" not in label
-
-
-def test_formats_and_endings_are_obeyed(fast, tmp_path):
-    choice = Choice(figures=("surface",), states=(0, 4), size=size("3.5in"))
-    for name, begins in (("a.svg", b"<?xml"), ("a.pdf", b"%PDF"), ("a.png", b"\x89PNG")):
-        write(fast.data, fast.scene, choice, Files(tmp_path / name))
-        assert (tmp_path / name).read_bytes().startswith(begins)
-    assert SVG.of(tmp_path / "a.svg")
-    wrote = write(fast.data, fast.scene, choice, Files(tmp_path / "many", "x", ("svg", "png")))
-    assert [one.path.name for one in wrote] == ["x_surface.svg", "x_surface.png"]
-    assert {one.path for one in wrote} == set((tmp_path / "many").iterdir())
+    film, drawn = Film(panels, 2), []
+    for n in range(2):
+        film.show(n)
+        (line,) = [line for line in film.figure.axes[0].lines if line.get_gid() == "curve"]
+        drawn.append(line.get_ydata())
+    np.testing.assert_allclose(drawn, [[1.0, 2.0, 3.0], [1.1, 2.2, 3.3]])
+    assert film.figure.axes[0].get_ylim() == (0.0, 4.0)
 
 
 def test_films_are_made_of_strokes(strokes, tmp_path):
@@ -173,21 +108,6 @@ def test_films_are_made_of_strokes(strokes, tmp_path):
         pictures = [opened.seek(n) or np.asarray(opened.convert("RGB")).copy() for n in (0, 3, 9)]
     assert all((one != other).any() for one, other in pairwise(pictures))
     write(strokes.data, strokes.scene, Choice(), Files(tmp_path / "film.gif"))  # made again unasked
-
-
-def test_a_film_goes_along_every_stroke_in_the_order_of_travel(strokes):
-    from galinx.app.figures.archive import film as made
-
-    shown, _ = made(Archive(strokes.data, strokes.scene, Choice()))
-    places = []
-    for n in range(shown.frames):
-        shown.show(n)
-        axis = shown.figure.axes[0]
-        title = axis.get_title(loc="left").removeprefix("(a)").strip()
-        places.append(title.split(", $f")[0].replace("$", ""))
-    assert places[0] == "FM1, X/L = 0" and places[5:8] == [
-        "FM1, X/L = 1", "BM1, X/L = 1", "BM1, X/L = 0.8",
-    ]  # fmt: skip
 
 
 def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
@@ -234,12 +154,6 @@ def test_sizes_that_no_figure_has_are_refused(text):
         size(text)
 
 
-def test_sizes_are_read():
-    assert size("3.5in") == (3.5, None) and size("") is None
-    assert size("89mm x 6cm") == pytest.approx((3.504, 2.362), abs=1e-3)
-    assert size("252pt") == (3.5, None)
-
-
 def test_wrong_resolutions_and_formats_are_refused(fast, tmp_path):
     choice = Choice(figures=("surface",))
     with pytest.raises(BadInput, match="--dpi: found 5, expected 30 to 2400"):
@@ -283,22 +197,6 @@ def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
         np.testing.assert_allclose(Y, 27.65 * y, rtol=1e-6)
 
 
-def test_plot_in_si_takes_the_unit_from_the_scene(fast, tmp_path, monkeypatch):
-    from galinx.app.commands.look import plot
-    from galinx.app.figures import archive
-
-    fast.save(tmp_path / "a.h5")
-    units = []
-    monkeypatch.setattr(
-        archive, "write", lambda data, scene, choice, files: units.append(choice.units.stress) or []
-    )
-    for options in (["--dimensionless"], []):
-        plot.main([str(tmp_path / "a.h5"), *options], standalone_mode=False)
-    assert [(unit.unit, unit.factor) for unit in units] == [
-        ("N/(2a)", 1.0), ("MPa", pytest.approx(27.65)),
-    ]  # fmt: skip
-
-
 ROUND = {"solve.methods": ["closed_form"], "output.map": None, "output.quantities": ["sif"]}
 
 
@@ -315,16 +213,3 @@ def test_contacts_of_several_widths_are_compared_in_units():
     assert values.max() == pytest.approx(pressure.max(), rel=1e-14)
     assert all((np.diff(line.get_ydata()) < 0.0).all() for line in curves(axis))
     assert not any("N/(2a)" in axis.get_ylabel() or "over $a$" in axis.get_ylabel() for axis in axes)
-
-
-def test_the_mesh_of_layers_is_drawn_where_it_is():
-    """A line along the interface, and as many cells as the archive says."""
-    changes = {"solve.methods": ["fem"], "output.quantities": ["sif"], "output.map": None}
-    more = {"motion.X_over_L": [0.5], "motion.strokes": ["forward"]}
-    result = computed("coating", changes | more)
-    drawing = drawn(result, "mesh")
-    assert f"the {int(result.data['run/fem/cells'][0])} cells" in drawing.caption
-    depth = result.scene.layers[0].thickness / result.scene.body.half_width
-    lines = np.concatenate([path.vertices for path in drawing.figure.axes[0].collections[0].get_paths()])
-    assert np.isclose(lines[:, 1], -depth, rtol=1e-12).any()
-    assert all(len(axis.collections[0].get_paths()) > 4 for axis in drawing.figure.axes)

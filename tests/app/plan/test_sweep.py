@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 from random_solids import random_solid
 
-from galinx import template
-from galinx.app.plan.plan import lines, make_plan
 from galinx.solvers.contact.fem_plan import LEAST, swept, variable
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
-from galinx.solvers.solids.half_plane import HalfPlane
 
 ISOTROPIC = Isotropic(E=1.0, ν=0.25, ρ=1.0)
 
@@ -46,23 +43,3 @@ def test_over_layers_it_is_the_logarithm_of_the_distance_to_the_limit(top):
     share = np.linspace(0.0, 0.99, 50)
     z = variable([solid.response(c) for c in share * solid.limit()])
     np.testing.assert_allclose(z, -np.log1p(-(share**2)), rtol=1e-9)
-
-
-def test_what_does_not_contract_has_the_square_of_the_speed():
-    class Still(HalfPlane):
-        contraction = 1j
-
-        def __init__(self, c):
-            self.c = c
-
-    speeds = [0.0, 0.5, 0.2]
-    np.testing.assert_array_equal(variable([Still(c) for c in speeds]), np.square(speeds))
-
-
-def test_a_plan_says_what_it_will_do():
-    speeds = {"motion.c": {"from": 0.0, "to": 0.9, "number": 40}}
-    few = make_plan(template("tables4_5", speeds))
-    each = make_plan(template("tables4_5", speeds | {"solve.sweep": "every"}))
-    (told,) = [line for line in lines(template("tables4_5", speeds), few) if "give the others" in line]
-    assert "40 speeds, c = 0 to 0.9" in told
-    assert not any("give the others" in line for line in lines(template("tables4_5", speeds), each))

@@ -1,15 +1,12 @@
 """What a command meets before it can do anything: closed streams, encodings, limits, variables."""
 
-import errno
 import stat
 import subprocess
 import sys
-import tempfile
 
 import pytest
 from support import HOME, SCENE, clean_environment, here
 
-from galinx.app import process
 from galinx.postprocess.hdf5 import archive
 
 #: A run that needs no finite elements.
@@ -45,35 +42,6 @@ def test_closed_streams_are_the_null_device(tmp_path, closed):
     assert (b"archive: x.h5" in done.stdout) == (closed == "2>&-")
     assert archive.read(tmp_path / "x.h5")[1]["verdict"] == "PASS"
     assert galinx(tmp_path, "plan", "no.toml", shell='"$@" 2>&-').returncode == 2
-
-
-def test_a_message_needs_no_output_stream(tmp_path):
-    is_refused(galinx(tmp_path, "plan", "no.toml", shell='"$@" >&-'), 2, "cannot read no.toml")
-    assert galinx(tmp_path, "-n", "many", *PLAN, shell='"$@" 2>&-').returncode == 2
-
-
-@on_ranks
-def test_another_folder_serves_for_temporary_files(tmp_path, count):
-    words = (*RUN, "--set", 'solve.methods=["fem"]', "--set", "solve.tolerance=1e-2")
-    done = galinx(tmp_path, *count, *words, TMPDIR="/no/such/folder")
-    assert done.returncode == 0, done.stderr
-    assert b"Open MPI" not in done.stderr and b"ompi" not in done.stderr
-
-
-def test_no_folder_for_temporary_files_is_told(monkeypatch):
-    def refuse():
-        raise FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/a']")
-
-    said = []
-    monkeypatch.setattr(tempfile, "gettempdir", refuse)
-    # What ends ignores signals from then on, and so would the processes of later tests.
-    monkeypatch.setattr(process, "complain", said.append)
-    with pytest.raises(SystemExit) as ended:
-        process._check_machine()
-    assert ended.value.code == 3
-    assert said == [
-        "No usable temporary directory found in ['/a']; set TMPDIR to a folder that can be written"
-    ]
 
 
 @pytest.mark.parametrize("words", [PLAN, ("plan", "--help")])

@@ -74,19 +74,6 @@ def test_states_are_paired_by_their_parameters(light, heavy):
     assert np.isfinite(plain[K_I].values).all()
 
 
-def test_both_have_one_unit(light):
-    """Pressures of 0.09 MPa alone would be in kPa, beside those of 28 MPa they are not."""
-    small = computed("tables4_5", PLAIN | {"punch.load": "0.18 N/mm", "title": "small"})
-    tension = "closed_form_sigma_XX_max"
-    assert by_name(small.table())[tension].unit == "kPa"
-    columns = by_name(galinx.compare(small, light))
-    assert columns[f"{tension}_1"].unit == columns[f"{tension}_2"].unit == "MPa"
-    values = by_name(small.table())[tension].values
-    np.testing.assert_allclose(columns[f"{tension}_1"].values, 1e-3 * values, rtol=1e-14)
-    difference = columns[f"{tension}_2_difference"].values
-    np.testing.assert_allclose(difference, 100.0 * (55.3 / 0.18 - 1.0), rtol=1e-9)
-
-
 def test_the_swapped_order_is_the_mirror(light, heavy):
     there, back = (by_name(galinx.compare(*pair)) for pair in ((light, heavy), (heavy, light)))
     assert there.keys() - {n for n in there if "difference" in n} == {
@@ -136,22 +123,6 @@ def test_compare_prints_and_draws(two, tmp_path):
         assert done.returncode == 2 and said in done.stderr, done.stderr
 
 
-def test_compared_curves_have_one_unit(light, heavy):
-    drawing = Comparison([heavy, light], chosen=[2]).drawing()
-    pressure, tension = drawing.figure.axes
-    assert "(MPa)" in pressure.get_ylabel() and "(mm)" in tension.get_xlabel()
-    middles = [
-        np.interp(0.0, *line.get_xydata()[np.isfinite(line.get_xydata()).all(axis=1)].T)
-        for line in pressure.lines
-        if len(line.get_xdata()) > 2
-    ]
-    middle = np.argmin(np.abs(heavy.data["surface/X_over_a"]))
-    for value, result, state in zip(middles, (heavy, light), (2, 1)):
-        mean = result.units().contact.load / 2e-3 * 1e-6  # N/(2a) in MPa
-        archived = -result.data["surface/closed_form/sigma_YY"][state, middle]
-        assert value == pytest.approx(mean * archived, rel=1e-3)
-
-
 def test_measured_points_lie_at_their_places(light, heavy, table):
     points = read(table(POINTS))
     pressure, tension = light.figure("surface", states=(1,), measured=points).axes
@@ -162,22 +133,6 @@ def test_measured_points_lie_at_their_places(light, heavy, table):
     assert dots(pressure)[1] == pytest.approx([0.0, 17.25 / 27.65], rel=1e-12)
     pressure, _ = Comparison([light, heavy]).drawing(points).figure.axes
     assert dots(pressure)[1] == pytest.approx([0.0, 17.25], rel=1e-12)
-
-
-def test_measured_friction_lies_over_its_slip(light, table):
-    axis = light.figure("friction", measured=read(table("slip [µm]\tf [1]\n25\t0.4\n50\t0.55\n"))).axes[0]
-    assert dots(axis) == pytest.approx(np.array([[0.25, 0.4], [0.5, 0.55]]))  # L is 0.1 mm
-
-
-def test_a_german_table_is_the_same(table):
-    english = read(table(POINTS))
-    german = read(table(POINTS.replace(",", ";").replace(".", ",")))
-    micro = read(
-        table("x [µm];p [kPa];sigma_XX [GPa]\n-500;15500;-0,02\n0;17250;-0,0305\n750;2e6;-0,025")
-    )
-    for name, of_english in english.points.items():
-        for other in (german, micro):
-            np.testing.assert_allclose(other.points[name], of_english, rtol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -195,18 +150,3 @@ def test_a_german_table_is_the_same(table):
 def test_what_is_no_measured_table_is_refused(table, text, said):
     with pytest.raises(BadInput, match=re.escape(said)):
         read(table(text))
-
-
-def test_points_beside_what_is_drawn_are_refused(light, two, table, tmp_path):
-    far = table("position [m],pressure [MPa]\n5,1\n")
-    done = here("plot", two[0], "--measured", far, "-o", tmp_path)
-    assert done.returncode == 2, done.stdout
-    assert "found points at 5000 to 5000, the figure shows -1.04 to 1.04" in done.stderr
-    for options in ({"figures": ("friction",)}, {"quantities": ("sigma_XX",)}):
-        with pytest.raises(BadInput, match="which no chosen figure or quantity shows"):
-            list(light.drawings(measured=read(far), **options))
-    near = table(POINTS)
-    done = here("plot", two[0], "--measured", near, "-o", tmp_path / "near.svg")
-    assert done.returncode == 0 and (tmp_path / "near.svg").exists(), done.stderr
-    done = here("plot", two[0], "--measured", near, "-o", near)
-    assert done.returncode == 2

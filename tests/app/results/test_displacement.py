@@ -48,8 +48,9 @@ def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
     assert energy == pytest.approx(N * result.data["states/fem/v0"][0] / 2.0 + beyond, rel=1e-7)
 
 
-@pytest.mark.parametrize("mesh, tolerance", [("confocal", 1e-4), ("confocal", 1e-7), ("graded", 1e-4)])
-@pytest.mark.parametrize("c", [0.0, 0.8])
+@pytest.mark.parametrize(
+    "mesh, tolerance, c", [("confocal", 1e-4, 0.8), ("confocal", 1e-7, 0.0), ("graded", 1e-4, 0.8)]
+)
 def test_indentation_is_alike_at_all_tolerances(mesh, tolerance, c):
     """Without friction v = (2n/π) arcosh X - v₀ beside a flat punch, far away (2n/π) log 2X - v₀."""
     changes = {"motion.c": c, "solve.mesh": mesh, "solve.tolerance": tolerance}
@@ -57,21 +58,6 @@ def test_indentation_is_alike_at_all_tolerances(mesh, tolerance, c):
     solid, N = result.scene.solid, result.scene.punch.load
     exact = N / solid.μ * solid.response(c).n / np.pi * np.log(200.0)
     assert result.data["states/fem/v0"][0] == pytest.approx(exact, rel=0.1 * tolerance)
-
-
-def test_it_is_that_of_the_punch(tables_run):
-    u = tables_run.displacement(7)
-    a, domain = tables_run.scene.punch.profile.half_width, u.function_space.mesh
-    X, Y, _ = domain.geometry.x.T / a
-    assert Y.max() <= 1e-12 and X.min() == pytest.approx(-X.max(), rel=1e-9)
-    assert min(X.max(), -Y.min()) > 10.0
-    X_wider = tables_run.displacement(7, extent=50.0).function_space.mesh.geometry.x[:, 0] / a
-    assert X_wider.max() > 50.0
-    nodes = np.reshape(u.x.array, (-1, 2))
-    v0 = tables_run.data["states/fem/v0"][7]
-    under = np.isclose(nodes[:, 1], -v0, rtol=1e-9, atol=0.0)
-    assert under.sum() > 50 and nodes[:, 1].min() > -1.5 * v0
-    assert u.name == "displacement"
 
 
 def test_what_has_no_displacement_is_bad_input():

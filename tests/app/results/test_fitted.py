@@ -68,15 +68,6 @@ def test_what_the_data_do_not_determine_is_called_so():
     assert parse(section + REST).friction.count == 1
 
 
-def test_the_section_of_a_scene_is_the_law_of_the_stated_rms():
-    data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 1.5e4}, samples=748, noise=1e-3)
-    found = galinx.fit(data, "lugre")
-    assert found.not_determined
-    (law,) = parse(REST + found.scene()).friction.laws()
-    f = friction(law, moves(data.t, data.X, law.depends_on_speed), len(data.t))
-    assert np.sqrt(np.nanmean((f - data.f)[1:] ** 2)) == pytest.approx(found.rms, rel=1e-4)
-
-
 def test_friction_that_drives_the_motion_has_the_wrong_sign():
     data = swing("dahl", {"mu_c": 0.3, "sigma0_over_load": 3e4})
     with pytest.raises(BadInput, match="drives the motion"):
@@ -141,13 +132,6 @@ def test_faults_of_tables_are_told(tmp_path, text, said):
     (tmp_path / "a.csv").write_text(text, encoding="utf-8")
     with pytest.raises(BadInput, match=said):
         read(tmp_path / "a.csv")
-
-
-def test_a_head_without_a_unit_is_told_and_comments_are_no_rows(tmp_path):
-    (tmp_path / "a.csv").write_text("# rig 3\n\nslip,f\n0,0\n0.1,0.2\n0.2,0.3\n", encoding="utf-8")
-    table = read(tmp_path / "a.csv")
-    assert table.measured.X[-1] == 0.2
-    assert "slip has no unit in its head and is read in m, 0 to 0.2 m" in table.notes[0]
 
 
 def test_speeds_are_those_of_the_tables(tmp_path):

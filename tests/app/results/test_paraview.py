@@ -10,7 +10,6 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.states import enumerate_states
 from galinx.app.results import fields
 from galinx.app.results.fields import ABOUT, state_field, write_fields
-from galinx.app.scene.library import templates
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -39,63 +38,6 @@ def test_stresses_are_those_of_the_potentials(mode):
         assert σ_YY.max() < -0.3 if level else np.abs(σ_YY).max() < 1e-2
 
 
-def test_a_field_is_solved_once_and_for_any_scene(monkeypatch):
-    from galinx.solvers.fem.punch import SlidingPunch
-
-    made, true = [], SlidingPunch.__init__
-
-    def counted(self, space, *arguments, **options):
-        made.append(space.degree)
-        true(self, space, *arguments, **options)
-
-    monkeypatch.setattr(SlidingPunch, "__init__", counted)
-    given = template("tables4_5", {"output.quantities": ["friction"], "solve.methods": []})
-    field = state_field(given, 3, extent=2.0, degree=6)
-    assert made == [6]
-    assert set(field.data) == set(ABOUT) - {"sigma_error"}
-    # A speed that finite elements refuse does not stand in the way of the others.
-    fast = template("tables4_5", {"motion.c": [0.1, 0.95], "solve.methods": ["closed_form"]})
-    assert "sigma_error" in state_field(fast, 0, extent=2.0, degree=4).data
-    with pytest.raises(BadInput, match="is not below the Rayleigh speed"):
-        state_field(fast, len(enumerate_states(fast)) - 1)
-
-
-@pytest.mark.parametrize("name", templates())
-def test_every_scene_has_fields_or_says_why_not(name):
-    """Also one that asks for a slider, or for motion in time: a state's field is the steady one."""
-    given = template(name, {"solve.tolerance": 1e-2})
-    if given.layers or given.body.found:
-        with pytest.raises(BadInput, match=r"layers|another half-width"):
-            state_field(given, 0, extent=2.0)
-    else:
-        field = state_field(given, 0, extent=2.0, degree=4)
-        assert np.isfinite(field.data["displacement"]).all()
-
-
-def test_given_tractions_of_the_users_own_have_a_field():
-    given = template("traction", {"solve.pressure": [[-1, -1], [1, -1]]})
-    found = state_field(given, 0)
-    X, Y = found.points.T / given.punch.profile.half_width
-    under = (Y > -1e-12) & (np.abs(X) < 0.9)
-    pressure = -found.data["sigma_YY"][under] * 2.0 * given.punch.profile.half_width / given.punch.load
-    np.testing.assert_allclose(pressure, 1.0, atol=1e-3)
-    unit = given.punch.load / (2.0 * given.punch.profile.half_width)
-    away = (Y < -1e-3) & (np.hypot(X, Y) <= 5.0)
-    assert found.data["sigma_error"][away].max() <= 1e-5 * unit
-
-
-def test_kinks_within_a_cell_are_loaded_exactly():
-    """Away from them the field of a spike that no cell resolves is right."""
-    spike = [[-1, -1], [0.301, -1], [0.302, -50], [0.303, -1], [1, -1]]
-    given = template("traction", {"solve.pressure": spike})
-    found = state_field(given, 0)
-    X, Y = found.points.T / given.punch.profile.half_width
-    unit = given.punch.load / (2.0 * given.punch.profile.half_width)
-    # The ends jump, and stresses at their corners are those of the small quadrilaterals there.
-    away = (np.hypot(X - 0.302, Y) > 1.0) & (np.hypot(np.abs(X) - 1.0, Y) > 0.1)
-    assert np.nanmax(found.data["sigma_error"][away]) <= 1e-3 * unit
-
-
 def test_what_has_no_field_is_bad_input():
     given = template("tables4_5")
     count = len(enumerate_states(given))
@@ -110,17 +52,6 @@ def test_what_has_no_field_is_bad_input():
             state_field(box, 0, extent)
     with pytest.raises(BadInput, match="degree: found 40, expected 4 to 13"):
         state_field(given, 0, degree=40)
-
-
-def test_the_indentation_is_that_of_a_run(tables_run):
-    data = tables_run.data
-    given = template("tables4_5")
-    for number in (0, len(data["states/c"]) - 1):
-        speed = data["run/fem/c"].tolist().index(data["states/c"][number])
-        found = state_field(given, number, 2.0, int(data["run/fem/degree"][speed]))
-        X, Y = found.points.T / given.punch.profile.half_width
-        v = found.data["displacement"][(np.abs(X) <= 1.0) & (Y > -1e-13), 1]
-        np.testing.assert_allclose(v, -data["states/fem/v0"][number], rtol=1e-9)
 
 
 def test_lengths_and_stresses_scale_with_the_punch():
@@ -177,21 +108,6 @@ def test_vtk_reads_what_was_written(tmp_path):
     assert found.sum() == pytest.approx(18.0 * a**2, rel=1e-9)
 
 
-def test_every_quantity_is_described():
-    given = template("tables4_5")
-    assert set(state_field(given, 0, 2.0, 4).data) == set(fields.ABOUT)
-
-
-def test_fields_of_a_cut_mesh_come_from_it():
-    changes = {"solve.degree": 2, "solve.cuts": 4, "motion.c": 0.6}
-    scenes = template("tables4_5", changes), template("tables4_5", changes | {"solve.cuts": 2})
-    field, coarse = (state_field(scene, 0, extent=3.0, degree=2) for scene in scenes)
-    assert len(field.quads) > 3 * len(coarse.quads)
-    deep = field.points[:, 1] < -0.5e-3  # half a punch's half-width
-    unit = np.abs(field.data["sigma_YY"][deep]).max()
-    assert np.nanmax(field.data["sigma_error"][deep]) < 0.02 * unit
-
-
 def test_the_contact_pressure_is_that_of_the_closed_form_and_carries_the_load():
     given = template("tables4_5", {"motion.c": 0.6})
     for changes in ({}, {"solve.mode": "traction"}):
@@ -206,16 +122,6 @@ def test_the_contact_pressure_is_that_of_the_closed_form_and_carries_the_load():
         exact = FlatPunch(MovingFrame(3.0 - 4.0 * given.solid.ν, 0.6), states.g[1]).σ_YY(X[under])
         assert under.sum() > 50
         np.testing.assert_allclose(pressure[under], -exact, rtol=1e-5)
-
-
-def test_colours_are_not_spent_on_the_edges():
-    found, unit = state_field(template("tables4_5"), 0, 2.0, 5), 55.3e3 / 2e-3
-    shown, true = found.data[fields.COLOURED], found.data["von_mises"]
-    assert true.max() > 100.0 * unit and shown.max() == 2.0 * unit
-    # Of the picture, not of the points, of which most are at the edges, nearly all is as it is.
-    size = areas(found.points, found.quads)
-    same = (shown == true)[found.quads].all(axis=1)
-    assert 0.9 < size[same].sum() / size.sum() < 1.0
 
 
 def test_several_states_are_a_series(tmp_path, monkeypatch):
@@ -253,25 +159,3 @@ def test_several_states_are_a_series(tmp_path, monkeypatch):
             begin = steps["ConnectivityIdOffsets"][i, 0]
             corners = root["Connectivity"][begin : begin + ends[-1]]
             assert corners.min() == 0 and corners.max() == points - 1
-
-
-def test_vtk_reads_a_series(tmp_path):
-    reading = pytest.importorskip("vtkmodules.vtkIOHDF")
-    from vtkmodules.vtkCommonCore import vtkVersion
-    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-
-    if vtkVersion.GetVTKMajorVersion() * 100 + vtkVersion.GetVTKMinorVersion() < 903:
-        pytest.skip("this VTK knows no series in HDF5")
-    scene, path = template("tables4_5"), tmp_path / "series.vtkhdf"
-    write_fields(scene, [1, 7], path, extent=3.0, degrees=[5, 6])
-    reader = reading.vtkHDFReader()
-    reader.SetFileName(str(path))
-    reader.UpdateInformation()
-    times = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
-    assert times == (1.0, 7.0)
-    for number, degree in ((1, 5), (7, 6)):
-        reader.UpdateTimeStep(float(number))
-        grid, one = reader.GetOutput(), state_field(scene, number, 3.0, degree)
-        assert grid.GetNumberOfPoints() == len(one.points) and grid.GetNumberOfCells() == len(one.quads)
-        assert grid.GetPointData().GetScalars().GetName() == fields.COLOURED
-        assert grid.GetFieldData().GetAbstractArray("state").GetValue(0) == number

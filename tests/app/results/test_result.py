@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from support import HOME, command
+from support import command
 
-from galinx import load, read_scene, template
-from galinx.app.errors import BadInput
+from galinx import load
 from galinx.postprocess.errors import Occupied
 
 
@@ -33,9 +32,3 @@ def test_saved_and_loaded_is_the_same(map_run, tmp_path):
     assert command("check", tmp_path / "a.h5").returncode == 0
     with pytest.raises(Occupied, match="exists"):
         map_run.save(tmp_path / "a.h5")
-
-
-def test_a_scene_file_is_read_with_changes():
-    assert read_scene(HOME / "scenes" / "fig5.toml", {"motion.c": 0.25}).motion.c == (0.25,)
-    with pytest.raises(BadInput, match="no such scene"):
-        template("fig99")

@@ -6,7 +6,6 @@ from support import THOROUGH
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.results import check
 from galinx.app.scene.read import parse
 from galinx.postprocess.tables import inner_sheet, loops_sheet
 
@@ -140,9 +139,3 @@ def test_mirrored_motion_and_friction_mirror_all_results():
             )
         left, right = one[f"states/{method}/K_I_left"], other[f"states/{method}/K_I_right"]
         np.testing.assert_allclose(left, right, rtol=rtol)
-
-
-def test_an_archive_is_whole(tmp_path):
-    path = tmp_path / "along.h5"
-    galinx.compute(parse(scene("along = [[-1, 0.2], [1, 0.5]]"))).save(path)
-    assert check.faults(path) == []

@@ -5,9 +5,8 @@ import pytest
 from support import computed
 
 from galinx import template
-from galinx.app.plan import task
 from galinx.app.run import flow
-from galinx.app.run.flow import Judge, Memory, compute
+from galinx.app.run.flow import Memory, compute
 from galinx.postprocess.compare import Comparison
 from galinx.postprocess.journal import Journal, Part, joined
 
@@ -59,40 +58,6 @@ def test_parts_of_many_speeds_are_written_and_kept_together(alone, tmp_path, mon
     equal(data, alone)
 
 
-def test_what_was_kept_together_is_not_computed_again(alone, tmp_path, monkeypatch):
-    """Interrupted after the first part, then gone on with."""
-    monkeypatch.setattr(flow, "_PATIENCE", 1e9)
-    scene, target = template("tables4_5", MANY), tmp_path / "a.h5"
-
-    def once(self, part, keep=Journal.keep):
-        keep(self, part)
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as interrupted:
-        interrupted.setattr(Journal, "keep", once)
-        with pytest.raises(KeyboardInterrupt), Journal(target, "key") as journal:
-            compute(scene, Memory(), None, journal)
-    solved, states = [], flow.Collector.take
-    monkeypatch.setattr(
-        flow.Collector, "take", lambda self, part: solved.append(part.rows) or states(self, part)
-    )
-    data = Memory()
-    with Journal(target, "key", resume=True) as journal:
-        kept = journal.states
-        compute(scene, data, None, journal)
-    assert kept >= 1000 and sum(rows.stop - rows.start for rows in solved) == 6 * SPEEDS - kept
-    equal(data, alone)
-
-
-def test_nobody_waits_for_a_second(monkeypatch):
-    """With a clock that jumps, every part is taken in at once."""
-    now = iter(range(0, 10**9, 10))
-    monkeypatch.setattr(flow, "perf_counter", lambda: next(now))
-    data = Counting()
-    compute(template("tables4_5", MANY | {"motion.c": [0.1, 0.2, 0.3]}), data)
-    assert data.writes == 3
-
-
 def test_parts_join_in_order_and_the_worst_of_a_comparison_stays():
     def part(first, value, record=None):
         rows, values = slice(first, first + 2), np.array([first, first + 1.0])
@@ -102,17 +67,3 @@ def test_parts_join_in_order_and_the_worst_of_a_comparison_stays():
     assert whole.rows == slice(4, 10) and whole.data["states/f"].tolist() == [4, 5, 6, 7, 8, 9]
     assert len(whole.comparisons) == 1 and np.isnan(whole.comparisons[0].value)
     assert whole.record == {"speed": 1}
-
-
-def test_a_verdict_names_some_of_thousands_of_failures():
-    judge = Judge(template("tables4_5"), ())
-    judge.failures = [f"c = {i}: singular" for i in range(5000)]
-    verdict, reasons = judge.verdict()
-    assert verdict == "FAIL" and len(reasons) == 11 and reasons[-1] == "not solved, and 4990 more speeds"
-
-
-def test_chunks_have_the_states_of_all_speeds(monkeypatch):
-    few = MANY | {"motion.c": MANY["motion.c"][::12]}
-    whole = computed("tables4_5", few).data
-    monkeypatch.setattr(task, "CHUNK_NUMBERS", 1)
-    equal(computed("tables4_5", few).data, whole)

@@ -2,7 +2,6 @@
 
 import json
 import re
-import tomllib
 
 import numpy as np
 import pytest
@@ -78,35 +77,6 @@ def test_loops_and_what_strokes_take_are_those_of_the_drawn_friction(name):
     np.testing.assert_allclose(tangent, slope, rtol=0.3, atol=2e-2 * N / L)
 
 
-def test_lists_of_any_parameter_are_a_product_and_tables_are_the_same_for_all():
-    given = scene("gms", {
-        "mu_c": [0.3, 0.4], "mu_s": 0.5, "stribeck_velocity": [1e-3, 1e-2], "attraction_rate": 10.0,
-        "elements": [[1e4, 0.1], [2e4, 0.2]],
-    })  # fmt: skip
-    data = galinx.compute(given).data
-    assert len(data["states/f"]) == 4 * 8 and data["states/inner_state"].shape == (32, 4)
-    assert "states/elements" not in data
-    assert sorted(set(zip(data["states/mu_c"], data["states/stribeck_velocity"]))) == [
-        (0.3, 1e-3), (0.3, 1e-2), (0.4, 1e-3), (0.4, 1e-2),
-    ]  # fmt: skip
-    both = scene("rate_and_state", {
-        "reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01, "b": 0.015,
-        "critical_slip": "20 um", "evolution": ["ageing", "slip"],
-    })  # fmt: skip
-    result = galinx.compute(both)
-    assert [*result.data["states/evolution"]] == ["ageing"] * 8 + ["slip"] * 8
-    grid = result.grid.f.sel(motion="FM1")
-    assert (grid.sel(evolution="ageing") != grid.sel(evolution="slip")).all()
-
-
-def test_a_law_of_the_speed_gives_another_friction_at_each():
-    data = galinx.compute(scene(
-        "stribeck", {"mu_c": 0.3, "mu_s": 0.6, "stribeck_velocity": "1 mm/s"},
-        'speed = ["1 mm/s", "1 m/s"], strokes = ["forward"], X_over_L = 1',
-    )).data  # fmt: skip
-    np.testing.assert_allclose(data["states/f"], [0.3 + 0.3 * np.exp(-1.0), 0.3], rtol=1e-14)
-
-
 def test_strokes_may_have_speeds_and_rests_of_their_own():
     motion = (
         "speed = 1e-6, X_over_L = [0.5, 1], rest = 5, strokes = [{to = 0.5}, {to = 1, speed = 1e-5}, "
@@ -164,22 +134,6 @@ def test_rate_and_state_has_no_answer_at_rest():
         galinx.compute(scene("rate_and_state", RATE_AND_STATE, "c = 0"))
 
 
-@pytest.mark.parametrize("name", ["lugre", "maxwell_slip", "table", "rate_and_state", "bouc_wen"])
-def test_archives_of_laws_are_whole_drawn_and_reported(name, tmp_path):
-    given = scene(
-        name, random.parameters(name, np.random.default_rng(8)), quantities='["friction", "sif"]'
-    )
-    assert tomllib.loads(given.text)
-    (tmp_path / "s.toml").write_text(given.text, encoding="utf-8")
-    done = here("run", "s.toml", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert faults(tmp_path / "s.h5") == []
-    result = galinx.load(tmp_path / "s.h5")
-    assert next(iter(result.drawings())).name == "friction"
-    result.report(tmp_path / "s.html")
-    assert LAWS[name].about in (tmp_path / "s.html").read_text(encoding="utf-8")
-
-
 SLIDER = """
 slider = {mass = 2, stiffness = "8 N/m^2", drive_speed = "0.1 m/s", duration = "20 s"}
 """
@@ -204,35 +158,6 @@ def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
         wanted = 0.1 * (1.0 - np.cos(2.0 * later))
         np.testing.assert_allclose(data["slider/velocity"][row], wanted, rtol=0.0, atol=1e-9)
     assert [drawing.name for drawing in result.drawings()] == ["slider"]
-
-
-@pytest.mark.parametrize(
-    "model, friction, changes, said",
-    [
-        ("coulomb", "mu_c = 2e-5", {}, "stick-slip"),
-        ("coulomb", "mu_c = 2e-5", {"damping": 8.0}, "slides steadily"),
-        ("coulomb", "mu_c = 2e-3", {}, "does not break away"),
-        ("coulomb", "mu_c = 2e-5", {"duration": 2.5}, "no whole cycle yet"),
-        (
-            "stribeck",
-            "mu_c = 2e-5, mu_s = 6e-5, stribeck_velocity = 1e-3",
-            {"duration": 4.5},
-            "one slip only",
-        ),
-    ],
-)
-def test_what_becomes_of_a_slider_is_told(model, friction, changes, said, tmp_path):
-    slider = {"mass": 2.0, "stiffness": 8.0, "drive_speed": 0.1, "duration": 20.0} | changes
-    text = SCENE.format(
-        model=model, friction=friction, motion="speed = 2e-3", quantities='["friction", "slider"]'
-    )
-    section = "".join(f"{key} = {value}\n" for key, value in slider.items())
-    (tmp_path / "s.toml").write_text(f"{text}\n[slider]\n{section}", encoding="utf-8")
-    done = here("run", "s.toml", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    shown = here("show", "s.h5", cwd=tmp_path).stdout
-    assert said in shown and "nan" not in shown
-    assert here("check", "s.h5", cwd=tmp_path).returncode == 0
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ from support import THOROUGH, computed
 
 import galinx
 from galinx.app.scene.read import parse
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
-from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from galinx.solvers.profiles import cusp
@@ -246,13 +246,3 @@ def test_the_largest_stress_at_a_free_end_is_the_limit_and_the_load_follows():
         assert data[f"states/{method}/von_mises_X_over_a"][0] == -1.0
         first = load * (300e6 / (mises * load / (2.0 * a))) ** 2
         assert data[f"states/{method}/first_yield_load"][0] == pytest.approx(first, rel=1e-5)
-
-
-def test_next_to_a_cusp_the_largest_pressure_is_no_swing_of_a_polynomial():
-    changes = {
-        "punch.profile": "power", "punch.half_width": None, "punch.exponent": 1.306,
-        "punch.coefficient": 0.5, "motion.strokes": ["forward"], "motion.X_over_L": [0.7],
-        "motion.c": 0.3, "solve.tolerance": 1e-5, "output.quantities": ["sif"],
-    }  # fmt: skip
-    result = computed("tables4_5", changes)
-    assert result.comparisons["largest contact pressure, relative"] <= 1e-6

@@ -1,7 +1,6 @@
 """Scenes with layers, from the text to the archive."""
 
 import json
-import tomllib
 from itertools import product
 
 import numpy as np
@@ -13,8 +12,6 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
-from galinx.app.scene.sections import schema
-from galinx.postprocess.tables import state_columns
 from galinx.solvers.errors import SolveError
 
 SCENE = """
@@ -72,41 +69,6 @@ def test_the_example_from_scene_to_archive(tmp_path):
     assert again.scene.layers == result.scene.layers
     told = json.loads(again.attributes["solid"])
     assert told["layer 1"].startswith("1 mm of E = 7.5 GPa")
-
-
-def test_results_begin_with_what_may_part_a_layer_from_what_it_lies_on():
-    half = COAT.replace("1 mm", "0.5 mm")
-    result = galinx.compute(scene(layers=half + COAT, quantities=("interfaces",), tolerance=1e-4))
-    found = {column.head: column for column in state_columns(result.data, result.units())}
-    ends = [result.data[f"interfaces/sie/sigma_XY_{end}"][0] for end in ("max", "min")]
-    shear = np.abs(ends).max(axis=0) * result.scene.punch.load / 2e-3
-    for depth, expected in zip(("500 µm", "1.5 mm"), shear):
-        column = found[f"shear {depth} deep"]
-        size = {"kPa": 1e3, "MPa": 1e6}[column.unit]
-        assert size * column.values == pytest.approx([expected], rel=1e-3)
-
-
-def test_layers_of_the_substrates_solid_give_the_closed_form():
-    same = COAT.replace("7.5", "2.5").replace("0.3", "0.25").replace("1200", "1000")
-    layered = galinx.compute(scene(layers=2 * same, tolerance=1e-9)).data
-    plain = galinx.compute(scene(layers="", methods=("closed_form",))).data
-    for name in ("surface/{}/sigma_YY", "surface/{}/sigma_XX"):
-        one, other = layered[name.format("sie")], plain[name.format("closed_form")]
-        known = np.isfinite(other)
-        assert np.array_equal(known, np.isfinite(one))
-        off = np.abs(one - other)[known] / np.maximum(np.abs(other[known]), 0.1)
-        assert off.max() <= 1e-10
-    assert layered["states/sie/K_I_left"] == pytest.approx(plain["states/closed_form/K_I"], rel=1e-10)
-
-
-def test_many_frictions_are_those_of_each():
-    many = ", ".join(f"{value:.3f}" for value in np.linspace(0.05, 0.9, 40))
-    together = galinx.compute(scene(mu=f"[{many}]")).data
-    for i in (3, 31):
-        alone = galinx.compute(scene(mu=together["states/mu_c"][i])).data
-        for path in ("states/sie/K_I_left", "states/sie/K_I_right", "surface/sie/sigma_XX"):
-            off = np.abs(together[path][i] - alone[path][0]) / np.abs(alone[path][0]).max()
-            assert off.max() <= 1e-6
 
 
 GRADED = COAT + 'to = { E = "2.5 GPa", nu = 0.25, rho = "1000 kg/m^3" }\n'
@@ -193,22 +155,6 @@ def test_too_fast_for_the_layers_is_refused():
 def test_friction_that_leaves_no_pressure_but_at_an_edge_is_told(mu):
     with pytest.raises(SolveError, match="exponent at an edge is -1"):
         galinx.compute(scene(mu=mu))
-
-
-def test_plans_of_uniform_solids_do_not_speak_of_layers():
-    plan = make_plan(scene(layers="", methods=("closed_form", "sie")))
-    assert plan.methods == ("closed_form",)
-    assert not any("layers" in line for line in plan.skipped)
-
-
-def test_schema_knows_layers():
-    jsonschema = pytest.importorskip("jsonschema")
-    validator = jsonschema.Draft7Validator(schema())
-    for layers, fits in ((COAT, True), (GRADED, True), (ROWS, True), ("[[layer]]\nE = 1\n", False)):
-        text = SCENE.format(
-            layers=layers, mu=0.4, tolerance=1e-6, methods='["sie"]', quantities='["sif"]'
-        )
-        assert validator.is_valid(tomllib.loads(text)) == fits
 
 
 def test_interfaces_and_inside():

@@ -1,28 +1,22 @@
 """Finite elements on layered half-planes against the singular integral equation."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from agreement import check
 from support import THOROUGH
+from test_layers import COAT, GRADED, scene
 
 import galinx
 from galinx.app.scene.scene import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.contact import residual, stresses
+from galinx.solvers.contact import residual
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import Isotropic
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers import COAT, GRADED, scene
-from test_stack import random_stack
-
-PARTS = ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below")
 
 
 def scene_of(solid, c, f, quantities=("sif",), tolerance=1e-6):
@@ -65,12 +59,7 @@ def test_a_thick_graded_top_has_tight_estimates_all_the_same(deeper):
 
 
 def test_surface_stresses_within_the_estimate():
-    data = galinx.compute(scene(tolerance=1e-4, methods=("sie", "fem"))).data
-    one, other = data["surface/fem/sigma_XX"][0], data["surface/sie/sigma_XX"][0]
-    X = data["surface/X_over_a"]
-    largest = np.abs(other[np.abs(np.abs(X) - 1.0) >= 1e-2]).max()
-    error = (np.abs(one - other) / np.maximum(np.abs(other), largest)).max()
-    assert error <= data["states/fem/estimate_sigma_XX"][0] <= 1e-4
+    assert "_sigma_XX" in check(galinx.compute(scene(tolerance=1e-4, methods=("sie", "fem"))).data, 1e-4)
 
 
 @pytest.mark.parametrize(("thickness", "share"), [(0.1, 0.98), (3.0, 0.99)])
@@ -91,26 +80,6 @@ def test_innermost_cells_under_a_graded_top_are_in_the_estimate(tolerance):
     assert off(data) <= 0.5 * data["states/fem/estimate"][0] <= 0.5 * tolerance
 
 
-def random_scene(seed, graded, quantities=("sif",)):
-    solid, c = random_stack(seed, graded)
-    f = np.random.default_rng(1000 + seed).uniform(-1.0, 1.0)
-    return scene_of(solid, c, f, quantities)
-
-
-@pytest.mark.parametrize(
-    ("seed", "graded"),
-    [(seed, graded) for seed in range(30) for graded in (False, True)] if THOROUGH else [(6, False)],
-)
-def test_random_stacks(seed, graded):
-    data = galinx.compute(random_scene(seed, graded)).data
-    assert off(data) <= data["states/fem/estimate"][0] + data["states/sie/estimate"][0]
-    assert off(data) <= 1e-6
-
-
-def compared(one, other, scale):
-    return float((np.abs(one - other) / scale).max())
-
-
 @pytest.mark.parametrize("tolerance", [1e-4, *(1e-6,) * THOROUGH])
 @pytest.mark.parametrize("layers", [COAT, GRADED])
 def test_stresses_at_interfaces_are_those_of_the_integral_equation(layers, tolerance):
@@ -118,25 +87,12 @@ def test_stresses_at_interfaces_are_those_of_the_integral_equation(layers, toler
     result = galinx.compute(scene(layers=layers, **wanted))
     data = result.data
     assert result.verdict == "PASS"
-    both = [
-        np.array([data[f"interfaces/{method}/{name}"] for name in PARTS]) for method in ("fem", "sie")
-    ]
-    error = compared(*both, stresses.of_interfaces(both[1]))
-    estimates = [data[f"states/{method}/estimate_interfaces"][0] for method in ("fem", "sie")]
-    assert error <= sum(estimates) <= 2.0 * tolerance
-    above, below = both[0][2:]
+    assert "_interfaces" in check(data, tolerance)
+    above, below = (data[f"interfaces/fem/sigma_XX_{side}"] for side in ("above", "below"))
     if layers == GRADED:  # the solid does not jump there, nor does the stress
         assert np.abs(above - below).max() <= tolerance * np.abs(above).max()
     else:
         assert np.abs(above).max() > 2.0 * np.abs(below).max()
-
-
-def test_alone_they_say_how_good_they_are():
-    result = galinx.compute(scene(methods=("fem",), quantities=("sif",)))
-    data = result.data
-    assert result.verdict == "PASS"
-    error = abs(data["states/fem/K_I_left"][0] / 0.46957498690109 - 1.0)
-    assert error <= data["states/fem/estimate"][0] <= 1e-6
 
 
 @pytest.mark.parametrize("wrong, verdict", [(0.0, "PASS"), (0.2, "FAIL")])
@@ -150,17 +106,6 @@ def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypa
     monkeypatch.setattr("galinx.solvers.fem.solution.of_contact", leaning)
     result = galinx.compute(scene(tolerance=1e-3, methods=("fem",), quantities=("sif",)))
     assert result.verdict == verdict, result.data["states/fem/residual"]
-
-
-def test_a_graded_layer_whose_faces_are_alike_is_uniform():
-    same = COAT + 'to = { E = "7.5 GPa" }\n'
-    found = [
-        galinx.compute(scene(layers=layers, tolerance=1e-4, methods=("fem",), quantities=("sif",))).data
-        for layers in (COAT, same)
-    ]
-    for end in ("left", "right"):
-        one, other = (data[f"states/fem/K_I_{end}"][0] for data in found)
-        assert one == pytest.approx(other, rel=1e-5)
 
 
 @pytest.mark.parametrize("V", [0.0, 0.6])

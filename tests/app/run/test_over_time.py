@@ -83,31 +83,6 @@ def surface_and_energies_are_told(data):
     assert data["time/dissipated"][0, -1] == pytest.approx(0.4 * 0.6 * 2.0)
 
 
-def test_two_ranks_end_as_one_does(tmp_path):
-    """Where nothing but starts is asked for, every rank takes part: PETSc waits for all of them."""
-    changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.end": 1.0}).items()]
-    done = command("-n", 2, "run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert galinx.load(tmp_path / "s.h5").attributes["verdict"] == "PASS"
-
-
-def test_a_step_may_be_given_and_states_of_one_friction_start_once():
-    more = {"motion.strokes": ["forward", "forward"], "time.step": 0.25, "solve.methods": ["sie"]}
-    result = computed("start_from_rest", QUICK | more)
-    data = result.data
-    assert [drawing.name for drawing in result.drawings(figures=("all",))] == [
-        "friction",
-        "time",
-        "pressures",
-    ]
-    assert len(data["states/f"]) == 2
-    assert data["time/sie/v0"].shape == (1, 12)
-    assert "time/fem/v0" not in data
-    # No other method has been asked for: the answer is put into the equation once more.
-    assert 0.0 < data["time/sie/residual"][0] < 1e-3
-    assert result.attributes["verdict"] == "PASS"
-
-
 @pytest.mark.parametrize("friction", ["constant", "law"])
 def test_a_wrong_answer_of_one_method_fails(friction, monkeypatch):
     right = Radau.weights
@@ -260,12 +235,6 @@ def test_a_coating_starts_by_both_methods():
 def test_coatings_without_an_answer_are_refused(changes, said):
     with pytest.raises(BadInput, match=re.escape(said)):
         make_plan(galinx.template("coating", COATED | changes))
-
-
-def test_a_plan_tells_starts():
-    done = here("plan", "scenes/start_from_rest.toml")
-    assert "integral equation in time: 1 start from rest" in done.stdout
-    assert "finite elements in time" in done.stdout
 
 
 THOROUGH = pytest.mark.skipif(

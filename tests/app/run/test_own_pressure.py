@@ -1,7 +1,5 @@
 """A pressure of the user's own, put in piece by piece, against its exact solution."""
 
-import json
-
 import numpy as np
 import pytest
 from support import THOROUGH, computed, here
@@ -10,7 +8,6 @@ from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.fem import prescribed_pressure
 from galinx.solvers.fem.traction import LinearLoads
 from galinx.solvers.solids import Isotropic
 
@@ -106,22 +103,6 @@ def test_random_pressures_keep_their_tolerance(seed):
     within_tolerance_and_estimate(result, changes["solve.tolerance"])
 
 
-def test_at_one_half_there_is_a_surface():
-    changes = {"solid.nu": 0.5, "output.quantities": ["sif", "surface"], "output.points": None}
-    within_tolerance_and_estimate(put_in(HUMP, changes), 1e-6)
-
-
-def test_the_graded_mesh():
-    within_tolerance_and_estimate(put_in(HUMP, {"solve.mesh": "graded", "solve.tolerance": 1e-3}), 1e-3)
-
-
-def test_without_the_exact_solution_the_estimate_is_the_judge():
-    result = put_in(HUMP, {"solve.methods": ["fem"], "solve.tolerance": 1e-4})
-    assert result.verdict == "PASS"
-    assert len(json.loads(result.attributes["verdict_reasons"])) == 2
-    assert "states/closed_form/normal_force" not in result.data
-
-
 def test_what_is_wrong_fails(monkeypatch, tmp_path):
     true = LinearLoads.gradients
     monkeypatch.setattr(LinearLoads, "gradients", lambda self, points: 1.01 * true(self, points))
@@ -130,49 +111,6 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
     assert errors(result.data)[1] == pytest.approx(0.01, rel=0.1)
     result.save(tmp_path / "a.h5")
     assert here("check", tmp_path / "a.h5").returncode == 0
-
-
-def test_the_degree_rises_until_the_estimate_is_within(monkeypatch):
-    solved, true = [], prescribed_pressure.PiecesLevel.__init__
-
-    def counted(self, work, task, space, g):
-        solved.append(space.degree)
-        true(self, work, task, space, g)
-
-    monkeypatch.setattr(prescribed_pressure.PiecesLevel, "__init__", counted)
-    result = put_in(HUMP, {"solve.tolerance": 1e-4, "motion.c": 0.91})
-    assert solved == list(range(solved[0], solved[0] + len(solved))) and len(solved) > 3
-    assert result.data["run/fem/degree"] == [solved[-1]]
-    assert result.data["run/fem/factorisations"] == [len(solved)]
-
-
-def test_the_exact_solution_needs_no_finite_elements():
-    result = put_in(TRIANGLE, {"solve.methods": ["closed_form"], "motion.c": 0.9})
-    assert np.isfinite(result.data["surface/closed_form/sigma_XX"]).all()
-    assert np.isfinite(result.data["interior/closed_form/sigma_XX"]).all()
-    np.testing.assert_allclose(result.data["states/closed_form/normal_force"], -55.3e3, rtol=1e-14)
-    assert not any("K_I" in path for path in result.data)
-
-
-@pytest.mark.parametrize("pressure", [HUMP, "closed_form"], ids=["own", "closed form"])
-def test_forces_alone_can_be_asked_for(pressure):
-    changes = {"output.quantities": ["sif"], "output.points": None, "solve.tolerance": 1e-3}
-    assert put_in(pressure, changes).verdict == "PASS"
-
-
-def test_many_points_are_judged_by_some():
-    """Errors are measured on 400 of them, stresses told at all."""
-    rng = np.random.default_rng(0)
-    points = np.column_stack([rng.uniform(-3.0, 3.0, 500), -(10.0 ** rng.uniform(-9.0, 0.5, 500))])
-    result = put_in(HUMP, {"output.points": points.tolist(), "solve.tolerance": 1e-4})
-    assert result.data["interior/fem/sigma_XX"].shape == (1, 500)
-    within_tolerance_and_estimate(result, 1e-4)
-
-
-def test_nothing_of_a_punch_is_said():
-    result = put_in(HUMP, {"solve.tolerance": 1e-3})
-    punch = {"states/alpha", "states/beta", "states/fem/slope_under_punch", "states/closed_form/K_I"}
-    assert not punch & set(result.data)
 
 
 @pytest.mark.parametrize(

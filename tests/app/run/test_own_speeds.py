@@ -6,9 +6,8 @@ from support import computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.plan import task
+from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import make_plan
-from galinx.app.results.check import faults
 from galinx.app.run.flow import Memory, compute
 from galinx.postprocess.journal import Journal
 
@@ -47,31 +46,12 @@ def test_every_state_is_that_of_its_strokes_speed(run):
         assert run.data["states/closed_form/K_I_left"][i] == pytest.approx(K, rel=1e-12)
 
 
-def test_a_speed_is_solved_once(run):
-    c = run.data["states/c"]
-    assert run.data["run/fem/c"].tolist() == list(dict.fromkeys(c.tolist()))
-    assert len(run.data["run/fem/c"]) == 3
-    plan = make_plan(run.scene)
-    rows = [row for one in plan.tasks for some in one.runs for row in range(some.start, some.stop)]
-    assert sorted(rows) == list(range(24)) and plan.states == 24
-    assert [one.response.c for one in plan.tasks] == run.data["run/fem/c"].tolist()
-
-
-def test_archives_of_own_speeds_are_whole(run, tmp_path):
-    run.save(tmp_path / "a.h5")
-    assert not faults(tmp_path / "a.h5")
-    again = galinx.load(tmp_path / "a.h5")
-    np.testing.assert_array_equal(again.data["surface/fem/sigma_XX"], run.data["surface/fem/sigma_XX"])
-    names = {drawing.name for drawing in again.drawings()}
-    assert names >= {"friction", "surface"}
-
-
 def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, monkeypatch):
     """Runs of a speed are cut and put together, and a run that was stopped goes on."""
     scene = galinx.template("tables4_5", SCENE | CLOSED)
     expected = Memory()
     compute(scene, expected)
-    monkeypatch.setattr(task, "CHUNK_NUMBERS", 3 * make_plan(scene).numbers)
+    monkeypatch.setattr(planning, "CHUNK_NUMBERS", 3 * make_plan(scene).numbers)
 
     def stop(self, part, keep=Journal.keep):
         keep(self, part)
@@ -94,16 +74,6 @@ def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, m
     assert told["comparisons"] == compute(scene, Memory())["comparisons"]
 
 
-def test_fields_of_a_state_are_those_of_its_speed(run):
-    """Energy: twice the work that the load does is in no other state the same."""
-    from galinx.app.results.fields import select_states
-
-    numbers = [0, 2, 12]
-    states = select_states(run.scene, numbers)
-    assert [one.task.response.c for one in states] == run.data["states/c"][numbers].tolist()
-    assert [one.g for one in states] == run.data["states/g"][numbers].tolist()
-
-
 def test_a_path_has_the_speed_of_each_piece():
     """Equal speeds but for rounding are one; a position that stays is a rest."""
     path = [[0.0, 0.0], [1e-7, 3e-5], [2e-7, 6e-5], [3e-7, 6e-5], [4e-7, 9e-5], [6e-7, 5e-5]]
@@ -123,17 +93,6 @@ def test_a_path_has_the_speed_of_each_piece():
     )
     f = expected.data["states/f"]
     assert (np.sign(data["states/f"][:3]) == 1).all() and np.isfinite(f).all()
-
-
-def test_own_speeds_and_loads_go_together():
-    changes = SCENE | CLOSED | {"punch.load": [1e3, 2e3]}
-    both = computed("tables4_5", changes).data
-    one = computed("tables4_5", SCENE | CLOSED).data
-    shape = (2, 2, 12)
-    for path in ("states/f", "states/c", "states/closed_form/K_I"):
-        found, alone = both[path].reshape(shape), one[path].reshape(2, 12)
-        np.testing.assert_array_equal(found, np.stack([alone, alone], axis=1))
-    assert both["states/load"].reshape(shape)[:, 0].tolist() == [[1e3] * 12] * 2
 
 
 @pytest.mark.parametrize(

@@ -22,8 +22,8 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
 
-SCENES = 2000 if THOROUGH else 60
-STATES = 40 if THOROUGH else 8
+SCENES = 2000 if THOROUGH else 40
+STATES = 40 if THOROUGH else 4
 #: One scene of so many that ask for finite elements is solved by them.
 SHARE = 8 if THOROUGH else 24
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted((HOME / "scenes").glob("*.toml"))]

@@ -4,15 +4,13 @@ import json
 
 import numpy as np
 import pytest
-from random_solids import isotropic_as
 from support import THOROUGH, here
 
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
-from galinx.solvers.solids import Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 #: Stiffness [Pa] of fibres askew to the surface.
 SKEW = [40e9, 12e9, 15e9, 16e9, 6e9, 13e9]
@@ -106,42 +104,6 @@ def inside_error(data):
     found, exact = np.array(of)
     largest = np.abs(exact).max(axis=(0, 2))
     return np.abs(found - exact).max(axis=(0, 2)) / largest
-
-
-def test_an_isotropic_solid_has_the_same_results_however_it_is_given():
-    known = Isotropic(193e9, 0.25, 7860.0)
-    share, quantities = 0.6, ("sif", "surface")
-    wanted = galinx.compute(
-        parse(
-            f'[solid]\nE = 193e9\nnu = 0.25\nrho = 7860\n{FRICTION}sign = "physical"\n'
-            f"[motion]\nc = {float(share * known.limit())!r}\nX_over_L = [0.1, 0.7]\n"
-            f"[solve]\ntolerance = 1e-5\n[output]\nquantities = {list(quantities)}\n"
-        )
-    ).data
-    found = galinx.compute(scene(isotropic_as("orthotropic", known, 30.0), share, 1e-5, quantities)).data
-    for name in ("K_I_left", "K_I_right"):
-        np.testing.assert_allclose(found[f"states/fem/{name}"], wanted[f"states/fem/{name}"], rtol=2e-5)
-    σ, other = (data["surface/fem/sigma_XX"] for data in (found, wanted))
-    far = np.abs(np.abs(wanted["surface/X_over_a"]) - 1.0) > 0.01
-    assert np.abs(σ - other)[:, far].max() <= 2e-5 * np.abs(other)[:, far].max()
-    np.testing.assert_allclose(
-        found["states/closed_form/K_I"], wanted["states/closed_form/K_I"], rtol=1e-12
-    )
-
-
-def test_a_mirror_image_swaps_the_ends():
-    """X → -X: the angle and the sign of σ_XY change; right becomes left."""
-    constants = (8e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0)
-    one, other = (Orthotropic(*constants, angle) for angle in (35.0, -35.0))
-    data = galinx.compute(scene(one, 0.5, 1e-5, ("sif", "surface"))).data
-    image = galinx.compute(scene(other, 0.5, 1e-5, ("sif", "surface"), sign="eq25")).data
-    for method in ("closed_form", "fem"):
-        σ, mirrored = (found[f"surface/{method}/sigma_XX"] for found in (data, image))
-        rtol = 1e-12 if method == "closed_form" else 2e-5
-        assert np.abs(mirrored[:, ::-1] - σ).max() <= rtol * np.abs(σ).max()
-    np.testing.assert_allclose(image["states/alpha"], data["states/beta"], rtol=1e-12)
-    np.testing.assert_allclose(image["states/fem/K_I_left"], data["states/fem/K_I_right"], rtol=2e-5)
-    assert np.abs(data["states/alpha"] - data["states/beta"]).max() > 0.01
 
 
 def test_the_block_is_smaller_for_a_solid_stiff_across_its_depth_and_says_so():

@@ -1,21 +1,17 @@
 """Many speeds over layers, of which finite elements solve few: all against the integral equation."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from agreement import check
+from layers_cases import random_stack
 from support import THOROUGH
+from test_layers_fem import scene_of
 
 import galinx
-from galinx.solvers.contact import stresses
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "solvers" / "layers"))
-from test_layers_fem import PARTS, scene_of
-from test_stack import random_stack
 
 HARD, SOFT = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
 ALL = ("sif", "surface", "interfaces")
@@ -26,32 +22,6 @@ def sweep(solid, c, f, quantities, tolerance):
     one = scene_of(solid, 0.0, f, quantities, tolerance)
     motion = replace(one.motion, c=tuple(c.tolist()), strokes=("forward", "backward"))
     return galinx.compute(replace(one, motion=motion))
-
-
-def largest(difference):
-    return np.abs(difference).reshape(len(difference), -1).max(axis=1)
-
-
-def differences(data):
-    """Relative, of each state, by the estimate's name."""
-    K = np.array([[data[f"states/{by}/K_I_{end}"] for end in ("left", "right")] for by in ("fem", "sie")])
-    found = {"": np.abs(K[0] / K[1] - 1.0).max(axis=0)}
-    if "surface/fem/sigma_XX" in data:
-        fem, sie = (data[f"surface/{by}/sigma_XX"] for by in ("fem", "sie"))
-        found["_sigma_XX"] = largest((fem - sie) / stresses.of_in_plane(sie, data["surface/X_over_a"]))
-    if "interfaces/fem/sigma_YY" in data:
-        of = (f"interfaces/{by}/" for by in ("fem", "sie"))
-        fem, sie = (np.array([data[path + name] for name in PARTS]) for path in of)
-        found["_interfaces"] = largest(np.moveaxis((fem - sie) / stresses.of_interfaces(sie), 1, 0))
-    return found
-
-
-def check(data, tolerance):
-    for what, off in differences(data).items():
-        estimates = [data[f"states/{by}/estimate{what}"] for by in ("fem", "sie")]
-        assert off.max() <= tolerance, what
-        assert np.all(off <= sum(estimates)), what
-        assert estimates[0].max() <= tolerance, what
 
 
 @pytest.mark.parametrize(

@@ -77,22 +77,6 @@ def test_every_state_is_that_of_a_scene_with_single_numbers():
         assert (result.data[swept.WAVE_SPEED.path][rows] == alone.scene.solid.c_s).all()
 
 
-def test_parameters_are_listed_slowest_first():
-    result = compute(parse(changed(FLAT, from_words(["solid.E=[100, 200] GPa"]))))
-    names = [path.partition("/")[2] for path in parameters(result.data)]
-    assert names == ["solid.E", "c", "load", "mu_c", "motion", "X_over_L"]
-    for name in names[:4]:  # an index of states that grows, most slowly the first
-        values = result.data[f"states/{name}"]
-        assert values[0] != values[len(values) // (2 << names.index(name))]
-
-
-def test_the_length_over_which_positions_of_a_path_are_is_one():
-    path = 'path = [["0 s", "0 m"], ["1 s", "50 µm"]]'
-    text = FLAT.replace('speed = ["100 m/s", "1000 m/s"]', path)
-    with pytest.raises(BadInput, match=r"several values beside motion\.path"):
-        parse(changed(text, from_words(["friction.pre_sliding=[100, 200] µm"])))
-
-
 def test_an_archive_of_a_sweep_is_whole(tmp_path):
     scene = parse(changed(FLAT, from_words(["solid.nu=[0.2, 0.3, 0.4]"])))
     compute(scene).save(tmp_path / "swept.h5")
@@ -133,8 +117,3 @@ def test_thicknesses_of_a_layer():
 def test_what_cannot_be_swept_is_refused(words, message):
     with pytest.raises(BadInput, match=message):
         compute(parse(changed(FLAT, from_words([words]))))
-
-
-def test_motions_in_time_are_of_one_solid():
-    with pytest.raises(BadInput, match=r"solid.E: found several values beside \[time\]"):
-        parse(changed(FLAT, from_words(["solid.E=[1e11, 2e11]", "time.end=5"])))

@@ -3,7 +3,6 @@
 import pytest
 
 from galinx.app.errors import BadInput
-from galinx.app.scene import read as files_of_rows
 from galinx.app.scene.read import parse, read
 
 PUNCH = '[punch]\nprofile = "table"\nshape = {shape}  # measured\nload = 5e4\n'
@@ -56,17 +55,6 @@ def test_the_scene_keeps_the_numbers(tmp_path):
         read(path)
 
 
-def test_friction_and_motion_may_be_in_files_as_well(tmp_path):
-    law = '[friction]\nmodel = "table"\nshape = "slip.CSV"\n'
-    text = REST.replace("c = 0.4", 'path = "motion.csv"').replace('["sif"]', '["friction"]')
-    (tmp_path / "motion.csv").write_text("t [s],X [µm]\n0,0\n1,80\n2,20\n", encoding="utf-8")
-    rows = "slip [µm],f\n0,0\n5,0.2\n20,0.3\n"
-    scene = read(scene_beside(tmp_path, rows, law + text, "slip.CSV"))
-    assert scene.motion.path[1] == pytest.approx((1.0, 80e-6), rel=1e-15)
-    law = next(iter(scene.friction.laws()))
-    assert law.shape[2] == pytest.approx((20e-6, 0.3), rel=1e-15)
-
-
 def test_points_pressures_and_depths_may_be_in_files(tmp_path):
     layer = '[[layer]]\nproperties = "depths.csv"\n'
     solve = '[solve]\nmode = "traction"\npressure = "pressure.csv"\n'
@@ -98,19 +86,3 @@ def test_points_pressures_and_depths_may_be_in_files(tmp_path):
 def test_faults_of_a_file_are_told(tmp_path, csv, message):
     with pytest.raises(BadInput, match=message):
         read(scene_beside(tmp_path, csv))
-
-
-def test_what_is_no_name_of_such_a_file_is_told(tmp_path):
-    text = PUNCH.format(shape='"punch.txt"') + FRICTION + REST
-    with pytest.raises(BadInput, match=r"a file of these whose name ends in \.csv"):
-        read(scene_beside(tmp_path, None, text))
-    with pytest.raises(BadInput, match="where the scene is a file itself"):
-        parse(PUNCH.format(shape='"punch.csv"') + FRICTION + REST)
-
-
-def test_a_file_of_too_many_rows_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(files_of_rows, "_MOST", 5)
-    assert len(read(scene_beside(tmp_path, CSV)).punch.profile.shape) == 5
-    monkeypatch.setattr(files_of_rows, "_MOST", 4)
-    with pytest.raises(BadInput, match="more than 4 rows"):
-        read(scene_beside(tmp_path, CSV))

@@ -6,7 +6,6 @@ import tomllib
 import pytest
 from support import SCENE
 
-from galinx.app.errors import BadInput
 from galinx.app.scene.changes import from_words
 from galinx.app.scene.read import parse, read
 from galinx.app.scene.values import Numbers
@@ -38,10 +37,6 @@ def test_ends_are_exact_and_numbers_in_order(spacing):
     found = numbers(f'{{from = {first!r}, to = {last!r}, number = 1000, spacing = "{spacing}"}}')
     assert len(found) == 1000 and (found[0], found[-1]) == (first, last)
     assert list(found) == sorted(set(found), reverse=True)
-
-
-def test_ends_have_units():
-    assert numbers('{from = "1 mm/s", to = 3, number = 3}', "m/s") == (0.001, 1.5005, 3.0)
 
 
 @pytest.mark.parametrize(
@@ -81,8 +76,3 @@ def test_every_list_of_a_scene_may_be_a_range():
     assert scene.friction.parameters["mu_c"] == (0.01, 0.1, 1.0)
     assert scene.friction.parameters["sigma0_over_load"] == (1e4, 2e4, 3e4)
     assert parse(scene.text).motion == scene.motion
-
-
-def test_a_range_where_one_number_stands_is_refused():
-    with pytest.raises(BadInput, match=r"solve\.tolerance .*: found {.from.: 1"):
-        read(SCENE, from_words(["solve.tolerance={from = 1, to = 2, number = 3}"]))

@@ -1,17 +1,14 @@
 """Tables [[friction.vary]]: laws that are a union of products."""
 
 import re
-import tomllib
 
 import numpy as np
 import pytest
-from support import HOME, SCENE
+from support import HOME
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.changes import from_words
 from galinx.app.scene.read import parse, read
-from galinx.app.scene.scene import oddities
-from galinx.app.scene.sections import schema
 from galinx.solvers.parameters import values
 
 _REST = '[solid]\nmaterial = "T302"\n[motion]\nc = 0.3\n'
@@ -39,24 +36,6 @@ def test_tables_are_products_of_their_own_and_laws_come_once():
     assert [tuple(row) for row in zip(*friction.columns().values())] == listed
     together = friction.together(friction.columns(), slice(1, 4))
     assert np.ravel(together.δ).tolist() == [1.0, 1.0, 2.0]
-
-
-def test_one_table_is_what_the_lists_of_the_section_are():
-    one, _ = laws("[[friction.vary]]\nmu_c = [0.1, 0.5]\ndelta = [1, 1.5, 2]\n")
-    other, _ = laws("", "[friction]\nmu_c = [0.1, 0.5]\nsigma0_over_load = 25e3\ndelta = [1, 1.5, 2]\n")
-    assert one == other and len(one) == 6
-
-
-def test_texts_vary_and_rows_of_numbers_stay():
-    rows = '[friction]\nmodel = "maxwell_slip"\nelements = [[1e4, 0.1], [2e4, 0.2]]\n'
-    with pytest.raises(BadInput, match="found the key 'elements' in table 1"):
-        laws("[[friction.vary]]\nelements = [[1e4, 0.1]]\n", rows)
-    rate = (
-        '[friction]\nmodel = "rate_and_state"\nreference_friction = 0.6\na = 0.01\nb = 0.015\n'
-        "reference_speed = 1e-6\ncritical_slip = 1e-5\n"
-    )
-    listed, _ = laws('[[friction.vary]]\nevolution = ["ageing", "slip"]\n', rate)
-    assert len(listed) == 2
 
 
 @pytest.mark.parametrize(
@@ -87,16 +66,3 @@ def test_changes_reach_the_tables():
     assert read(study, from_words([], ["friction.vary"])).friction.count == 1
     coulomb = read(study, from_words(["friction.model=coulomb"]))  # has no parameter that is varied
     assert coulomb.friction.count == 1 and coulomb.friction.vary == ()
-
-
-def test_unusual_values_of_tables_are_told():
-    scene = parse(_REST + _DAHL + "[[friction.vary]]\nmu_c = [0.5, 70]\n")
-    assert any("friction.mu_c = 70" in text for text in oddities(scene))
-
-
-def test_tables_follow_the_schema():
-    jsonschema = pytest.importorskip("jsonschema")
-    validator = jsonschema.Draft7Validator(schema())
-    whole = tomllib.loads(SCENE.read_text(encoding="utf-8"))
-    for table, good in (({"mu_c": [0.1, 0.2]}, True), ({"mu_c": -1}, False), ({"sign": "eq25"}, False)):
-        assert validator.is_valid(whole | {"friction": whole["friction"] | {"vary": [table]}}) is good

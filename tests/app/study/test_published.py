@@ -5,23 +5,17 @@ from io import StringIO
 
 import numpy as np
 import pytest
-from support import widest
 
 from galinx.app.console import new_console, print_sheet
 from galinx.app.study.published import (
     FAST,
-    INTENSITIES,
     dimensions_sheet,
     frame_sheet,
     friction_sheet,
-    intensities,
     intensity_rows,
-    limit_of_steady_motion,
     not_as_printed,
     speed_rows,
-    table1,
     table1_rows,
-    table2,
     table3,
 )
 from galinx.solvers.contact.closed_form import FlatPunch
@@ -126,22 +120,6 @@ def test_intensities_with_dimensions_are_the_limits_of_the_pressure(tables_run):
         )  # fmt: skip
         limits = near * [2.0**-punch.α * (2 * d) ** -punch.β, 2.0**-punch.β * (2 * d) ** -punch.α]
         assert [float(cell) for cell in row[4:]] == pytest.approx(limits, abs=6e-5)
-
-
-def test_a_stroke_that_is_too_short_is_told(tables_run):
-    assert limit_of_steady_motion("table4", tables_run.data, 1e-3) == ""
-    note = limit_of_steady_motion("table5", tables_run.data, 1e-3)
-    assert "0.083 times (a = 1 mm)" in note and "limits" in note
-
-
-def test_the_studys_tables_fit_80_columns(tables_run):
-    note = limit_of_steady_motion("table5", tables_run.data, 1e-3)
-    sheets = [table1(), table2(T302), table3(T302, 1e-4), frame_sheet(T302)]
-    sheets += [intensities(name, intensity_rows(name, tables_run.data), note) for name in INTENSITIES]
-    sheets += [dimensions_sheet(tables_run.data, 55.3e3, 1e-3)]
-    said = "".join(map(printed, sheets))
-    assert (said.count(" yes "), said.count(" NO")) == (12, 0)
-    assert widest(said) <= 80
 
 
 def printed(sheet):

@@ -2,14 +2,15 @@
 
 import re
 from itertools import pairwise
-from math import atan, exp, log, pi, sqrt
+from math import log, pi
 
 import numpy as np
 import pytest
+from study_reference import exponent, f_of, stresses
 from support import computed
 
 from galinx.app.study.published import FAST, SLOW, state_of
-from galinx.app.study.statements import statements, statements_sheet
+from galinx.app.study.statements import statements
 from galinx.postprocess.quantities import column
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -36,51 +37,16 @@ def decided(data):
     return {one.number: one for one in statements(data, T302)}
 
 
-# Friction and stresses from the formulas of the study, without the program's.
-
-
-def dahl(y0, λ, d, μ, δ):
-    """1 - s f/μ_C after the slip d."""
-    if δ == 1.0:
-        return y0 * exp(-λ * d / μ)
-    return max(y0 ** (1.0 - δ) - (1.0 - δ) * λ * d / μ, 0.0) ** (1.0 / (1.0 - δ))
-
-
-def f(motion="FM1", X=0.2, μ=0.7, λ=25000.0, δ=1.0, L=1e-4):
-    end = μ * (1.0 - dahl(1.0, λ, L, μ, δ))
-    turned = -μ * (1.0 - dahl(1.0 + end / μ, λ, L, μ, δ))
-    if motion == "FM1":
-        return μ * (1.0 - dahl(1.0, λ, X * L, μ, δ))
-    if motion == "BM1":
-        return -μ * (1.0 - dahl(1.0 + end / μ, λ, (1.0 - X) * L, μ, δ))
-    return μ * (1.0 - dahl(1.0 - turned / μ, λ, X * L, μ, δ))
-
-
-def constants(c, κ=2.0):
-    """n, q, m of the moving frame; at slow speed those at rest."""
-    if c < 1e-3:
-        return (κ + 1) / 4, (κ - 1) / 4, (κ + 1) / 4
-    k = (κ - 1) / (κ + 1)
-    β_s, β_d, e = sqrt(1 - c * c), sqrt(1 - k * c * c), 2 - c * c
-    R = 4 * β_s * β_d - e * e
-    return c * c * β_d / R, (e * 1.0 - 2 * β_s * β_d) / R, c * c * β_s / R
-
-
-def exponent(f, c):
-    n, q, _ = constants(c)
-    return -0.5 + atan(f * q / n) / pi  # cot(πα) = g q/n, g = -f
+def f(motion="FM1", X=0.2, μ=0.7, λ=25000.0, δ=1.0):
+    return f_of(μ, λ, δ, motion, X)
 
 
 def σ_YY(r, f, c):
-    α = exponent(f, c)
-    return 2 / pi * np.sin(pi * α) * (1 - r) ** α * (1 + r) ** (-1 - α)
+    return stresses(np.asarray(r), f, c)[0]
 
 
-def σ_XX(r, f, c, κ=2.0):
-    """Beside the punch, where σ_YY vanishes (Eq 32)."""
-    α, m = exponent(f, c), constants(c)[2]
-    H = 2 / pi * np.sign(r) * abs(r - 1) ** α * abs(r + 1) ** (-1 - α)
-    return 8 * m / (κ + 1) * -f * H
+def σ_XX(r, f, c):
+    return float(stresses(np.asarray(r), f, c)[1])
 
 
 UNDER = np.array([r for r in [*np.linspace(-0.88, 0.88, 45), -0.9, 0.9]])
@@ -184,13 +150,6 @@ def test_all_statements_with_what_decides_them(data):
     for number, expected in independent().items():
         in_order = r"(?!\d).*?(?<![\d.])".join(map(re.escape, expected))
         assert re.search(in_order, found[number].numbers), (number, found[number].numbers, expected)
-
-
-def test_words_say_which_way_it_went(data):
-    found = decided(data)
-    assert found["1"].words.startswith("holds: ") and found["12a"].words.startswith("does not: ")
-    rows = statements_sheet(list(found.values())).rows
-    assert [row[0] for row in rows] == NUMBERS and rows[0][2] == found["1"].words
 
 
 # Results that say the opposite.

@@ -5,7 +5,6 @@ import os
 import h5py
 import numpy as np
 import pytest
-import support
 
 from galinx import files
 from galinx.postprocess.errors import UnwritableArchive
@@ -51,14 +50,6 @@ def test_anyone_can_verify_the_seal(tmp_path):
     archive.verify(path)
 
 
-def test_every_dataset_has_unit_and_name(tmp_path):
-    path = tmp_path / "a.h5"
-    write(path, DATA)
-    with h5py.File(path) as file:
-        for name in DATA:
-            assert file[name].attrs["units"] and file[name].attrs["long_name"]
-
-
 def test_an_earlier_archive_survives_a_failing_write(tmp_path, monkeypatch):
     path = tmp_path / "a.h5"
     write(path, DATA)
@@ -90,49 +81,3 @@ def test_an_archive_that_is_not_finished_leaves_nothing(tmp_path):
         writer.put("states/f", np.zeros(2))
         raise ZeroDivisionError
     assert not os.listdir(tmp_path)
-
-
-def test_a_path_outside_the_table_of_fields_is_refused(tmp_path):
-    with pytest.raises(KeyError):
-        write(tmp_path / "a.h5", {"states/unknown": np.zeros(1)})
-
-
-def test_rows_are_written_without_reading_what_is_there(tmp_path, monkeypatch):
-    """A few rows at a time into a large dataset: HDF5 keeps the chunk that it is at."""
-    count, read = [0], archive.PatientFile.readinto
-
-    def counted(self, buffer):
-        count[0] += memoryview(buffer).nbytes
-        return read(self, buffer)
-
-    monkeypatch.setattr(archive.PatientFile, "readinto", counted)
-    values = np.arange(30_000.0)
-    with archive.Writer(tmp_path / "a.h5") as writer:
-        for name in ("states/f", "states/g"):
-            writer.reserve(name, values.shape)
-        for first in range(0, len(values), 100):
-            rows = slice(first, first + 100)
-            for name in ("states/f", "states/g"):
-                writer.write(name, rows, values[rows])
-        writer.finish(ATTRIBUTES)
-    assert count[0] < 2 * 2 * values.nbytes
-    with h5py.File(tmp_path / "a.h5") as file:
-        np.testing.assert_array_equal(file["states/g"], values)
-
-
-def test_an_archive_tells_what_slides_over_what(tmp_path):
-    support.computed("fig5", {"solve.methods": ["closed_form"]}).save(tmp_path / "a.h5")
-    _, told = archive.read(tmp_path / "a.h5")
-    assert told["material"] == "T302" and told["schema_version"] == 4
-    assert json.loads(told["solid"]) == {
-        "kind": "isotropic", "E": 193e9, "nu": 0.25, "rho": 7860.0, "plane": "strain",
-        "yield_strength": 205e6,
-    }  # fmt: skip
-    c_s = np.sqrt(193e9 / 2.5 / 7860.0)
-    known = {
-        "half_width": 1e-3,
-        "load": 55.3e3,
-        "c_s": c_s,
-        "speed_limit": c_s * np.sqrt(2 - 2 / np.sqrt(3)),
-    }
-    assert {name: told[name] for name in known} == pytest.approx(known, rel=1e-14)

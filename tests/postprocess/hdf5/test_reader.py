@@ -63,6 +63,7 @@ def test_every_flipped_bit_is_found_before_hdf5_opens_the_file(path, monkeypatch
         lambda content: content[:100],
         lambda content: content + b"\0",
         lambda content: content[:4096] + bytes(512) + content[4608:],
+        lambda content: content[reader.ROOM :],
         lambda content: b"hello",
         lambda content: b"",
     ],

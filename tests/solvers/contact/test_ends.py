@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from galinx.solvers.contact.contacts import rule_of_ends
 from galinx.solvers.contact.ends import NoRoot, Punch, free_ends, half_width_of_load, root
-from galinx.solvers.contact.uniform import rule_of_ends
 from galinx.solvers.errors import SolveError
 
 #: N/μ [m], and n of the half-plane.

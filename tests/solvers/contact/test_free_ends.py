@@ -8,9 +8,7 @@ from scipy.integrate import quad
 
 from galinx.solvers.contact.free_ends import SHAPES, EndConditions
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles.power import Parabolic, Power, Wedge
-from galinx.solvers.profiles.rounded_flat import RoundedFlat
-from galinx.solvers.profiles.table import Table
+from galinx.solvers.profiles.punches import Parabolic, Power, RoundedFlat, Table, Wedge
 
 #: a + b = 1, exponents of the pressure at the right and the left end.
 A = 0.37

@@ -9,13 +9,13 @@ from random_solids import random_solid
 
 from galinx.solvers.contact.along import FlatAlong
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.contacts import contacts_of
 from galinx.solvers.contact.solution import make_contact
-from galinx.solvers.contact.uniform import contacts_of
 from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.maxwell_slip import MaxwellSlip
 from galinx.solvers.friction.stribeck import Coulomb
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.isotropic import Isotropic
 
 PLACES = np.array([-0.999999, -0.93, -0.4, 0.01, 0.35, 0.8, 0.9999])

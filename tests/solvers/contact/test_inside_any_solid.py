@@ -7,11 +7,9 @@ from loaded import LoadedHalfPlane
 from random_solids import anisotropic, cubic, orthotropic, stiffness
 from support import THOROUGH
 
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.uniform import contacts
-from galinx.solvers.profiles.flat import Flat
-from galinx.solvers.profiles.power import Parabolic, Power, Wedge
-from galinx.solvers.profiles.table import Table
+from galinx.solvers.profiles.punches import Flat, Parabolic, Power, Table, Wedge
 
 
 def parabola(rng):

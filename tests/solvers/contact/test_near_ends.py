@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.approximation import lagrange
-from galinx.solvers.contact.free_ends import (
+from galinx.solvers.contact.recovery import (
     FARTHER,
     KinkedPressure,
     error_at_kink,
@@ -20,7 +20,7 @@ GAP = 0.7
 
 def limit(values, exponent, farthest, farther=1.0):
     series = towards_kink(GAP, exponent, farthest, farther)
-    return series.through(values(series.samples))(np.zeros(1))[0]
+    return series.limit(values(series.samples))
 
 
 @pytest.mark.parametrize("exponent", [0.25, 0.5, 0.9, 1.0])
@@ -50,17 +50,20 @@ def test_what_a_limit_leaves_out_is_in_its_error(exponent, opposite):
     assert 1e-12 < true <= error_at_kink(usual, farther) <= 30.0 * true
 
 
-KINK = 0.88
+def test_two_limits_that_differ_are_wrong_by_half_of_that():
+    limits = np.array([1.0, 3.0])
+    assert error_at_kink(limits, limits) == 1.0
 
 
-def under_a_kink_near_an_end(r):
-    """Pressure with two free ends and d log d next to a kink, where it is -2√(1 - KINK²)."""
-    d = np.abs(r - KINK)
-    return -np.sqrt(1.0 - r**2) * (2.0 + (r - KINK) * np.log(np.maximum(d, 1e-300)))
+def under_a_kink(r, kink):
+    """Pressure with two free ends and d log d next to a kink, where it is -2√(1 - kink²)."""
+    d = np.abs(r - kink)
+    return -np.sqrt(1.0 - r**2) * (2.0 + (r - kink) * np.log(np.maximum(d, 1e-300)))
 
 
-def nodal_forces(places, degree):
-    """Nodes of facets graded towards places, and the pressure's consistent forces there."""
+def nodal_forces(kink, degree):
+    """Nodes of facets graded towards a kink and both ends, and the pressure's consistent forces there."""
+    places = [-1.0, kink, 1.0]
     towards = 0.3 ** np.arange(16)
     halves = [(a, b, (a + b) / 2.0) for a, b in pairwise(places)]
     edges = [x for a, b, m in halves for x in (*(a + (m - a) * towards), *(b - (b - m) * towards))]
@@ -72,17 +75,18 @@ def nodal_forces(places, degree):
     for i, (low, high) in enumerate(pairwise(edges)):
         r = (low + high) / 2.0 + (high - low) / 2.0 * t
         forces[i * degree : (i + 1) * degree + 1] += (
-            basis.T @ (under_a_kink_near_an_end(r) * w) * (high - low) / 2.0
+            basis.T @ (under_a_kink(r, kink) * w) * (high - low) / 2.0
         )
     return s, forces
 
 
-def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side():
+@pytest.mark.parametrize("kink", [0.88, -0.88])
+def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side(kink):
     chart = SimpleNamespace(
         surface_position=lambda s: s, surface_coordinate=lambda r: r, surface_stretch=np.ones_like
     )
-    s, forces = nodal_forces([-1.0, KINK, 1.0], 8)
-    pressure = KinkedPressure(s, 8, chart, forces, np.array([KINK]), (0.5, 0.5), 1.0, 1e-8)
-    exact = -2.0 * np.sqrt(1.0 - KINK**2)
+    s, forces = nodal_forces(kink, 8)
+    pressure = KinkedPressure(s, 8, chart, forces, np.array([kink]), (0.5, 0.5), 1.0, 1e-8)
+    exact = -2.0 * np.sqrt(1.0 - kink**2)
     assert pressure.at_kink(0) == pytest.approx(exact, abs=1e-8)
     assert abs(pressure.at_kink(0) - exact) <= pressure.left_at_kinks <= 1e-8

@@ -5,11 +5,12 @@ import pytest
 from random_solids import random_solid
 
 from galinx.solvers.contact import residual
-from galinx.solvers.contact.equation import ContactsAtSpeed
-from galinx.solvers.contact.uniform import contacts
+from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.ends import Punch
+from galinx.solvers.contact.on_layers import LayersUnderPunch
 from galinx.solvers.layers.kernel import Kernel, Scaled
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.profiles.power import Parabolic, Wedge
+from galinx.solvers.profiles.punches import Flat, Parabolic, Wedge
 from galinx.solvers.solids.isotropic import Isotropic
 
 POINTS = np.array([[0.3, -0.01], [-1.5, -0.4], [0.9, -3.0], [4.0, -2.0]])
@@ -67,9 +68,8 @@ def layered(graded):
 def test_over_layers_a_pressure_of_the_equation_leaves_nothing_and_a_wrong_one_its_error(graded):
     solid, g = layered(graded), 0.4
     response = solid.response(0.3 * solid.limit(), 1.0)
-    speed = ContactsAtSpeed(response, response.stack(1.0), np.zeros_like, 1e-9)
-    (solved,) = speed.solved(np.array([g]))[0].each
-    pressure = solved.pressure
+    speed = LayersUnderPunch(response, response.stack(1.0), 1e-9, Punch(Flat(1.0), 1.0, 1.0))
+    pressure = speed.contact(g).pressure
     ends = np.array([pressure.α]), np.array([pressure.β])
 
     def σ_YY(r, ε=0.0):

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from layers_cases import converged_pressure
 
-from galinx.solvers.contact.equation import Equation, converged_pressure
-from galinx.solvers.contact.panelled import Panels
+from galinx.solvers.contact.equation import Equation
+from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.recovery import Stretch, from_moments
 from galinx.solvers.layers.kernel import Kernel
 from galinx.solvers.layers.layered import Layer, Layered

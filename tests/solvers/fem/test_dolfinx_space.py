@@ -14,7 +14,7 @@ from galinx.solvers.fem.forms import FORMS, Form
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.traction import LoadedHalfPlane
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 DEGREE = 3
 #: Responses by the weak form that their solids ask for.

@@ -49,12 +49,6 @@ def test_with_a_larger_friction_at_rest_it_sticks():
     assert found.slip == pytest.approx(0.1 * found.period, rel=1e-9)
 
 
-def test_damping_ends_stick_slip():
-    slider = Slider(1.0, 2.0, 1.0, 0.1, 60.0)
-    ride = pull(slider, of("coulomb", mu_c=0.5), 1.0)
-    assert ride.v[-1] == pytest.approx(0.1, rel=1e-6) and np.isnan(cycle(ride, 0.1).period)
-
-
 def test_dahls_slider_is_the_equations_integrated_by_somebody_else():
     """In one piece, with signed velocities and another scheme."""
     slider, N, μ, λ = Slider(1.0, 2.0, 0.3, 0.1, 3.0), 1.0, 0.5, 50.0

@@ -3,21 +3,22 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from layers_cases import COAT, SUBSTRATE, equation, flat
+from layers_cases import COAT, SUBSTRATE, converged_pressure, equation
 from layers_reference import plane_strain, punch
 from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import weights_hilbert
+from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import (
     UNIFORM,
-    ContactsAtSpeed,
     Equation,
     Jacobi,
-    converged_pressure,
 )
+from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.isotropic import Isotropic
 
 #: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the
@@ -145,11 +146,12 @@ def test_thin_coatings_tend_to_the_substrate(H):
 def test_frictions_between_are_interpolated_within_the_tolerance():
     solid = Layered((Layer(1.0, COAT),), SUBSTRATE)
     response = solid.response(0.3)
-    speed = ContactsAtSpeed(response, response.stack(1.0), flat, 1e-8)
+    speed = LayersUnderPunch(response, response.stack(1.0), 1e-8, Punch(Flat(1.0), 1.0, 1.0))
     g = np.linspace(-1.0, 1.0, 301)
-    nodes, left = speed.solved(g)
-    assert len(nodes.each) < 40 and left.max() <= 1e-8
-    ends = nodes.at(g) @ nodes.read(lambda pressure: pressure.series(ENDS))
+    solved, left = speed.solved(g)
+    assert len(solved) < 40 and left <= 1e-8
+    weights = weights_between(np.array([contact.g for contact in solved]), g)
+    ends = weights @ [contact.pressure.series(ENDS) for contact in solved]
     for i in (3, 150):
         exact = converged_pressure(
             equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11

@@ -3,12 +3,11 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from layers_cases import COAT, SUBSTRATE, constants, equation
+from layers_cases import COAT, SUBSTRATE, constants, converged_pressure, equation
 from layers_reference import system
 from loaded import under
 
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.equation import converged_pressure
 from galinx.solvers.layers.kernel import Level
 from galinx.solvers.layers.layered import Layer, Layered
 

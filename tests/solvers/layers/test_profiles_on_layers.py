@@ -9,10 +9,10 @@ from layers_cases import COAT, SUBSTRATE, constants
 from layers_reference import admittance
 from support import THOROUGH
 
+from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.free_on_layers import FreeContactsAtSpeed
+from galinx.solvers.contact.on_layers import LayersUnderPunch
 from galinx.solvers.contact.solution import make_contact
-from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
 
@@ -41,7 +41,7 @@ def found(solid, profile, g, share=0.5, tolerance=1e-8, load=LOAD):
     response = solid.response(share * solid.limit())
     unit = float(contacts(solid.response(0.0), np.zeros(1), profile, load).of("half_width")[0])
     punch = Punch(profile, unit, load)
-    speed = FreeContactsAtSpeed(response, response.stack(unit), np.zeros_like, tolerance, punch)
+    speed = LayersUnderPunch(response, response.stack(unit), tolerance, punch)
     return speed.contact(g), response, unit
 
 
@@ -65,7 +65,7 @@ def test_on_layers_of_one_solid_it_is_that_of_the_half_plane(name, g):
         σ = exact.on_surface(r)[1][0]
         assert np.abs(pressure(one, r) - σ).max() <= 1e-10 * np.abs(σ).max()
         ends = -0.5 * one.pressure.series(np.array([-1.0, 1.0]))
-        assert np.where(one.free, 0.0, ends) == pytest.approx(np.asarray(K).ravel(), abs=1e-10)
+        assert np.where(one.pressure.free, 0.0, ends) == pytest.approx(np.asarray(K).ravel(), abs=1e-10)
 
 
 class Equation:
@@ -132,10 +132,10 @@ def test_the_equation_of_the_reference_holds(name, g):
 
     t, w = _rule(sorted([-1.0, *_kinks(profile, m, h), 1.0]))
     # Nearer to a tip than 1e-6 the pressure is told as at that distance; towards an edge this rule ends.
-    told = 1e-5 if one.pressure.tips or not all(one.free) else 1e-7
+    told = 1e-5 if one.pressure.tips or not all(one.pressure.free) else 1e-7
     assert h * (w @ σ(t)) == pytest.approx(-LOAD * COATED.μ, rel=told)
     assert one.pressure.points(0.3)[1].sum() == pytest.approx(-2.0, rel=1e-8)
-    for side, free in zip((-1.0, 1.0), one.free):
+    for side, free in zip((-1.0, 1.0), one.pressure.free):
         near, nearer = np.abs(σ(side * (1.0 - np.array([1e-6, 1e-8]))))
         assert nearer < 0.3 * near if free else nearer > 3.0 * near
     equation = Equation(COATED, (response.c * COATED.c_s) ** 2, g, h, profile, m)
@@ -156,11 +156,11 @@ def test_an_edge_lifts_off_beyond_the_tilt_that_leaves_it_no_intensity():
     tilts = (0.2, 0.3, 0.4, 0.5, 0.6)
     for tilt in tilts:
         one, _, unit = found(COATED, flat(1.0, tilt), -0.4)
-        free.append(one.free[1])
+        free.append(one.pressure.free[1])
         sizes.append(one.half_width * unit)
         body = make_contact(COATED, flat(1.0, tilt), LOAD * COATED.μ)
         local = body.local_exponents(response, np.array([-0.4]))
-        assert (local.α[0] > 0.0) == one.free[1] and local.β[0] < 0.0
+        assert (local.α[0] > 0.0) == one.pressure.free[1] and local.β[0] < 0.0
         assert one.centre * unit == pytest.approx(sizes[-1] - 1.0)
     assert not free[0] and free[-1] and sorted(free) == free
     assert np.all(np.diff(sizes) <= 1e-12) and sizes[0] == pytest.approx(1.0) and sizes[-1] < 0.9

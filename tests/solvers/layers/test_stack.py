@@ -3,7 +3,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from layers_cases import COAT, SUBSTRATE, constants
+from layers_cases import COAT, SUBSTRATE, constants, random_stack
 from layers_reference import admittance, graded_admittance
 from random_solids import orthotropic
 from support import THOROUGH
@@ -11,33 +11,8 @@ from support import THOROUGH
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.kernel import spherical_bessel, transform
 from galinx.solvers.layers.layered import Layer, Layered, weakest
-from galinx.solvers.layers.stiffness import inverse
+from galinx.solvers.layers.stiffness import inverse, least
 from galinx.solvers.solids.isotropic import Isotropic
-
-
-def random_stack(seed, graded=False):
-    """Layers of random solids, moduli up to 400 times apart, and a speed below the limit."""
-    rng = np.random.default_rng(seed)
-
-    def solid(stiffness):
-        if rng.random() < 0.5:
-            return Isotropic(stiffness, rng.uniform(0.0, 0.45), rng.uniform(0.5, 2.0))
-        one = orthotropic(rng, 10.0)
-        scale = stiffness / one.E2
-        return type(one)(
-            one.E1 * scale, one.E2 * scale, one.E3 * scale, one.ν12, one.ν13, one.ν23, one.G12 * scale,
-            rng.uniform(0.5, 2.0), one.angle, "strain",
-        )  # fmt: skip
-
-    layers = []
-    for _ in range(rng.integers(1, 6)):
-        top = solid(20.0 ** rng.uniform(-1.0, 1.0))
-        bottom = None
-        if graded and isinstance(top, Isotropic):
-            bottom = Isotropic(top.E * 4.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.0, 0.45), top.ρ)
-        layers.append(Layer(20.0 ** rng.uniform(-1.0, 1.0), top, bottom))
-    whole = Layered(tuple(layers), solid(1.0))
-    return whole, rng.uniform(0.1, 0.98) * whole.limit()
 
 
 def in_digits(solid, c):
@@ -161,6 +136,16 @@ def test_speed_limit_at_a_wavenumber_inside_is_found():
         Y = admittance(*in_digits(solid, c), mp.mpf(below[1]))
         Z = np.linalg.inv(np.array((-1j * Y).tolist(), dtype=complex))
         assert sign * np.linalg.eigvalsh(Z)[0] > 0.0
+
+
+def test_the_smaller_eigenvalue_of_any_sign_is_that_of_lapack():
+    rng = np.random.default_rng(1)
+    Z = rng.normal(size=(200, 2, 2)) + 1j * rng.normal(size=(200, 2, 2))
+    Z = Z + Z.conj().swapaxes(1, 2) + rng.uniform(-6.0, 6.0, 200)[:, None, None] * np.eye(2)
+    wanted = np.linalg.eigvalsh(Z)
+    assert (wanted > 0.0).all(axis=1).any() and (wanted < 0.0).all(axis=1).any()
+    np.testing.assert_allclose(least(Z), wanted[:, 0], rtol=1e-13, atol=1e-13)
+    assert np.isnan(least(Z[:1] * np.nan))
 
 
 def test_layers_with_a_fault_say_so():

@@ -8,11 +8,8 @@ from random_solids import isotropic_as, random_solid, stiffness
 from galinx.solvers.contact import stresses
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.solids.anisotropic import Anisotropic
-from galinx.solvers.solids.cubic import Cubic
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.solids.orthotropic import Orthotropic
-from galinx.solvers.solids.plane import along_axes, rotated
+from galinx.solvers.solids.plane import Anisotropic, Cubic, Orthotropic, along_axes, rotated
 
 pytest.importorskip("mpmath")
 from stroh import Punch, Stroh

@@ -6,7 +6,7 @@ from scipy.integrate import trapezoid
 
 from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import MovingFrame
-from galinx.solvers.solids.orthotropic import Orthotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 OBLIQUE = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, 40.0)
 RESPONSES = [

@@ -8,7 +8,7 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.contact.yielding import Strength
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
 SOLID = Isotropic(193e9, 0.25, 7860.0)

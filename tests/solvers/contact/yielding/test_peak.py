@@ -9,7 +9,7 @@ from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.contact.yielding import Strength
-from galinx.solvers.profiles.flat import Flat
+from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
 SOLID = Isotropic(210e9, 0.3, 7850.0)

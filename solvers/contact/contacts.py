@@ -23,12 +23,11 @@ from numpy.typing import NDArray
 
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, jumps
-from ..profiles.flat import Flat
-from ..profiles.power import Parabolic
+from ..profiles.punches import Flat, Parabolic
 from ..solids.half_plane import HalfPlane
-from .closed_form import FlatPunch, Weighted, in_plane
+from .closed_form import FlatPunch, FreeEnds, Weighted, in_plane
 from .ends import Punch, Rule, free_ends
-from .panels import FreeEnds, Panels, ends_of_panels
+from .panels import Panels, panels_of_slope
 from .pressure import Pressure
 
 #: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
@@ -45,19 +44,28 @@ class Group:
 
     Attributes:
         rows: numbers of these states, (rows,).
+        g: σ_XY/σ_YY, (rows,).
         pressure: pressure of all these states or of the only one.
         half_width, centre: half-width and centre of the contact [m], (rows,).
+        before: pressure with fewer unknowns, over layers.
     """
 
     rows: NDArray[np.int64]
+    g: NDArray[np.float64]
     pressure: Any
     half_width: NDArray[np.float64]
     centre: NDArray[np.float64]
+    before: Any = None
 
     @property
     def K_I(self) -> NDArray[np.float64]:
         """Intensities at the left and the right end, (rows, 2)."""
         return np.broadcast_to(self.pressure.K_I, (len(self.rows), 2))
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """True where the left and the right end are free, (rows, 2)."""
+        return np.broadcast_to(self.pressure.free, (len(self.rows), 2))
 
     @property
     def α(self) -> NDArray[np.float64]:
@@ -74,6 +82,15 @@ class Group:
         stress = self.pressure.σ_YY(r)
         return np.broadcast_to(stress, (len(self.rows), stress.shape[-1]))
 
+    def read(self, what: Any, values: "Callable[[Group], NDArray]") -> NDArray[np.float64]:
+        """Values that are linear in the pressure, (..., rows, n).
+
+        Args:
+            what: a name of the values, by which they are kept.
+            values: gives them for a group, (..., rows, n).
+        """
+        return values(self)
+
 
 def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:
     """Positions r over the half-width, moved off tips, where the pressure is infinite."""
@@ -89,16 +106,19 @@ class Contacts:
 
     Attributes:
         response: of the half-plane at that speed.
-        g: σ_XY/σ_YY, (states,).
         groups: all states by the kind of their pressure.
     """
 
     response: HalfPlane
-    g: NDArray[np.float64]
     groups: tuple[Group, ...]
 
+    @property
+    def g(self) -> NDArray[np.float64]:
+        """σ_XY/σ_YY, (states,)."""
+        return self.of("g")
+
     def of(self, name: str) -> NDArray[np.float64]:
-        """Attribute of every state by its name: ``α``, ``β``, ``half_width``, ``centre``, ``K_I``."""
+        """Attribute of every state by its name, as ``α``, ``free``, ``half_width``, ``K_I``."""
         return self.joined(lambda group: getattr(group, name))
 
     def joined(self, values: Callable[[Group], NDArray], axis: int = 0) -> NDArray[np.float64]:
@@ -119,11 +139,19 @@ class Contacts:
 
     def surface_of(self, group: Group, r: NDArray) -> NDArray[np.float64]:
         """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (2, rows, points)."""
-        r, g = off_tips(r, group.pressure.tips), self.g[group.rows, None]
+        r = off_tips(r, group.pressure.tips)
         σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
-        ratio, H, C = group.pressure.transforms(g, r)
-        σ_XX = in_plane(self.response, ratio, σ_YY, H, self.response.m * C)
+        ratio, H, C = group.pressure.transforms(group.g[:, None], r)
+        σ_XX = in_plane(self.response, ratio, σ_YY, H, self.response.m * C + self.strain(group, r))
         return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
+
+    def strain(self, group: Group, r: NDArray) -> Any:
+        """Strain μ u,X over N/(2a) that layers add on the surface at r, (rows, points)."""
+        return 0.0
+
+    def inside(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY of a group at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
+        return self.response.inside(group.pressure, group.g[:, None], X, Y)
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points with Y <= 0, on the surface, too.
@@ -139,8 +167,8 @@ class Contacts:
 
     def stresses_of(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY of a group at points (1, n) or (rows, n): (3, rows, n)."""
-        on, g = Y == 0.0, self.g[group.rows, None]
-        σ = self.response.inside(group.pressure, g, X, np.where(on, -1.0, Y))
+        on, g = Y == 0.0, group.g[:, None]
+        σ = self.inside(group, X, np.where(on, -1.0, Y))
         columns = on.any(axis=0)
         if columns.any():
             σ_XX, σ_YY = self.surface_of(group, X[:, columns])
@@ -164,8 +192,7 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     """
     # Beside its kink a power is not smooth; wedges and parabolas are.
     k = getattr(profile, "exponent", 1.0)
-    rough = not jumps(profile) and k != round(k)
-    return Panels(a, ends_of_panels(np.array(kinks, dtype=float), rough))
+    return panels_of_slope(a, kinks, not jumps(profile) and k != round(k))
 
 
 def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
@@ -176,22 +203,22 @@ def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY, (states,).
     """
-    if body.shared_ends is None:
+    if body.found:
         return contacts(response, g, body.profile, body.compression)
     if known := body.known_pressures(response, g):
-        return Contacts(response, g, tuple(_fixed(rows, p, body.half_width) for rows, p in known))
+        return Contacts(response, tuple(_fixed(rows, g, p, body.half_width) for rows, p in known))
     from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 
     groups, loads = [], np.broadcast_to(body.load, g.shape).tolist()
     for i, (value, load) in enumerate(zip(g.tolist(), loads)):
         pressure = Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
-        groups.append(_fixed(np.array([i]), pressure, body.half_width))
-    return Contacts(response, g, tuple(groups))
+        groups.append(_fixed(np.array([i]), g, pressure, body.half_width))
+    return Contacts(response, tuple(groups))
 
 
-def _fixed(rows: NDArray, pressure: Pressure, half_width: float) -> Group:
-    """States with given ends, of a half-width [m]."""
-    return Group(rows, pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
+def _fixed(rows: NDArray, g: NDArray, pressure: Pressure, half_width: float) -> Group:
+    """States with given ends, of a half-width [m]; frictions are those of all states."""
+    return Group(rows, g[rows], pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
 
 
 def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:
@@ -214,10 +241,10 @@ def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contac
             "punch (not below the Rayleigh speed): no contact of finite width carries a load"
         )
     if isinstance(profile, Flat):
-        return Contacts(response, g, _tilted(response, g, n, profile, load))
+        return Contacts(response, _tilted(response, g, n, profile, load))
     if isinstance(profile, Parabolic):
-        return Contacts(response, g, (_parabolas(response, g, n, profile, load),))
-    return Contacts(response, g, tuple(_by_quadrature(response, g, n, profile, load)))
+        return Contacts(response, (_parabolas(response, g, n, profile, load),))
+    return Contacts(response, tuple(_by_quadrature(response, g, n, profile, load)))
 
 
 def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
@@ -226,7 +253,7 @@ def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, 
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
     A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
     pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
-    return Group(np.arange(len(g)), pressure, h, h * (b - a))
+    return Group(np.arange(len(g)), g, pressure, h, h * (b - a))
 
 
 def _tilted(
@@ -252,7 +279,7 @@ def _tilted(
         if len(rows):
             column = np.s_[rows, None]
             pressure = Weighted(α[column], β[column], A[column], B[column], kind)
-            groups.append(Group(rows, pressure, h[rows], centre[rows]))
+            groups.append(Group(rows, g[rows], pressure, h[rows], centre[rows]))
     return tuple(groups)
 
 
@@ -273,7 +300,7 @@ def _by_quadrature(
         check_reach(profile, m - h, m + h)
         pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
         rows = np.flatnonzero(inverse == k)
-        groups.append(Group(rows, pressure, np.full(len(rows), h), np.full(len(rows), m)))
+        groups.append(Group(rows, g[rows], pressure, np.full(len(rows), h), np.full(len(rows), m)))
     return groups
 
 

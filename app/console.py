@@ -195,7 +195,7 @@ class Progress:
         self._logger.addHandler(handler)
 
 
-class _LogFile(logging.Handler):
+class _LogFile(logging.StreamHandler):
     """Adds lines to a file; a disk that becomes full ends the log, not the run.
 
     Args:
@@ -206,27 +206,23 @@ class _LogFile(logging.Handler):
     """
 
     def __init__(self, path: Path) -> None:
-        super().__init__()
-        self._path, self._full = path, False
         try:
-            self._file = open(path, "ab", buffering=0)  # noqa: SIM115 - closed by close
+            super().__init__(open(path, "ab", buffering=0))  # noqa: SIM115 - closed by close
         except OSError as error:
             raise MachineFailure(f"cannot write the log {path}: {error.strerror}") from None
 
     def emit(self, record: logging.LogRecord) -> None:
-        if self._full:
-            return
-        line, start = memoryview(f"{self.format(record)}\n".encode()), self._file.seek(0, os.SEEK_END)
+        line, start = memoryview(f"{self.format(record)}\n".encode()), self.stream.seek(0, os.SEEK_END)
         try:
             while line:  # a disk that becomes full takes a part
-                line = line[self._file.write(line) :]
+                line = line[self.stream.write(line) :]
         except OSError as error:
-            self._full = True
-            self._file.truncate(start)
-            print(f"warning: the log {self._path} ends here: {error.strerror}", file=sys.stderr)
+            self.stream.truncate(start)
+            self.setLevel(logging.CRITICAL)
+            print(f"warning: the log {self.stream.name} ends here: {error.strerror}", file=sys.stderr)
 
     def close(self) -> None:
-        self._file.close()
+        self.stream.close()
         super().close()
 
 

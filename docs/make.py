@@ -262,8 +262,9 @@ def scene_page() -> str:
 
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
+    from galinx.postprocess.compare import RULES
     from galinx.postprocess.quantities import table
-    from galinx.postprocess.schema import ATTRIBUTES, RULES
+    from galinx.postprocess.schema import ATTRIBUTES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
     told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]

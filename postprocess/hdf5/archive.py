@@ -37,7 +37,7 @@ from ..target import Target, as_target
 
 
 class PatientFile(io.RawIOBase):
-    """A new file that takes every write, and keeps in memory what the disk refuses.
+    """A new file that takes every write: where the disk refuses one, it goes on in memory.
 
     Attributes:
         refusal: why the disk refused, None as long as it did not.
@@ -45,8 +45,7 @@ class PatientFile(io.RawIOBase):
 
     def __init__(self, path: Path) -> None:
         super().__init__()
-        self._file = io.FileIO(path, "w+")
-        self._kept: dict[int, bytes] = {}
+        self._file: io.FileIO | io.BytesIO = io.FileIO(path, "w+")
         self.refusal: OSError | None = None
 
     def readable(self) -> bool:
@@ -61,26 +60,20 @@ class PatientFile(io.RawIOBase):
         return self._file.tell()
 
     def write(self, data: Any) -> int:
-        start, view = self._file.tell(), memoryview(data).cast("B")
-        done = 0
+        start, view, done = self._file.tell(), memoryview(data).cast("B"), 0
         try:
-            while done < len(view) and self.refusal is None:
+            while done < len(view):
                 done += self._file.write(view[done:])  # a disk that becomes full takes a part
         except OSError as error:
-            self.refusal = error
-        if done < len(view):
-            self._kept[start + done] = bytes(view[done:])
-            self._file.seek(start + len(view))
+            self._go_on_in_memory(error)
+            self._file.seek(start)
+            self._file.write(view)
         return len(view)
 
     def readinto(self, buffer: Any) -> int:
         start, view = self._file.tell(), memoryview(buffer).cast("B")
         count = self._file.readinto(view) or 0
         view[count:] = bytes(len(view) - count)
-        for offset, data in self._kept.items():
-            first, last = max(offset, start), min(offset + len(data), start + len(view))
-            if first < last:
-                view[first - start : last - start] = data[first - offset : last - offset]
         self._file.seek(start + len(view))
         return len(view)
 
@@ -88,8 +81,14 @@ class PatientFile(io.RawIOBase):
         try:
             return self._file.truncate(size)
         except OSError as error:
-            self.refusal = self.refusal or error
+            self._go_on_in_memory(error)
             return size or 0
+
+    def _go_on_in_memory(self, refusal: OSError) -> None:
+        self.refusal = refusal
+        self._file.seek(0)
+        with self._file as file:
+            self._file = io.BytesIO(file.read())
 
     def close(self) -> None:
         self._file.close()

@@ -356,10 +356,9 @@ class Space:
         kernel, fields = self.kernel, outer.shape[-1]
         u = np.empty((len(cells), kernel.nodes, 2, fields))
         u[:, kernel.outer] = outer[:, : len(kernel.outer)]
-        for values, extension, boundary in zip(u, E, outer):
-            inner = extension @ boundary.reshape(-1, fields)
-            displacement = inner[: 2 * len(kernel.inner)]
-            values[kernel.inner] = displacement.reshape(-1, 2, fields)
+        inner = E @ outer.reshape(len(cells), 2 * outer.shape[1], fields)
+        count = len(kernel.inner)
+        u[:, kernel.inner] = inner[:, : 2 * count].reshape(len(cells), count, 2, fields)
         return u
 
     @property

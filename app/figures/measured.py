@@ -98,8 +98,8 @@ class Measured:
         if not inside.any():
             raise BadInput(
                 f"--measured {self.name}: found points at {number(x.min())} to {number(x.max())}, the "
-                f"figure shows {number(first)} to {number(last)} of its axis {panel.x!r}; check the unit, "
-                "and where positions are counted from"
+                f"figure shows {number(first)} to {number(last)} of its axis {panel.x!r}; check the "
+                "unit, and where positions are counted from"
             )
         margin, bottom, top = 0.05 * (high - low), float(y[inside].min()), float(y[inside].max())
         if bottom < low or top > high:

@@ -189,7 +189,12 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
     Raises:
         BadInput: the archive lacks a selected figure or quantity; the message says what it has.
     """
-    choice.check_states(data)
+    count = len(data[FRICTION.path])
+    for state in choice.states:
+        if not 0 <= state < count:
+            raise BadInput(
+                f"--states: found {state}, expected numbers from 0 to {count - 1}; show lists them"
+            )
     if choice.method:
         require_one_of("method", choice.method, METHODS)
     plain, of = Archive(data, scene, Choice(units=choice.units)), Archive(data, scene, choice)

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, table
 from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
-from galinx.postprocess.quantities.states import SPEED
 from galinx.postprocess.units import Scaled, Units, as_archived
 
 from ..errors import BadInput, nearest, short
@@ -65,19 +64,6 @@ class Choice:
         """Names of the options set by the user that say what is drawn."""
         names = ("states", "quantities", "method", "x", "y", "by", "measured")
         return {name for name in names if getattr(self, name)}
-
-    def check_states(self, data: dict[str, Any]) -> None:
-        """Refuse numbers of states that an archive does not have.
-
-        Raises:
-            BadInput: the archive has no such state.
-        """
-        count = len(data[SPEED.path])
-        for state in self.states:
-            if not 0 <= state < count:
-                raise BadInput(
-                    f"--states: found {state}, expected numbers from 0 to {count - 1}; show lists them"
-                )
 
 
 def short_name(row: Quantity) -> str:

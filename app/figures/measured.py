@@ -96,16 +96,16 @@ class Measured:
         (first, last), (low, high) = panel.xlim, panel.ylim
         inside = (first <= x) & (x <= last)
         if not inside.any():
-            found, shown = (f"{number(a)} to {number(b)}" for a, b in ((x.min(), x.max()), (first, last)))
             raise BadInput(
-                f"--measured {self.name}: found points at {found}, the figure shows {shown} of its axis "
-                f"{panel.x!r}; check the unit, and where positions are counted from"
+                f"--measured {self.name}: found points at {number(x.min())} to {number(x.max())}, the "
+                f"figure shows {number(first)} to {number(last)} of its axis {panel.x!r}; check the "
+                "unit, and where positions are counted from"
             )
-        margin, y_inside = 0.05 * (high - low), y[inside]
-        if y_inside.min() < low or y_inside.max() > high:
-            low, high = min(low, y_inside.min() - margin), max(high, y_inside.max() + margin)
+        margin, bottom, top = 0.05 * (high - low), float(y[inside].min()), float(y[inside].max())
+        if bottom < low or top > high:
+            low, high = min(low, bottom - margin), max(high, top + margin)
         points = Curve(x, y, Look("black", "none", "o"), f"measured, {self.name}", DOTS)
-        return replace(panel, curves=[*panel.curves, points], ylim=(float(low), float(high)))
+        return replace(panel, curves=[*panel.curves, points], ylim=(low, high))
 
 
 def read(path: Path) -> Measured:

@@ -5,9 +5,10 @@ are printed, and panels take the room that is left: nothing is cut, nothing over
 taller than a page.
 """
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import ceil, floor, isfinite, log10
+from math import ceil, floor, log10
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,6 @@ from matplotlib import colors
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
@@ -33,7 +33,7 @@ _LOW, _MARKERS = 0.95, 16
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
 #: Times that a layout is measured: texts that are folded need other room.
-_ROUNDS = 4
+_ROUNDS = 3
 
 #: Forms of curves: solutions are lines, finite elements markers; both joined where they are alone.
 LINE, MARKERS, JOINED, DOTS = "line", "markers", "joined", "dots"
@@ -188,17 +188,18 @@ def render(
     rows = ceil(len(panels) / columns)
     figure = Figure((size.width, size.height or TALLEST / 2.0))
     FigureCanvasAgg(figure)
+    tall = [max(panel.tall for panel in panels[n : n + columns]) for n in range(0, len(panels), columns)]
+    grid = figure.add_gridspec(rows, columns, height_ratios=tall)
     made = []
     for n, panel in enumerate(panels):
-        axis = figure.add_subplot(rows, columns, n + 1)
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
-        made.append(_Drawn(axis, panel, letter))
+        made.append(_Drawn(figure.add_subplot(grid[n // columns, n % columns]), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
     handles = [_entry(curve) for curve in named.values()] + list(notes)
-    _Layout(figure, made, columns, size, high, handles).arrange()
+    _arrange(figure, made, size, (rows, columns), high, _legend(figure, handles))
     for drawn in made:
-        for curve in drawn.panel.curves:
-            _draw_arrows(drawn.axis, curve)
+        for curve, line in zip(drawn.panel.curves, drawn.lines):
+            _draw_arrows(drawn.axis, line, curve.arrows)
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
 
@@ -252,8 +253,14 @@ class _Drawn:
         for y in panel.at_y:
             axis.axhline(y / 10.0**self.power, color=GREY, linewidth=0.4, zorder=0)
         self.lines = [self._curve(curve) for curve in panel.curves]
+        self.bar = None
         if panel.map:
             _draw_map(axis, panel.map)
+        if panel.map and panel.map.label:
+            beside = axis.inset_axes((1.04, 0.0, 0.04, 1.0))
+            beside.set_axes_locator(self._beside)
+            self.bar = axis.figure.colorbar(axis.images[0], cax=beside, extend=panel.map.extend)
+            self.bar.ax.tick_params(labelsize=SMALL)
         for y in panel.dashes:
             axis.axhline(y, color="black", linewidth=0.6, linestyle=(0, (5.0, 2.5)))
         if panel.bar:
@@ -284,6 +291,12 @@ class _Drawn:
                     handles=entries, loc="upper center", borderaxespad=0.0, labelspacing=0.2,
                     columnspacing=1.2,
                 )  # fmt: skip
+
+    def _beside(self, axis: Axes, renderer: Any) -> Bbox:
+        """Place of the colour bar."""
+        x, y, w, h = self.axis.get_position().bounds
+        wide = self.axis.figure.get_figwidth()
+        return Bbox.from_bounds(x + w + 0.06 / wide, y, 0.09 / wide, h)
 
     def _curve(self, curve: Curve) -> Line2D:
         y = np.asarray(curve.y) / 10.0**self.power
@@ -316,8 +329,8 @@ class _Drawn:
             0
         ]
 
-    def fit(self, wide: float, tall: float) -> None:
-        """Fold texts, and thin out ticks, to a panel so wide and so tall [in]."""
+    def fit(self, wide: float, tall: float, beside: float) -> None:
+        """Fold texts, and thin out ticks, to a panel so wide and so tall, with so much beside it [in]."""
         axis, panel = self.axis, self.panel
         dpi = axis.figure.dpi
         unit = panel.unit
@@ -326,7 +339,7 @@ class _Drawn:
         label = panel.y if panel.y is None or not unit else f"{panel.y} ({unit})"
         for text, words, room in (
             (axis._left_title, self.letter + panel.title, wide + (0.3 if not self.letter else 0.0)),
-            (axis.xaxis.label, panel.x or "", wide + 0.35),
+            (axis.xaxis.label, panel.x or "", wide + beside),
             (axis.yaxis.label, label or "", tall + 0.25),
         ):
             if words.strip():
@@ -343,22 +356,24 @@ class _Drawn:
         for other in axis.child_axes:
             if hasattr(other, "_functions") and panel.beside:
                 other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
-        if self.legend is not None:
-            self._place_legend(wide, tall)
+        if self.bar is not None:
+            assert panel.map
+            self.bar.set_label(panel.map.label, fontsize=SMALL)
+            fit_text(self.bar.ax.yaxis.label, panel.map.label, (tall + 0.25) * dpi)
+            if not panel.map.least:
+                self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
+                self.bar.update_ticks()
+        if self.legend is not None:  # under what is below the panel
+            box = axis.xaxis.get_tightbbox(axis.figure.canvas.get_renderer())
+            below = (axis.bbox.y0 - box.y0) / dpi
+            self.legend.set_bbox_to_anchor((0.5, -(below + 0.03) / tall), axis.transAxes)
 
-    def _place_legend(self, wide: float, tall: float) -> None:
-        """Put the panel's own legend under what is below it."""
-        axis = self.axis
-        assert self.legend is not None
-        below = axis.bbox.y0 - min(box.y0 for box in _boxes(axis, of_legend=False))
-        self.legend.set_bbox_to_anchor((0.5, -(below / axis.figure.dpi + 0.03) / tall), axis.transAxes)
 
-
-def _draw_arrows(axis: Axes, curve: Curve) -> None:
+def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
     """Draw arrows along a curve, once its panel has its place."""
-    style = {"arrowstyle": "-|>", "color": curve.look.colour, "shrinkA": 0, "shrinkB": 0}
-    points = np.column_stack([curve.x, curve.y])
-    for share in curve.arrows:
+    style = {"arrowstyle": "-|>", "color": line.get_color(), "shrinkA": 0, "shrinkB": 0}
+    points = line.get_xydata()
+    for share in shares:
         steps = np.hypot(*np.diff(axis.transData.transform(points), axis=0).T)
         way = np.append(0.0, np.cumsum(steps))
         at = min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
@@ -400,175 +415,95 @@ def _draw_map(axis: Axes, shown: Map) -> None:
     axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], max(Y[-1], 0.0) if shown.equal else Y[-1]))
 
 
-def _boxes(axis: Axes, of_legend: bool = True) -> list[Any]:
-    """Boxes of what stands around a panel and in it [pixels]."""
-    renderer = axis.figure.canvas.get_renderer()
-    parts: list[Any] = [axis.bbox]
-    parts += [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis)]
-    if axis._left_title.get_text():
-        parts.append(axis._left_title.get_window_extent(renderer))
-    parts += [child.get_tightbbox(renderer) for child in axis.child_axes]
-    if of_legend and axis.get_legend():
-        parts.append(axis.get_legend().get_window_extent(renderer))
-    return [box for box in parts if box is not None and isfinite(box.x0 + box.y1)]
-
-
-class _Layout:
-    """Places of panels, colour bars and the legend of a figure."""
-
-    def __init__(
-        self, figure: Figure, drawn: Sequence[_Drawn], columns: int, size: Size, high: float,
-        handles: Sequence[Line2D],
-    ) -> None:  # fmt: skip
-        self.figure, self.drawn, self.columns, self.size, self.high = figure, drawn, columns, size, high
-        self.rows = ceil(len(drawn) / columns)
-        self.foot = self._legend(handles)
-        self.bars = {
-            n: self._bar(one) for n, one in enumerate(drawn) if one.panel.map and one.panel.map.label
-        }
-        tall = [1.0] * self.rows
-        for n, one in enumerate(drawn):
-            tall[n // columns] = one.panel.tall
-        self.tall = np.array(tall)
-
-    def _legend(self, handles: Sequence[Line2D]) -> tuple[Legend | None, float]:
-        """Legend at the foot in as few lines as it fits on, and its height [in]."""
-        if not handles:
-            return None, 0.0
-        figure, room = self.figure, (self.size.width - 0.1) * self.figure.dpi
-        widths = [0.05 * len(plain(str(one.get_label()))) + 0.5 for one in handles]
-        rows = max(1, floor(sum(widths) / self.size.width))
-        while True:
-            legend = figure.legend(
-                handles=handles, ncols=ceil(len(handles) / rows), loc="lower center", borderaxespad=0.15,
-                columnspacing=1.2, labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
-            )  # fmt: skip
-            box = legend.get_window_extent(figure.canvas.get_renderer())
-            if box.width <= room or rows >= len(handles):
-                break
-            legend.remove()
-            rows += 1
-        for text in legend.get_texts() if box.width > room else ():
-            fit_text(text, text.get_text(), room - 0.4 * figure.dpi)
+def _legend(figure: Figure, handles: Sequence[Line2D]) -> float:
+    """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in]."""
+    if not handles:
+        return 0.0
+    width, dpi = figure.get_figwidth(), figure.dpi
+    room = (width - 0.1) * dpi
+    rows = max(1, floor(sum(0.05 * len(plain(str(one.get_label()))) + 0.5 for one in handles) / width))
+    while True:
+        legend = figure.legend(
+            handles=handles, ncols=ceil(len(handles) / rows), loc="lower center", borderaxespad=0.15,
+            columnspacing=1.2, labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
+        )  # fmt: skip
+        legend.set_in_layout(False)
         box = legend.get_window_extent(figure.canvas.get_renderer())
-        return legend, box.height / figure.dpi + 0.05
+        if box.width <= room or rows >= len(handles):
+            break
+        legend.remove()
+        rows += 1
+    for text in legend.get_texts() if box.width > room else ():
+        fit_text(text, text.get_text(), room - 0.4 * dpi)
+    return legend.get_window_extent(figure.canvas.get_renderer()).height / dpi + 0.05
 
-    def _bar(self, one: _Drawn) -> Any:
-        shown = one.panel.map
-        assert shown
-        beside, panel, wide = one.axis.inset_axes((1.04, 0.0, 0.04, 1.0)), one.axis, self.size.width
 
-        def locate(axis: Axes, renderer: Any) -> Bbox:
-            x, y, w, h = panel.get_position().bounds
-            return Bbox.from_bounds(x + w + 0.06 / wide, y, 0.09 / wide, h)
+def _arrange(
+    figure: Figure, drawn: Sequence[_Drawn], size: Size, shape: tuple[int, int], high: float, foot: float
+) -> None:
+    """Give panels the room that texts and the legend leave, and a figure the height that panels need.
 
-        beside.set_axes_locator(locate)
-        bar = self.figure.colorbar(one.axis.images[0], cax=beside, extend=shown.extend)
-        bar.ax.tick_params(labelsize=SMALL)
-        return bar
+    Raises:
+        TooSmall: panels would not be legible.
+    """
+    rows, columns = shape
+    figure.align_ylabels([one.axis for one in drawn])
+    share = sum(one.panel.tall for one in drawn[::columns])
+    maps = [one.axis for one in drawn if one.panel.map and one.panel.map.equal]
+    ratio = float(np.ptp(maps[0].get_ylim()) / np.ptp(maps[0].get_xlim())) if maps else high
+    height = size.height or min(foot + share * (0.7 * ratio * size.width / columns + 0.6), TALLEST)
+    edge = 0.0
+    for _ in range(_ROUNDS):
+        wide, tall = _sides(figure, drawn[0], (size.width, height), (foot, edge))
+        for one in drawn:
+            high_ = max(tall, _LEAST) / drawn[0].panel.tall * one.panel.tall
+            one.fit(max(wide, _LEAST), high_, 0.35 if all(one.panel.y for one in drawn) else 0.1)
+        # Names of axes may be wider than panels, for which the layout leaves no room at the edge.
+        names = [one.axis.xaxis.label for one in drawn[columns - 1 :: columns]]
+        widths = [name.get_window_extent(figure.canvas.get_renderer()).width for name in names]
+        edge = max(0.0, (max(widths, default=0.0) / figure.dpi - wide) / 2.0)
+        if size.height is None:
+            missing = max(wide * ratio, 0.0 if maps else _LOW) - tall / drawn[0].panel.tall
+            height = min(height + share * missing, TALLEST)
+    for axis in maps:
+        axis.set_aspect("equal", anchor="N")
+    wide, tall = _sides(figure, drawn[0], (size.width, height), (foot, edge))
+    if min(wide, tall / drawn[0].panel.tall) < _LEAST:
+        more = size.width + 2.0 * columns, height + 2.0 * rows
+        wide, tall = _sides(figure, drawn[0], more, (foot, edge))
+        beside, between = more[0] - columns * wide, more[1] - share * tall / drawn[0].panel.tall
+        needed = f"{beside + columns * _LEAST / min(ratio, 1.0):.1f} in"
+        if size.height is not None:
+            needed = f"{beside + columns * _LEAST:.1f} in x {between + share * _LEAST:.1f} in"
+        raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
+    figure.set_layout_engine("none")
 
-    def arrange(self) -> None:
-        """Put everything in its place.
 
-        Raises:
-            TooSmall: panels would not be legible.
-        """
-        self._align()
-        wide, tall = self.size.width / self.columns - 0.6, 1.0
-        rooms = np.tile([0.45, 0.1, 0.35, 0.2], (len(self.drawn), 1))
-        for _ in range(_ROUNDS):
-            wide, tall = self._place(rooms)
-            for n, one in enumerate(self.drawn):
-                one.fit(wide, tall * self.tall[n // self.columns])
-                if n in self.bars:
-                    self._fit_bar(self.bars[n], one, tall)
-            rooms = np.array([self._room(one.axis) for one in self.drawn])
-        self._place(rooms)
-        for one in self.drawn:
-            if one.legend is not None:
-                one._place_legend(wide, tall)
+def _sides(
+    figure: Figure, one: _Drawn, size: tuple[float, float], free: tuple[float, float]
+) -> tuple[float, float]:
+    """Width and height of a panel in a figure of a size [in]; 0 where there is no room at all.
 
-    def _fit_bar(self, bar: Any, one: _Drawn, tall: float) -> None:
-        label = one.panel.map.label if one.panel.map else ""
-        bar.set_label(label, fontsize=SMALL)
-        fit_text(bar.ax.yaxis.label, label, (tall + 0.25) * self.figure.dpi)
-        if not one.panel.map.least:  # type: ignore[union-attr]
-            bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
-            bar.update_ticks()
-
-    def _room(self, axis: Axes) -> NDArray[np.float64]:
-        """Space that a panel takes to its left, right, below and above [in]."""
-        boxes = _boxes(axis)
-        low = [min(getattr(box, side) for box in boxes) for side in ("x0", "y0")]
-        title = axis._left_title.get_window_extent(axis.figure.canvas.get_renderer())
-        right = [box for box in boxes if box.y0 < title.y0 or not axis._left_title.get_text()]
-        high = [max(box.x1 for box in right), max(box.y1 for box in boxes)]
-        near = axis.bbox
-        pixels = [near.x0 - low[0], high[0] - near.x1, near.y0 - low[1], high[1] - near.y1]
-        return np.maximum(pixels, 0.0) / axis.figure.dpi
-
-    def _place(self, rooms: NDArray) -> tuple[float, float]:
-        """Place panels with so much space around each, (panels, 4); width and height of one [in]."""
-        rows, columns, figure = self.rows, self.columns, self.figure
-        every = np.zeros((rows * columns, 4))
-        every[: len(rooms)] = rooms
-        around = every.reshape(rows, columns, 4)
-        left, right = around[..., 0].max(axis=0), around[..., 1].max(axis=0)
-        below, above = around[..., 2].max(axis=1), around[..., 3].max(axis=1)
-        foot = self.foot[1]
-        beside = left.sum() + right.sum() + (columns - 1) * _BETWEEN + 2.0 * _EDGE
-        between = below.sum() + above.sum() + (rows - 1) * _BETWEEN + 2.0 * _EDGE + foot
-        wide = (self.size.width - beside) / columns
-        share = self.tall.sum()
-        ratio = self._ratio()
-        tall = wide * ratio if self.size.height is None else (self.size.height - between) / share
-        if self.size.height is None:
-            tall = min(max(tall, _LOW * (not self._maps)), (TALLEST - between) / share)
-        if min(wide, tall * self.tall.max()) < _LEAST:
-            needed = f"{beside + columns * _LEAST / min(ratio, 1.0):.1f} in"
-            if self.size.height is not None:
-                needed = f"{beside + columns * _LEAST:.1f} in x {between + share * _LEAST:.1f} in"
-            raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
-        spare = 0.0
-        if self._maps and tall < wide * ratio:
-            spare, wide = (wide - tall / ratio) * columns, tall / ratio
-        height = self.size.height or between + share * tall
-        figure.set_size_inches(self.size.width, height)
-        y = height - _EDGE
-        for row in range(rows):
-            y -= above[row] + tall * self.tall[row]
-            x = _EDGE + spare / 2.0
-            for column in range(columns):
-                x += left[column]
-                n = row * columns + column
-                if n < len(self.drawn):
-                    self.drawn[n].axis.set_position(
-                        [
-                            x / self.size.width,
-                            y / height,
-                            wide / self.size.width,
-                            tall * self.tall[row] / height,
-                        ]
-                    )
-                x += wide + right[column] + _BETWEEN
-            y -= below[row] + _BETWEEN
-        return wide, tall
-
-    @property
-    def _maps(self) -> bool:
-        """True for maps whose axes have one scale."""
-        return any(one.panel.map and one.panel.map.equal for one in self.drawn)
-
-    def _ratio(self) -> float:
-        """Height of a panel over its width."""
-        for one in self.drawn:
-            if one.panel.map and one.panel.map.equal:
-                axis = one.axis
-                return float(np.ptp(axis.get_ylim()) / np.ptp(axis.get_xlim()))
-        return self.high
-
-    def _align(self) -> None:
-        self.figure.align_ylabels([one.axis for one in self.drawn])
+    Args:
+        figure, one: the figure, and one of its panels.
+        size: of the figure.
+        free: space below, and at the right, where there are no panels.
+    """
+    figure.set_size_inches(size)
+    kind = "compressed" if one.axis.get_aspect() == 1.0 else "constrained"
+    foot, edge = free[0] / size[1], free[1] / size[0]
+    figure.set_layout_engine(
+        kind, rect=(0.0, foot, 1.0 - edge, 1.0 - foot), w_pad=_EDGE, h_pad=_EDGE, wspace=0.02,
+        hspace=0.02,
+    )  # fmt: skip
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        figure.get_layout_engine().execute(figure)
+    if said:
+        return 0.0, 0.0
+    one.axis.apply_aspect()
+    box = one.axis.get_position()
+    return box.width * size[0], box.height * size[1]
 
 
 class Film:

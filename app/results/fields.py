@@ -22,7 +22,7 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM
 from galinx.postprocess.quantities.stresses import STRESSES_INSIDE
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
-from galinx.solvers.contact.contacts import Contacts, contacts_of
+from galinx.solvers.contact.contacts import contacts_of
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.fem_plan import FemPlan
 from galinx.solvers.contact.solution import GIVEN_ENDS, Task
@@ -343,20 +343,16 @@ def write_fields(
         return
     from galinx.postprocess.hdf5 import vtkhdf
 
+    def pieces(solution: Solved) -> Iterable[StateField]:
+        """Pieces of the field of all ranks, of which rank 0 holds one of another at a time."""
+        others = (solution.comm.recv(source=rank) for rank in range(1, solution.comm.size))
+        return chain([_piece(solution, extent)], others)
+
     steps = (
-        vtkhdf.Step(
-            float(solution.state.number), _pieces(solution, extent), _attributes(scene, solution.state)
-        )
+        vtkhdf.Step(float(solution.state.number), pieces(solution), _attributes(scene, solution.state))
         for solution in solve_states(states)
     )
     vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(states) > 1)
-
-
-def _pieces(solution: Solved, extent: float) -> Iterable[StateField]:
-    """Pieces of the field of all ranks, on rank 0, which holds one of another rank at a time."""
-    comm = solution.comm
-    others = (comm.recv(source=rank) for rank in range(1, comm.size))
-    return chain([_piece(solution, extent)], others)
 
 
 def state_field(
@@ -414,14 +410,12 @@ def _piece(solution: Solved, extent: float) -> StateField:
     return _in_si(solution, _sampled(solution, extent))
 
 
-def _sampled(found: Solved, extent: float) -> Any:
+def _sampled(solution: Solved, extent: float) -> Any:
     """This rank's piece of the state's field over a, N/(2μ) and N/(2a)."""
     from galinx.solvers.fem.export import sample
 
-    state = found.state
-    return sample(
-        found.space, state.task.response, found.fields, found.weights, extent, state.degree
-    )  # fmt: skip
+    response, degree = solution.state.task.response, solution.state.degree
+    return sample(solution.space, response, solution.fields, solution.weights, extent, degree)
 
 
 def _in_si(solution: Solved, sampled: Any) -> StateField:
@@ -432,7 +426,13 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
     XX, YY, XY = body.stress * stresses
     ZZ = solid.σ_ZZ(XX, YY, XY)
     mises = von_mises(XX, YY, XY, ZZ)
-    displacement = body.displacement * sampled.displacement
+    displacement, points = body.displacement * sampled.displacement, sampled.points
+    X, Y = points.T
+    on = -_SURFACE * np.maximum(1.0, np.abs(X)) <= Y
+    # Pressure under the punch, 0 beside it, NaN at its edges and inside.
+    under, pressure = on & under_punch(X), np.full(len(points), np.nan)
+    pressure[on & (np.abs(X) > 1.0)] = 0.0
+    pressure[under] = -solution.pressure(X[under])
     data = {
         "displacement": np.column_stack([displacement, np.zeros(len(displacement))]),
         "sigma_XX": XX,
@@ -442,33 +442,12 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         "von_mises": mises,
         COLOURED: np.minimum(mises, _BRIGHT * body.stress),
         "maximum_shear": maximum_shear(XX, YY, XY),
-        "contact_pressure": body.stress * _pressure(solution, sampled.points),
+        "contact_pressure": body.stress * pressure,
     }
     if state.exact:
-        exact = contacts_of(task.body, task.response, np.array([state.g]))
-        data["sigma_error"] = body.stress * _error(exact, sampled.points, stresses)
-    return StateField(body.half_width * sampled.points, sampled.quads, data)
-
-
-def _inside(points: NDArray) -> NDArray[np.bool_]:
-    """True for points below the surface, (n,)."""
-    X, Y = points.T
-    return -_SURFACE * np.maximum(1.0, np.abs(X)) > Y
-
-
-def _pressure(solution: Solved, points: NDArray) -> NDArray[np.float64]:
-    """Contact pressure over N/(2a), 0 beside the punch, NaN at its edges and inside, (n,)."""
-    X = points[:, 0]
-    on, pressure = ~_inside(points), np.full(len(points), np.nan)
-    under = on & under_punch(X)
-    pressure[on & (np.abs(X) > 1.0)] = 0.0
-    pressure[under] = -solution.pressure(X[under])
-    return pressure
-
-
-def _error(exact: Contacts, points: NDArray, stresses: NDArray) -> NDArray[np.float64]:
-    """Largest difference of a component from the closed form over N/(2a); NaN on the surface, (n,)."""
-    inside, error = _inside(points), np.full(len(points), np.nan)
-    X, Y = points[inside].T
-    error[inside] = np.abs(stresses[:, inside] - exact.stresses(X, Y)[:, 0]).max(axis=0)
-    return error
+        # The largest difference of a component from the closed form; NaN on the surface.
+        exact = contacts_of(body, task.response, np.array([state.g])).stresses(*points[~on].T)[:, 0]
+        error = np.full(len(points), np.nan)
+        error[~on] = np.abs(stresses[:, ~on] - exact).max(axis=0)
+        data["sigma_error"] = body.stress * error
+    return StateField(body.half_width * points, sampled.quads, data)

@@ -119,6 +119,8 @@ def chart(panel: Panel) -> dict[str, Any]:
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],
     }
+    if panel.whole:
+        layout["xaxis"]["dtick"] = 1
     if shown:
         label = plain(shown.label)
         data.append({
@@ -149,7 +151,7 @@ def _trace(curve: Curve) -> dict[str, Any]:
 def _axis(title: str, ends: tuple[float, float] | None, logarithmic: bool) -> dict[str, Any]:
     axis: dict[str, Any] = {"title": {"text": title}}
     if logarithmic:
-        return axis | {"type": "log"}
+        return axis | {"type": "log", "exponentformat": "power"}
     return axis | ({"range": _numbers(ends, 6)} if ends else {})
 
 

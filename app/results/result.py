@@ -38,31 +38,6 @@ _POSITIONS = {
 _COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
 
 
-def html(data: dict[str, Any], attributes: dict[str, Any], units: Units) -> str:
-    """A result as HTML: a few lines and a table, without scripts or styles of its own.
-
-    Args:
-        data, attributes: datasets by path, and attributes of the root, of an archive.
-        units: of the table.
-    """
-    verdict = attributes["verdict"]
-    colour = _COLOURS.get(verdict, "inherit")
-    sheet = states_sheet(data, units, attributes["title"])
-    warnings = [f"warning: {text}" for text in json.loads(attributes["warnings"])]
-    heads = "".join(f"<th>{escape(column)}</th>" for column in sheet.columns)
-    rows = "".join(f"<tr>{_cells(row)}</tr>" for row in sheet.rows)
-    return (
-        f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
-        f'<b style="color: {colour}">{escape(verdict)}</b></p>'
-        f"{_lines(warnings)}<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-        f"{_lines([*sheet.notes, *failed(data, attributes), checked(attributes)])}"
-    )
-
-
-def _cells(row: Iterable[str]) -> str:
-    return "".join(f"<td>{escape(cell)}</td>" for cell in row)
-
-
 def _lines(texts: Iterable[str]) -> str:
     """Lines of small print as HTML, "" for none."""
     text = "<br>".join(map(escape, texts))
@@ -89,8 +64,20 @@ class Result:
         return f"<galinx result {self.attributes['title']!r}: {count} state{plural}, {self.verdict}>"
 
     def _repr_html_(self) -> str:
-        """Verdict and states as HTML, for notebooks."""
-        return html(self.data, self.attributes, self.units())
+        """Verdict and states as HTML without scripts or styles of its own, for notebooks."""
+        sheet = states_sheet(self.data, self.units(), self.attributes["title"])
+        head, *rows = (
+            "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in row) + "</tr>"
+            for tag, row in [("th", sheet.columns), *(("td", row) for row in sheet.rows)]
+        )
+        table_ = f"<table><thead>{head}</thead><tbody>{''.join(rows)}</tbody></table>"
+        warnings = [f"warning: {text}" for text in json.loads(self.attributes["warnings"])]
+        notes = [*sheet.notes, *failed(self.data, self.attributes), checked(self.attributes)]
+        return (
+            f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
+            f'<b style="color: {_COLOURS.get(self.verdict, "inherit")}">{escape(self.verdict)}</b></p>'
+            f"{_lines(warnings)}{table_}{_lines(notes)}"
+        )
 
     @cached_property
     def scene(self) -> Scene:

@@ -115,7 +115,7 @@ def test_at_the_slowest_speeds_the_field_is_that_of_rest(c):
 
 
 @pytest.mark.parametrize("distance", [1e-9, 1e-6, 1e-2])
-@pytest.mark.parametrize("apart", [1e-9, 4e-3])
+@pytest.mark.parametrize("apart", [1e-9, 1e-3])
 def test_divided_differences_keep_their_digits_next_to_edges(distance, apart):
     """Places about a point have no rounding, which is large beside their distance from an edge."""
     punch = punch_of({"nu": 0.25, "c": 0.3, "plane": "strain"}, -0.6)

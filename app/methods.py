@@ -153,7 +153,7 @@ def _closed_form(plan: Any, progress: Any, clock: Any) -> Method:
 
 
 def _layers(plan: Any, progress: Any, clock: Any) -> Method:
-    from galinx.solvers.contact.layered import Layers
+    from galinx.solvers.contact.exact import Layers
 
     return Layers(plan.tolerance)
 

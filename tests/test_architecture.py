@@ -52,7 +52,7 @@ PURE = {
 #: pressure has that.
 TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
 SOLUTIONS = (
-    FORMULA, "solvers.contact.exact", "solvers.contact.layered",
+    FORMULA, "solvers.contact.exact",
     "solvers.contact.equation", "solvers.contact.contacts", "solvers.contact.on_layers",
     "solvers.friction",
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Closed form as a method: exact solutions of contacts on uniform half-planes, and collocated ones.
+"""Methods without a mesh: closed form on uniform half-planes, integral equation over layered ones.
 
 Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contacts`.
 """
@@ -6,21 +6,27 @@ Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contac
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..profiles import jumps, kinks
+from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .contacts import Contacts, Group, contacts_of
-from .edges import Exponents
+from .edges import EdgeExponents, Exponents
+from .ends import Punch
+from .equation import SolvedContact
 from .method import Solver
+from .on_layers import ContactsOnLayers, LayersUnderPunch, Nodes, mixture
+from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
 from .solution import Task, solved_once
-from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_knots
-from .yielding import Strength
+from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .yielding import Strength, StrengthOfLayers
 
 #: Most points inside whose potentials are held in memory at a time.
 _TOGETHER = 20_000
@@ -217,3 +223,238 @@ class ExactSolution:
             field, task.body, task.response, self.g, self.local, self.half_width, each._turns,
             _NEAREST,
         )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Method by the integral equation of layers, with kernels once a speed.
+
+    Attributes:
+        tolerance: relative tolerance.
+    """
+
+    tolerance: float
+
+    @contextmanager
+    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
+        body = task.body
+        stack = task.response.stack(body.half_width)  # type: ignore[attr-defined]
+        punch = Punch(body.profile, body.half_width, body.compression)
+        # A place inside is in one layer with one friction and in another with the next.
+        every = bool(len(task.places.points) or len(task.places.around)) and body.found
+        layers = LayersUnderPunch(task.response, stack, self.tolerance, punch, every)
+        if body.knots:  # a prescribed pressure needs no equation
+            pressure: Any = body.pressure
+            length, rough = float(stack.layers[0].H), layers.kernel.rough
+            fine, coarse = (
+                replace(pressure, nodes=nodes, length=length, rough=rough) for nodes in (FINE, COARSE)
+            )
+            yield _OverLayers(task, layers, [SolvedContact(0.0, fine, before=coarse)])
+        else:
+            yield _OverLayers(task, layers, *layers.solved(g))
+
+
+@dataclass(frozen=True)
+class _OverLayers:
+    """Contacts at one speed.
+
+    Attributes:
+        task: the speed.
+        layers: the layers under the punch.
+        solved: contacts at the frictions that were solved; one under a prescribed pressure.
+        interpolated: error of the interpolation over frictions, relative; None where each is solved.
+    """
+
+    task: Task
+    layers: LayersUnderPunch
+    solved: list[SolvedContact]
+    interpolated: float | None = None
+
+    def states(self, g: NDArray) -> "LayeredSolution":
+        return LayeredSolution(self, g)
+
+    def record(self) -> dict[str, Any]:
+        return {}
+
+    @property
+    def shared(self) -> float:
+        """Relative error of all that is linear in the pressure by interpolation and by the kernel."""
+        return (self.interpolated or 0.0) + self.layers.rounding
+
+    @cached_property
+    def estimate(self) -> float:
+        """Estimated error of the pressure, relative."""
+        return max(contact.change for contact in self.solved) + self.shared
+
+    @cached_property
+    def _nodes(self) -> tuple[Nodes, Nodes]:
+        """Contacts that were solved, and those with fewer unknowns."""
+        groups = [
+            self._group(contact, np.array([contact.g]), np.zeros(1, int)) for contact in self.solved
+        ]
+        return Nodes(groups), Nodes([replace(group, pressure=group.before) for group in groups])
+
+    def _group(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> Group:
+        h, m = (
+            np.full(len(rows), length * self.layers.punch.unit)
+            for length in (contact.half_width, contact.centre)
+        )
+        return Group(rows, g[rows], contact.pressure, h, m, contact.before)
+
+    def contacts(self, g: NDArray) -> tuple[ContactsOnLayers, ContactsOnLayers]:
+        """Contacts with frictions (states,), and those with fewer unknowns."""
+        groups: list[list[Group]]
+        if self.interpolated is not None:
+            edges = EdgeExponents(self.task.response, g)
+            groups = [[mixture(nodes, edges)] for nodes in self._nodes]
+        else:
+            which = np.searchsorted([contact.g for contact in self.solved], g)
+            which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
+            fine = [self._group(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+            groups = [fine, [replace(group, pressure=group.before) for group in fine]]
+        fine_contacts, coarse = (
+            ContactsOnLayers(self.task.response, tuple(each), self.layers) for each in groups
+        )
+        return fine_contacts, coarse
+
+
+class LayeredSolution(ExactSolution):
+    """States of contacts over layers.
+
+    Args:
+        at: their speed.
+        g: σ_XY/σ_YY, (states,).
+    """
+
+    contacts: ContactsOnLayers
+
+    def __init__(self, at: _OverLayers, g: NDArray) -> None:
+        super().__init__(at.task, g)
+        self._at = at
+        self.contacts, self._coarse = at.contacts(g)
+
+    def _limits(self, surface: Surface) -> Turns | None:
+        """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
+        profile = self._body.profile
+        if self._body.knots:
+            return super()._limits(surface)
+        if jumps(profile) or not len(kinks(profile)) or not self.contacts.of("free").any():
+            return None
+        ends = turns_at_ends(surface, self.local)
+        return ends.joined(self._turns) if self._turns else ends
+
+    @cached_property
+    def both_interfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Stresses along interfaces, and with fewer unknowns, and the tables' errors.
+
+        Arrays (2, 4, states, interfaces, n) and (interfaces,).
+        """
+        layers, X, σ, errors = self._at.layers, self.places.along, [], []
+        widest = max(contact.half_width for contact in self._at.solved)
+        for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
+            level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
+            σ.append(self.contacts.joined(partial(self.contacts.both_at_interface, X, level), 2))
+            errors.append(widest * level.error * max(1.0, *(medium.modulus for medium in level.media)))
+        return np.stack(σ, axis=3), np.array(errors)
+
+    @property
+    def interfaces(self) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
+        return self.both_interfaces[0][0]
+
+    @cached_property
+    def both_inside(self) -> NDArray[np.float64]:
+        """Stresses inside, and with fewer unknowns, (2, 3, states, m)."""
+        return self.contacts.joined(partial(self.contacts.both_inside, *self.places.points.T), 2)
+
+    @property
+    def inside(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self.both_inside[0]
+
+    @cached_property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, (states, m)."""
+        Y = self.places.points[:, 1]
+        sizes = self.half_width / self._at.layers.punch.unit
+        σ_ZZ = np.empty(self.inside.shape[1:])
+        for h in np.unique(sizes).tolist():
+            rows = sizes == h
+            σ_ZZ[rows] = self._body.σ_ZZ(self.inside[:, rows], h * Y)
+        return σ_ZZ
+
+    @cached_property
+    def strength(self) -> StrengthOfLayers:  # type: ignore[override]
+        """Largest von Mises stresses of all layers."""
+        return StrengthOfLayers(
+            self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
+            self._body, self.half_width,
+        )  # fmt: skip
+
+    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points inside, all at one depth, of one state, which was solved: (3, n)."""
+        (group,) = (group for group in self.contacts.groups if state in group.rows)
+        one = slice(0, 1)
+        alone = replace(group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one])
+        X, Y = points.T
+        return self.contacts.both_inside(X, Y, alone)[0, :, 0]
+
+    @property
+    def estimates(self) -> "_Estimates":
+        """Estimated relative errors, (states,), by word of output.quantities.
+
+        They add the change with the number of unknowns, the effect of the kernels' and the tables'
+        errors, and the error of the interpolation over frictions.
+        """
+        return _Estimates(
+            {
+                INTENSITIES: lambda: np.full(len(self.g), self._at.estimate),
+                ON_SURFACE: self._on_surface,
+                AT_INTERFACES: self._at_interfaces,
+                BELOW: self._below,
+            }
+        )
+
+    def _on_surface(self) -> NDArray[np.float64]:
+        X = self.places.X
+        now, before = (contacts.on_surface(X)[0] for contacts in (self.contacts, self._coarse))
+        size = stresses.of_in_plane(now, X)
+        # Next to a tip stresses are infinite, and their error is that of the distance to it.
+        tips = self.contacts.joined(
+            lambda group: np.full((len(group.rows), 1), (*group.pressure.tips, np.inf)[0])
+        )
+        change = np.where(stresses.off_tips(X, tips), np.abs(now - before), 0.0)
+        return self._relative(change, 2.0 * self._at.layers.kernel.error, size)
+
+    def _at_interfaces(self) -> NDArray[np.float64]:
+        (now, before), errors = self.both_interfaces
+        size = np.broadcast_to(stresses.of_interfaces(now), now.shape)
+        return self._relative(np.abs(now - before), errors[:, None], size)
+
+    def _below(self) -> NDArray[np.float64]:
+        now, before = self.both_inside
+        X, Y = self.places.points.T
+        tables = np.array([self._at.layers.errors[height] for height in Y.tolist()])
+        size = stresses.of_inside(now, X, Y)
+        return self._relative(stresses.largest(now - before), tables, size)
+
+    def _relative(self, change: NDArray, tables: Any, size: NDArray) -> NDArray[np.float64]:
+        """Change and error of the tables over the sizes of stresses, plus shared errors, (states,)."""
+        relative = (change + tables) / size
+        if relative.ndim == 4:
+            relative = np.moveaxis(relative, 1, 0)
+        return relative.reshape(len(self.g), -1).max(axis=1) + self._at.shared
+
+
+@dataclass(frozen=True)
+class _Estimates:
+    """Estimated relative errors, (states,), each computed when it is read.
+
+    Attributes:
+        of: gives them by word of output.quantities.
+    """
+
+    of: dict[str, Callable[[], NDArray]]
+
+    def __getitem__(self, word: str) -> NDArray[np.float64]:
+        return self.of[word]()

@@ -92,7 +92,8 @@ class Pressure:
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface; NaN at an end where it is infinite."""
         transform, close = self.rest(r, self.near), np.abs(r) <= self.near
-        transform[..., close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            transform[..., close] += self.series(r[close]) * weights_hilbert(self.α, self.β, r[close])
         return transform
 
     def transforms(self, g: Any, r: NDArray) -> tuple[Any, NDArray, Any]:

@@ -359,17 +359,20 @@ class UniformHalfPlane(HalfPlane):
         return np.moveaxis(np.array(functions) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi
 
 
-#: Points on a circle, over its radius; the radius over the distance from the contact, which leaves
-#: 1e-14 of an interpolated potential; distance between two places over that from the contact above which
-#: potentials there are subtracted.
-_CIRCLE, _RADIUS, _APART = np.exp(2j * np.pi * np.arange(10) / 10), 0.04, 0.03
+#: Places about a point, and the matrix from values there to coefficients of the polynomial through them.
+#: Their unit is a power of two, at most a share of the distance from the contact, so that they have no
+#: rounding; that leaves 1e-13 of a derivative. Step over this distance above which potentials are
+#: subtracted.
+_ABOUT = np.array([1.0, 1.0 + 1j, 1j, -1.0 + 1j, -1.0, -1.0 - 1j, -1j, 1.0 - 1j])
+_TO_POWERS = np.linalg.inv(np.vander(_ABOUT, increasing=True))
+_UNIT, _STEP = 0.015, 0.01
 
 
 def mean_and_difference(Φ: Potential, z: NDArray, square: NDArray) -> NDArray[np.complex128]:
     """Mean of Φ(z + δ) and Φ(z - δ), and their difference over 2δ, accurate for any δ, (2, ..., n).
 
     Both are even in δ, and need its square alone. Where δ is small they are those of the polynomial
-    through values on a circle about z.
+    through values at places about z.
 
     Args:
         Φ: potential of a pressure.
@@ -377,7 +380,7 @@ def mean_and_difference(Φ: Potential, z: NDArray, square: NDArray) -> NDArray[n
         square: δ², (..., n).
     """
     distance = np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
-    close = np.abs(square) <= (_APART / 2.0 * distance) ** 2
+    close = np.abs(square) <= (_STEP / 2.0 * distance) ** 2
     result = np.empty(0, dtype=complex)
     for evaluate, there in ((_around, close), (_apart, ~close)):
         columns = there.any(axis=tuple(range(z.ndim - 1)))
@@ -391,17 +394,21 @@ def mean_and_difference(Φ: Potential, z: NDArray, square: NDArray) -> NDArray[n
 
 
 def _around(Φ: Potential, z: NDArray, square: NDArray, distance: NDArray) -> NDArray[np.complex128]:
-    """Mean and difference by values on circles."""
-    from_z = _RADIUS * distance[..., None] * _CIRCLE
-    values = Φ.at((z[..., None] + from_z).reshape(*z.shape[:-1], -1))
-    u = square[..., None] / from_z**2
-    weighted = values.reshape(*values.shape[:-1], *from_z.shape[-2:]) * (1.0 + u * (1.0 + u * (1.0 + u)))
-    return np.array([weighted.mean(axis=-1), (weighted / from_z).mean(axis=-1)])
+    """Mean and difference by values at places about z."""
+    unit = np.exp2(np.floor(np.log2(_UNIT * distance)))
+    values = Φ.at((z[..., None] + unit[..., None] * _ABOUT).reshape(*z.shape[:-1], -1))
+    c = values.reshape(*values.shape[:-1], -1, len(_ABOUT)) @ _TO_POWERS.T
+    u = square / unit**2
+    even, odd = (
+        c[..., i] + u * (c[..., i + 2] + u * (c[..., i + 4] + u * c[..., i + 6])) for i in (0, 1)
+    )
+    return np.array([even, odd / unit])
 
 
 def _apart(Φ: Potential, z: NDArray, square: NDArray, distance: NDArray) -> NDArray[np.complex128]:
     """Mean and difference by both values."""
     δ = np.sqrt(square)
-    one, other = Φ.at(z + δ), Φ.at(z - δ)
+    z, other = z + δ, z - δ
+    at_z, at_other = Φ.at(z), Φ.at(other)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.array([(one + other) / 2.0, (one - other) / (2.0 * δ)])
+        return np.array([(at_z + at_other) / 2.0, (at_z - at_other) / (z - other)])

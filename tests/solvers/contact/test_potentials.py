@@ -1,3 +1,4 @@
+import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
@@ -5,6 +6,7 @@ from isotropic_field import field
 from loaded import under
 
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.solids.half_plane import mean_and_difference
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 
@@ -110,3 +112,22 @@ def test_at_the_slowest_speeds_the_field_is_that_of_rest(c):
         under(FlatPunch(MovingFrame(2.0, speed), -0.6)).inside(0.3, -0.2) for speed in (0.0, c)
     )
     np.testing.assert_allclose(slow, still, rtol=1e-14)
+
+
+@pytest.mark.parametrize("distance", [1e-9, 1e-6, 1e-2])
+@pytest.mark.parametrize("apart", [1e-9, 1e-3])
+def test_divided_differences_keep_their_digits_next_to_edges(distance, apart):
+    """Places about a point have no rounding, which is large beside their distance from an edge."""
+    punch = punch_of({"nu": 0.25, "c": 0.3, "plane": "strain"}, -0.6)
+    with mp.workdps(50):
+        α, β = mp.mpf(float(punch.α)), mp.mpf(float(punch.β))
+        for angle in (-0.3, -1.5, -2.8):
+            z = complex(1.0 + distance * np.exp(1j * angle))
+            δ = complex(apart * distance * np.exp(0.4j))
+            found = mean_and_difference(punch, np.array([z]), np.array([δ**2]))[:, 0]
+            one, other = (
+                2 / mp.pi * mp.exp(α * mp.log(at - 1) + β * mp.log(at + 1))
+                for at in (mp.mpc(z) + mp.mpc(δ), mp.mpc(z) - mp.mpc(δ))
+            )
+            exact = np.array([complex((one + other) / 2), complex((one - other) / (2 * mp.mpc(δ)))])
+            assert np.abs(found / exact - 1.0).max() <= 1e-12

@@ -138,10 +138,38 @@ if [ "${1:-}" = -n ]; then
 fi
 set_up "${packages[@]}"
 [ $# -gt 0 ] || set -- paper -o results
-# -P: no file of the current folder is taken for a library. Signals wait until Python can take them.
-start=(env --block-signal=INT,TERM,HUP "$python" -P -m)
-if [ -n "$ranks" ]; then
-  allow_ranks "$ranks"
-  exec "${start[@]}" galinx.app.job "$mpirun" "$ranks" "$python" "$@"
+if [ -z "$ranks" ]; then
+  # -P: no file of the current folder is taken for a library. Signals wait until Python can take them.
+  exec env --block-signal=INT,TERM,HUP "$python" -P -m galinx "$@"
 fi
-exec "${start[@]}" galinx "$@"
+
+allow_ranks "$ranks"
+# Where one process is killed, those that it started do not outlive it.
+tied=()
+! command -v setpriv >/dev/null || tied=(setpriv --pdeathsig)
+# Ranks say themselves why they end, and mpirun what it cannot do; it keeps files of its own, too.
+export OMPI_MCA_orte_execute_quiet=1
+[ ! -t 2 ] || export GALINX_TERMINAL=1
+# What ranks end with instead of 1, the verdict FAIL, for mpirun's own failures are 1.
+export GALINX_FAIL=9
+[ -d "${TMPDIR:-/tmp}" ] || unset TMPDIR
+# In a session of its own: Ctrl-C is for this script to hand on, to rank 0, which ends in order.
+setsid ${tied:+"${tied[@]}" TERM} "$mpirun" -n "$ranks" ${tied:+"${tied[@]}" KILL} \
+  "$python" -P -m galinx "$@" </dev/null &
+job=$!
+stop() {
+  local root _
+  read -r root _ <"/proc/$job/task/$job/children" || true
+  kill -TERM "${root:-$job}" || true
+}
+trap stop INT TERM HUP
+status=0
+while kill -0 $job 2>/dev/null; do
+  status=0
+  wait $job 2>/dev/null || status=$?
+done
+case $status in
+  0 | 2 | 3) exit $status ;;
+  "$GALINX_FAIL") exit 1 ;;
+  *) fail 3 "ranks could not be started, or were killed (did the machine lack memory?); a run goes on with --resume" ;;
+esac

@@ -134,7 +134,7 @@ def _run() -> None:
         message = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _stop(message, errors.BAD_INPUT)
     except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
-        process.finish(_CUT_OFF)
+        process.too_late()
         os._exit(_CUT_OFF)  # whoever reads has enough, as head does
     except ImportError as error:
         _stop(errors.unavailable(error))
@@ -143,8 +143,8 @@ def _run() -> None:
     except Exception as error:
         traceback.print_exc()
         _stop(f"internal failure on rank {ranks.rank()}: {error}")
-    process.finish(status)
-    sys.exit(status)
+    process.too_late()
+    sys.exit(int(os.environ.get("GALINX_FAIL", status)) if status == errors.FAILED_VERDICT else status)
 
 
 def _stop(message: str, status: int = errors.FAILURE) -> NoReturn:
@@ -152,10 +152,10 @@ def _stop(message: str, status: int = errors.FAILURE) -> NoReturn:
 
     HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
     """
-    process.fail(status, message)
+    process.complain(message)
     with suppress(OSError):
         sys.stdout.flush()
     sys.stderr.flush()
-    if status == errors.FAILURE and ranks.size() > 1 and not process.is_there():
+    if ranks.size() > 1:
         ranks.abort(status)
     os._exit(status)

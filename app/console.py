@@ -21,7 +21,7 @@ from typing import Any
 
 from galinx.clock import Clock
 
-from . import process, ranks
+from . import ranks
 from .errors import MachineFailure
 
 #: Control characters but for tabs and ends of lines, what turns the direction of writing or breaks lines,
@@ -115,6 +115,11 @@ def _called() -> str:
     return os.environ.get("GALINX_COMMAND", "")
 
 
+def on_terminal() -> bool:
+    """True where the error stream is a terminal; run.sh says so to ranks, to which mpirun gives none."""
+    return sys.stderr.isatty() or "GALINX_TERMINAL" in os.environ
+
+
 #: Level of logged lines: above INFO, which is muted because the form compiler floods it.
 _NOTE = logging.INFO + 5
 
@@ -145,7 +150,7 @@ class Progress:
             return self
         if self.verbose:
             self._add(logging.StreamHandler(sys.stderr), "%(message)s")
-        elif not self.quiet and sys.stderr.isatty():
+        elif not self.quiet and on_terminal():
             self._bar, self._task = _start_bar()
         if self._log:
             self._add(_LogFile(self._log), "%(asctime)s %(message)s")
@@ -234,7 +239,7 @@ def _start_bar() -> tuple[Any, Any]:
         progress.BarColumn(bar_width=20),
         progress.TaskProgressColumn(),
         progress.TimeRemainingColumn(),
-        console=Console(file=bare(sys.stderr)),
+        console=Console(file=bare(sys.stderr), force_terminal=True),
         transient=True,
         # What is printed meanwhile goes its own way: rich would take its control characters for colours.
         redirect_stdout=False,
@@ -330,8 +335,7 @@ def say(text: str, hang: int = 2) -> None:
 
 def colours() -> bool:
     """True for a terminal without NO_COLOR: mpirun hands its ranks one even where there is none."""
-    own = process.is_there() or not ranks.by_mpirun()
-    return own and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    return not ranks.by_mpirun() and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
 def print_result(

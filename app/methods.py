@@ -126,6 +126,8 @@ def fem_mode(scene: Any) -> str:
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
     lacks = _LACKING.get(mode, {})
+    if body.solid.nearly_incompressible:
+        lacks = lacks | dict.fromkeys((BELOW, YIELD), "finite elements give none inside for ν > 0.49")
     if scene.elastic_punch and body.solid.nearly_incompressible:
         return "one of two elastic bodies is nearly incompressible; closed_form takes such bodies"
     if scene.layers:

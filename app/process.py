@@ -1,84 +1,103 @@
-"""Start and end of a process, also where it is interrupted, and its line to a job of several ranks.
+"""Start and end of a process: its streams, what the machine has to offer, signals, and why it ends.
 
-A rank has a line to the job that started it, see :mod:`galinx.app.job`: MPIs and their mpirun differ in
-what they print, and in the status that they make of their ranks'. So ranks have the output and error
-streams of the job itself, and report to it how they end.
-
-A process is interrupted by Ctrl-C, by a batch system, or by a terminal that is closed.
+A process is interrupted by Ctrl-C, by a batch system, or by a terminal that is closed. Under mpirun
+rank 0 speaks for all; mpirun ends the other ranks where one fails, is killed or is interrupted.
 """
 
-import json
+import fcntl
+import io
 import os
+import resource
 import signal
-import socket
 import sys
+import tempfile
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from galinx import files
 
 from . import errors, ranks
+from .console import Output, on_terminal
 
-#: Where the job listens; only what it starts has this variable.
-VARIABLE = "GALINX_JOB"
-
-_line: socket.socket | None = None
-
-
-def join() -> None:
-    """Join the job, if there is one, and take over its streams: its output on rank 0 only."""
-    global _line
-    name = os.environ.pop(VARIABLE, None)
-    if name is None:
-        return
-    line = socket.socket(socket.AF_UNIX)
-    try:
-        line.connect(address(name))
-    except OSError:  # a job of another time
-        return
-    _line = line
-    ranks.trust_environment()
-    _report(rank=ranks.rank())
-    _, streams, *_ = socket.recv_fds(line, 1, 2)
-    if not ranks.is_root():
-        streams[0] = os.open(os.devnull, os.O_WRONLY)
-    # Open MPI's own words stay with mpirun's: of a rank that was killed the others' libraries tell, too.
-    os.environ["OPAL_OUTPUT_STDERR_FD"] = str(os.dup(2))
-    for number, stream in zip((1, 2), streams):
-        os.dup2(stream, number)
-
-
-def address(name: str) -> str:
-    """Address at which a job of that name listens: in Linux's own name space, so that no file is left."""
-    return f"\0{name}"
-
-
-def is_there() -> bool:
-    """Return True if this process is a rank of a job."""
-    return _line is not None
-
-
-def _report(**report: int | str) -> None:
-    if _line:
-        with suppress(OSError):  # a job that is gone needs no answer
-            _line.sendall(f"{json.dumps(report)}\n".encode())
-
+#: Bytes of address space that finite elements need with all libraries; with less some wait for ever.
+_ADDRESS_SPACE = 10**9
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 NOTHING = "nothing was written"
 #: Seconds after which a process ends that has not ended in order: libraries drop exceptions.
 _PATIENCE = 2
-#: Seconds that other ranks leave to rank 0, where no job keeps order: if all fail alike it says so once,
-#: and mpirun ends all.
-_FIRST = 2.0
+#: Seconds that other ranks leave to rank 0: if all fail alike it says so once, and mpirun ends all.
+_FIRST = 3.0
 
 _leave: Callable[[], str] | None = None
 
 
 class Interrupted(BaseException):
     """This process was interrupted. No KeyboardInterrupt: click would print an empty line."""
+
+
+def begin() -> None:
+    """Make the process ready: streams, signals, warnings; or end it where it could do nothing."""
+    _open_streams()
+    listen()
+    _prepare_streams()
+    if any(option.startswith("error") for option in sys.warnoptions):
+        warnings.simplefilter("ignore")  # those of libraries are no errors of the user's
+    _check_machine()
+
+
+def _open_streams() -> None:
+    """Open the null device for closed streams: the next file would get their number, and all output.
+
+    An output that is open for reading only becomes the null device, too: where the error stream is
+    closed, bash hands on its script under that number.
+    """
+    for number in range(3):
+        try:
+            flags = fcntl.fcntl(number, fcntl.F_GETFL)
+        except OSError:
+            # The lowest number that is free is this one.
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
+            continue
+        if number > 0 and flags & os.O_ACCMODE == os.O_RDONLY:
+            null = os.open(os.devnull, os.O_RDWR)
+            os.dup2(null, number)
+            os.close(null)
+
+
+def _prepare_streams() -> None:
+    """Encodings that lack a character write another."""
+    encoding = sys.stdout.encoding if sys.stdout else "utf-8"  # there is none where it was closed
+    below = io.BufferedWriter(Output(1))
+    sys.stdout = io.TextIOWrapper(below, encoding, errors="replace", line_buffering=os.isatty(1))
+    stderr: Any = sys.stderr or os.fdopen(2, "w", encoding="utf-8", closefd=False)
+    stderr.reconfigure(errors="replace")
+    sys.stderr = stderr
+
+
+def _check_machine() -> None:
+    if sys.flags.optimize > 1:
+        refuse(
+            "Python leaves texts out that compilers of forms need; unset PYTHONOPTIMIZE, or set it to 1"
+        )
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY and limit < _ADDRESS_SPACE:
+        refuse(
+            f"the address space is limited to {limit / 1e6:.0f} MB, expected at least "
+            f"{_ADDRESS_SPACE / 1e6:.0f} MB; raise the limit (ulimit -v, in kB)"
+        )
+    try:
+        os.environ["TMPDIR"] = tempfile.gettempdir()  # MPI ends the process where TMPDIR names none
+    except OSError as error:
+        refuse(f"{error.strerror}; set TMPDIR to a folder that can be written")
+    if os.path.expanduser("~") == "~":
+        refuse(
+            f"no home folder is known: HOME is not set, and user {os.getuid()} has no entry in passwd; "
+            "set HOME to a folder that can be written"
+        )
 
 
 def listen() -> None:
@@ -92,18 +111,16 @@ def listen() -> None:
 
 
 @contextmanager
-def leaving(tidy: Callable[[], str], words: str) -> Iterator[None]:
+def leaving(tidy: Callable[[], str]) -> Iterator[None]:
     """Context for work that is finished part by part: interrupted there, the process ends at once.
 
     No exception is raised: it would meet HDF5 or MPI at work, or a destructor that drops it.
 
     Args:
         tidy: tidies up, and returns the sentence on the finished work.
-        words: the sentence that the job prints where the process is killed.
     """
     global _leave
     _leave = tidy
-    _report(left=words)
     try:
         yield
     finally:
@@ -116,50 +133,42 @@ def too_late() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
+def _on_signal(*_: object) -> None:
+    if ranks.from_environment()[0] > 0:  # as one that is killed: rank 0 cannot go on, and may hang
+        files.give_up()
+        os.kill(os.getpid(), signal.SIGKILL)
+    too_late()
+    if _leave:
+        end_stopped(_leave())
+    signal.alarm(_PATIENCE)
+    raise Interrupted
+
+
 def end_stopped(words: str) -> NoReturn:
     """End an interrupted process, and print the sentence on its finished work."""
     files.give_up()
-    if is_there():
-        _report(left=words)
-    elif ranks.from_environment()[0] == 0:
-        erase_bar()
-        with suppress(OSError):  # below Python's stream, which the signal may have met at work
-            os.write(2, f"error: interrupted; {words}\n".encode())
+    erase_bar()
+    with suppress(OSError):  # below Python's stream, which the signal may have met at work
+        os.write(2, f"error: interrupted; {words}\n".encode())
     os._exit(errors.FAILURE)
 
 
 def erase_bar() -> None:
     """Restore a terminal on which a bar showed the progress, cursor included."""
-    if os.isatty(2):
+    if on_terminal():
         os.write(2, b"\r\x1b[2K\x1b[?25h")
 
 
-def finish(status: int, message: str = "") -> None:
-    """Report to the job the status with which this rank ends, and why, which the job prints."""
-    too_late()
-    _report(status=status, words=message)
-
-
-def fail(status: int, message: str) -> None:
-    """Print once why the process is about to end, on whichever ranks it is about to."""
-    finish(status, message)
-    if not is_there():
-        if ranks.from_environment()[0] > 0:
-            time.sleep(_FIRST)
-        complain(message)
+def refuse(message: str) -> NoReturn:
+    """End with a failure that all ranks share."""
+    complain(message)
+    sys.exit(errors.FAILURE)
 
 
 def complain(message: str) -> None:
-    """Print why the work ended."""
+    """Print why the process is about to end, once where all ranks are about to."""
+    too_late()
+    if ranks.from_environment()[0] > 0:
+        time.sleep(_FIRST)
     with suppress(OSError):
         print(f"error: {message}", file=sys.stderr, flush=True)
-
-
-def _on_signal(*_: object) -> None:
-    too_late()
-    if _leave:
-        end_stopped(_leave())
-    if ranks.from_environment()[0] > 0:  # rank 0 says what there is to say
-        end_stopped(NOTHING)
-    signal.alarm(_PATIENCE)
-    raise Interrupted

@@ -8,8 +8,6 @@ from functools import lru_cache
 _RANKS = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
 _SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")
 
-_trusted = False
-
 
 def from_environment() -> tuple[int, int]:
     """Rank and number of ranks by the environment, which may be that of another program."""
@@ -20,17 +18,9 @@ def from_environment() -> tuple[int, int]:
     return rank, size
 
 
-def trust_environment() -> None:
-    """Take the environment for that of this program's own mpirun, so that MPI need not be imported."""
-    global _trusted
-    _trusted = True
-
-
 @lru_cache(maxsize=1)
 def _rank_and_size() -> tuple[int, int]:
     """Rank and number of ranks by MPI, which is imported only where the environment speaks of it."""
-    if _trusted:
-        return from_environment()
     if by_mpirun():
         try:
             from mpi4py import MPI

@@ -1,25 +1,21 @@
-"""Kinds of meshes of the half-plane, with the refinement that a tolerance needs.
+"""Kinds of meshes of the half-plane that scenes name, with the refinement that a tolerance needs.
 
-A :class:`MeshKind` turns the requirements on a mesh into rings, sectors, columns and a polynomial degree,
-by measured laws, see docs/verification.md.
+Confocal ones are drawn in the rectangle of elliptic coordinates, where edge singularities are nearly
+smooth; cells of graded ones and of the study's block have straight sides in the physical half-plane. A
+kind is a row of numbers, a :class:`MeshKind`, which turns the requirements on a mesh into rings, sectors,
+columns and a polynomial degree, by measured laws, see docs/verification.md.
 
 The far boundary follows moments of the forces at the contact, see :mod:`galinx.solvers.fem.boundary`:
 :func:`radius` and :func:`moments` are its distance and their number. Distances are over a, in the plane
 where the boundary is nearest.
 
-Under a punch whose slope has kinks, cells are graded towards these, too, see :func:`with_kinks`. Between
-neighbouring places, both ends of the contact among them, the strip along the contact is cut in the
-middle; each half is a corner of :mod:`galinx.meshes.rings`, stretched. Where two places are near each
-other the strip is as narrow as they are near, and blocks without rings grow from there to the middle of
-the longer neighbour. Columns go on outwards.
-
 :func:`check_cells` refuses degenerate cells; :func:`edges` and :func:`nodes` are for drawings.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import ceil, exp, log, log2, log10, pi, sqrt
+from dataclasses import dataclass
+from math import ceil, exp, log, log10, pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import Legendre
@@ -27,8 +23,8 @@ from numpy.typing import NDArray
 
 from galinx.registry import Registry
 
-from .charts import Chart
-from .rings import QuadMesh, Refinement, corner, cut, joined, rectangle
+from .charts import Chart, Confocal, Physical
+from .rings import QuadMesh, Refinement, rectangle, sides_of
 
 #: Least distance of the far boundary over a, and over that of the farthest point of stresses.
 _LEAST, _BEYOND = 17.0, 1.7
@@ -56,80 +52,6 @@ def boundary_error(R: float, moments: int, margin: float) -> float:
     return 2.0 ** (2 - moments) / (R ** (moments + 1) * margin)
 
 
-#: Width of the strip over the mean height of its halves, and factor by which columns grow outwards.
-_WIDE, _GROWTH = 1.3, 1.6
-#: Most width of the strip, over that times the height where places are near each other; factor up to
-#: which halves next to a place are alike, and by which blocks between such a place and the middle grow.
-_SLENDER, _ALIKE = 2.0, 3.0
-#: Elliptic coordinate, some 4 000 a, beyond which a field is that of a line load to all digits of the
-#: results, linear in this coordinate, and columns need no largest width.
-_FAR = 9.0
-
-
-def rings_at_kinks(refinement: Refinement, size: float) -> int:
-    """Number of rings around kinks beyond those around ends, by the size of innermost cells."""
-    return ceil(log(size) / log(refinement.ratio)) - refinement.levels
-
-
-def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMesh:
-    """The rectangle in the (ξ, η) plane of a confocal mesh, graded towards kinks of the punch.
-
-    Args:
-        refinement: of the mesh without kinks.
-        places: X over a of the kinks, in (-1, 1).
-        more: number of additional rings around the kinks.
-    """
-    η = np.concatenate([[-np.pi], np.sort(-np.arccos(places)), [0.0]])
-    half, legs = np.diff(η) / 2.0, refinement.legs
-    least = np.minimum(np.append(half, np.inf), np.append(np.inf, half))
-    widest = min(_WIDE * np.pi / (2.0 * len(half)), np.pi / 2.0)
-    of_end, of_kink = (
-        corner(1.0, replace(refinement, levels=refinement.levels + levels), False)[0]
-        for levels in (0, more)
-    )
-    blocks, of_ends, of_widths = [], list[float](), list[float]()
-    for i, h in enumerate(half):
-        for node, side in ((i, 1), (i + 1, -1)):
-            steps = ceil(log(h / least[node]) / log(_ALIKE))
-            sizes = h * (least[node] / h) ** (
-                np.arange(steps, -1, -1) / steps if steps > 1 else np.zeros(1)
-            )
-            corners = of_end if node in (0, len(half)) else of_kink
-            blocks.append((corners * [1.0, -side * sizes[0]] + [0.0, η[node]])[:, ::-side])
-            for low, high in pairwise(sizes):
-                blocks.append(_grid(legs, η[node] + side * (low + (high - low) * legs))[:, ::side])
-            of_ends += [η[node], *(η[node] + side * sizes[:-1]), η[i] + h]
-            of_widths += [least[node], *sizes]
-    order = np.argsort(of_ends, kind="stable")
-    ends = np.array(of_ends)[order]
-    widths = np.minimum(_SLENDER * _WIDE * np.array(of_widths)[order], widest)
-    for block in blocks:
-        block[..., 0] *= np.interp(block[..., 1], ends, widths)
-    rows = np.unique([low + (high - low) * legs for low, high in pairwise(np.unique(ends))])
-    ξ = np.array(_columns(widest, np.pi / 2.0 + sum(refinement.columns), max(refinement.columns)))
-    count = 1 + round(log2(widest / widths.min()))
-    beside = _grid(np.arange(count + 1) / count, rows)
-    share, width = beside[..., 0], np.interp(beside[..., 1], ends, widths)
-    beside[..., 0] = width ** (1.0 - share) * ξ[1] ** share
-    return joined(np.concatenate([*blocks, beside, _grid(ξ[1:], rows)]).reshape(-1, 2), ξ[-1])
-
-
-def _grid(x: NDArray, y: NDArray) -> NDArray[np.float64]:
-    """Quadrilaterals between coordinates x and y, (cells, 4, 2)."""
-    x, y = np.meshgrid(x, y, indexing="ij")
-    xy = np.stack([x, y], axis=-1)
-    return np.stack([xy[:-1, :-1], xy[1:, :-1], xy[1:, 1:], xy[:-1, 1:]], axis=2).reshape(-1, 4, 2)
-
-
-def _columns(first: float, last: float, widest: float) -> list[float]:
-    """Ends of columns in ξ from the strip to the far boundary; near the punch at most ``widest`` wide."""
-    ends, step = [first], first
-    while last - ends[-1] > 1.5 * step:
-        ends.append(ends[-1] + step)
-        step = min(_GROWTH * step, widest if ends[-1] < _FAR else np.inf)
-    return [*ends, last]
-
-
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
 
@@ -137,6 +59,32 @@ DEGREES = (4, 12)
 def as_drawn(points: NDArray, _: Refinement) -> NDArray:
     """Vertices of the pattern, unchanged."""
     return points
+
+
+def image(points: NDArray, _: Refinement) -> NDArray[np.float64]:
+    """Vertices of straight-sided cells, whose pattern is drawn in elliptic coordinates."""
+    return Confocal().to_physical(points)
+
+
+#: Width and depth of the study's block over the half-width: l_p/W = 0.01, l_p/H = 0.02, l_p = 2a.
+BOX_WIDTH, BOX_DEPTH = 200.0, 100.0
+
+
+def box(points: NDArray, refinement: Refinement) -> NDArray[np.float64]:
+    """The graded mesh, drawn out from ellipses to the study's block in its last columns."""
+    ξ, η = points.T
+    of_columns = np.pi / 2.0 + np.concatenate([[0.0], np.cumsum(refinement.columns)])
+    # Three columns change shape, so that none is distorted much.
+    inner, outer = of_columns[-4], of_columns[-1]
+    share = np.clip((ξ - inner) / (outer - inner), 0.0, 1.0)[:, None]
+    ray = np.column_stack([np.cos(η), np.sin(η)])
+    sides = np.array([BOX_WIDTH / 2.0, BOX_DEPTH])
+    wall = ray / np.max(np.abs(ray) / sides, axis=1, keepdims=True)
+    scaled = wall * (np.cosh(ξ) / np.cosh(outer))[:, None]
+    X = image(points, refinement)
+    X = np.where(share > 0.0, (1.0 - share) * X + share * scaled, X)
+    X[np.abs(X[:, 1]) < 1e-12, 1] = 0.0
+    return X
 
 
 #: Strongest exponent of a pressure that rings resolve: with a stronger one they would never end.
@@ -203,6 +151,27 @@ class Requirements:
     bends: bool = False
 
 
+class _Needs(NamedTuple):
+    """What requirements ask of rings and sectors.
+
+    Attributes:
+        apart: spread of the planes of the solid's fields, scaled by the digits to reach, 1 at six digits.
+        gentler: True where stresses need gentler rings, and more cells in angle.
+        own_rings: True where rings for stresses have the ratio ``stressed``, and none gentler still.
+        in_angle: True where stresses need cells fine in angle: off the surface, or on it without rings
+            of their own.
+        finer: additional sectors for planes far apart. The large cells around the punch cannot resolve
+            both fields, whatever the degree is; cells within them can, whose outermost ring is cut
+            before that.
+    """
+
+    apart: float
+    gentler: bool
+    own_rings: bool
+    in_angle: bool
+    finer: int
+
+
 @dataclass(frozen=True)
 class MeshKind:
     """A kind of meshes of the half-plane.
@@ -250,39 +219,37 @@ class MeshKind:
     sectors: int = 2
     walls: float | None = None
 
-    def build(self, refinement: Refinement, cuts: int = 1, part: int = 0, parts: int = 1) -> QuadMesh:
-        """The mesh, or a piece of it.
+    def build(self, refinement: Refinement, cuts: int = 1) -> QuadMesh:
+        """The mesh.
 
         Args:
             refinement: of the pattern.
             cuts: number of cells along each side of a cell of the pattern.
-            part, parts: number of the piece, from 0, and of all pieces.
         """
-        piece = cut(rectangle(refinement, self.fan), cuts, part, parts)
-        return QuadMesh(self.place(piece.points, refinement), piece.cells, piece.edges)
+        pattern = rectangle(refinement, self.fan, cuts)
+        return QuadMesh(self.place(pattern.points, refinement), pattern.cells, pattern.edges)
 
     def refinement(self, required: Requirements) -> Refinement:
         """Refinement that meets the requirements with :meth:`degree`."""
-        ratio, sectors = self.ratio, self.sectors
-        if self._gentler(required):
+        needs, alone = self._needs(required), required.nearest is None
+        ratio, sectors, finer = self.ratio, self.sectors, needs.finer
+        if needs.gentler:
             # An even number puts a vertex into the corners of walls.
             ratio, sectors = ratio**_GENTLER, sectors + (2 if self.walls else 1)
-            if not self._in_angle(required) and self._apart(required) > _HIGHER:
+            if not needs.in_angle and needs.apart > _HIGHER:
                 ratio = max(ratio, self.tight)
-        elif self._own_rings(required):
+        elif needs.own_rings:
             ratio = self.stressed
-        finer = self._finer(required)
-        sectors += finer
-        if finer and required.nearest is None:
+        if finer and alone:
             ratio **= _STEEPER
         levels = ceil(log(pi / 2.0 / self._innermost(required)) / -log(ratio))
         columns = self._columns(self._outer_ξ(required) - pi / 2.0)
         if not self.rings:
             levels, columns = 0, (sum(columns) / len(columns),) * len(columns)
-        parts = (finer + 3) // 2 if finer else int(self._apart(required) > _TURNED)
+        parts = (finer + 3) // 2 if finer else int(needs.apart > _TURNED)
         pieces = 1 + parts + self._cuts_middle(required)
-        crowding = _CROWDING if finer and required.nearest is None else 0.0
-        return Refinement(levels, ratio, sectors, columns, pieces, crowding)
+        crowding = _CROWDING if finer and alone else 0.0
+        return Refinement(levels, ratio, sectors + finer, columns, pieces, crowding)
 
     def _columns(self, reach: float) -> tuple[float, ...]:
         """Widths in ξ of the columns from the rings to the far boundary."""
@@ -293,29 +260,23 @@ class MeshKind:
         count = ceil((reach - first) / self.column)
         return (first, *((reach - first) / count,) * count)
 
-    def _gentler(self, required: Requirements) -> bool:
-        """True where stresses need gentler rings, and more cells in angle."""
-        tight = required.around or self._of_cells(required) < self.gentle
-        return required.nearest is not None and tight
-
-    def _own_rings(self, required: Requirements) -> bool:
-        """True where rings for stresses have the ratio ``stressed``, and none gentler still."""
-        if not self.stressed or required.nearest is None or self._gentler(required):
-            return False
-        turned = not required.inside or self._apart(required) > _TURNED
-        return turned and self._of_cells(required) < _LOOSE
-
-    def _in_angle(self, required: Requirements) -> bool:
-        """True where stresses need cells fine in angle: off the surface, or on it without own rings."""
-        return required.inside or required.around or not self.stressed
-
-    def _turning(self, required: Requirements) -> tuple[float, float, float]:
-        """Limits of the spread of a solid's fields: one of ``_ALONE``, ``_BESIDE``, …, see there."""
-        if required.nearest is None:
-            return _ALONE
-        if not self._in_angle(required) and self._of_cells(required) < _LOOSE:
-            return _BESIDE
-        return _INSIDE if required.inside and self._own_rings(required) else _AROUND
+    def _needs(self, required: Requirements) -> "_Needs":
+        """Rings and sectors that the requirements ask for, measured, see docs/verification.md."""
+        stresses, tolerance = required.nearest is not None, self._of_cells(required)
+        digits = -log10(tolerance) * (_OF_STRESSES if stresses else 1.0)
+        apart, tight = required.spread * digits / 6.0, tolerance < _LOOSE
+        gentler = stresses and (required.around or tolerance < self.gentle)
+        turned = not required.inside or apart > _TURNED
+        own_rings = stresses and self.stressed > 0.0 and not gentler and turned and tight
+        in_angle = required.inside or required.around or not self.stressed
+        if not stresses:
+            least, start, step = _ALONE
+        elif not in_angle and tight:
+            least, start, step = _BESIDE
+        else:
+            least, start, step = _INSIDE if required.inside and own_rings else _AROUND
+        finer = ceil((apart - start) / step) if apart > least else 0
+        return _Needs(apart, gentler, own_rings, in_angle, finer + finer % 2 if self.walls else finer)
 
     def _cuts_middle(self, required: Requirements) -> bool:
         """True where the outermost ring is cut, which meets in the middle of the contact.
@@ -325,22 +286,6 @@ class MeshKind:
         """
         return required.bends and self.rings
 
-    def _apart(self, required: Requirements) -> float:
-        """Spread of the planes of the solid's fields, scaled by the digits to reach, 1 at six digits."""
-        digits = -log10(self._of_cells(required)) * (1.0 if required.nearest is None else _OF_STRESSES)
-        return required.spread * digits / 6.0
-
-    def _finer(self, required: Requirements) -> int:
-        """Number of additional sectors for a solid whose fields live in planes far apart.
-
-        The large cells around the punch cannot resolve both fields, whatever the degree is; cells within
-        them can, whose outermost ring is cut before that. Measured, see docs/verification.md.
-        """
-        apart = self._apart(required)
-        least, start, step = self._turning(required)
-        more = ceil((apart - start) / step) if apart > least else 0
-        return more + more % 2 if self.walls else more
-
     def _innermost(self, required: Requirements) -> float:
         """Size of the innermost cells in the chart that meets the requirements."""
         tolerance = self._of_cells(required)
@@ -348,7 +293,7 @@ class MeshKind:
         if required.nearest is not None:
             # The innermost cells cannot resolve the singularity. Beside them that shows in the stresses,
             # like the square of their size over the distance, both in this chart.
-            beside = self.beside * (_CLOSER if self._own_rings(required) else 1.0)
+            beside = self.beside * (_CLOSER if self._needs(required).own_rings else 1.0)
             size = min(size, sqrt(2.0 * required.nearest) * min(0.5, beside * sqrt(tolerance)))
         return max(size, self.smallest)
 
@@ -359,15 +304,14 @@ class MeshKind:
             required: requirements on the mesh.
             margin: of the solid's response, in (0, 1]; errors grow as it falls.
         """
-        digits = -log10(self._of_cells(required))
-        lost = -log10(margin)
-        more = 0.0
+        digits, lost = -log10(self._of_cells(required)), -log10(margin)
+        needs, more = self._needs(required), 0.0
         if required.nearest is not None:
-            more = 1.0 if self._gentler(required) else 0.6 + 0.15 * digits
+            more = 1.0 if needs.gentler else 0.6 + 0.15 * digits
         degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits + more)
-        spared = 0 < self._finer(required) <= _SPARING
-        if self._own_rings(required) and not required.inside:
-            spared = self._finer(required) == 1 or self._apart(required) <= _HIGHER
+        spared = 0 < needs.finer <= _SPARING
+        if needs.own_rings and not required.inside:
+            spared = needs.finer == 1 or needs.apart <= _HIGHER
         degree -= spared or self._cuts_middle(required)
         return min(max(degree, DEGREES[0]), DEGREES[1])
 
@@ -461,8 +405,24 @@ class MeshKind:
         return required.tolerance
 
 
-#: Meshes by the name that scenes use; every mesh adds itself.
-MESHES: Registry[MeshKind] = Registry("mesh", kind=MeshKind)
+#: Meshes by the name that scenes use.
+MESHES: Registry[MeshKind] = Registry("mesh", {
+    "confocal": MeshKind(
+        "confocal, graded towards the edges", Confocal(), ratio=0.35, column=3.0, alone=2.2, stressed=0.5,
+        tight=0.6,
+    ),
+    "uniform": MeshKind(
+        "confocal, squares all over", Confocal(), ratio=0.5, column=pi / 4.0, rings=False
+    ),
+    "graded": MeshKind(
+        "straight-sided, graded towards the edges", Physical(contracts=True), ratio=0.5, column=1.0,
+        place=image, fan=True, innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=1e-5,
+    ),
+    "box": MeshKind(
+        "the block of the study, with walls at 100 a", Physical(), ratio=0.5, column=0.7, place=box,
+        fan=True, beside=6.0, gentle=1.0, smallest=1e-5, walls=BOX_DEPTH,
+    ),
+}, MeshKind)  # fmt: skip
 
 
 def check_cells(mesh: QuadMesh) -> None:
@@ -486,8 +446,7 @@ def check_cells(mesh: QuadMesh) -> None:
 
 def edges(kind: MeshKind, mesh: QuadMesh, points: int = 17) -> NDArray[np.float64]:
     """Polylines along the cells' edges in the half-plane over a, each edge once, (edges, points, 2)."""
-    sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-    first, last = np.unique(np.sort(sides, axis=1), axis=0).T
+    first, last = np.unique(np.sort(sides_of(mesh.cells), axis=1), axis=0).T
     t = np.linspace(0.0, 1.0, points)[:, None]
     lines = (1.0 - t) * mesh.points[first][:, None] + t * mesh.points[last][:, None]
     return kind.chart.to_physical(lines.reshape(-1, 2)).reshape(-1, points, 2)

@@ -11,7 +11,7 @@ parts, fields change over S along X and over S/|p| along Y. From a place at the 
 as far as the distance times Im p/|p|.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, ceil, isfinite, log, log10
@@ -19,9 +19,9 @@ from math import asinh, ceil, isfinite, log, log10
 import numpy as np
 from numpy.typing import NDArray
 
-from .charts import Physical
+from .charts import Chart, Physical
 from .kind import DEGREES, MeshKind, Requirements
-from .rings import QuadMesh, tagged
+from .rings import QuadMesh, Refinement, corner, lines_and_corners
 
 #: Halvings in search of the share with which a number of rows just fits.
 _HALVINGS = 25
@@ -159,6 +159,15 @@ class OnLayers(MeshKind):
         places: positions over a towards which cells are graded, rising from -1 to 1.
     """
 
+    about: str = "straight-sided, along the interfaces"
+    chart: Chart = Physical()
+    ratio: float = 0.5
+    column: float = 1.0
+    fan: bool = True
+    innermost: float = 1.0 / 150.0
+    beside: float = 6.0
+    gentle: float = 1.0
+    smallest: float = 5e-6
     depths: tuple[float, ...] = ()
     drawn_together: float = 1.0
     wide: float = 1.0
@@ -258,33 +267,29 @@ class OnLayers(MeshKind):
     def drawn(self, required: Requirements) -> QuadMesh:
         """The mesh."""
         gaps = np.diff(self.places)
-        square = _SQUARE * min(gaps) / 2.0 / max(self.wide, 1.0)
+        square = _SQUARE * min(gaps) / 2.0 / max(self._width, 1.0)
         b, R = min(_SHARE * self.depths[0], square), self.radius(required)
         near = required.nearest is not None and required.nearest < b
         legs = (2 if near else 1) + ceil(_LEGS * required.spread - 0.5)
-        wide, in_square = self.wide * b, b * np.arange(1, legs) / legs
+        wide, in_square = self._width * b, b * np.arange(1, legs) / legs
         beside, below, growth = self._lines(required, b)
-        X = [np.array(self.places), 1.0 + self.wide * in_square, 1.0 + beside]
+        X = [np.array(self.places), 1.0 + self._width * in_square, 1.0 + beside]
         X += [-beyond for beyond in X[1:]]
         for X_left, X_right in pairwise(self.places):
             half = (X_right - X_left) / 2.0
-            inner = np.concatenate([self.wide * in_square, between(wide, half, growth)])
+            inner = np.concatenate([self._width * in_square, between(wide, half, growth)])
             X += [X_left + inner, np.array([X_left + half]), X_right - inner]
-        columns = np.unique(np.concatenate(X))
-        rows = -np.concatenate([[0.0], in_square, below, [R]])
-        cells = [
-            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-            for x0, x1 in pairwise(columns.tolist())
-            for y1, y0 in pairwise(rows.tolist())
-            if y0 < -b or min(abs((x0 + x1) / 2.0 - place) for place in self.places) > wide
-        ]
+        rows = np.concatenate([[0.0], in_square, below, [R]])
         ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(required) / b
-        squares = [
-            _rings(place, (side * wide, b), legs, ratio, last)
-            for place in self.places
-            for side in (-1.0, 1.0)
-        ]
-        return tagged(np.concatenate([np.array(cells), *squares]), 1.0 + R)
+        rings = Refinement(max(ceil(log(last) / log(ratio)), 1), ratio, legs)
+        return lines_and_corners(
+            np.unique(np.concatenate(X)), rows, self.places, (wide, b), corner(1.0, rings, False)[0]
+        )
+
+    @property
+    def _width(self) -> float:
+        """Width over height of the rectangles around the edges."""
+        return min(max(self.wide, 1.0 / _WIDEST), _WIDEST)
 
     def _lines(self, required: Requirements, b: float) -> tuple[NDArray, NDArray, float]:
         """Lines of columns and rows outside the squares around the edges.
@@ -293,7 +298,7 @@ class OnLayers(MeshKind):
             Distances over a of columns from an edge beside the punch, depths over a of rows below b, and
             the growth of columns under the punch.
         """
-        R, wide = self.radius(required), self.wide * b
+        R, wide = self.radius(required), self._width * b
         if required.nearest is None:
             growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
             beside = between(wide, R, growth)
@@ -309,53 +314,3 @@ class OnLayers(MeshKind):
             beside = np.append(between(wide, far, growth), beyond)
             below = np.append(layers.rows(b, far, share), beyond)
         return np.append(beside, R), below, min(_UNDER, growth)
-
-
-def _rings(
-    edge: float, size: tuple[float, float], legs: int, ratio: float, innermost: float
-) -> NDArray[np.float64]:
-    """Cells of L-shaped rings in a rectangle beside an edge, and of the square within, (cells, 4, 2).
-
-    Args:
-        edge: X of the edge.
-        size: of the rectangle: width, negative to the left of the edge, and depth.
-        legs: cells along each leg of an L.
-        ratio: of the sizes of rings.
-        innermost: size of the last rectangle over that of the first.
-    """
-    count = max(ceil(log(1.0 / innermost) / -log(ratio)), 1)
-    sizes = ratio ** np.arange(count + 1)
-    t = np.arange(legs + 1) / legs
-    # Along the L from the surface down, and back to below the edge.
-    leg = np.concatenate([np.column_stack([np.ones(legs + 1), -t]),
-                          np.column_stack([1.0 - t, -np.ones(legs + 1)])[1:]])  # fmt: skip
-    cells = [
-        [near * leg[i], far * leg[i], far * leg[i + 1], near * leg[i + 1]]
-        for far, near in pairwise(sizes.tolist())
-        for i in range(2 * legs)
-    ]
-    last = float(sizes[-1])
-    for x0, x1 in pairwise(last * t):
-        cells += [[(x0, -y0), (x1, -y0), (x1, -y1), (x0, -y1)] for y0, y1 in pairwise(last * t)]
-    # Clockwise as they are.
-    placed = np.array(cells) * size + [edge, 0.0]
-    return placed[:, ::-1] if size[0] > 0.0 else placed
-
-
-def on_layers(
-    depths: Sequence[float],
-    drawn_together: float = 1.0,
-    wide: float = 1.0,
-    far_length: float = 1.0,
-    left: float = 1.0,
-    roots: tuple[tuple[complex, ...], ...] = (),
-    changes: tuple[float, ...] = (),
-    places: tuple[float, ...] = (-1.0, 1.0),
-) -> OnLayers:
-    """The kind of mesh for layers with interfaces at these depths over a, see :class:`OnLayers`."""
-    return OnLayers(
-        "straight-sided, along the interfaces", Physical(), ratio=0.5, column=1.0, fan=True,
-        innermost=1.0 / 150.0, beside=6.0, gentle=1.0, smallest=5e-6, depths=tuple(depths),
-        drawn_together=drawn_together, wide=min(max(wide, 1.0 / _WIDEST), _WIDEST),
-        far_length=far_length, left=left, roots=roots, changes=changes, places=places,
-    )  # fmt: skip

@@ -1,18 +1,24 @@
-"""The one cell pattern of all meshes: a rectangle, graded towards the two corners of the contact.
+"""Patterns of quadrilaterals that are graded towards places of the contact, and the meshes made of them.
 
 In elliptic coordinates X + iY = a cosh(ξ + iη) the half-plane Y < 0 is the rectangle 0 <= ξ <= Ξ,
 -π <= η <= 0. Its side ξ = 0 is the contact, η = 0 and η = -π are the free surface right and left of
-the punch, ξ = Ξ is far away. Quadrilaterals lie in L-shaped rings around the punch edges (0, 0) and
-(0, -π), and in columns outwards.
+the punch, ξ = Ξ is far away. :func:`rectangle` has L-shaped rings around the punch edges (0, 0) and
+(0, -π), and columns outwards; each of its cells may be cut into n x n.
 
-Every cell of the pattern may be cut into n x n. The cut mesh is made in pieces, so that each rank makes
-its own without communication. Vertices of the pattern are numbered first, then those along its edges,
-then those inside its cells; so a number alone gives the position of a vertex.
+:func:`with_kinks` is that rectangle for a punch whose slope has kinks, graded towards these, too. Between
+neighbouring places, both ends of the contact among them, the strip along the contact is cut in the
+middle; each half is a corner, stretched. Where two places are near each other the strip is as narrow as
+they are near, and blocks without rings grow from there to the middle of the longer neighbour. Columns go
+on outwards.
+
+:func:`lines_and_corners` is the pattern in the physical plane: columns and rows of cells, with rings in
+rectangles beside places of the surface.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import ceil, log, log2
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +26,7 @@ from numpy.typing import NDArray
 CONTACT, FREE, FAR = 1, 2, 3
 #: Coordinates that differ by less are equal; the smallest cells are far above.
 _ROUNDING = 1e-12
-#: Boundary parts by name, as gmsh's physical groups carry them.
+#: Tags of the parts of the boundary by name.
 TAGS = {"contact": CONTACT, "free surface": FREE, "far": FAR}
 
 
@@ -40,7 +46,7 @@ class Refinement:
     levels: int
     ratio: float
     sectors: int
-    columns: tuple[float, ...]
+    columns: tuple[float, ...] = ()
     pieces: int = 1
     crowding: float = 0.0
 
@@ -66,8 +72,6 @@ class QuadMesh:
         points: vertex coordinates, (n, 2).
         cells: vertices of each cell counterclockwise, (m, 4).
         edges: vertices of the boundary edges by tag, each (k, 2).
-
-    A piece of a larger mesh has the whole's numbers in ``cells`` and ``edges``, its share in ``points``.
     """
 
     points: NDArray[np.float64]
@@ -75,231 +79,219 @@ class QuadMesh:
     edges: dict[int, NDArray[np.int64]]
 
 
-@dataclass(frozen=True)
-class Pattern:
-    """Quadrilaterals with the grading of their cuts.
-
-    Attributes:
-        mesh: the quadrilaterals.
-        growth: size at the far side of a cell over that at the near side, from its first vertex to the
-            second and from the second to the third, (cells, 2).
-    """
-
-    mesh: QuadMesh
-    growth: NDArray[np.float64]
-
-
-def rectangle(refinement: Refinement, fan: bool = False) -> Pattern:
+def rectangle(refinement: Refinement, fan: bool = False, cuts: int = 1) -> QuadMesh:
     """The graded rectangle in the (ξ, η) plane.
 
     Args:
         refinement: of the pattern.
-        fan: False fills the innermost square of a corner with a grid, True with a fan. A grid suits the
-            rectangle; a fan of quadrilaterals that meet in the corner suits its image in the physical
-            plane, where the corner's right angle opens to a straight line.
+        fan: filling of the innermost squares, see :func:`corner`.
+        cuts: number of cells along each side of a cell of the pattern, whose grading they keep.
     """
     half = np.pi / 2.0
     right, growth = corner(half, refinement, fan)
+    left = right[:, ::-1] * [1.0, -1.0] - [0.0, np.pi]  # the mirror image, counterclockwise again
     ξ = half + np.concatenate([[0.0], np.cumsum(refinement.columns)])
     upwards = half * refinement.legs
-    η = np.concatenate([upwards - np.pi, upwards[1:] - half])
-    columns = [
-        [(ξ0, η0), (ξ1, η0), (ξ1, η1), (ξ0, η1)] for ξ0, ξ1 in pairwise(ξ) for η0, η1 in pairwise(η)
-    ]
-    quads = np.concatenate([right, _mirrored(right), np.reshape(columns, (-1, 4, 2))])
+    columns = grid(ξ, np.concatenate([upwards - np.pi, upwards[1:] - half]))
+    quads = np.concatenate([right, left, columns])
     # The mirrored cells' second and third vertices have changed places.
     growth = np.concatenate([growth, growth ** [1.0, -1.0], np.ones((len(columns), 2))])
-    corners_of_all = quads.reshape(-1, 2)
-    return Pattern(joined(corners_of_all, ξ[-1]), growth)
-
-
-def joined(corners: NDArray[np.float64], Ξ: float) -> QuadMesh:
-    """The mesh of quadrilaterals by their corners, (4·cells, 2), in the rectangle up to ξ = Ξ."""
-    ξ_label, η_label = (labels(values) for values in corners.T)
-    keys = ξ_label * (η_label.max() + 1) + η_label
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    points, cells = corners[first], inverse.reshape(-1, 4)
-    return QuadMesh(points, cells, tagged_edges(points, cells, Ξ))
-
-
-def tagged(quads: NDArray[np.float64], last: float) -> QuadMesh:
-    """A mesh of quadrilaterals (n, 4, 2) below the surface whose far corners are at X = ±last."""
-    mesh = joined(quads.reshape(-1, 2), last)
-    sides = np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-    _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
-    boundary = sides[index[count == 1]]
-    X, Y = mesh.points[boundary].mean(axis=1).T
-    top = Y == 0.0
-    edges = {CONTACT: boundary[top & (np.abs(X) < 1.0)], FREE: boundary[top & (np.abs(X) > 1.0)],
-             FAR: boundary[~top]}  # fmt: skip
-    return QuadMesh(mesh.points, mesh.cells, edges)
-
-
-def labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Whole numbers that are equal where values are, but for rounding.
-
-    Rounded values would not do: two that differ in the last digit can lie on the two sides of a step.
-    """
-    order = np.argsort(values)
-    steps = np.diff(values[order]) > _ROUNDING
-    labels = np.empty(len(values), dtype=np.int64)
-    labels[order] = np.concatenate([[0], np.cumsum(steps)])
-    return labels
+    return _of_rectangle(cut(quads, growth, cuts) if cuts > 1 else quads, ξ[-1])
 
 
 def corner(
     size: float, refinement: Refinement, fan: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0): (m, 4, 2), (m, 2)."""
+    """Quadrilaterals of the square [0, size] x [-size, 0], graded towards (0, 0).
+
+    Args:
+        size: of the square.
+        refinement: of the rings; its columns are not used.
+        fan: False fills the innermost square with a grid, True with a fan. A grid suits the rectangle; a
+            fan of quadrilaterals that meet in the corner suits its image in the physical plane, where the
+            corner's right angle opens to a straight line.
+
+    Returns:
+        Corners of cells, (m, 4, 2), and the size at the far side of each over that at the near side,
+        from its first vertex to the second and from the second to the third, (m, 2).
+    """
     sectors, t = refinement.sectors, refinement.legs
     leg = np.concatenate(
         [np.column_stack([np.ones_like(t), -t]), np.column_stack([t[-2::-1], -np.ones(sectors)])]
     )
     sizes = size * refinement.sizes
-    quads = [
-        [inner * leg[i], inner * leg[i + 1], outer * leg[i + 1], outer * leg[i]]
-        for outer, inner in pairwise(sizes)
-        for i in range(2 * sectors)
-    ]
-    rings = len(quads)
+    along = np.stack([leg[:-1], leg[1:], leg[1:], leg[:-1]], axis=1)
+    outer, inner = sizes[:-1, None, None, None], sizes[1:, None, None, None]
+    near = np.array([True, True, False, False])[:, None]
+    rings = (np.where(near, inner, outer) * along).reshape(-1, 4, 2)
     if fan:
         rim = sizes[-1] * leg
-        quads += [[0.0 * rim[0], *rim[2 * i : 2 * i + 3][::-1]] for i in range(sectors)]
+        centre = np.zeros((sectors, 2))
+        filling = np.stack([centre, rim[2::2], rim[1::2], rim[:-1:2]], axis=1)
     else:
-        grid = sizes[-1] * t
-        quads += [
-            [(x0, -y0), (x0, -y1), (x1, -y1), (x1, -y0)]
-            for x0, x1 in pairwise(grid)
-            for y0, y1 in pairwise(grid)
-        ]
-    growth = np.ones((len(quads), 2))
-    growth[:rings, 1] = np.repeat(sizes[:-1] / sizes[1:], 2 * sectors)
-    return np.array(quads), growth
+        filling = grid(sizes[-1] * t, -sizes[-1] * t)
+    growth = np.ones((len(rings) + len(filling), 2))
+    growth[: len(rings), 1] = np.repeat(sizes[:-1] / sizes[1:], 2 * sectors)
+    return np.concatenate([rings, filling]), growth
 
 
-def _mirrored(quads: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The mirror image in η = -π/2, counterclockwise again."""
-    flipped = quads[:, ::-1].copy()
-    flipped[..., 1] = -np.pi - flipped[..., 1]
-    return flipped
+def grid(x: NDArray, y: NDArray) -> NDArray[np.float64]:
+    """Quadrilaterals between coordinates x, which rise, and y, counterclockwise, (cells, 4, 2)."""
+    corners = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    around = [corners[:-1, :-1], corners[1:, :-1], corners[1:, 1:], corners[:-1, 1:]]
+    return np.stack(around if y[-1] > y[0] else around[::-1], axis=2).reshape(-1, 4, 2)
 
 
-def tagged_edges(
-    points: NDArray[np.float64], cells: NDArray[np.int64], Ξ: float
-) -> dict[int, NDArray[np.int64]]:
-    """Boundary edges of a mesh of the rectangle up to ξ = Ξ by tag, each (k, 2)."""
-    edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-    middle_ξ, middle_η = points[edges].mean(axis=1).T
-    return {
-        CONTACT: edges[middle_ξ == 0.0],
-        FREE: edges[(middle_η == 0.0) | (middle_η == -np.pi)],
-        FAR: edges[middle_ξ == Ξ],
-    }
-
-
-def cut(pattern: Pattern, n: int, part: int = 0, parts: int = 1) -> QuadMesh:
-    """A piece of the pattern with every cell cut into n x n, its grading kept.
+def cut(quads: NDArray, growth: NDArray, n: int) -> NDArray[np.float64]:
+    """Every quadrilateral cut into n x n whose sizes grow as those of the pattern, (n² m, 4, 2).
 
     Args:
-        pattern: few quadrilaterals, the same for every part.
-        n: cuts of every edge, at least 1.
-        part, parts: number of the piece, from 0, and of all pieces, each with about as many cells.
-
-    Returns:
-        Cells and tagged edges of the piece, with the vertices' numbers in the whole; and of the whole's
-        points those of the next numbers after the pieces before.
+        quads, growth: of the pattern, see :func:`corner`.
+        n: cuts of every side.
     """
-    fine = _Cut(pattern, n)
-    points = fine.positions(_share(fine.size, part, parts))
-    cells = fine.cells(_share(len(pattern.mesh.cells), part, parts))
-    edges = {
-        tag: fine.along(ends[_share(len(ends), part, parts)]) for tag, ends in pattern.mesh.edges.items()
-    }
-    return QuadMesh(points, cells, edges)
+    part = np.arange(n + 1) / n
+    with np.errstate(invalid="ignore"):
+        graded = (growth[..., None] ** part - 1.0) / (growth[..., None] - 1.0)
+    s, t = np.moveaxis(np.where(growth[..., None] == 1.0, part, graded), 1, 0)[..., None]
+
+    def between(first: NDArray, last: NDArray, share: NDArray) -> NDArray[np.float64]:
+        """Points of a side; exact at both its ends, and where these have a coordinate in common."""
+        return np.where(share == 1.0, last, first + share * (last - first))
+
+    A, B, C, D = np.moveaxis(quads, 1, 0)[:, :, None]
+    lattice = between(between(A, B, s)[:, :, None], between(D, C, s)[:, :, None], t[:, None])
+    around = (lattice[:, :-1, :-1], lattice[:, 1:, :-1], lattice[:, 1:, 1:], lattice[:, :-1, 1:])
+    return np.stack(around, axis=3).reshape(-1, 4, 2)
 
 
-def _share(count: int, part: int, parts: int) -> NDArray[np.int64]:
-    """Numbers below ``count`` that belong to a part."""
-    return np.arange(count * part // parts, count * (part + 1) // parts)
+#: Width of the strip over the mean height of its halves, and factor by which columns grow outwards.
+_WIDE, _GROWTH = 1.3, 1.6
+#: Most width of the strip, over that times the height where places are near each other; factor up to
+#: which halves next to a place are alike, and by which blocks between such a place and the middle grow.
+_SLENDER, _ALIKE = 2.0, 3.0
+#: Elliptic coordinate, some 4 000 a, beyond which a field is that of a line load to all digits of the
+#: results, linear in this coordinate, and columns need no largest width.
+_FAR = 9.0
 
 
-def _graded(growth: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
-    """End of a part of an edge's cuts, over its length; the cuts grow by ``growth`` in all."""
-    even = growth == 1.0
-    q = np.where(even, 2.0, growth)
-    return np.where(even, part, (q**part - 1.0) / (q - 1.0))
+def rings_at_kinks(refinement: Refinement, size: float) -> int:
+    """Number of rings around kinks beyond those around ends, by the size of innermost cells."""
+    return ceil(log(size) / log(refinement.ratio)) - refinement.levels
 
 
-@dataclass(frozen=True)
-class _Cut:
-    """Numbers and positions of the vertices of a cut pattern."""
+def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMesh:
+    """The rectangle in the (ξ, η) plane of a confocal mesh, graded towards kinks of the punch.
 
-    pattern: Pattern
-    n: int
+    Args:
+        refinement: of the mesh without kinks.
+        places: X over a of the kinks, in (-1, 1).
+        more: number of additional rings around the kinks.
+    """
+    η = np.concatenate([[-np.pi], np.sort(-np.arccos(places)), [0.0]])
+    half, legs = np.diff(η) / 2.0, refinement.legs
+    least = np.minimum(np.append(half, np.inf), np.append(np.inf, half))
+    widest = min(_WIDE * np.pi / (2.0 * len(half)), np.pi / 2.0)
+    of_end, of_kink = (
+        corner(1.0, replace(refinement, levels=refinement.levels + levels), False)[0]
+        for levels in (0, more)
+    )
+    blocks, of_ends, of_widths = [], list[float](), list[float]()
+    for i, h in enumerate(half):
+        for node, side in ((i, 1), (i + 1, -1)):
+            steps = ceil(log(h / least[node]) / log(_ALIKE))
+            sizes = h * (least[node] / h) ** (
+                np.arange(steps, -1, -1) / steps if steps > 1 else np.zeros(1)
+            )
+            corners = of_end if node in (0, len(half)) else of_kink
+            blocks.append((corners * [1.0, -side * sizes[0]] + [0.0, η[node]])[:, ::-side])
+            for low, high in pairwise(sizes):
+                blocks.append(grid(legs, η[node] + side * (low + (high - low) * legs)))
+            of_ends += [η[node], *(η[node] + side * sizes[:-1]), η[i] + h]
+            of_widths += [least[node], *sizes]
+    order = np.argsort(of_ends, kind="stable")
+    ends = np.array(of_ends)[order]
+    widths = np.minimum(_SLENDER * _WIDE * np.array(of_widths)[order], widest)
+    for block in blocks:
+        block[..., 0] *= np.interp(block[..., 1], ends, widths)
+    rows = np.unique([low + (high - low) * legs for low, high in pairwise(np.unique(ends))])
+    ξ = np.array(_columns(widest, np.pi / 2.0 + sum(refinement.columns), max(refinement.columns)))
+    count = 1 + round(log2(widest / widths.min()))
+    beside = grid(np.arange(count + 1) / count, rows)
+    share, width = beside[..., 0], np.interp(beside[..., 1], ends, widths)
+    beside[..., 0] = width ** (1.0 - share) * ξ[1] ** share
+    return _of_rectangle(np.concatenate([*blocks, beside, grid(ξ[1:], rows)]), ξ[-1])
 
-    @property
-    def _mesh(self) -> QuadMesh:
-        return self.pattern.mesh
 
-    @cached_property
-    def _sides(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Ends of the pattern's edges, the lower number first, in order, (edges, 2); and their growth."""
-        cells, (along, across) = self._mesh.cells, self.pattern.growth.T
-        ends = np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
-        growth = np.stack([along, across, 1.0 / along, 1.0 / across], axis=-1).ravel()
-        growth = np.where(ends[:, 0] < ends[:, 1], growth, 1.0 / growth)
-        edges, first = np.unique(np.sort(ends, axis=1), axis=0, return_index=True)
-        return edges, growth[first]
+def _columns(first: float, last: float, widest: float) -> list[float]:
+    """Ends of columns in ξ from the strip to the far boundary; near the punch at most ``widest`` wide."""
+    ends, step = [first], first
+    while last - ends[-1] > 1.5 * step:
+        ends.append(ends[-1] + step)
+        step = min(_GROWTH * step, widest if ends[-1] < _FAR else np.inf)
+    return [*ends, last]
 
-    @property
-    def _first(self) -> tuple[int, int]:
-        """The first number along an edge, and inside a cell."""
-        vertices = len(self._mesh.points)
-        return vertices, vertices + len(self._sides[0]) * (self.n - 1)
 
-    @property
-    def size(self) -> int:
-        """Vertices of the whole."""
-        return self._first[1] + len(self._mesh.cells) * (self.n - 1) ** 2
+def lines_and_corners(
+    X: NDArray, depths: NDArray, places: Sequence[float], size: tuple[float, float], cells: NDArray
+) -> QuadMesh:
+    """Columns and rows below the surface, with cells of their own in rectangles beside places on it.
 
-    def positions(self, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Positions of the vertices with these numbers, (len(numbers), 2); numbers are sorted."""
-        points, inner = self._mesh.points, self.n - 1
-        old, beside, inside = np.split(numbers, np.searchsorted(numbers, self._first))
-        edge, step = np.divmod(beside - self._first[0], max(inner, 1))
-        edges, growth = self._sides
-        # Exactly on the boundary: between equal coordinates nothing is rounded.
-        A, B = np.moveaxis(points[edges[edge]], 1, 0)
-        on_edges = A + _graded(growth[edge], (step + 1) / self.n)[:, None] * (B - A)
-        cell, place = np.divmod(inside - self._first[1], max(inner**2, 1))
-        steps = np.stack(np.divmod(place, max(inner, 1)), axis=-1)
-        a, b = _graded(self.pattern.growth[cell], (steps + 1) / self.n).T[..., None]
-        A, B, C, D = np.moveaxis(points[self._mesh.cells[cell]], 1, 0)
-        in_cells = (1 - a) * (1 - b) * A + a * (1 - b) * B + a * b * C + (1 - a) * b * D
-        return np.concatenate([points[old], on_edges, in_cells])
+    Args:
+        X: of the columns' lines, rising from -R to R; lines run along the sides of all rectangles.
+        depths: of the rows' lines, rising from 0.
+        places: X of the places.
+        size: width and depth of the rectangles.
+        cells: of the rectangle to the right of a place, in units of its size, see :func:`corner`.
+    """
+    boxes = grid(X, -depths)
+    x, y = boxes.mean(axis=1).T
+    beside = np.abs(x[:, None] - places).min(axis=1) < size[0]
+    right = cells * size
+    left = right[:, ::-1] * [-1.0, 1.0]
+    corners = [part + np.array([X_0, 0.0]) for X_0 in places for part in (left, right)]
+    return tagged(np.concatenate([boxes[(y < -size[1]) | ~beside], *corners]))
 
-    def cells(self, coarse: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Cells into which some cells of the pattern are cut, counterclockwise, (n² coarse, 4)."""
-        n, corners = self.n, self._mesh.cells[coarse]
-        lattice = np.empty((len(coarse), n + 1, n + 1), dtype=np.int64)
-        sides = (lattice[:, :, 0], lattice[:, n, :], lattice[:, ::-1, n], lattice[:, 0, ::-1])
-        for i, side in enumerate(sides):
-            side[:] = self._numbers(corners[:, [i, (i + 1) % 4]])
-        inside = self._first[1] + np.arange((n - 1) ** 2).reshape(n - 1, n - 1)
-        lattice[:, 1:n, 1:n] = inside + (n - 1) ** 2 * coarse[:, None, None]
-        around = (lattice[:, :-1, :-1], lattice[:, 1:, :-1], lattice[:, 1:, 1:], lattice[:, :-1, 1:])
-        return np.stack(around, axis=-1).reshape(-1, 4)
 
-    def along(self, ends: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Edges into which some edges of the pattern, (m, 2), are cut, (n m, 2)."""
-        numbers = self._numbers(ends)
-        return np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
+def tagged(quads: NDArray[np.float64]) -> QuadMesh:
+    """A mesh of quadrilaterals (n, 4, 2) below the surface, on which the contact is |X| < 1."""
+    points, cells = _joined(quads)
+    sides = sides_of(cells)
+    _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+    boundary = sides[index[count == 1]]
+    X, Y = points[boundary].mean(axis=1).T
+    top, under = Y == 0.0, np.abs(X) < 1.0
+    parts = {CONTACT: top & under, FREE: top & ~under, FAR: ~top}
+    return QuadMesh(points, cells, {tag: boundary[part] for tag, part in parts.items()})
 
-    def _numbers(self, ends: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Numbers of the vertices from one end of an edge to the other, (m, n + 1)."""
-        place = [len(self._mesh.points), 1]
-        edge = np.searchsorted(self._sides[0] @ place, np.sort(ends, axis=1) @ place)
-        step = np.arange(self.n - 1)
-        forward = (ends[:, 0] < ends[:, 1])[:, None]
-        between = self._first[0] + (self.n - 1) * edge[:, None] + np.where(forward, step, step[::-1])
-        return np.column_stack([ends[:, 0], between, ends[:, 1]])
+
+def _of_rectangle(quads: NDArray[np.float64], Ξ: float) -> QuadMesh:
+    """The mesh of quadrilaterals (m, 4, 2) that fill the rectangle up to ξ = Ξ."""
+    points, cells = _joined(quads)
+    sides = sides_of(cells)
+    ξ, η = points[sides].mean(axis=1).T
+    parts = {CONTACT: ξ == 0.0, FREE: (η == 0.0) | (η == -np.pi), FAR: ξ == Ξ}
+    return QuadMesh(points, cells, {tag: sides[part] for tag, part in parts.items()})
+
+
+def sides_of(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Both vertices of every side of every cell, (4 m, 2)."""
+    return np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2)
+
+
+def _joined(quads: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Vertices of quadrilaterals (m, 4, 2), each once, (n, 2), and their numbers in cells, (m, 4)."""
+    corners = quads.reshape(-1, 2)
+    x, y = (_labels(values) for values in corners.T)
+    _, first, inverse = np.unique(x * (y.max() + 1) + y, return_index=True, return_inverse=True)
+    return corners[first], inverse.reshape(-1, 4)
+
+
+def _labels(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Whole numbers that are equal where values are, but for rounding.
+
+    Rounded values would not do: two that differ in the last digit can lie on the two sides of a step.
+    """
+    order = np.argsort(values)
+    labels = np.empty(len(values), dtype=np.int64)
+    labels[order] = np.concatenate([[0], np.cumsum(np.diff(values[order]) > _ROUNDING)])
+    return labels

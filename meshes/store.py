@@ -1,8 +1,8 @@
-"""Meshes by gmsh, and those of earlier runs, kept in the user's cache folder."""
+"""Meshes as Gmsh models, and those of earlier runs, kept in the user's cache folder."""
 
 import hashlib
 import os
-from collections.abc import Callable
+import zipfile
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx import files, sealed
+from galinx import files
 
 from .rings import TAGS, QuadMesh
 
-_LINE, _QUADRANGLE = 1, 3  # gmsh's element types
+_LINE, _QUADRANGLE = 1, 3  # Gmsh's element types
 
 
 def through_gmsh(mesh: QuadMesh) -> QuadMesh:
-    """The mesh as a gmsh model holds it, cells and tagged edges as physical groups.
+    """Mesh as a Gmsh model holds it, cells and tagged edges as physical groups.
 
-    The model is built of discrete cells, so every gmsh version gives the same mesh.
+    The model is built of discrete cells, so every version of Gmsh gives the same mesh.
     """
     import gmsh  # a slow import, not needed if the mesh is kept
 
@@ -49,7 +49,7 @@ def _build(model: Any, mesh: QuadMesh) -> None:
 
 
 def _read(model: Any) -> QuadMesh:
-    """The current model's quadrilaterals and the edges of its tagged lines."""
+    """Quadrilaterals of the current model, and the edges of its tagged lines."""
     numbers, coordinates, _ = model.mesh.getNodes()
     order = np.argsort(numbers)
     position = np.empty(int(numbers.max()) + 1, dtype=np.int64)
@@ -67,59 +67,35 @@ def _read(model: Any) -> QuadMesh:
     return QuadMesh(points, np.concatenate(cells), edges)
 
 
-#: Part of every key; raised when the content of files, or the way to make it, changes.
-_FORMAT = 3
+def obtain(pattern: QuadMesh) -> QuadMesh:
+    """Mesh of a pattern: that of an earlier run, or a new one by Gmsh, which is then kept.
 
-
-def _key(pattern: QuadMesh) -> str:
-    """A hash of everything that the mesh of a pattern depends on."""
-    key = hashlib.sha256(f"{_FORMAT}".encode())
-    for array in (pattern.points, pattern.cells, *pattern.edges.values()):
-        key.update(f"{array.dtype}{array.shape}".encode() + array.tobytes())
-    return key.hexdigest()
-
-
-def _path(key: str) -> Path:
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(home) / "galinx" / "meshes" / f"{key[:24]}.mesh"
-
-
-def is_kept(pattern: QuadMesh) -> bool:
-    """True where a mesh of this pattern was made before, and its file is whole."""
-    return _load(_key(pattern)) is not None
-
-
-def obtain(pattern: QuadMesh, say: Callable[[str], None] = lambda _: None) -> QuadMesh:
-    """The mesh of a pattern: that of an earlier run, or gmsh's, which is then kept.
+    A kept file that is damaged is replaced: the checksums of its arrays show it.
 
     Args:
         pattern: cells and tagged edges.
-        say: called with a message to the user where a kept mesh is damaged.
     """
-    key = _key(pattern)
-    if kept := _load(key):
-        return kept
-    if os.path.lexists(_path(key)):
-        say(f"the mesh kept in {_path(key)} is damaged; it is made again")
-
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    path = home / "galinx" / "meshes" / f"{_key(pattern)}.npz"
+    with suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        if path.is_file():
+            with np.load(path) as arrays:
+                edges = {tag: arrays[str(tag)] for tag in pattern.edges}
+                return QuadMesh(arrays["points"], arrays["cells"], edges)
     mesh = through_gmsh(pattern)
-    _keep(key, mesh)
+    with suppress(OSError):  # a folder that cannot be written is no fault
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with files.NewFile(path) as file:
+            arrays = {str(tag): edges for tag, edges in mesh.edges.items()}
+            with open(file.temporary, "wb") as stream:
+                np.savez(stream, points=mesh.points, cells=mesh.cells, **arrays)
+            file.publish(replace=path.exists())
     return mesh
 
 
-def _load(key: str) -> QuadMesh | None:
-    """The mesh of a key; None if there is none, or its file is damaged or of another key."""
-    stored_key, arrays = sealed.read(_path(key)) or (None, {})
-    if stored_key != key:
-        return None
-    points, cells = arrays.pop("points"), arrays.pop("cells")
-    return QuadMesh(points, cells, {int(tag): edges for tag, edges in arrays.items()})
-
-
-def _keep(key: str, mesh: QuadMesh) -> None:
-    """Write a mesh at once or not at all; a folder that cannot be written is no fault."""
-    edges = {str(tag): edges for tag, edges in mesh.edges.items()}
-    content = sealed.packed(key, {"points": mesh.points, "cells": mesh.cells, **edges})
-    with suppress(OSError):
-        _path(key).parent.mkdir(parents=True, exist_ok=True)
-        files.write(_path(key), b"".join(content))
+def _key(pattern: QuadMesh) -> str:
+    """Hash of everything that the mesh of a pattern depends on."""
+    key = hashlib.sha256()
+    for array in (pattern.points, pattern.cells, *pattern.edges.values()):
+        key.update(f"{array.dtype}{array.shape}".encode() + array.tobytes())
+    return key.hexdigest()[:24]

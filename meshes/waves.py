@@ -11,7 +11,7 @@ from math import ceil, inf, log
 import numpy as np
 from numpy.typing import NDArray
 
-from .rings import QuadMesh, Refinement, corner, tagged
+from .rings import QuadMesh, Refinement, corner, lines_and_corners
 
 #: Largest half-width of the squares in which rings go towards the edges, over a: they meet in the middle.
 _SQUARE = 1.0
@@ -51,22 +51,14 @@ class Reached:
         """The mesh."""
         square = min(_SQUARE, self.size, self.seen, *self.depths[:1])
         levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
-        beside, _ = corner(square, Refinement(levels, self.ratio, 1, ()), fan=True)
-        mirrored = (beside * [-1.0, 1.0])[:, ::-1]
-        squares = [part + np.array([edge, 0.0]) for edge in (-1.0, 1.0) for part in (beside, mirrored)]
         between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / min(self.size, self.seen)) + 1)
         outwards = np.concatenate(
             [between, [1.0], self._outwards(1.0 + square, self.half_width, self.around[0])]
         )
         X = np.concatenate([-outwards[:0:-1], outwards])
-        Y = -np.concatenate([[0.0], self._downwards(square)])
-        boxes = np.array([
-            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-            for x0, x1 in pairwise(X)
-            for y1, y0 in pairwise(Y)
-            if y0 < -square or abs(abs(x0 + x1) / 2.0 - 1.0) > square
-        ])  # fmt: skip
-        return tagged(np.concatenate([boxes, *squares]), float(X[-1]))
+        depths = np.concatenate([[0.0], self._downwards(square)])
+        rings, _ = corner(1.0, Refinement(levels, self.ratio, 1), fan=True)
+        return lines_and_corners(X, depths, (-1.0, 1.0), (square, square), rings)
 
     def _downwards(self, first: float) -> NDArray[np.float64]:
         """Depths of rows from the first one on, through all interfaces."""

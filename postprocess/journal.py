@@ -1,11 +1,14 @@
 """Finished parts of a run, kept beside the archive until the archive is complete.
 
 An HDF5 file whose writer was killed cannot be opened again. So every part is a file of its own, written
-whole or not at all. Each file names its run and its rows; a file that is damaged, or has the name of
-another part, is ignored. The files are in a hidden folder, ``.NAME.work`` beside the archive ``NAME``.
+whole or not at all: an NPZ file, whose checksums NumPy verifies. Each names its run and its rows; a file
+that is damaged, or has the name of another part, is ignored. The files are in a hidden folder,
+``.NAME.work`` beside the archive ``NAME``.
 """
 
 import fcntl
+import io
+import json
 import os
 import shutil
 from collections.abc import Iterator, Sequence
@@ -17,12 +20,14 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx import files, sealed
+from galinx import files
 
 from .compare import Comparison
 from .errors import ArchiveInUse, LeftOver, refused
 
 _SUFFIX = ".part"
+#: Array of a part that describes the others, as JSON.
+_HEADER = "header"
 
 
 @dataclass(frozen=True)
@@ -129,11 +134,19 @@ class Journal:
             UnwritableArchive: the file system refused.
         """
         path = self.folder / _name(part.rows)
+        header = {
+            "key": self._key,
+            "rows": [part.rows.start, part.rows.stop],
+            "names": list(part.data),
+            "comparisons": [asdict(figure) for figure in part.comparisons],
+            "record": part.record,
+        }
+        content = io.BytesIO()  # a disk that is full would leave NumPy's own file half open
+        np.savez(content, **{_HEADER: np.array(json.dumps(header))}, **part.data)
         try:
             with files.NewFile(path) as new:
-                with new.temporary.open("wb") as file:
-                    file.writelines(_packed(part, self._key))
-                # Not synchronised: after a power cut a torn file does not fit its digest and is ignored.
+                new.temporary.write_bytes(content.getbuffer())
+                # Not synchronised: after a power cut a torn file fails its checksums and is ignored.
                 os.replace(new.temporary, path)
         except OSError as error:
             raise refused(self.target, error) from error
@@ -175,22 +188,15 @@ def _name(rows: slice) -> str:
     return f"{rows.start:010d}-{rows.stop:010d}{_SUFFIX}"
 
 
-def _packed(part: Part, key: str) -> Iterator[Any]:
-    header = {
-        "key": key,
-        "rows": [part.rows.start, part.rows.stop],
-        "comparisons": [asdict(figure) for figure in part.comparisons],
-        "record": part.record,
-    }
-    return sealed.packed(header, part.data)
-
-
 def _load(path: Path) -> tuple[str, Part] | None:
     """Key of a part's run, and the part; None if it is damaged or has the name of another part."""
-    header, data = sealed.read(path) or ({}, {})
     with suppress(Exception):  # a part with any fault is ignored
+        files.expect_file(path)
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        header = json.loads(str(arrays.pop(_HEADER)))
         rows = slice(*header["rows"])
-        if path.name == _name(rows):
+        if path.name == _name(rows) and header["names"] == list(arrays):
             comparisons = [Comparison(**figure) for figure in header["comparisons"]]
-            return header["key"], Part(rows, data, comparisons, header["record"])
+            return header["key"], Part(rows, arrays, comparisons, header["record"])
     return None

@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -129,45 +129,56 @@ def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity
     return next((row for row in there if row.path in data), None)
 
 
-_Spec = tuple[str, Mapping[str, Quantity]]
+class _Spec(NamedTuple):
+    """What a column has: its head, which begins with "at" for a place of what stands before, and a
+    quantity, or one of each method; digits that are shown; and what is taken of an archive's values."""
 
-#: What a state's row has after its parameters: heads, and quantities by method. Heads that begin with
-#: "at" are places of what stands before.
-_OF_CONTACT: tuple[_Spec, ...] = (
-    ("half-width", of.HALF_WIDTH),
-    ("centre", of.CENTRE),
-    ("peak pressure", of.LARGEST), ("at X", of.LARGEST_X),
-    ("largest tension σ_XX", stresses.HIGHEST),
-    ("at X", stresses.HIGHEST_X),
+    head: str
+    rows: Quantity | Mapping[str, Quantity]
+    digits: int = 4
+    taken: Callable[[Any], Any] = np.asarray
+
+
+#: What a state's row has after its parameters.
+_OF_CONTACT = (
+    _Spec("half-width", of.HALF_WIDTH),
+    _Spec("centre", of.CENTRE),
+    _Spec("peak pressure", of.LARGEST), _Spec("at X", of.LARGEST_X),
+    _Spec("largest tension σ_XX", stresses.HIGHEST), _Spec("at X", stresses.HIGHEST_X),
 )  # fmt: skip
-_OF_STRENGTH: tuple[_Spec, ...] = (
-    ("largest von Mises", yielding.VON_MISES), ("at X", yielding.VON_MISES_X),
-    ("at Y", yielding.VON_MISES_Y),
+_OF_STRENGTH = (
+    _Spec("largest von Mises", yielding.VON_MISES), _Spec("at X", yielding.VON_MISES_X),
+    _Spec("at Y", yielding.VON_MISES_Y),
 )  # fmt: skip
-_OF_EDGES: tuple[_Spec, ...] = (
-    ("K_I, left", of.K_I_LEFT),
-    ("K_I, right", of.K_I_RIGHT),
-    ("exponent β, left", {"": of.BETA}), ("exponent α, right", {"": of.ALPHA}),
-)  # fmt: skip
-_INDENTATION: _Spec = ("indentation v₀", {FEM: of.INDENTATION})
+_K_I = _Spec("K_I, left", of.K_I_LEFT), _Spec("K_I, right", of.K_I_RIGHT)
+_EXPONENTS = _Spec("exponent β, left", of.BETA), _Spec("exponent α, right", of.ALPHA)
+_INDENTATION = _Spec("indentation v₀", of.INDENTATION)
 #: Pull under the punch, which no punch exerts.
-_PULL: tuple[_Spec, ...] = (
-    ("pull under the punch", validity.TENSION),
-    ("at X", validity.TENSION_X),
-)
+_PULL = _Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X)
 #: What says where answers hold, and more of yield, in a table of its own.
-_LIMITS: tuple[_Spec, ...] = (
-    ("largest shear in the plane", yielding.SHEAR), ("at X", yielding.SHEAR_X),
-    ("at Y", yielding.SHEAR_Y),
-    ("yields within, from X = -a", yielding.REACH_LEFT),
-    ("yields within, from X = a", yielding.REACH_RIGHT),
-    ("slip reversed within, from X = -a", {CLOSED_FORM: validity.SLIP_REVERSED[0]}),
-    ("slip reversed within, from X = a", {CLOSED_FORM: validity.SLIP_REVERSED[1]}),
-    ("strain above 5 % within, from X = -a", {CLOSED_FORM: validity.STRAIN[0]}),
-    ("strain above 5 % within, from X = a", {CLOSED_FORM: validity.STRAIN[1]}),
-    ("waves that cross the contact in a stroke", {"": validity.CROSSINGS}),
-    ("flutter from σ_XY/σ_YY > 0 of", {"": validity.FLUTTER["positive"]}),
-    ("flutter from σ_XY/σ_YY < 0 of", {"": validity.FLUTTER["negative"]}),
+_LIMITS = (
+    _Spec("largest shear in the plane", yielding.SHEAR), _Spec("at X", yielding.SHEAR_X),
+    _Spec("at Y", yielding.SHEAR_Y),
+    _Spec("yields within, from X = -a", yielding.REACH_LEFT),
+    _Spec("yields within, from X = a", yielding.REACH_RIGHT),
+    _Spec("slip reversed within, from X = -a", validity.SLIP_REVERSED[0]),
+    _Spec("slip reversed within, from X = a", validity.SLIP_REVERSED[1]),
+    _Spec("strain above 5 % within, from X = -a", validity.STRAIN[0]),
+    _Spec("strain above 5 % within, from X = a", validity.STRAIN[1]),
+    _Spec("waves that cross the contact in a stroke", validity.CROSSINGS),
+    _Spec("flutter from σ_XY/σ_YY > 0 of", validity.FLUTTER["positive"]),
+    _Spec("flutter from σ_XY/σ_YY < 0 of", validity.FLUTTER["negative"]),
+)  # fmt: skip
+#: Friction loops, of all strokes together, and sliders.
+_OF_LOOPS = (
+    _Spec("work", runs.LOOP_WORK, 5, lambda values: values.sum(axis=1)),
+    _Spec("work of the closed loop", runs.LOOP_CYCLE, 5),
+    _Spec("breakaway force", runs.LOOP_BREAKAWAY, 5, lambda values: values.max(axis=1)),
+    _Spec("stiffness", runs.LOOP_STIFFNESS, 5, lambda values: values[:, 0]),
+)
+_OF_SLIDERS = (
+    _Spec("period", runs.PERIOD, 6), _Spec("slip per cycle", runs.SLIP, 6),
+    _Spec("peak velocity", runs.PEAK, 6), _Spec("least velocity", runs.LEAST, 6),
 )  # fmt: skip
 
 
@@ -182,27 +193,20 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         units: of the result.
     """
     contact, count = units.contact, len(data[of.FRICTION.path])
-    results = [*_columns(data, units, _OF_CONTACT)]
-    solved = bool(results) or any(preferred(data, rows) for _, rows in (*_OF_EDGES[:2], _INDENTATION))
-    if solved and units.half_width is contact.half_width:
+    results, intensities = _columns(data, units, _OF_CONTACT), _columns(data, units, _K_I)
+    indentation, pull = _columns(data, units, [_INDENTATION]), _columns(data, units, _PULL)
+    if (results or intensities or indentation) and units.half_width is contact.half_width:
         length = units.scale(CONTACT)
         width = np.full(count, contact.half_width) * length.factor
         results.insert(0, Column("half-width", width, length.unit, "half_width"))
-    if pull := [column for column in _columns(data, units, _PULL)]:
-        results += pull if np.nanmax(pull[0].values) > 0.0 else []
+    results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
-    results += _of_layers(data, units) or [
-        *_columns(data, units, _OF_STRENGTH),
-        *_yields(data, units),
-    ]
-    results += [
-        c for c in _columns(data, units, (("depth of yield", yielding.DEPTH),)) if np.nanmax(c.values)
-    ]
-    edges = _columns(data, units, _OF_EDGES)
-    if any(column.head.startswith("K_I") and np.any(column.values) for column in edges):
-        results += edges
-    results += _columns(data, units, (_INDENTATION,))
-    return [*_parameter_columns(data, units), *results]
+    results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
+    depth = _columns(data, units, [_Spec("depth of yield", yielding.DEPTH)])
+    results += [column for column in depth if np.nanmax(column.values)]
+    if any(np.any(column.values) for column in intensities):
+        results += intensities + _columns(data, units, _EXPONENTS)
+    return [*_parameter_columns(data, units), *results, *indentation]
 
 
 def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -223,43 +227,45 @@ def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
             Column("friction f", force, "1", "f", resultant.path),
             Column("mean of f over X", f, "1", "mean_f", of.FRICTION.path),
         ]
-    scaled = units(speed)
-    assert scaled
     head = "speed c over the wave speed" if units.dimensionless else "speed"
-    columns.append(
-        Column(head, scaled.of(data[speed.path]), scaled.unit, scaled.name, speed.path, digits=6)
-    )
+    columns += _columns(data, units, [_Spec(head, speed, 6)])
     load = units.scale(of.LOAD.unit)
-    columns.append(
-        Column("load", load.of(np.full(count, units.load)), load.unit, "load", of.LOAD.path, digits=6)
-    )
+    loads = load.of(np.full(count, units.load))
+    columns.append(Column("load", loads, load.unit, "load", of.LOAD.path, digits=6))
     for path, row in apart.items():
-        values = data[path]
-        if row.type != TEXT and np.allclose(values, np.abs(f), rtol=1e-12):
-            continue  # Coulomb's coefficient is the friction
-        scaled = units(row)
-        assert scaled
-        in_units = [*map(str, values)] if row.type == TEXT else scaled.of(values)
-        columns.append(Column(plain(f"${row.symbol}$"), in_units, scaled.unit, scaled.name, path))
+        if row.type == TEXT or not np.allclose(data[path], np.abs(f), rtol=1e-12):
+            # else it is Coulomb's coefficient, which is the friction
+            columns += _columns(data, units, [_Spec(plain(f"${row.symbol}$"), row)])
     return columns
 
 
-def _columns(data: Mapping[str, Any], units: Units, specs: Sequence[_Spec]) -> list[Column]:
-    """Columns of the quantities that an archive has; without finite numbers there is none."""
-    columns = []
-    for head, rows in specs:
-        row = preferred(data, rows)
-        scaled = row and units(row)
-        if row and scaled and np.isfinite(data[row.path]).any():
-            place = head.startswith("at ")
-            head = f"{head}/a" if place and units.dimensionless else head
-            values = scaled.of(data[row.path])
-            along = row.scale in (X_OVER_A, CONTACT)
-            step = _STEP * float(np.max(units.length.factor))
+def _columns(
+    data: Mapping[str, Any], units: Units, specs: Sequence[_Spec], archived: bool = False
+) -> list[Column]:
+    """Columns of the quantities that an archive has; without finite numbers there is none.
+
+    Args:
+        data: datasets of the archive by path.
+        units: of the result.
+        specs: what the columns have.
+        archived: quantities without a unit of their own in the result are shown as archived, too.
+    """
+    columns, step = [], _STEP * float(np.max(units.length.factor))
+    for head, rows, digits, taken in specs:
+        row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
+        scaled = row and (units(row) or (as_archived(row, "") if archived else None))
+        if not row or not scaled:
+            continue
+        if row.type == TEXT:
+            texts = [*map(str, taken(data[row.path]))]
+            columns.append(Column(head, texts, "none", scaled.name, row.path))
+        elif archived or np.isfinite(data[row.path]).any():
+            place, along = head.startswith("at "), row.scale in (X_OVER_A, CONTACT)
             columns.append(
                 Column(
-                    head, values, scaled.unit, scaled.name, row.path, place=place,
-                    step=step if along and not units.dimensionless else 0.0,
+                    f"{head}/a" if place and units.dimensionless else head,
+                    scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
+                    step if along and not (units.dimensionless or archived) else 0.0,
                 )
             )  # fmt: skip
     return columns
@@ -270,18 +276,18 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     rows = preferred(data, {method: of_all[4] for method, of_all in layers.INTERFACE_EXTREMES.items()})
     if rows is None:
         return []
-    highest, at_highest, lowest, at_lowest = layers.INTERFACE_EXTREMES[rows.method][4:8]
-    stress, X = units.stress, units(at_highest, "")
+    high, high_X, low, low_X = layers.INTERFACE_EXTREMES[rows.method][4:8]
+    largest, lowest = np.abs(data[high.path]), np.abs(data[low.path])
+    shear = units.stress.of(np.maximum(largest, lowest))
+    X = units(high_X, "")
     assert X
-    down = np.abs(data[lowest.path]) > np.abs(data[highest.path])
-    shear = stress.of(np.where(down, np.abs(data[lowest.path]), np.abs(data[highest.path])))
-    places = X.of(np.where(down, data[at_lowest.path], data[at_highest.path]))
+    places = X.of(np.where(lowest > largest, data[low_X.path], data[high_X.path]))
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
         head = f"shear {engineering(depth, 'm')} deep" if several else "interface shear"
         name = f"interface_shear{f'_{i + 1}' * several}"
         columns += [
-            Column(head, shear[:, i], stress.unit, name),
+            Column(head, shear[:, i], units.stress.unit, name),
             Column(f"at X{'/a' * units.dimensionless}", places[:, i], X.unit, f"{name}_X", place=True),
         ]
     return columns
@@ -293,20 +299,18 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
     row = preferred(data, yielding.OF_LAYERS)
     if row is None:
         return []
-    values, columns = data[row.path], []
-    places = [rows[row.method] for rows in (yielding.OF_LAYERS_X, yielding.OF_LAYERS_Y)]
+    values, columns = units.stress.of(data[row.path]), []
+    X, Y = (data[rows[row.method].path] for rows in (yielding.OF_LAYERS_X, yielding.OF_LAYERS_Y))
+    places = {"X": units.position.of(X), "Y": units.length.of(Y)}
     shares = data.get(yielding.OVER_STRENGTH[row.method].path, np.full(values.shape, np.nan))
     for i in range(values.shape[1]):
         below = i == values.shape[1] - 1
         where = "below the layers" if below else f"in layer {i + 1}"
         name = f"von_mises_{'below' if below else i + 1}"
-        columns.append(
-            Column(f"von Mises {where}", units.stress.of(values[:, i]), units.stress.unit, name)
-        )
-        for head, scale, place in zip("XY", (units.position, units.length), places):
-            at = scale.of(data[place.path][:, i])
-            head = f"at {head}{'/a' * units.dimensionless}"
-            columns.append(Column(head, at, scale.unit, f"{name}_{head[3]}", place=True))
+        columns.append(Column(f"von Mises {where}", values[:, i], units.stress.unit, name))
+        for axis, at in places.items():
+            head, unit = f"at {axis}{'/a' * units.dimensionless}", units.length.unit
+            columns.append(Column(head, at[:, i], unit, f"{name}_{axis}", place=True))
         if np.isfinite(shares[:, i]).any():
             words = [_share(share) for share in shares[:, i]]
             columns.append(Column(f"yields {where}", words, "of the yield strength", f"{name}_yields"))
@@ -331,9 +335,8 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
         return [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
     else:
         return []
-    words = [_share(share) for share in shares]
-    loads = _columns(data, units, (("load at first yield", yielding.FIRST_LOAD),))
-    return [Column("yields", words, unit, "yields"), *loads]
+    loads = _columns(data, units, [_Spec("load at first yield", yielding.FIRST_LOAD)])
+    return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
 
 
 def layout(
@@ -400,8 +403,7 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
     if told:
         notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in told)}")
     notes += _notes(data, units, shown)
-    labels = [*map(str, range(min(count, LIMIT)))]
-    return replace(layout(title or "States", labels, shown, width), notes=notes)
+    return replace(layout(title or "States", _numbers(count), shown, width), notes=notes)
 
 
 def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
@@ -438,7 +440,7 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
     columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]
     kept = [c for c, before in zip(columns, [None, *columns]) if not c.place or before in columns]
-    labels = [*map(str, range(min(len(data[of.FRICTION.path]), LIMIT)))]
+    labels = _numbers(len(data[of.FRICTION.path]))
     return layout("Where answers hold", labels, kept, width) if kept else Sheet("", [], [])
 
 
@@ -451,15 +453,6 @@ def solved_speeds(data: Mapping[str, Any]) -> str:
     return f"finite elements: {solved} of {len(np.unique(c))} speeds solved, the others by a fit"
 
 
-#: Labels and quantities of loops in their table, and functions that combine values of all strokes.
-_OF_LOOPS: tuple[tuple[str, Quantity, Callable[[Any], Any]], ...] = (
-    ("work", runs.LOOP_WORK, lambda values: values.sum(axis=1)),
-    ("work of the closed loop", runs.LOOP_CYCLE, lambda values: values),
-    ("breakaway force", runs.LOOP_BREAKAWAY, lambda values: values.max(axis=1)),
-    ("stiffness", runs.LOOP_STIFFNESS, lambda values: values[:, 0]),
-)
-
-
 def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the first friction loops: work, breakaway force and stiffness.
 
@@ -467,22 +460,19 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """
     if preferred(data, of.RESULTANT_RATIO):
         return Sheet("", [], [])
-    of_state, count = data[runs.LOOP_OF_STATE.path], len(data[runs.LOOP_F.path])
-    states = [int(np.argmax(of_state == n)) for n in range(count)]
+    _, states = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
+    states = states[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
     columns = [
-        Column(c.head, [c.values[i] for i in states], c.unit, c.name, c.path, c.digits)
+        replace(c, values=[c.values[i] for i in states])
         for c in _parameter_columns(data, units)
         if c.name not in ("motion", "X_over_L", "f") and not c.constant
     ]
-    for head, row, reduced in _OF_LOOPS:
-        scaled = units(row)
-        if row.path in data and scaled and np.nan_to_num(values := reduced(data[row.path])).any():
-            columns.append(Column(head, scaled.of(values), scaled.unit, scaled.name, row.path, digits=5))
+    columns += [c for c in _columns(data, units, _OF_LOOPS) if np.nan_to_num(c.values).any()]
     note = "all per depth, in all strokes; stiffness: where the first stroke begins"
     if of.LOAD.path in data:
         load = units.scale(of.LOAD.unit)
         note += f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
-    sheet = layout("Friction loops", [*map(str, range(min(count, LIMIT)))], columns, width, "loop")
+    sheet = layout("Friction loops", _numbers(len(states)), columns, width, "loop")
     return replace(sheet, notes=[note])
 
 
@@ -508,25 +498,12 @@ def inner_sheet(data: dict[str, Any]) -> Sheet:
     return Sheet("Inner state of the friction law", heads, rows, notes)
 
 
-_OF_SLIDERS = (
-    ("period", runs.PERIOD), ("slip per cycle", runs.SLIP), ("peak velocity", runs.PEAK),
-    ("least velocity", runs.LEAST),
-)  # fmt: skip
-
-
 def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the motion of the slider for the first laws, with its stick-slip."""
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
-    outcomes = [*map(str, data[runs.OUTCOME.path])]
-    columns = [Column("motion", outcomes, "none", "outcome", runs.OUTCOME.path)]
-    for head, row in _OF_SLIDERS:
-        scaled = units(row)
-        if scaled and np.isfinite(data[row.path]).any():
-            columns.append(
-                Column(head, scaled.of(data[row.path]), scaled.unit, scaled.name, row.path, digits=6)
-            )
-    labels = [*map(str, range(min(len(outcomes), LIMIT)))]
+    columns = _columns(data, units, [_Spec("motion", runs.OUTCOME), *_OF_SLIDERS])
+    labels = _numbers(len(data[runs.OUTCOME.path]))
     return layout("Motion of the slider", labels, columns, width, "law")
 
 
@@ -536,42 +513,43 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
         return Sheet(title, [], [])
-
-    def scaled(row: Quantity) -> Scaled:
-        return units(row) or as_archived(row, "")
-
-    def column(head: str, row: Quantity, digits: int = 5) -> Column:
-        values = data[row.path]
-        last = values[:, -1] if values.ndim == 2 else values
-        return Column(head, scaled(row).of(last), scaled(row).unit, digits=digits)
-
-    time = scaled(over_time.TIMES)
+    time = units(over_time.TIMES) or as_archived(over_time.TIMES, "")
     end, when = float(data[over_time.TIMES.path][-1]), data[over_time.WITHIN[method].path][:, 1]
+    ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]]
+    specs = (
+        _Spec("c" if units.dimensionless else "speed", over_time.SPEED, 6),
+        _Spec("σ_XY/σ_YY", over_time.RATIO, 5),
+        _Spec("v₀", over_time.V0[method], 5, _last),
+        _Spec("centre", over_time.CENTRE[method], 5, _last),
+        _Spec("K_I left", over_time.K_I_LEFT[method], 5, _last),
+        _Spec("K_I right", over_time.K_I_RIGHT[method], 5, _last),
+        _Spec("centre in steady motion", over_time.STEADY_CENTRE, 5),
+    )
     columns = [
-        Column(
-            "way", ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]], "none"
-        ),
-        column("c" if units.dimensionless else "speed", over_time.SPEED, 6),
-        column("σ_XY/σ_YY", over_time.RATIO),
-        column("v₀", over_time.V0[method]),
-        column("centre", over_time.CENTRE[method]),
-        column("K_I left", over_time.K_I_LEFT[method]),
-        column("K_I right", over_time.K_I_RIGHT[method]),
-        column("centre in steady motion", over_time.STEADY_CENTRE),
+        Column("way", ways, "none"),
+        *_columns(data, units, specs, archived=True),
         Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3),
         Column("within 1 % from", [_when(t, end, time) for t in when], "none"),
     ]
     by_formula = data[over_time.APPROACH.path]
     if np.isfinite(by_formula).any():
         columns.append(Column("by formula", [_rounded(t, time) for t in by_formula], "none"))
-    labels = [*map(str, range(min(len(when), LIMIT)))]
     notes = [
         f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X",
         "off: largest relative difference of K_I, or of the centre over a, from steady motion",
         "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
         "K_I: dimensionless, by the final load",
     ]
-    return replace(layout(title, labels, columns, width, "start"), notes=notes)
+    return replace(layout(title, _numbers(len(when)), columns, width, "start"), notes=notes)
+
+
+def _last(values: Any) -> Any:
+    return values[:, -1]
+
+
+def _numbers(count: int) -> list[str]:
+    """Labels of the first rows of a table."""
+    return [*map(str, range(min(count, LIMIT)))]
 
 
 def _when(time: float, end: float, scaled: Scaled) -> str:

@@ -49,6 +49,10 @@ class Steady:
         )
 
 
+#: A stroke by its speed over c_s, σ_XY/σ_YY and wave crossings.
+Stroke = tuple[float, float, float]
+
+
 class Validity:
     """Warnings where answers do not hold, collected from datasets that come in parts.
 
@@ -58,9 +62,9 @@ class Validity:
 
     def __init__(self, steady: Steady | None = None) -> None:
         self._steady = steady
-        #: Speed, σ_XY/σ_YY and wave crossings of the shortest stroke, and of the fastest that has enough.
-        self._shortest: tuple[float, float, float] | None = None
-        self._fastest: tuple[float, float, float] | None = None
+        #: The shortest stroke, which has few crossings, and the fastest that has enough.
+        self._shortest: Stroke | None = None
+        self._fastest: Stroke | None = None
         self._states: dict[str, int] = {}
         self._worst: dict[str, float] = {}
         self._where = 0.0
@@ -73,19 +77,19 @@ class Validity:
             often = data[of.CROSSINGS.path]
             self._count("crossings", often < FEW, -often)
             if self._steady and SPEED.path in data and RATIO.path in data:
-                self._see_strokes(*(data[row.path] for row in (SPEED, RATIO, of.CROSSINGS)))
+                for stroke in zip(*(data[row.path].tolist() for row in (SPEED, RATIO, of.CROSSINGS))):
+                    self._see_stroke(stroke)
         if RATIO.path in data and all(row.path in data for row in of.FLUTTER.values()):
             g = data[RATIO.path]
             threshold = np.where(g > 0.0, *(data[of.FLUTTER[sign].path] for sign in of.SIGNS))
-            steep = np.abs(g) >= threshold
+            steep = (np.abs(g) >= threshold) & (g != 0.0)
             self._count("ratio", steep, np.abs(g))
             self._steep |= {*threshold[steep].tolist()}
         for name, ends in (("slip", of.SLIP_REVERSED), ("strain", of.STRAIN)):
             if ends[0].path in data:
                 width = np.max([data[end.path] for end in ends], axis=0)
                 self._count(name, width > WIDE, width)
-        methods = [method for method, row in of.TENSION.items() if row.path in data]
-        if methods:
+        if methods := [method for method, row in of.TENSION.items() if row.path in data]:
             each, where = (
                 np.array([data[rows[method].path] for method in methods])
                 for rows in (of.TENSION, of.TENSION_X)
@@ -95,19 +99,14 @@ class Validity:
                 self._where = float(where.flat[np.nanargmax(each)])
             self._count("tension", tension > 0.0, tension)
 
-    def _see_strokes(self, c: NDArray, g: NDArray, often: NDArray) -> None:
-        states = np.column_stack([c, g, often])[np.isfinite(often)]
-        few, enough = states[states[:, 2] < FEW], states[states[:, 2] >= FEW]
-        if len(few):
-            shortest = few[np.lexsort([-np.abs(few[:, 1]), few[:, 2]])[0]]
-            self._shortest = min(
-                self._shortest or (0.0, 0.0, np.inf), tuple(shortest), key=lambda stroke: stroke[2]
-            )
-        if len(enough):
-            fastest = enough[np.lexsort([-np.abs(enough[:, 1]), -enough[:, 0]])[0]]
-            self._fastest = max(
-                self._fastest or (-1.0, 0.0, 0.0), tuple(fastest), key=lambda stroke: stroke[0]
-            )
+    def _see_stroke(self, stroke: Stroke) -> None:
+        c, g, often = stroke
+        shortest, fastest = self._shortest, self._fastest
+        if often < FEW:
+            if not shortest or (often, -abs(g)) < (shortest[2], -abs(shortest[1])):
+                self._shortest = stroke
+        elif isfinite(often) and (not fastest or (c, abs(g)) > (fastest[0], abs(fastest[1]))):
+            self._fastest = stroke
 
     def _count(self, name: str, bad: NDArray, size: NDArray) -> None:
         if bad.any():
@@ -136,11 +135,18 @@ class Validity:
         ):
             yield f"the steady state is reported, but {text}"
         if "ratio" in worst:
-            least = " or ".join(f"{threshold:.3g}" for threshold in sorted(self._steep))
-            yield (
-                f"|σ_XY/σ_YY| is up to {worst['ratio']}, and at least {least} in {states['ratio']}: from "
-                "there on such an interface may flutter at short waves"
-            )
+            up_to, steep = f"|σ_XY/σ_YY| is up to {worst['ratio']}", sorted(self._steep)
+            if steep[0] > 0.0:
+                least = " or ".join(f"{threshold:.3g}" for threshold in steep)
+                yield (
+                    f"{up_to}, and at least {least} in {states['ratio']}: from there on such an "
+                    "interface may flutter at short waves"
+                )
+            else:
+                yield (
+                    f"{up_to} in {states['ratio']}: short waves between these two bodies grow under any "
+                    "friction; such an interface may flutter"
+                )
         if "slip" in worst:
             yield (
                 f"slip has turned round up to {worst['slip']} a from an edge, beyond {WIDE:g} a in "

@@ -81,38 +81,37 @@ def barycentric(nodes: NDArray, weights: NDArray, z: NDArray) -> NDArray[np.floa
     return np.asarray(b / b.sum(axis=1)[:, None])
 
 
-def chebyshev_nodes(count: int, low: float, high: float) -> tuple[NDArray, NDArray]:
-    """Chebyshev's nodes from low to high, and the barycentric weights of the polynomial through them."""
-    angle = np.pi * (2.0 * np.arange(count) + 1.0) / (2.0 * count)
-    nodes = (low + high) / 2.0 - (high - low) / 2.0 * np.cos(angle)
-    return nodes, (-1.0) ** np.arange(count) * np.sin(angle)
-
-
-def polynomial_weights(nodes: NDArray) -> NDArray[np.float64]:
-    """Barycentric weights of the polynomial through values at any nodes, all different, (nodes,)."""
-    step = nodes[:, None] - nodes + np.eye(len(nodes))
-    logs = np.log(np.abs(step)).sum(axis=1)
-    return np.asarray(np.prod(np.sign(step), axis=1) * np.exp(logs.min() - logs))
-
-
 @dataclass(frozen=True)
-class Rational:
-    """A rational function through samples of many functions.
+class Barycentric:
+    """A rational function through values of many functions at nodes, in the barycentric form.
 
     Attributes:
-        z: of the samples, (K,).
-        weights: of the barycentric form, (K,).
+        nodes: all different, (nodes,).
+        weights: of the form, (nodes,).
     """
 
-    z: NDArray[np.float64]
+    nodes: NDArray[np.float64]
     weights: NDArray[np.float64]
 
     def shares(self, z: NDArray) -> NDArray[np.float64]:
-        """Matrix from the samples to values at z, (len(z), K)."""
-        return barycentric(self.z, self.weights, z)
+        """Matrix from values at the nodes to values at z, (len(z), nodes)."""
+        return barycentric(self.nodes, self.weights, z)
 
 
-def fit_rational(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
+def polynomial_through(nodes: NDArray) -> Barycentric:
+    """Polynomial through values at any nodes, all different, (nodes,)."""
+    step = nodes[:, None] - nodes + np.eye(len(nodes))
+    logs = np.log(np.abs(step)).sum(axis=1)
+    return Barycentric(nodes, np.prod(np.sign(step), axis=1) * np.exp(logs.min() - logs))
+
+
+def chebyshev_nodes(count: int, low: float, high: float) -> NDArray[np.float64]:
+    """Chebyshev's nodes between low and high, rising, (count,)."""
+    angle = np.pi * (2.0 * np.arange(count) + 1.0) / (2.0 * count)
+    return np.asarray((low + high) / 2.0 - (high - low) / 2.0 * np.cos(angle))
+
+
+def fit_rational(z: NDArray, values: NDArray, noise: float = 0.0) -> Barycentric:
     """Rational function through samples, with the denominator of the AAA algorithm.
 
     The algorithm takes the sample with the largest error as its next node until it comes near all
@@ -140,7 +139,7 @@ def fit_rational(z: NDArray, values: NDArray, noise: float = 0.0) -> Rational:
         rows = loewner.transpose(0, 2, 1).reshape(-1, len(nodes))
         weights = np.linalg.svd(rows)[2][-1]
         fit = barycentric(z[nodes], weights, z) @ values[nodes]
-    return Rational(z, _through_all(z, nodes, weights, rest))
+    return Barycentric(z, _through_all(z, nodes, weights, rest))
 
 
 def rotated(values: NDArray) -> NDArray[np.float64]:

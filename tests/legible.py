@@ -55,22 +55,16 @@ def _under_legends(figure, renderer):
     legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
     boxes = [legend.get_window_extent(renderer) for legend in legends]
     for axes in figure.axes:
-        # Insets lie on their panel, and no more than legends on what it shows.
-        boxes_here = [*boxes, *(inset.get_tightbbox(renderer) for inset in _insets(axes))]
         for line in axes.lines:
             points = line.get_transform().transform(np.column_stack(line.get_data(orig=False)))
             seen = points[_inside(axes.bbox, points)]
-            for box in boxes_here:
+            for box in boxes:
                 if _inside(box, seen).any():
                     yield f"a box lies on the curve {line.get_label()!r}"
     for box in boxes:
         for axes in figure.axes:
             if _overlap(box, axes.bbox):
                 yield "a legend lies on a panel"
-
-
-def _insets(axes):
-    return [child for child in axes.child_axes if axes.bbox.fully_overlaps(child.bbox)]
 
 
 def _inside(box, points):

@@ -200,8 +200,8 @@ def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
     from galinx.solvers.fem.space import Space, distribute
 
     comm, kind = comm or MPI.COMM_SELF, MESHES[mesh]
-    piece = kind.build(refinement, 1, comm.rank, comm.size)
-    return Space(*distribute(piece, comm), TAGS, kind.chart, degree, form, 0 if kind.walls else 8)
+    cells = None if comm.rank else kind.build(refinement)
+    return Space(*distribute(cells, comm), TAGS, kind.chart, degree, form, 0 if kind.walls else 8)
 
 
 def small_punch(c=0.6, **options):

@@ -3,7 +3,6 @@
 from contextlib import contextmanager
 
 import h5py
-import numpy as np
 
 from galinx.postprocess.hdf5 import archive
 
@@ -47,26 +46,3 @@ def gone(name):
 
 def renamed(old, new):
     return lambda file: file.move(old, new)
-
-
-def made(name, data, **options):
-    """Another dataset in the place of one."""
-
-    def apply(file):
-        told = dict(file[name].attrs)
-        del file[name]
-        file.create_dataset(name, data=data, **options).attrs.update(told)
-
-    return apply
-
-
-def texts(name, data):
-    """The same, of texts as archives have them."""
-    return made(name, np.asarray(data, object), dtype=h5py.string_dtype())
-
-
-def numbers(name, data):
-    """The same, of numbers as archives have them: with checksums where there can be some."""
-    data = np.asarray(data)
-    chunks = data.shape if data.shape and data.size else None
-    return made(name, data, fletcher32=bool(chunks), chunks=chunks)

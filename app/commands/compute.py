@@ -1,7 +1,6 @@
 """Commands that compute: run, plan, paper."""
 
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -75,13 +74,23 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
 
     from ..run.flow import compute
 
+    def kept() -> str:
+        states = journal.states
+        return (
+            f"{states} finished states are kept, go on with --resume"
+            if states
+            else "nothing was finished"
+        )
+
+    def leave() -> str:
+        journal.leave()
+        return kept()
+
     try:
         with journal, archive.Writer(target, journal.folder) as writer:
             if journal.states and not progress.quiet:
                 say(f"resume: {counted(journal.states, 'state')} of an interrupted run taken over")
-            with process.leaving(
-                lambda: _keep_finished(journal), "what is finished is kept, go on with --resume"
-            ):
+            with process.leaving(leave):
                 with clock("other"):
                     attributes = compute(scene, writer, progress, journal, clock)
                 process.too_late()
@@ -92,21 +101,9 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
             progress.note(f"verdict: {attributes['verdict']}; archive: {target.path}")
     except UnwritableArchive as error:
         if type(error) is UnwritableArchive:  # others say themselves what is to be done
-            raise UnwritableArchive(f"{error}; {_kept(journal)}") from error
+            raise UnwritableArchive(f"{error}; {kept()}") from error
         raise
     return attributes["verdict"]
-
-
-def _keep_finished(journal: Any) -> str:
-    """Keep finished states when the process ends at once; return the sentence on them."""
-    journal.leave()
-    return _kept(journal)
-
-
-def _kept(journal: Any) -> str:
-    """Sentence on the finished states that are kept, and on how to go on."""
-    kept = journal.states
-    return f"{kept} finished states are kept, go on with --resume" if kept else "nothing was finished"
 
 
 @click.command()
@@ -126,22 +123,16 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     if ranks.is_root():
         for text in lines_of(checked, variants):
             say(f"do    {text}", 6)
-        for text in _folded(text for planned in plans for text in planned.skipped):
-            say(f"skip  {text}", 6)
+        reasons: dict[str, dict[str, None]] = {}
+        for what, _, reason in (text.partition(": ") for each in plans for text in each.skipped):
+            name = what.rpartition("/")[2] if what.startswith("states/") else what
+            reasons.setdefault(reason, {})[name] = None
+        for reason, names in reasons.items():
+            say(f"skip  {', '.join(names)}: {reason}", 6)
         say(f"cost  {expense(*plans)}", 6)
         for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)
     return errors.GOOD
-
-
-def _folded(skipped: Iterable[str]) -> list[str]:
-    """Skipped work, one line for each reason."""
-    by_reason: dict[str, list[str]] = {}
-    for text in skipped:
-        what, _, reason = text.partition(": ")
-        name = what.rpartition("/")[2] if what.startswith("states/") else what
-        by_reason.setdefault(reason, []).append(name)
-    return [f"{', '.join(dict.fromkeys(names))}: {reason}" for reason, names in by_reason.items()]
 
 
 @click.command()

@@ -6,6 +6,7 @@ programs, csv.
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -158,6 +159,11 @@ _MEASURED = click.option(
 )  # fmt: skip
 
 
+def _text(name: str, metavar: str, about: str, *parameter: str) -> Any:
+    """Option that takes a text, by default none."""
+    return click.option(f"--{name}", *parameter, default="", metavar=metavar, help=about)
+
+
 def _given(*files: Path | None) -> list[Path]:
     return [file for file in files if file]
 
@@ -165,7 +171,7 @@ def _given(*files: Path | None) -> list[Path]:
 @click.command()
 @click.argument("archives", type=options.FILE, nargs=-1, required=True)
 @click.option("-o", "to", type=options.PATH, help="Draw them as well: folder, or a file.")
-@click.option("--states", default="", metavar="NUMBERS", help="States of the first: 0,4,7 or 0-3.")
+@_text("states", "NUMBERS", "States of the first: 0,4,7 or 0-3.")
 @_MEASURED
 @options.dimensionless
 @options.overwrite
@@ -205,34 +211,23 @@ def compare(
 @click.command()
 @options.archive
 @options.figures_to
-@click.option(
-    "--figure",
-    default="",
-    metavar="NAMES",
-    help="surface, along, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
+@_text(
+    "figure",
+    "NAMES",
+    "surface, along, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
     "energies, degrees, mesh, film; several as in surface,mesh; all for all.",
 )
-@click.option("--states", default="", metavar="NUMBERS", help="States, see show: 0,4,7 or 0-3.")
-@click.option("--quantity", default="", metavar="NAMES", help="Stresses, as in sigma_XX,von_mises.")
-@click.option("--method", default="", metavar="NAME", help="closed_form, sie or fem; default: all.")
-@click.option(
-    "--x", default="", metavar="NAME", help="Parameter that numbers of states are drawn over, as mu_c."
-)
-@click.option("--y", default="", metavar="NAMES", help="These numbers, as in K_I_left,v0.")
-@click.option("--by", default="", metavar="NAME", help="Parameter that distinguishes their curves.")
-@click.option(
-    "--size", default="", metavar="SIZE", help="Width as 3.5in, or 89mm x 60mm; in, cm, mm, pt."
-)
+@_text("states", "NUMBERS", "States, see show: 0,4,7 or 0-3.")
+@_text("quantity", "NAMES", "Stresses, as in sigma_XX,von_mises.")
+@_text("method", "NAME", "closed_form, sie or fem; default: all.")
+@_text("x", "NAME", "Parameter that numbers of states are drawn over, as mu_c.")
+@_text("y", "NAMES", "These numbers, as in K_I_left,v0.")
+@_text("by", "NAME", "Parameter that distinguishes their curves.")
+@_text("size", "SIZE", "Width as 3.5in, or 89mm x 60mm; in, cm, mm, pt.")
 @click.option(
     "--dpi", type=int, default=0, metavar="NUMBER", help="Dots per inch; default: 300, of films 160."
 )
-@click.option(
-    "--format",
-    "formats",
-    default="",
-    metavar="NAMES",
-    help="pdf, png, svg; of films mp4, gif; default: pdf,png.",
-)
+@_text("format", "NAMES", "pdf, png, svg; of films mp4, gif; default: pdf,png.", "formats")
 @_MEASURED
 @options.dimensionless
 @options.overwrite
@@ -250,7 +245,7 @@ def plot(
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
     from ..figures import choice
-    from ..figures.archive import in_units, write
+    from ..figures.archive import write
     from ..figures.files import Files
     from ..figures.measured import read as read_measured
     from ..results.result import load
@@ -261,19 +256,12 @@ def plot(
         method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
         measured=read_measured(measured) if measured else None,
     )  # fmt: skip
-    files = Files(
-        to,
-        archive.stem,
-        choice.words(formats),
-        dpi,
-        overwrite,
-        options.inputs(archive, *_given(measured)),
-    )
+    inputs = options.inputs(archive, *_given(measured))
+    files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, inputs)
     result = load(archive)
     if ranks.is_root():
-        selection = in_units(selection, result.units(dimensionless))
-        written = write(result.data, result.scene, selection, files)
-        _print_files(written)
+        selection = replace(selection, units=result.units(dimensionless))
+        _print_files(write(result.data, result.scene, selection, files))
     return errors.GOOD
 
 
@@ -344,21 +332,13 @@ _FREQUENCY = click.FloatRange(0.0, 1e6, min_open=True)
 @click.option(
     "--to", "last", type=_FREQUENCY, help="Highest one; default: 10, or as far as speeds allow."
 )
-@click.option(
-    "--points", type=click.IntRange(2, 1000), default=41, show_default=True, help="How many."
-)  # fmt: skip
+@click.option("--points", type=click.IntRange(2, 1000), default=41, show_default=True, help="How many.")
 @options.figures_to
 @options.overwrite
 def response(
-    scene: Path,
-    changes: tuple[str, ...],
-    unset: tuple[str, ...],
-    first: float,
-    last: float | None,
-    points: int,
-    to: Path,
-    overwrite: bool,
-) -> int:
+    scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], first: float, last: float | None,
+    points: int, to: Path, overwrite: bool,
+) -> int:  # fmt: skip
     """Print and draw the dynamic stiffness of the flat punch of SCENE under loads that oscillate.
 
     The stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at

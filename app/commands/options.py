@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -25,35 +26,30 @@ _OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".v
 
 
 class _Path(click.Path):
-    """A path; one that no file can have is bad input, not a failure of the machine."""
+    """A path; one that no file can have is bad input, not a failure of the machine.
+
+    Args:
+        of: ``"file"`` for a file alone, whose name does not end with a slash; ``"folder"`` for a folder,
+            whose name does not say a file: that is one of somebody who expects a single file.
+    """
+
+    def __init__(self, of: str = "") -> None:
+        super().__init__(path_type=Path)
+        self._of = of
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         for name in Path(value).parts:
             if len(os.fsencode(name)) > _LONGEST:
                 self.fail(f"found a name of {len(os.fsencode(name))} bytes, expected at most {_LONGEST}")
-        return super().convert(value, param, ctx)
-
-
-class _File(_Path):
-    """A file's path; a name that ends with a slash is a folder's, and would lose the slash."""
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        if str(value).endswith(os.sep):
+        if self._of == "file" and str(value).endswith(os.sep):
             self.fail(f"found {value!r}, the name of a folder; expected a file's, as in {value}NAME")
-        return super().convert(value, param, ctx)
-
-
-class _Folder(_Path):
-    """A folder's path; a name that says a file is one of somebody who expects a single file."""
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         path = super().convert(value, param, ctx)
-        if path.suffix.lower() in _OF_FILES and not path.is_dir():
+        if self._of == "folder" and path.suffix.lower() in _OF_FILES and not path.is_dir():
             self.fail(f"{value}: found a name that ends with {path.suffix}, expected a folder for files")
         return path
 
 
-FILE, FOLDER, PATH = _File(path_type=Path), _Folder(path_type=Path), _Path(path_type=Path)
+FILE, FOLDER, PATH = _Path("file"), _Path("folder"), _Path()
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)
@@ -94,13 +90,9 @@ dimensionless = click.option(
 )  # fmt: skip
 
 figures_to = click.option(
-    "-o",
-    "to",
-    type=_Path(path_type=Path),
-    default=Path("."),
-    show_default=True,
+    "-o", "to", type=PATH, default=Path("."), show_default=True,
     help="Folder, which is made, or a file: its ending is the format.",
-)
+)  # fmt: skip
 
 overwrite = click.option(
     "--overwrite", is_flag=True, help="Replace what has that name, whatever kind of file it is."
@@ -148,6 +140,7 @@ def folder(default: str) -> Callable[[Any], Any]:
 def talk(command: Any) -> Any:
     """Options ``--quiet``, ``--verbose`` and ``--log``; the command gets a ``progress``."""
 
+    @wraps(command)
     def with_progress(quiet: bool, verbose: bool, log: Path | None, **others: Any) -> Any:
         if quiet and verbose:
             raise click.UsageError("--quiet and --verbose exclude each other; keep one")
@@ -156,8 +149,6 @@ def talk(command: Any) -> Any:
             Target(log, LOG, inputs=[*read, *_extensions()])
         return command(progress=Progress(quiet, verbose, log), quiet=quiet, **others)
 
-    with_progress.__name__, with_progress.__doc__ = command.__name__, command.__doc__
-    with_progress.__click_params__ = getattr(command, "__click_params__", [])  # type: ignore[attr-defined]
     for option in (
         click.option("--log", type=FILE, help="Add every step, with its time, to this file."),
         click.option("-v", "--verbose", is_flag=True, help="Every step as a line on the error stream."),

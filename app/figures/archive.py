@@ -5,29 +5,25 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from galinx.postprocess.quantities.quantity import METHODS
 from galinx.postprocess.quantities.states import FRICTION
-from galinx.postprocess.quantities.stresses import SURFACE_X
-from galinx.postprocess.units import Units
 from galinx.texts import number
 
 from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
-from . import along, friction, motion, numerics, stresses, sweep
+from . import friction, motion, numerics, stresses, sweep
 from .choice import Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
 from .render import Curve, Film, Panel, TooSmall
-from .states import PLACE, STROKE, StateLabels, not_shown
+from .states import PLACE, STROKE, not_shown
 from .style import Look, looks
 
-_Data = dict[str, Any]
-#: A choice that leaves everything open, and the name that stands for all figures.
-_PLAIN, ALL = Choice(), "all"
+#: Name that stands for all figures, and a choice that leaves everything open.
+ALL, PLAIN = "all", Choice()
+#: Frames that a film has at least.
+_LEAST_FRAMES = 4
 
 
 @dataclass(frozen=True)
@@ -35,31 +31,10 @@ class _Figure:
     """A kind of figure: how it is drawn, whether an archive has it, the options that it follows, and
     whether it is drawn without being named."""
 
-    draw: Callable[[Archive], Drawing]
+    draw: Callable[[Archive], Any]
     has: Callable[[Archive], bool]
     follows: frozenset[str] = frozenset()
-    usual: bool = False
-
-
-_STRESSES = frozenset({"states", "quantities", "method"})
-
-
-def _no_figure(of: Archive) -> Drawing:
-    raise AssertionError("a film is no figure")
-
-
-#: Frames that a film has at least.
-_LEAST_FRAMES = 4
-
-
-def _has_film(of: Archive) -> bool:
-    """Return True if an archive has enough states along the strokes, or times, and stresses to show."""
-    return _has_strokes(of) or motion.has_film(of) or motion.has_pressures(of)
-
-
-def _has_strokes(of: Archive) -> bool:
-    shown = stresses.surface_names(of) or stresses.has_map(of)
-    return bool(shown) and len(_frames(of)) >= _LEAST_FRAMES
+    usual: Callable[[Archive], bool] | None = None
 
 
 def film(of: Archive) -> tuple[Film, str]:
@@ -68,18 +43,17 @@ def film(of: Archive) -> tuple[Film, str]:
     Raises:
         BadInput: there are too few states along the strokes.
     """
-    if not _has_strokes(of):
-        if motion.has_film(of):
-            return motion.film_of_surface(of)
-        if motion.has_pressures(of):
-            return motion.pressure_film(of)
+    if not _has_strokes(of) and motion.has_film(of):
+        return motion.film_of_surface(of)
+    if not _has_strokes(of) and motion.has_pressures(of):
+        return motion.pressure_film(of)
     labels, frames = of.labels, _frames(of)
     if len(frames) < _LEAST_FRAMES:
         raise BadInput(
             f"a film needs at least {_LEAST_FRAMES} states along strokes, found {len(frames)}; give "
             "motion.X_over_L more places"
         )
-    loop = Loops(of).of(int(frames[0]))
+    loop = Loops(of).of(frames[0])
     if loop is None:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
     f, X = of.data[FRICTION.path], labels.values(PLACE)
@@ -87,101 +61,98 @@ def film(of: Archive) -> tuple[Film, str]:
     beside = _stresses_of(of, frames)
 
     def panels(frame: int) -> list[Panel]:
-        i = int(frames[frame])
+        i = frames[frame]
         dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form="markers")
         title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
         return [replace(base, curves=[*base.curves, dot], title=title), *beside[frame]]
 
-    return Film(panels, len(frames), of.size), not_shown(
-        labels, frames.tolist(), "--figure film --states", of.choice.states
-    )
+    left_out = not_shown(labels, frames, "--figure film --states", of.choice.states)
+    return Film(panels, len(frames), of.size), left_out
 
 
-def _stresses_of(of: Archive, frames: NDArray) -> list[list[Panel]]:
-    """Stresses along the surface by one method, or maps where there are none or they are chosen, of every
-    frame."""
-    available, chosen = stresses.surface_names(of), of.choice.quantities
-    if available and set(chosen) <= set(available):
-        data_X, shown = of.data[SURFACE_X.path], stresses.surface_stresses(of)
-        made: list[list[Panel]] = [[] for _ in frames]
-        for label, values in shown.items():
-            drawn = next(iter(values.values()))[frames]
-            half, ylim = stresses.along(data_X, drawn), stresses.limits(data_X, drawn)
-            for n, i in enumerate(frames.tolist()):
-                place = stresses.place_of(of, i)
-                curve = stresses.surface_curves(data_X, {"": drawn[n]}, looks(1)[0], "", 0.0, place)[0]
-                window = place[1] - half * place[0], place[1] + half * place[0]
-                bands = stresses.contacts_of(of, [i]) if half > 1.5 else ()
-                name = stresses.position_name(of, "")
-                made[n].append(
-                    Panel(name, label, curves=[curve], xlim=window, ylim=ylim, bands=bands, at_y=(0.0,))
-                )
+def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
+    """Panels of every frame: stresses along the surface by one method, or maps where there are none or
+    they are chosen."""
+    made: list[list[Panel]] = [[] for _ in frames]
+    chosen, x = of.choice.quantities, stresses.position_name(of, "")
+    if stresses.has_surface(of):
+        method = next(iter(next(iter(stresses.Surface(of).values.values()))))
+        shown = stresses.Surface(Archive(of.data, of.scene, replace(of.choice, method=method)))
+        for name in shown.values:
+            ylim = stresses.limits(shown.X, shown.drawn(name)[frames])
+            for panels, i in zip(made, frames):
+                states = [stresses.Shown(shown, i, looks(1)[0])]
+                panels.append(stresses.surface_panel(name, states, ylim, x=x))
         return made
     fields = stresses.Fields(of)
-    made = [[] for _ in frames]
     for name in chosen or ("sigma_XX", "von_mises"):
-        method = fields.methods[0]
-        every = np.array([fields.values(name, method, int(i)) for i in frames])
-        limit = float(np.quantile(np.abs(every), 0.985)) or 1.0
-        for n, i in enumerate(frames.tolist()):
-            shown_map = stresses.map_of(of, fields, name, method, i, limit, label=fields.label(name))
-            X, Y = stresses.position_name(of, ""), stresses.position_name(of, "").replace("X", "Y")
-            made[n].append(Panel(X, Y, map=replace(shown_map, level=0.0, equal=False)))
+        values, limit = fields.of_states(name, fields.methods[0], frames)
+        options = {"label": fields.label(name), "level": 0.0, "equal": False}
+        for panels, i, of_state in zip(made, frames, values):
+            panels.append(fields.panel(name, of_state, i, limit, **options))
     return made
 
 
-def _frames(of: Archive) -> NDArray[np.int64]:
+def _has_strokes(of: Archive) -> bool:
+    shown = stresses.surface_names(of) or stresses.map_names(of)
+    return bool(shown) and len(_frames(of)) >= _LEAST_FRAMES
+
+
+def _has_film(of: Archive) -> bool:
+    """Return True if an archive has enough states along the strokes, or times, and stresses to show."""
+    return _has_strokes(of) or motion.has_film(of) or motion.has_pressures(of)
+
+
+def _frames(of: Archive) -> list[int]:
     """States of one law and speed, in the order of travel."""
-    labels, choice = of.labels, of.choice
-    states = of.selected()
+    labels, states = of.labels, of.selected()
     rest = [name for name in labels.varied(states) if name not in (STROKE, PLACE)]
-    if not choice.states:
+    if not of.choice.states:
         states = labels.where(states, **labels.fixed(rest, states))
     elif rest:
         raise BadInput(f"--states: a film follows one law at one speed, found several {', '.join(rest)}")
-    return _in_order(labels, states)
+    strokes, X = labels.values(STROKE), labels.values(PLACE)
+    every = labels.distinct(STROKE)
+
+    def travelled(i: int) -> tuple[int, float]:
+        return every.index(strokes[i]), X[i] if strokes[i].startswith("F") else -X[i]
+
+    return sorted(states.tolist(), key=travelled)
 
 
-def _in_order(labels: StateLabels, states: NDArray) -> NDArray[np.int64]:
-    strokes = list(dict.fromkeys(labels.values(STROKE).tolist()))
-    order = [
-        (strokes.index(stroke), X if stroke.startswith("F") else -X)
-        for stroke, X in zip(
-            labels.values(STROKE)[states].tolist(), labels.values(PLACE)[states].tolist()
-        )
-    ]
-    return states[sorted(range(len(states)), key=order.__getitem__)]
+def _always(of: Archive) -> bool:
+    return True
 
+
+_STRESSES = frozenset({"states", "quantities", "method"})
 
 #: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
-    "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES | {"measured"}, True),
-    "along": _Figure(along.along, along.has_along, frozenset({"states", "method"}), True),
-    "inside": _Figure(stresses.inside, stresses.has_inside, _STRESSES, True),
+    "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES | {"measured"}, _always),
+    "along": _Figure(
+        stresses.friction_along, stresses.has_along, frozenset({"states", "method"}), _always
+    ),
+    "inside": _Figure(stresses.inside, stresses.has_inside, _STRESSES, _always),
     "parameters": _Figure(
-        sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), True
+        sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _always
     ),
     "friction": _Figure(
-        friction.friction, lambda of: not of.scene.steady, frozenset({"states", "measured"}), True
+        friction.friction, lambda of: not of.scene.steady, frozenset({"states", "measured"}),
+        friction.has_loop,
     ),
-    "slider": _Figure(friction.slider, friction.has_slider, usual=True),
-    "time": _Figure(motion.time, motion.has_motions, usual=True),
+    "slider": _Figure(friction.slider, friction.has_slider, usual=_always),
+    "time": _Figure(motion.time, motion.has_motions, usual=_always),
     "interfaces": _Figure(stresses.interfaces, stresses.has_interfaces, _STRESSES),
     "pressures": _Figure(motion.pressures, motion.has_pressures),
     "stresses": _Figure(motion.stresses, motion.has_surface),
     "energies": _Figure(motion.energies, motion.has_energies),
     "degrees": _Figure(numerics.degrees, numerics.has_degrees),
     "mesh": _Figure(numerics.mesh, lambda of: bool(make_plan(of.scene).fem)),
-    FILM: _Figure(_no_figure, _has_film, _STRESSES),
-}
+    FILM: _Figure(film, _has_film, _STRESSES),
+}  # fmt: skip
 
 
-def in_units(choice: Choice, units: Units) -> Choice:
-    """A choice whose figures have the units of a result."""
-    return replace(choice, units=units)
-
-
-def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[Drawing]:
+def of_archive(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> Iterator[Drawing]:
     """The figures that a choice selects, one after the other.
 
     Raises:
@@ -196,7 +167,7 @@ def of_archive(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> Iterator[D
                 raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
 
 
-def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Written]:
+def write(data: dict[str, Any], scene: Scene, choice: Choice, files: Files) -> list[Written]:
     """Write the figures of :func:`of_archive`, and the film if it is selected.
 
     Raises:
@@ -204,16 +175,15 @@ def write(data: _Data, scene: Scene, choice: Choice, files: Files) -> list[Writt
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
-    if not choice.figures and (files.ending in OF_FILMS or set(files.formats) & OF_FILMS.keys()):
+    if not choice.figures and OF_FILMS.keys() & {files.ending, *files.formats}:
         choice = replace(choice, figures=(FILM,))
     selected = names(data, scene, choice)
     files.check(selected)
-    of = Archive(data, scene, choice)
-    whole = (lambda: film(of)) if FILM in selected else None
+    whole = (lambda: film(Archive(data, scene, choice))) if FILM in selected else None
     return files.write(of_archive(data, scene, choice), whole)
 
 
-def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
+def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[str]:
     """Names of the figures that a choice selects: by default those that answer what is asked most.
 
     Raises:
@@ -222,20 +192,25 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
     choice.check_states(data)
     if choice.method:
         require_one_of("method", choice.method, METHODS)
-    plain = Archive(data, scene, replace(_PLAIN, units=choice.units))
-    of = Archive(data, scene, choice)
-    there_are = [name for name, figure in FIGURES.items() if figure.has(plain)]
+    plain, of = Archive(data, scene, Choice(units=choice.units)), Archive(data, scene, choice)
+    available = [name for name, figure in FIGURES.items() if figure.has(plain)]
     whole = choice.figures == (ALL,)
-    for name in () if whole else choice.figures:
+    named = () if whole else choice.figures
+    for name in named:
         # A film that the archive has too few states for says so itself.
-        require_one_of("figure", name, dict.fromkeys([*there_are, FILM]))
+        require_one_of("figure", name, dict.fromkeys([*available, FILM]))
         if ignored := choice.given - FIGURES[name].follows:
             raise BadInput(f"--figure {name} follows no {_options(ignored)}; leave that away")
+    quantities = dict.fromkeys(
+        name
+        for of_kind in (stresses.surface_names, stresses.interface_names, stresses.map_names)
+        for name in of_kind(plain)
+    )
     for name in choice.quantities:
-        require_one_of("quantity", name, dict.fromkeys(_quantities(plain)))
-    usual = [name for name in there_are if FIGURES[name].usual and _answers(name, plain)]
-    offered = there_are if whole or choice.given else usual or there_are[:1]
-    selected = (() if whole else choice.figures) or [
+        require_one_of("quantity", name, quantities)
+    usual = [name for name in available if (is_usual := FIGURES[name].usual) and is_usual(plain)]
+    offered = available if whole or choice.given else usual or available[:1]
+    selected = list(named) or [
         name for name in offered if name != FILM and choice.given <= FIGURES[name].follows
     ]
     if measured := choice.measured:
@@ -246,24 +221,13 @@ def names(data: _Data, scene: Scene, choice: Choice = _PLAIN) -> list[str]:
                 "or quantity shows"
             )
     drawable = [name for name in selected if name == FILM or FIGURES[name].has(of)]
-    if not drawable or (choice.figures and not whole and len(drawable) < len(choice.figures)):
+    if not drawable or len(drawable) < len(named):
         raise BadInput(
             f"the archive has nothing to draw for {_options(choice.given)} together; it has the figures "
-            f"{', '.join(there_are)}"
+            f"{', '.join(available)}"
         )
     return drawable
 
 
-def _answers(name: str, of: Archive) -> bool:
-    """False for a loop of friction that is no loop."""
-    return name != "friction" or friction.has_loop(of)
-
-
-def _quantities(of: Archive) -> list[str]:
-    below = stresses.Fields(of).names if stresses.has_map(of) else []
-    return [*stresses.surface_names(of), *stresses.interface_names(of), *below]
-
-
 def _options(names: set[str]) -> str:
-    options = {"quantities": "--quantity"}
-    return ", ".join(options.get(name, f"--{name}") for name in sorted(names))
+    return ", ".join(f"--{'quantity' if name == 'quantities' else name}" for name in sorted(names))

@@ -8,7 +8,7 @@ from functools import partial
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.animation import FFMpegWriter
@@ -23,15 +23,22 @@ from .choice import Drawing
 from .render import Film
 from .style import DPI, styled
 
-#: Key of a file's metadata that names its maker, and the kind of file, by the format's ending.
-FORMATS: dict[str, tuple[str, Kind]] = {
-    "pdf": ("Creator", PDF),
-    "png": ("Software", PNG),
-    "svg": ("Creator", SVG),
-}
-
+#: Kinds of files of figures and of films, by the format's ending.
+FORMATS: dict[str, Kind] = {"pdf": PDF, "png": PNG, "svg": SVG}
+OF_FILMS: dict[str, Kind] = {"mp4": MP4, "gif": GIF}
 #: Formats by default: text that stays text, and pixels for everything else.
 USUAL = ("pdf", "png")
+#: The picture that moves.
+FILM = "film"
+#: Frames a second, and dots per inch, which screens show.
+RATE, FILM_DPI = 8, 160
+#: Dots per inch of notebooks, and those that a file may have.
+_DPI, _RESOLUTIONS = 110, range(30, 2401)
+#: Formats that other programs make of PDF, and of PNG.
+_CONVERTED = {
+    **dict.fromkeys(("eps", "ps", "emf"), "pdf"),
+    **dict.fromkeys(("jpg", "jpeg", "tif", "tiff", "bmp"), "png"),
+}
 
 
 @styled
@@ -46,11 +53,48 @@ def content(figure: Figure, ending: str, dpi: int = DPI, transparent: bool = Fal
     """
     data = BytesIO()  # matplotlib leaves half of a figure on a full disk
     # Without a date a figure that is drawn again is the same file.
-    metadata = {FORMATS[ending][0]: "galinx"} | ({"Date": None} if ending == "svg" else {})
-    # Pixels that are nearly all white are packed as well at once as after a search.
-    packed = {"pil_kwargs": {"compress_level": 1}} if ending == "png" else {}
-    figure.savefig(data, format=ending, dpi=dpi, metadata=metadata, transparent=transparent, **packed)
+    metadata = {"Software" if ending == "png" else "Creator": "galinx"}
+    options: dict[str, Any] = {"metadata": metadata | ({"Date": None} if ending == "svg" else {})}
+    if ending == "png":  # pixels that are nearly all white are packed as well at once as after a search
+        options["pil_kwargs"] = {"compress_level": 1}
+    figure.savefig(data, format=ending, dpi=dpi, transparent=transparent, **options)
     return data.getvalue()
+
+
+@styled
+def film_content(film: Film, ending: str, dpi: int = FILM_DPI) -> bytes:
+    """Bytes of a film's file.
+
+    Args:
+        film: the film.
+        ending: one of ``OF_FILMS``; ``"mp4"`` where :func:`can_write` is true of it.
+        dpi: dots per inch.
+    """
+    if ending == "mp4":
+        with TemporaryDirectory() as folder:  # ffmpeg goes back in its file, and so needs one of its own
+            path = Path(folder) / "film.mp4"
+            writer = FFMpegWriter(fps=RATE, metadata={"comment": "galinx"})
+            with writer.saving(film.figure, str(path), dpi):
+                for n in range(film.frames):
+                    film.show(n)
+                    writer.grab_frame()
+            return path.read_bytes()
+    film.figure.set_dpi(dpi)
+    canvas, frames, data = FigureCanvasAgg(film.figure), [], BytesIO()
+    for n in range(film.frames):
+        film.show(n)
+        canvas.draw()
+        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB").quantize())
+    frames[0].save(
+        data, "GIF", save_all=True, append_images=frames[1:], duration=1000 // RATE, loop=0,
+        comment=b"galinx",
+    )  # fmt: skip
+    return data.getvalue()
+
+
+def can_write(ending: str) -> bool:
+    """True where films can be made in this format on this machine."""
+    return ending == "gif" or shutil.which("ffmpeg") is not None
 
 
 def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, bytes]:
@@ -64,26 +108,13 @@ def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, byt
         UnwritableArchive: the file system refused.
     """
     made = {
-        folder.target(f"{name}.{ending}", FORMATS[ending][1]): content(figure, ending)
+        folder.target(f"{name}.{ending}", FORMATS[ending]): content(figure, ending)
         for name, figure in figures
         for ending in USUAL
     }
-    write(made.items())
-    return {t.path.stem: data for t, data in made.items() if t.path.suffix == ".png"}
-
-
-def write(files: Iterable[tuple[Target, bytes]]) -> None:
-    """Write files; none where one of them cannot be made.
-
-    Args:
-        files: each with its bytes, which are all made before the first is written.
-
-    Raises:
-        Occupied: something is there that may not be replaced.
-        UnwritableArchive: the file system refused.
-    """
-    for target, data in list(files):
+    for target, data in made.items():
         target.write(data)
+    return {t.path.stem: data for t, data in made.items() if t.path.suffix == ".png"}
 
 
 def in_a_page(figure: Figure, pixels: bool) -> str:
@@ -103,67 +134,10 @@ def embedded(data: bytes, kind: str = "png") -> str:
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
 
 
-#: Dots per inch on a screen.
-_DPI = 110
-
-
 def for_notebook(figure: Figure) -> Figure:
     """Figure that notebooks can show, which otherwise know only figures of pyplot."""
     figure._repr_png_ = lambda: content(figure, "png", _DPI)  # type: ignore[attr-defined]
     return figure
-
-
-#: Kind of file of a film by the format's ending.
-OF_FILMS: dict[str, Kind] = {"mp4": MP4, "gif": GIF}
-
-#: Frames a second, and dots per inch, which screens show.
-RATE, FILM_DPI = 8, 160
-
-
-@styled
-def film_content(film: Film, ending: str, dpi: int = FILM_DPI) -> bytes:
-    """Bytes of a film's file.
-
-    Args:
-        film: the film.
-        ending: one of ``OF_FILMS``; ``"mp4"`` where :func:`can_write` is true of it.
-        dpi: dots per inch.
-    """
-    if ending == "mp4":
-        return _mp4(film, dpi)
-    film.figure.set_dpi(dpi)
-    canvas, frames = FigureCanvasAgg(film.figure), []
-    for n in range(film.frames):
-        film.show(n)
-        canvas.draw()
-        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB").quantize())
-    data = BytesIO()
-    frames[0].save(
-        data, "GIF", save_all=True, append_images=frames[1:], duration=1000 // RATE, loop=0,
-        comment=b"galinx",
-    )  # fmt: skip
-    return data.getvalue()
-
-
-def can_write(ending: str) -> bool:
-    """True where films can be made in this format on this machine."""
-    return ending == "gif" or shutil.which("ffmpeg") is not None
-
-
-def _mp4(film: Film, dpi: int) -> bytes:
-    """Bytes of a film as MP4; ffmpeg goes back in its file, and so needs one of its own."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "film.mp4"
-        writer = FFMpegWriter(fps=RATE, metadata={"comment": "galinx"})
-        with writer.saving(film.figure, str(path), dpi):
-            for n in range(film.frames):
-                film.show(n)
-                writer.grab_frame()
-        return path.read_bytes()
-
-
-#: Dots per inch that a file may have.
-_RESOLUTIONS = range(30, 2401)
 
 
 class Written(NamedTuple):
@@ -217,13 +191,15 @@ class Files:
         """
         if self.dpi and self.dpi not in _RESOLUTIONS:
             raise BadInput(f"--dpi: found {self.dpi}, expected {_RESOLUTIONS[0]} to {_RESOLUTIONS[-1]}")
+        option, endings = (f"-o {self.to}", [self.ending]) if self.ending else ("--format", self.formats)
         for name in names:
-            valid, option = _formats(name), f"-o {self.to}" if self.ending else "--format"
-            for ending in (self.ending,) if self.ending else self.formats:
-                if ending not in valid:
+            for ending in endings:
+                if ending not in _formats(name):
+                    other = _CONVERTED.get(ending)
                     raise BadInput(
                         f"{option}: found {ending!r} for the {_noun(name)} {name}, expected "
-                        f"{', '.join(valid)}{' or a folder' * bool(self.ending)}{_converted(ending)}"
+                        f"{', '.join(_formats(name))}{' or a folder' * bool(self.ending)}"
+                        + (f"; convert a {other} for {ending}" if other else "")
                     )
                 if ending in OF_FILMS and not can_write(ending):
                     raise BadInput(
@@ -242,56 +218,42 @@ class Files:
         usual = ("mp4" if can_write("mp4") else "gif",) if name == FILM else USUAL
         return (self.ending,) if self.ending else self.formats or usual
 
-    def target(self, name: str, ending: str, folder: Folder | None) -> Target:
-        """A figure's file.
-
-        Raises:
-            Occupied: something is there that may not be replaced.
-        """
-        if folder is None:
-            return Target(self.to, _formats(name)[ending], self.overwrite, self.inputs)
-        return folder.target(f"{self.name}_{name}.{ending}".removeprefix("_"), _formats(name)[ending])
-
     def write(
         self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
     ) -> list[Written]:
-        """Write all figures, and the film if ``made`` is given; none where one cannot be written."""
+        """Write all figures, and the film if ``made`` is given; none where one cannot be written.
+
+        Raises:
+            Occupied: something is there that may not be replaced.
+            UnwritableArchive: the file system refused.
+        """
         folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
-        files, said = [], []
-        pictures = [
-            (d.name, d.left_out, partial(content, d.figure, dpi=self.dpi or DPI)) for d in drawings
-        ]
-        if made:
-            moving, left_out = made()
-            film = partial(film_content, moving, dpi=self.dpi or FILM_DPI)
-            pictures.append((FILM, left_out, film))
-        for name, left_out, as_bytes in pictures:
+        files: list[tuple[Target, bytes]] = []
+        said: list[Written] = []
+
+        def add(name: str, left_out: str, as_bytes: Callable[[str], bytes]) -> None:
             for ending in self.endings(name):
-                target = self.target(name, ending, folder)
+                kind, called = _formats(name)[ending], f"{self.name}_{name}.{ending}".removeprefix("_")
+                target = folder.target(called, kind) if folder else self._target(kind)
                 files.append((target, as_bytes(ending)))
                 said.append(Written(target.path, _noun(name), left_out))
-        write(files)
+
+        for drawing in drawings:
+            add(drawing.name, drawing.left_out, partial(content, drawing.figure, dpi=self.dpi or DPI))
+        if made:
+            film, left_out = made()
+            add(FILM, left_out, partial(film_content, film, dpi=self.dpi or FILM_DPI))
+        for target, data in files:
+            target.write(data)
         return said
 
-
-#: The picture that moves.
-FILM = "film"
+    def _target(self, kind: Kind) -> Target:
+        return Target(self.to, kind, self.overwrite, self.inputs)
 
 
 def _formats(name: str) -> dict[str, Kind]:
-    if name == FILM:
-        return OF_FILMS
-    return {ending: kind for ending, (_, kind) in FORMATS.items()}
+    return OF_FILMS if name == FILM else FORMATS
 
 
 def _noun(name: str) -> str:
     return "film" if name == FILM else "figure"
-
-
-def _converted(ending: str) -> str:
-    vector = ending in ("eps", "ps", "emf")
-    return f"; convert a {'pdf' if vector else 'png'} for {ending}" if vector or ending in _PIXELS else ""
-
-
-#: Formats that other programs make of PNG.
-_PIXELS = ("jpg", "jpeg", "tif", "tiff", "bmp")

@@ -6,7 +6,6 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import column, runs
@@ -18,19 +17,14 @@ from ..plan.states import order
 from .choice import Archive, Drawing, named
 from .render import DOTS, Curve, Panel, Size, across, handle, render
 from .states import C, N, not_shown, spread
-from .style import COLOURS, COLUMN, GREY, LINES, PAGE, SMALL, Look, looks
+from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Axes of a loop.
 X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
 #: Loops that can be told apart in a panel, and sliders in a figure.
 _LOOPS, _SLIDERS = 6, 6
-#: Points of a stroke between its name and its arrow, over all its points; strokes nearer than this share
-#: of the axes, which one name serves; and points that are tried for the place of its name.
-_APART, _SAME, _POINTS = 0.2, 0.012, 100
 #: Variation of friction, over its size, from which on zero is on the axis.
 _LEVEL = 0.2
-#: Shares of a cycle at which arrows stand.
-_ARROWS = (0.25, 0.75)
 
 
 @dataclass(frozen=True)
@@ -79,7 +73,6 @@ class Loops:
         varied = self.labels.varied(self.first)
         # Loops differ with the speed only where the law depends on it.
         self.names = [name for name in (C, *self.labels.law) if name in varied]
-        self._cache: dict[int, Loop] = {}
 
     def of(self, state: int, called: Sequence[str] | None = None) -> Loop | None:
         """The loop that a state lies on, None where the archive has too many to hold it.
@@ -91,20 +84,8 @@ class Loops:
         row = int(self._data[runs.LOOP_OF_STATE.path][state])
         if row < 0:
             return None
-        if called is not None:
-            return self._made(row, self.labels.label(state, called))
-        if row not in self._cache:
-            self._cache[row] = self._made(row, self.labels.label(state, self.names))
-        return self._cache[row]
-
-    def _made(self, row: int, label: str) -> Loop:
-        X, f = self._data[runs.LOOP_X.path], self._data[runs.LOOP_F.path][row]
-        return Loop(label, X, f, self._strokes)
-
-    def of_all(self, states: Sequence[int]) -> list[Loop]:
-        """Loops of some states; none at all where one is missing."""
-        loops = [self.of(state) for state in states]
-        return [loop for loop in loops if loop] if all(loops) else []
+        label = self.labels.label(state, self.names if called is None else called)
+        return Loop(label, self._data[runs.LOOP_X.path], self._data[runs.LOOP_F.path][row], self._strokes)
 
     def panel(self, states: Sequence[int], called: Sequence[str], title: str = "") -> Panel:
         """A panel with the loops of some states, each once."""
@@ -131,79 +112,28 @@ class Loops:
 
 
 def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") -> Panel:
-    """Panel of loops. One alone has a colour and a name for every stroke; of several each has its colour,
-    and strokes are told apart by their lines."""
+    """Panel of loops with arrows in the direction of travel. One alone has a colour and a name for every
+    stroke; of several each has its colour, and strokes are told apart by their lines."""
     alone = len(loops) == 1
     f = np.array([loop.f for loop in loops])
     low, high = float(f.min()), float(f.max())
     if high - low > _LEVEL * max(abs(low), abs(high)):  # else zero would flatten all loops
         low, high = min(0.0, low), max(0.0, high)
     margin = 0.06 * (high - low) or 1.0
-    curves, arrows = [], []
+    curves = []
     for k, (loop, look) in enumerate(zip(loops, looks(len(loops), ordered))):
         strokes = list(loop.along())
         # Loops that are the same are drawn one in the other, the first as the widest line.
         again = sum(np.array_equal(loop.f, later.f) for later in loops[k + 1 :])
         for n, (of_stroke, (name, X, values)) in enumerate(zip(looks(len(strokes)), strokes)):
-            own = of_stroke if alone else look._replace(line=LINES[n % len(LINES)])
-            own = own._replace(line="-") if again else own
-            label = loop.label if n == 0 and not alone else ""
-            curves.append(Curve(X, values, own, label, width=1.0 + 1.2 * again))
-            if not again:
-                at = 0 if alone else int(len(X) * (0.25 + 0.5 * k / len(loops)))
-                arrows.append((X, values, own.colour, name if alone else "", n, at, strokes))
-
-    def after(axis: Axes) -> None:
-        for X, values, colour, name, n, at, strokes in arrows:
-            place = _freest(axis, strokes, n) if alone else at
-            if place is not None:
-                _point(axis, X, values, place, colour, name)
-
+            own = of_stroke if alone else look._replace(line="-" if again else LINES[n % len(LINES)])
+            label = name * (len(strokes) > 1) if alone else loop.label * (n == 0)
+            arrows = () if again else (0.5 if alone else 0.25 + 0.5 * k / len(loops),)
+            curves.append(Curve(X, values, own, label, width=1.0 + 1.2 * again, arrows=arrows))
     return Panel(
         X_LABEL, F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
-        ylim=(low - margin, high + margin),
-        at_y=(0.0,), after=after,
+        ylim=(low - margin, high + margin), at_y=(0.0,),
     )  # fmt: skip
-
-
-def of_strokes(loops: Sequence[Loop]) -> list[Any]:
-    """Handles that explain lines as strokes where colours stand for loops."""
-    strokes = [name for name, *_ in loops[0].along()] if len(loops) > 1 else []
-    return [handle(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(strokes)]
-
-
-def _freest(axis: Axes, strokes: Sequence[tuple[str, NDArray, NDArray]], n: int) -> int | None:
-    """Index of the point of a stroke farthest from others; None where an earlier stroke is the same."""
-    _, X, f = strokes[n]
-    if len(strokes) == 1:
-        return len(X) // 2
-    scale = np.array([np.ptp(axis.get_xlim()), np.ptp(axis.get_ylim())])
-    own = np.column_stack([X, f]) / scale
-    coarse = max(1, len(X) // _POINTS)
-    inner = np.arange(len(X) // 6, len(X) - len(X) // 3, coarse)
-    nearest = []
-    for _, other_X, other_f in strokes:
-        other = np.column_stack([other_X, other_f])[::coarse] / scale
-        gaps = own[inner, None] - other[None]
-        nearest.append(np.hypot(gaps[..., 0], gaps[..., 1]).min(axis=1))
-    distinct = [gap for m, gap in enumerate(nearest) if m != n and (m < n or gap.max() >= _SAME)]
-    free = np.min(distinct, axis=0) if distinct else np.ones(len(inner))
-    at = int(np.argmax(free))
-    return None if free[at] < _SAME else int(inner[at])
-
-
-def _point(axis: Axes, X: NDArray, f: NDArray, at: int, colour: Any, name: str) -> None:
-    """Draw an arrow along a stroke, and its name."""
-    ahead = min(at + int(_APART * len(X)) * bool(name), len(X) - 3)
-    _arrow(axis, (X[ahead], f[ahead]), (X[ahead + 1], f[ahead + 1]), colour)
-    if name:
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-        axis.text(X[at], f[at], name, color=colour, fontsize=SMALL, ha="center", va="center", bbox=box)
-
-
-def _arrow(axis: Axes, start: Any, end: Any, colour: Any) -> None:
-    style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
-    axis.annotate("", end, start, arrowprops=style)
 
 
 def has_loop(of: Archive) -> bool:
@@ -238,17 +168,23 @@ def friction(of: Archive) -> Drawing:
     return Drawing("friction", caption, figure, left_out=missing)
 
 
-def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Any = None) -> Any:
-    """Panels of loops with legends of their own where these differ."""
+def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Size | None = None) -> Any:
+    """Panels of loops with legends of their own where these differ.
+
+    Args:
+        panels: of the loops.
+        loops: whose strokes the legend names where several loops are in a panel.
+        size: of the figure.
+    """
     size = size or Size(COLUMN if len(panels) == 1 else PAGE)
-    entries = [
+    entries = {
         tuple(curve.label for curve in panel.curves if curve.label and curve.form != DOTS)
         for panel in panels
-    ]
-    if len(set(entries)) > 1:
+    }
+    if len(entries) > 1:
         panels = [replace(panel, own_legend=True) for panel in panels]
-    several = any(len(names_) for names_ in entries)
-    notes = of_strokes([loops[0]] * 2) if several and loops else []
+    strokes = [name for name, *_ in loops[0].along()] if len(loops) > 1 and any(entries) else []
+    notes = [handle(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(strokes)]
     return render(panels, size, across(size.width, len(panels), 2.0), notes, high=0.78)
 
 
@@ -276,12 +212,6 @@ def slider(of: Archive) -> Drawing:
     velocity = named("velocity $v$", scale.unit)
     styles = looks(len(laws), ordered)
     cycles = [(law, look) for law, look in zip(laws, styles) if np.isfinite(cycle_v[law]).all()]
-
-    def arrows(axis: Axes) -> None:
-        for law, look in cycles:
-            for share in _ARROWS:
-                _arrow_along(axis, cycle_v[law], cycle_f[law], share, look.colour)
-
     panels = [
         Panel(
             named("time $t$", of.scaled(runs.TIMES).unit), velocity,
@@ -290,10 +220,8 @@ def slider(of: Archive) -> Drawing:
         )
     ]  # fmt: skip
     if cycles:
-        panels.append(Panel(
-            velocity, F_LABEL, curves=[Curve(cycle_v[law], cycle_f[law], look) for law, look in cycles],
-            at_x=(drive,), after=arrows,
-        ))  # fmt: skip
+        curves = [Curve(cycle_v[law], cycle_f[law], look, arrows=(0.25, 0.75)) for law, look in cycles]
+        panels.append(Panel(velocity, F_LABEL, curves=curves, at_x=(drive,)))
     caption = (
         "A mass that is pulled through a spring: its velocity, the line is that of the drive, and "
         "friction over velocity in the last cycle, in the direction of the arrows."
@@ -306,15 +234,6 @@ def slider(of: Archive) -> Drawing:
         len(laws) < count
     )
     return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
-
-
-def _arrow_along(axis: Axes, x: NDArray, y: NDArray, share: float, colour: Any) -> None:
-    """Draw an arrow along a loop, where the share of its length on the page is done."""
-    steps = np.hypot(np.diff(x) / (np.ptp(x) or 1.0), np.diff(y) / (np.ptp(y) or 1.0))
-    way = np.append(0.0, np.cumsum(steps))
-    from_, to = np.searchsorted(way, [share * way[-1], (share + 0.02) * way[-1]])
-    to = min(max(int(to), int(from_) + 1), len(way) - 1)
-    _arrow(axis, (x[from_], y[from_]), (x[to], y[to]), colour)
 
 
 def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool) -> Any:

@@ -5,6 +5,7 @@ goes; pressures at some times; and stresses along the surface at some of the cho
 steady motion, which are the closed form's. Films show pressures and stresses as they change.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -156,22 +157,37 @@ def has_pressures(of: Archive) -> bool:
     return of.has(rows.PRESSURE, rows.PLACES)
 
 
+def _steady(
+    of: Archive, start: int, X: NDArray, ratios: NDArray, loads: NDArray
+) -> dict[str, NDArray[np.float64]]:
+    """Stresses of steady motion by name in the figure's units, (n, places); NaN over layers.
+
+    Args:
+        of: the archive.
+        start: number of the start.
+        X: places over a.
+        ratios, loads: σ_XY/σ_YY and load over N, (n,).
+    """
+    if of.scene.layers:  # no closed form
+        return {name: np.full((len(ratios), len(X)), np.nan) for name in _LABELS}
+    response = of.scene.solid.response(float(of.data[rows.SPEED.path][start]))
+    punches = [FlatPunch(response, ratio) for ratio in ratios.tolist()]
+    factor = float(np.max(of.scaled(rows.PRESSURE).factor)) * loads[:, None]
+    return {
+        "sigma_YY": -factor * np.array([punch.σ_YY(X) for punch in punches]),
+        "sigma_XX": factor * np.array([punch.σ_XX(X) for punch in punches]),
+    }
+
+
 def _pressures(of: Archive, start: int) -> tuple[NDArray, NDArray, NDArray, Panel]:
     """Positions, pressures over time and in steady motion, and a panel for them without any."""
-    scale = of.scaled(rows.PRESSURE)
-    X, p = of.values(rows.PLACES), -of.values(rows.PRESSURE)[start]
-    steady = np.full(len(X), np.nan)
-    if not of.scene.layers:  # else there is no closed form
-        c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
-        steady = -scale.factor * FlatPunch(of.scene.solid.response(c), g).σ_YY(of.data[rows.PLACES.path])
-    name = named(r"contact pressure $-\sigma_{YY}$", scale.unit)
+    scale, ends = of.scaled(rows.PRESSURE), of.data[rows.RATIO.path][[start]]
+    steady = _steady(of, start, of.data[rows.PLACES.path], ends, np.ones(1))["sigma_YY"][0]
     panel = Panel(
-        position_name(of, "position "),
-        name,
-        xlim=_ends(of),
+        position_name(of, "position "), named(_LABELS["sigma_YY"][0], scale.unit), xlim=_ends(of),
         ylim=(0.0, _TOP * float(np.max(scale.factor))),
-    )
-    return X, p, steady, panel
+    )  # fmt: skip
+    return of.values(rows.PLACES), -of.values(rows.PRESSURE)[start], steady, panel
 
 
 def _ends(of: Archive) -> tuple[float, float]:
@@ -204,35 +220,49 @@ def pressures(of: Archive) -> Drawing:
     return Drawing("pressures", caption, figure, left_out=_left_out(of))
 
 
-def _centre(of: Archive, method: str, start: int, steady: float | None) -> tuple[NDArray, Panel]:
-    label, t = _time(of)
-    row = rows.CENTRE[method]
+def _film(
+    of: Archive, method: str, start: int, shown: NDArray, stresses: Callable[[int], list[Panel]],
+    at_y: tuple[float, ...] = (),
+) -> tuple[Film, str]:  # fmt: skip
+    """Film of stresses beside the centre of the pressure over time, and what it leaves out.
+
+    Args:
+        of: the archive.
+        method: of solution, of the centre.
+        start: number of the start.
+        shown: numbers of the times of the frames.
+        stresses: panels of a frame.
+        at_y: lines across the panel of the centre.
+    """
+    (label, t), row, look = _time(of), rows.CENTRE[method], Look("black", "none", "o")
     centre = of.values(row)[start]
-    lines = () if steady is None else (float(np.ravel(of.scaled(row).of(np.array([steady])))[0]),)
-    panel = Panel(
-        label, _over_a(of, "centre of pressure", row), xlim=(0.0, float(t[-1])), at_y=lines,
+    way = Panel(
+        label, _over_a(of, "centre of pressure", row), xlim=(0.0, float(t[-1])), at_y=at_y,
         curves=[Curve(t, centre, looks(1)[0])],
     )  # fmt: skip
-    return centre, panel
+
+    def panels(frame: int) -> list[Panel]:
+        i = shown[frame]
+        first, *others = stresses(frame)
+        first = replace(first, title=_at_time(of, of.data[rows.TIMES.path][i]))
+        dot = Curve(t[i : i + 1], centre[i : i + 1], look, form="markers")
+        return [first, *others, replace(way, curves=[*way.curves, dot])]
+
+    return Film(panels, len(shown), of.size), _left_out(of)
 
 
 def pressure_film(of: Archive) -> tuple[Film, str]:
     """Film of the pressure of the start whose steady pressure leans most, and what it leaves out."""
-    start, t = _leaning(of), of.data[rows.TIMES.path]
-    frames = np.unique(np.linspace(0, len(t) - 1, _FRAMES).round().astype(int))
+    start, times = _leaning(of), len(of.data[rows.TIMES.path])
+    shown = np.unique(np.linspace(0, times - 1, _FRAMES).round().astype(int))
     X, p, steady, panel = _pressures(of, start)
-    centre, way = _centre(of, SIE, start, float(of.data[rows.STEADY_CENTRE.path][start]))
-    times = _time(of)[1]
+    lean = of.scaled(rows.CENTRE[SIE]).of(of.data[rows.STEADY_CENTRE.path][[start]])
 
-    def panels(frame: int) -> list[Panel]:
-        i = frames[frame]
-        line = [Curve(X, p[i], looks(1)[0]), Curve(X, steady, _STEADY, width=0.8)]
-        dot = Curve(times[i : i + 1], centre[i : i + 1], Look("black", "none", "o"), form="markers")
-        return [
-            replace(panel, curves=line, title=_at_time(of, t[i])), replace(way, curves=[*way.curves, dot])
-        ]  # fmt: skip
+    def pressure(frame: int) -> list[Panel]:
+        now = Curve(X, p[shown[frame]], looks(1)[0])
+        return [replace(panel, curves=[now, Curve(X, steady, _STEADY, width=0.8)])]
 
-    return Film(panels, len(frames), of.size), _left_out(of)
+    return _film(of, SIE, start, shown, pressure, (float(np.ravel(lean)[0]),))
 
 
 def _leaning(of: Archive) -> int:
@@ -269,15 +299,22 @@ def stresses(of: Archive) -> Drawing:
     last, beside those of steady motion with the friction and the load of these times."""
     t, methods = of.data[rows.SURFACE_TIMES.path], _methods(of)
     shown = np.unique(np.linspace(0, len(t) - 1, _SURFACE_TIMES).round().astype(int))
-    styles = looks(len(shown), True)
-    steady = _steady(of, t[shown])
-    panels = []
+    steady, panels = _steady_at(of, _steps(of)[shown]), []
     for n, name in enumerate(_LABELS):
-        values = {method: _over_time(of, name, method)[shown] for method in methods}
-        columns = [("in time", values)]
+        columns = {"in time": {method: _over_time(of, name, method)[shown] for method in methods}}
         if not of.scene.layers:
-            columns.append(("steady motion of that time's friction and load", {SIE: steady[name]}))
-        panels += _beside(of, name, columns, [_at_time(of, t[i]) for i in shown], styles, n == 0)
+            columns["steady motion of that time's friction and load"] = {SIE: steady[name]}
+        every = np.vstack([y for values in columns.values() for y in values.values()])
+        panel = _panel(of, name, every)
+        for k, (title, values) in enumerate(columns.items()):
+            curves = []
+            for i, look in enumerate(looks(len(shown), True)):
+                of_time = {method: y[i] for method, y in values.items()}
+                label, turn = _at_time(of, t[shown[i]]), i / len(shown)
+                curves += surface_curves(_X(of), of_time, look, label, turn, _place(of))
+            panels.append(replace(
+                panel, y=panel.y if k == 0 else None, title=title if n == 0 else "", curves=curves
+            ))  # fmt: skip
     c = float(of.data[rows.SPEED.path][0])
     caption = (
         "Stresses along the surface, under the punch (grey) and beside it, over time, "
@@ -288,65 +325,46 @@ def stresses(of: Archive) -> Drawing:
     return Drawing("stresses", caption, figure, left_out=_left_out(of))
 
 
-def _beside(
-    of: Archive, name: str, columns: Any, labels: list[str], styles: list[Look], top: bool
-) -> list[Panel]:
-    """A row of panels of a stress, with the same limits."""
-    X, words = of.data[rows.SURFACE_PLACES.path], _LABELS[name][0]
-    scale, unit = of.scaled(rows.SURFACE_PLACES), of.scaled(_LABELS[name][2][_methods(of)[0]]).unit
-    place = float(np.max(scale.factor)), float(np.max(scale.offset))
-    every = np.vstack([y for _, values in columns for y in values.values()])
-    half = 1.04 if name == "sigma_YY" else _BESIDE
-    return [
-        Panel(
-            position_name(of), named(words, unit) if n == 0 else None, title=title if top else "",
-            curves=[
-                curve
-                for k, look in enumerate(styles)
-                for curve in surface_curves(
-                    X, {method: y[k] for method, y in values.items()}, look, labels[k], k / len(styles),
-                    place,
-                )
-            ],
-            xlim=(place[1] - half * place[0], place[1] + half * place[0]), ylim=limits(X, every),
-            at_y=(0.0,),
-            bands=[_ends(of)] if half == _BESIDE else (),
-        )
-        for n, (title, values) in enumerate(columns)
-    ]  # fmt: skip
-
-
 def film_of_surface(of: Archive) -> tuple[Film, str]:
     """Film of the stresses along the surface of the first start, and a sentence on what it leaves out."""
     method = _methods(of)[-1]
-    t, times = of.data[rows.SURFACE_TIMES.path], of.data[rows.TIMES.path]
-    last = _steady(of, times[-1:])
-    nearest = np.abs(np.subtract.outer(t, times)).argmin(axis=1)
-    centre, way = _centre(of, method, 0, None)
-    over = _time(of)[1]
-    empty = {name: _beside(of, name, [("", {method: _over_time(of, name, method)})], [""] * len(t),
-                           looks(1) * len(t), True)[0] for name in _LABELS}  # fmt: skip
+    every = {name: _over_time(of, name, method) for name in _LABELS}
+    panels = {name: _panel(of, name, values) for name, values in every.items()}
+    last = _steady_at(of, np.array([len(of.data[rows.TIMES.path]) - 1]))
 
-    def panels(frame: int) -> list[Panel]:
-        shown: list[Panel] = []
-        for name, panel in empty.items():
-            steady = replace(panel.curves[0], y=panel.curves[0].y * np.nan)
-            if np.isfinite(last[name]).any():
-                X, scale = of.data[rows.SURFACE_PLACES.path], of.scaled(rows.SURFACE_PLACES)
-                place = float(np.max(scale.factor)), float(np.max(scale.offset))
-                steady = surface_curves(X, {SIE: last[name][0]}, _STEADY, "", 0.0, place)[0]
-            per = len(panel.curves) // len(t)
-            now = [
-                replace(curve, form="line", width=1.0)
-                for curve in panel.curves[per * frame : per * frame + 1]
+    def shown(frame: int) -> list[Panel]:
+        result = []
+        for name, panel in panels.items():
+            both_curves = ((every[name][frame], looks(1)[0]), (last[name][0], _STEADY))
+            curves = [
+                surface_curves(_X(of), {SIE: y}, look, "", 0.0, _place(of))[0] for y, look in both_curves
             ]
-            title = _at_time(of, t[frame]) if not shown else ""
-            shown.append(replace(panel, curves=[*now, steady], title=title))
-        i = nearest[frame]
-        dot = Curve(over[i : i + 1], centre[i : i + 1], Look("black", "none", "o"), form="markers")
-        return [*shown, replace(way, curves=[*way.curves, dot])]
+            result.append(replace(panel, curves=[replace(curves[0], width=1.0), curves[1]]))
+        return result
 
-    return Film(panels, len(t), of.size), _left_out(of)
+    return _film(of, method, 0, _steps(of), shown)
+
+
+def _panel(of: Archive, name: str, values: NDArray) -> Panel:
+    """Panel of a stress along the surface, without curves, with room for values (n, places)."""
+    (words, _, row), (factor, offset) = _LABELS[name], _place(of)
+    half = 1.04 if name == "sigma_YY" else _BESIDE
+    return Panel(
+        position_name(of), named(words, of.scaled(row[_methods(of)[0]]).unit),
+        xlim=(offset - half * factor, offset + half * factor), ylim=limits(_X(of), values), at_y=(0.0,),
+        bands=[_ends(of)] if half == _BESIDE else (),
+    )  # fmt: skip
+
+
+def _X(of: Archive) -> NDArray[np.float64]:
+    """Places along the surface, X over a."""
+    return np.asarray(of.data[rows.SURFACE_PLACES.path])
+
+
+def _place(of: Archive) -> tuple[float, float]:
+    """Factor and offset from X over a to positions in the figure's units."""
+    scale = of.scaled(rows.SURFACE_PLACES)
+    return float(np.max(scale.factor)), float(np.max(scale.offset))
 
 
 def _methods(of: Archive) -> list[str]:
@@ -359,17 +377,12 @@ def _over_time(of: Archive, name: str, method: str) -> NDArray[np.float64]:
     return sign * of.values(by_method[method])[0]
 
 
-def _steady(of: Archive, t: NDArray) -> dict[str, NDArray[np.float64]]:
-    """Stresses of steady motion at the friction and load of some times over a/c_s, (times, places)."""
-    data, X = of.data, of.data[rows.SURFACE_PLACES.path]
-    if of.scene.layers:  # no closed form
-        return {name: np.full((len(t), len(X)), np.nan) for name in _LABELS}
-    response = of.scene.solid.response(float(data[rows.SPEED.path][0]))
-    at: dict[str, list[NDArray]] = {name: [] for name in _LABELS}
-    for i in np.abs(np.subtract.outer(t, data[rows.TIMES.path])).argmin(axis=1):
-        punch = FlatPunch(response, float(data[rows.RATIOS.path][0][i]))
-        load = float(data[rows.LOAD.path][i])
-        at["sigma_XX"].append(load * punch.σ_XX(X))
-        at["sigma_YY"].append(-load * punch.σ_YY(X))
-    factor = float(np.max(of.scaled(rows.SURFACE_PRESSURE[_methods(of)[0]]).factor))
-    return {name: factor * np.array(values) for name, values in at.items()}
+def _steps(of: Archive) -> NDArray[np.int64]:
+    """Numbers of the steps at whose ends stresses along the surface are held."""
+    t, times = of.data[rows.SURFACE_TIMES.path], of.data[rows.TIMES.path]
+    return np.asarray(np.abs(np.subtract.outer(t, times)).argmin(axis=1))
+
+
+def _steady_at(of: Archive, steps: NDArray) -> dict[str, NDArray[np.float64]]:
+    """Stresses of the first start's steady motion at the friction and load of some steps."""
+    return _steady(of, 0, _X(of), of.data[rows.RATIOS.path][0][steps], of.data[rows.LOAD.path][steps])

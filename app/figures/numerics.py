@@ -3,8 +3,6 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -15,9 +13,9 @@ from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
 
 from ..plan.plan import make_plan
 from .choice import Archive, Drawing
-from .render import JOINED, MARKERS, Curve, Panel, Size, marked, render
+from .render import DOTS, JOINED, MARKERS, Curve, Panel, Size, marked, render
 from .states import C, spread
-from .style import COLOURS, COLUMN, looks
+from .style import COLOURS, COLUMN, Look, looks
 
 #: Speeds that can be told apart in a figure.
 _SPEEDS = 6
@@ -37,7 +35,7 @@ def mesh(of: Archive) -> Drawing:
         cells = fem.kind.build(fem.refinement, fem.cuts)
     figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), of.size)
     caption = (
-        f"The {fem.mesh} mesh under the punch (orange) and, nearer and nearer, its edge X = a: lines are "
+        f"The {fem.mesh} mesh under the punch (black) and, nearer and nearer, its edge X = a: lines are "
         f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
         f"{(degree + 1) ** 2} in each cell; it is their density that sets the accuracy."
     )
@@ -111,22 +109,18 @@ def mesh_figure(
         centre = (0.0 if n == 0 else 1.0, 0.0)
         # Coordinates from the panel's centre: far-away points would lose the picture's digits.
         lines, dots = edges - centre, nodes - centre
-        near = np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half
-        near_dots = dots[np.abs(dots).max(axis=1) < 1.5 * half]
-        printed = np.unique(np.round(near_dots / (2.0 * half * _DOT)), axis=0) * (2.0 * half * _DOT)
-        punch = np.clip([-1.0 - centre[0], 1.0 - centre[0]], -half, half)
-
-        def after(axis: Axes) -> None:
-            axis.add_collection(LineCollection(lines[near], colors="#555555", linewidths=0.5))
-            axis.plot(
-                *printed.T, linestyle="none", marker=".", markersize=1.3, markeredgewidth=0.0,
-                color=COLOURS[0], rasterized=True,
-            )  # fmt: skip
-            axis.fill_between(punch, 0.0, 0.12 * half, color=COLOURS[1], linewidth=0.0)
-
+        lines = lines[np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half]
+        x, y = (np.append(z, np.full((len(z), 1), np.nan), 1).ravel() for z in np.moveaxis(lines, -1, 0))
+        dots, step = dots[np.abs(dots).max(axis=1) < 1.5 * half], 2.0 * half * _DOT
+        dots = np.unique(np.round(dots / step), axis=0) * step
         return Panel(
             "$X/a$" if n == 0 else "$X/a - 1$", "$Y/a$", xlim=(-half, half),
-            ylim=(-1.18 * half, 0.12 * half), after=after,
+            ylim=(-1.18 * half, 0.06 * half),
+            bar=(max(-1.0 - centre[0], -half), min(1.0 - centre[0], half)),
+            curves=[
+                Curve(x, y, Look("#555555", "-", ""), width=0.5),
+                Curve(dots[:, 0], dots[:, 1], Look(COLOURS[0], "none", "."), form=DOTS, width=0.65),
+            ],
             title=first if n == 0 else f"{zooms[0] / half:.0f} times larger",
         )  # fmt: skip
 

@@ -62,6 +62,7 @@ class Curve:
             (every number).
         width: of the line [pt].
         turn: place of its markers between those of others, 0 to 1.
+        arrows: shares of its length on the page at which arrows point along it.
     """
 
     x: NDArray
@@ -71,6 +72,7 @@ class Curve:
     form: str = LINE
     width: float = 1.0
     turn: float = 0.0
+    arrows: Sequence[float] = ()
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,6 @@ class Panel:
         at_x, at_y: thin grey lines.
         beside: a second axis on top: its name, and what x is multiplied by.
         own_legend: names of its curves stand below it.
-        after: draws more once the panel has its place.
         tall: height over that of other rows.
         bar: black bar along the top, from where to where.
         dashes: y of dashed lines.
@@ -139,7 +140,6 @@ class Panel:
     at_y: Sequence[float] = ()
     beside: tuple[str, float] | None = None
     own_legend: bool = False
-    after: Callable[[Axes], None] | None = None
     tall: float = 1.0
     bar: tuple[float, float] | None = None
     dashes: Sequence[float] = ()
@@ -197,8 +197,8 @@ def render(
     handles = [_entry(curve) for curve in named.values()] + list(notes)
     _Layout(figure, made, columns, size, high, handles).arrange()
     for drawn in made:
-        if drawn.panel.after:
-            drawn.panel.after(drawn.axis)
+        for curve in drawn.panel.curves:
+            _draw_arrows(drawn.axis, curve)
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
 
@@ -227,12 +227,24 @@ def spaced(x: NDArray, turn: float, most: int = _MARKERS) -> NDArray[np.int64]:
     return finite[np.unique(np.abs(x[finite, None] - wanted).argmin(axis=0))]
 
 
+def _power(panel: Panel) -> int:
+    """Power of ten over which numbers are neither long nor short; a multiple of three."""
+    if "y" in panel.log or panel.map or not panel.curves:
+        return 0
+    values = np.concatenate([np.ravel(curve.y) for curve in panel.curves])
+    values = np.abs(values[np.isfinite(values)])
+    largest = float(values.max()) if len(values) else 0.0
+    if panel.ylim:
+        largest = min(largest, float(np.abs(panel.ylim).max()))
+    return 3 * floor(log10(largest) / 3.0) if largest and not _SHORT <= largest < _LONG else 0
+
+
 class _Drawn:
     """A panel on its axes: what is drawn does not change with its place; texts are folded to fit."""
 
     def __init__(self, axis: Axes, panel: Panel, letter: str) -> None:
         self.axis, self.panel, self.letter, self.legend = axis, panel, letter, None
-        self.power = self._power()
+        self.power = _power(panel)
         for low, high in panel.bands:
             axis.axvspan(low, high, color="#F2F2F2", linewidth=0.0, zorder=-1)
         for x in panel.at_x:
@@ -273,17 +285,6 @@ class _Drawn:
                     columnspacing=1.2,
                 )  # fmt: skip
 
-    def _power(self) -> int:
-        """Power of ten over which numbers are neither long nor short; a multiple of three."""
-        if "y" in self.panel.log or self.panel.map or not self.panel.curves:
-            return 0
-        values = np.concatenate([np.ravel(curve.y) for curve in self.panel.curves])
-        values = np.abs(values[np.isfinite(values)])
-        largest = float(values.max()) if len(values) else 0.0
-        if self.panel.ylim:
-            largest = min(largest, float(np.abs(self.panel.ylim).max()))
-        return 3 * floor(log10(largest) / 3.0) if largest and not _SHORT <= largest < _LONG else 0
-
     def _curve(self, curve: Curve) -> Line2D:
         y = np.asarray(curve.y) / 10.0**self.power
         style: dict[str, Any] = {
@@ -295,7 +296,14 @@ class _Drawn:
         if curve.form == LINE:
             return self.axis.plot(curve.x, y, linestyle=curve.look.line, **style)[0]
         if curve.form == DOTS:
-            return self.axis.plot(curve.x, y, curve.look.marker, markersize=2.0, **style)[0]
+            if curve.look.marker == ".":  # many
+                style |= {
+                    "markerfacecolor": curve.look.colour,
+                    "markeredgewidth": 0.0,
+                    "rasterized": True,
+                }
+            size = 2.0 * curve.width
+            return self.axis.plot(curve.x, y, curve.look.marker, markersize=size, **style)[0]
         at = spaced(np.asarray(curve.x, dtype=float), curve.turn)
         if curve.form == JOINED:
             style |= {
@@ -344,6 +352,17 @@ class _Drawn:
         assert self.legend is not None
         below = axis.bbox.y0 - min(box.y0 for box in _boxes(axis, of_legend=False))
         self.legend.set_bbox_to_anchor((0.5, -(below / axis.figure.dpi + 0.03) / tall), axis.transAxes)
+
+
+def _draw_arrows(axis: Axes, curve: Curve) -> None:
+    """Draw arrows along a curve, once its panel has its place."""
+    style = {"arrowstyle": "-|>", "color": curve.look.colour, "shrinkA": 0, "shrinkB": 0}
+    points = np.column_stack([curve.x, curve.y])
+    for share in curve.arrows:
+        steps = np.hypot(*np.diff(axis.transData.transform(points), axis=0).T)
+        way = np.append(0.0, np.cumsum(steps))
+        at = min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
+        axis.annotate("", points[at + 1], points[at], arrowprops=style | {"mutation_scale": 9})
 
 
 def fit_text(text: Text, words: str, room: float) -> None:
@@ -567,14 +586,14 @@ class Film:
         self._panels, self.frames = panels, frames
         first = panels(0)
         self.figure = render(first, size, columns=len(first), high=0.85)
-        self._count = len(first)
+        self._count, self._scales = len(first), [10.0 ** _power(panel) for panel in first]
 
     def show(self, frame: int) -> None:
         """Draw a frame."""
-        for axis, panel in zip(self.figure.axes[: self._count], self._panels(frame)):
+        for axis, panel, scale in zip(self.figure.axes, self._panels(frame), self._scales):
             curves = [line for line in axis.lines if line.get_gid() == "curve"]
             for line, curve in zip(curves, panel.curves):
-                line.set_data(curve.x, curve.y)
+                line.set_data(curve.x, np.asarray(curve.y) / scale)
             if panel.map:
                 axis.images[0].set_data(panel.map.values)
             letter = axis.get_title(loc="left")[:5] if self._count > 1 else ""

@@ -75,38 +75,40 @@ class StateLabels:
             states = states[self.values(name)[states] == value]
         return states
 
-    def label(self, state: int, names: Sequence[str]) -> str:
-        """Named parameters of a state, with formulas in TeX."""
-        return ", ".join(self._value_label(name, self.values(name)[state]) for name in names)
-
     def ordered(self, states: NDArray) -> NDArray[np.int64]:
         """Some states in the order of their parameters, the first parameter slowest."""
         return states[np.lexsort([self._places(name, states) for name in self.parameters][::-1])]
 
     def _places(self, name: str, states: NDArray) -> NDArray[np.int64]:
         """Positions of some states' values of a parameter among its distinct values, (states,)."""
-        place = {value: n for n, value in enumerate(self.distinct(name, states))}
-        return np.array([place[value] for value in self.values(name)[states].tolist()])
+        values = self.distinct(name, states)
+        return np.array([values.index(value) for value in self.values(name)[states].tolist()])
+
+    def label(self, state: int, names: Sequence[str]) -> str:
+        """Named parameters of a state, with formulas in TeX."""
+        return ", ".join(self._values_label(name, [self.values(name)[state]]) for name in names)
 
     def text(self, state: int, names: Sequence[str]) -> str:
         """Named parameters of a state, as plain text."""
         return plain(self.label(state, names))
 
-    def listed(self, name: str, values: Sequence[Any]) -> str:
-        """Some values of a parameter as plain text."""
-        if not self.numeric(name):
-            return _short(values)
-        symbol, factor, in_unit = self.scale(name)
-        text = _short([plain(f"${number(factor * value)}$") for value in values])
-        return f"{plain(f'${symbol}$')} = {text}{plain(f'${unit(in_unit)}$')}"
+    def all_at(self, states: Sequence[int]) -> str:
+        """Sentence on the parameters that some states share and others have otherwise; "" for none."""
+        fixed = [name for name in self.varied() if name not in self.varied(states)]
+        return f" All at {self.text(int(states[0]), fixed)}." if fixed else ""
 
-    def _value_label(self, name: str, value: Any) -> str:
+    def absent(self, name: str, shown: Sequence[int]) -> str:
+        """Values of a parameter that none of some states has, as plain text; "" for none."""
+        absent = [value for value in self.distinct(name) if value not in self.values(name)[shown]]
+        return plain(self._values_label(name, absent)) if absent else ""
+
+    def _values_label(self, name: str, values: Sequence[Any]) -> str:
         if not self.numeric(name):
-            return str(value)
+            return _short([str(value) for value in values])
         symbol, factor, in_unit = self.scale(name)
-        text = f"${symbol} = {number(factor * value)}{unit(in_unit)}$"
-        if name == C and self._units.dimensionless:
-            text += f" (${number(value * self.c_s)}{unit('m/s')}$)"
+        text = f"${symbol} = {_short([number(factor * value) for value in values])}{unit(in_unit)}$"
+        if name == C and self._units.dimensionless and len(values) == 1:
+            text += f" (${number(values[0] * self.c_s)}{unit('m/s')}$)"
         return text
 
     def scale(self, name: str) -> tuple[str, float, str]:
@@ -145,15 +147,14 @@ class StateLabels:
         """
         if len(names) != 2:
             return looks(len(states), bool(names) and self.numeric(names[0]))
-        first, second = (self.distinct(name, states) for name in names)
-        colours = looks(len(first), self.numeric(names[0]))
-        indices = [
-            (first.index(self.values(names[0])[state]), second.index(self.values(names[1])[state]))
-            for state in states
-        ]
+        count = len(self.distinct(names[0], states))
+        colours, places = (
+            looks(count, self.numeric(names[0])),
+            [self._places(name, np.asarray(states)).tolist() for name in names],
+        )
         return [
-            Look(colours[n].colour, LINES[m % len(LINES)], MARKERS[(n + m * len(first)) % len(MARKERS)])
-            for n, m in indices
+            Look(colours[n].colour, LINES[m % len(LINES)], MARKERS[(n + m * count) % len(MARKERS)])
+            for n, m in zip(*places)
         ]
 
 
@@ -212,32 +213,16 @@ def not_shown(labels: StateLabels, shown: Sequence[int], how: str, requested: Se
     missing = sorted(set(requested or labels.all.tolist()) - set(shown))
     if not missing:
         return ""
-    values = [
-        labels.listed(name, absent)
-        for name in labels.varied()
-        if (
-            absent := [
-                value for value in labels.distinct(name) if value not in labels.values(name)[shown]
-            ]
-        )
-    ]
-    without = f" ({'; '.join(values)})" if values else ""
-    noun = "state" if len(missing) == 1 else "states"
-    ranges = _short(_ranges(missing), ",")
-    count = f"{len(missing)} of {len(labels.all)} states not shown{without}"
-    return f"{count}: {noun} {ranges}; choose by {how}."
+    values = [labels.absent(name, shown) for name in labels.varied()]
+    without = f" ({'; '.join(filter(None, values))})" if any(values) else ""
+    runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1)
+    ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
+    return (
+        f"{len(missing)} of {len(labels.all)} states not shown{without}: "
+        f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
+    )
 
 
 def _short(words: Sequence[str], comma: str = ", ") -> str:
     """The first of some words with commas between them, and "…" where there are more."""
     return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
-
-
-def _ranges(numbers: Sequence[int]) -> list[str]:
-    runs: list[list[int]] = []
-    for number_ in numbers:
-        if runs and number_ == runs[-1][-1] + 1:
-            runs[-1].append(number_)
-        else:
-            runs.append([number_])
-    return [f"{run[0]}" if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs]

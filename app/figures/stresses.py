@@ -1,12 +1,11 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
-inside; and those of several archives, one over the other."""
+inside; friction along the contact; and stresses of several archives, one over the other."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, stresses
@@ -20,9 +19,10 @@ from galinx.postprocess.quantities.quantity import (
     POINT,
     STATE,
 )
-from galinx.postprocess.quantities.states import FRICTION, POSITION
-from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
+from galinx.postprocess.quantities.states import RESULTANT_RATIO, SPEED
+from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, RATIO_ALONG, SURFACE_X
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import from_edge, under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
@@ -30,9 +30,7 @@ from galinx.texts import number, plain
 
 from ..errors import BadInput
 from .choice import Archive, Drawing, both, explained, named, require_one_of, short_name
-from .friction import Loops
 from .render import (
-    DOTS,
     LINE,
     Curve,
     Map,
@@ -45,7 +43,7 @@ from .render import (
     spaced,
 )
 from .states import C, N, StateLabels, not_shown, spread, states_for_panel
-from .style import COLUMN, GREY, LINES, PAGE, SMALL, Look, looks
+from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.0
@@ -73,11 +71,11 @@ def along(X: NDArray, values: NDArray) -> float:
 
 def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
     """Positions and values of a line broken at the edges of the punch: across one it would lie."""
-    beside, gap = ~under_punch(X), [np.nan]
+    beside = ~under_punch(X)
     parts = (beside & (X < 0.0), ~beside, beside & (X > 0.0))
-    pieces = [(X[part], values[part]) for part in parts if not np.isnan(values[part]).all()]
-    xs, ys = ([part for piece in pieces for part in (piece[n], gap)] for n in (0, 1))
-    return np.concatenate([*xs, gap]), np.concatenate([*ys, gap])
+    pieces = [part for part in parts if not np.isnan(values[part]).all()]
+    x, y = (np.concatenate([np.append(z[part], np.nan) for part in pieces]) for z in (X, values))
+    return x, y
 
 
 def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
@@ -100,48 +98,103 @@ def surface_curves(
 ) -> list[Curve]:  # fmt: skip
     """Curves of a stress along the surface, broken at the edges; positions times and plus ``place``."""
     factor, offset = place
+    inside = np.abs(X) <= along(X, np.array(list(values.values())))
     curves = []
-    half = along(X, np.array(list(values.values())))
-    inside = np.abs(X) <= half
     for curve in both(X, dict(values), look, label, turn):
-        if curve.form == LINE:
-            x, y = broken(X, np.asarray(curve.y))
-        elif curve.form == "joined":
-            at = np.zeros(len(X), dtype=bool)
-            at[spaced(np.where(inside, X, np.nan), turn)] = True
-            curves.append(
-                replace(curve, form="markers", label="", x=offset + factor * X[at], y=curve.y[at])
-            )
-            (x, y), curve = broken(X, np.asarray(curve.y)), replace(curve, form=LINE, width=0.6)
-        else:
-            x, y = X[inside], np.asarray(curve.y)[inside]
-        curves.append(replace(curve, x=offset + factor * x, y=y))
-    return curves
+        y = np.asarray(curve.y)
+        if curve.form == "joined":  # markers, and a line that breaks between them
+            at = spaced(np.where(inside, X, np.nan), turn)
+            curves.append(replace(curve, form="markers", label="", x=X[at], y=y[at]))
+            curve = replace(curve, form=LINE, width=0.6)
+        x, y = broken(X, y) if curve.form == LINE else (X[inside], y[inside])
+        curves.append(replace(curve, x=x, y=y))
+    return [replace(curve, x=offset + factor * curve.x) for curve in curves]
 
 
-def surface_names(of: Archive, method: str | None = None) -> list[str]:
-    """Names of the stresses that an archive has along the surface."""
-    return list(of.by_method(STATE, POINT, method=method))
+def place_of(of: Archive, state: int) -> tuple[float, float]:
+    """What positions over a of a state are multiplied by, and what is added, in the figure's units."""
+    scale = of.units.position
+    a, b = (float(z[state] if np.ndim(z) else z) for z in (scale.factor, scale.offset))
+    return a, b
 
 
-def stress_names(of: Archive) -> list[str]:
-    """Names of the stresses along the surface that figures show."""
-    shown = of.choice.quantities or [name for name in SHOWN if name in surface_names(of)]
-    return list(dict.fromkeys(shown))
+def position_name(of: Archive, words: str = "position on the surface ") -> str:
+    """Name of the axis of positions."""
+    return f"{words}$X/a$" if of.units.dimensionless else f"{words}$X$ ({of.units.position.unit})"
 
 
-def surface_stresses(of: Archive) -> dict[str, dict[str, NDArray]]:
-    """Stresses along the surface by the name of their axis and by method, (states, points), the chosen
-    ones or those that are shown by default."""
-    available = of.by_method(STATE, POINT)
-    shown = {}
-    for name in (require_one_of("quantity", name, available) for name in stress_names(of)):
-        rows = available[name]
-        row = next(iter(rows.values()))
-        words, sign = SHOWN.get(name, (short_name(row), 1.0))
-        label = named(words, of.scaled(row).unit)
-        shown[label] = {method: sign * of.values(row) for method, row in rows.items()}
-    return shown
+def window(places: Sequence[tuple[float, float]], half: float) -> tuple[float, float]:
+    """Limits of positions that show contacts with so much beside each, over a."""
+    return min(b - half * a for a, b in places), max(b + half * a for a, b in places)
+
+
+def _contacts(places: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Ends of contacts, each once."""
+    return sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
+
+
+class Surface:
+    """Stresses of an archive along the surface, the chosen ones or those that are shown by default.
+
+    Attributes:
+        of: the archive.
+        X: positions over a, (points,).
+        axes: name of the axis of each stress, by its name.
+        values: numbers in the figure's units by name and by method, (states, points).
+    """
+
+    def __init__(self, of: Archive) -> None:
+        self.of, self.X = of, of.data[SURFACE_X.path]
+        available = of.by_method(STATE, POINT)
+        self.axes: dict[str, str] = {}
+        self.values: dict[str, dict[str, NDArray]] = {}
+        for name in of.choice.quantities or [name for name in SHOWN if name in available]:
+            rows = available[require_one_of("quantity", name, available)]
+            first = next(iter(rows.values()))
+            words, sign = SHOWN.get(name, (short_name(first), 1.0))
+            self.axes[name] = named(words, of.scaled(first).unit)
+            self.values[name] = {method: sign * of.values(row) for method, row in rows.items()}
+
+    def drawn(self, name: str) -> NDArray[np.float64]:
+        """A stress by the first method, after which panels are laid out, (states, points)."""
+        return next(iter(self.values[name].values()))
+
+
+class Shown(NamedTuple):
+    """A state in a panel, its look, and its name in the legend."""
+
+    surface: Surface
+    state: int
+    look: Look
+    label: str = ""
+
+
+def surface_panel(name: str, shown: Sequence[Shown], ylim: Any = None, **options: Any) -> Panel:
+    """Panel of a stress along the surface, as wide as the contacts of its states need.
+
+    Args:
+        name: of the stress.
+        shown: states, which may be of several archives with the same units.
+        ylim: limits of the stress, those of the states by default.
+        options: further attributes of the panel.
+    """
+    curves, ranges, places = [], [], []
+    half, first = _UNDER, shown[0].surface
+    for k, (surface, state, look, label) in enumerate(shown):
+        values = {method: y[state] for method, y in surface.values[name].items()}
+        places.append(place_of(surface.of, state))
+        curves += surface_curves(surface.X, values, look, label, k / len(shown), places[-1])
+        ranges.append(limits(surface.X, surface.drawn(name)[[state]]))
+        half = max(half, along(surface.X, surface.drawn(name)))
+    low, high = np.array(ranges).T
+    ends = _contacts(places)
+    panel = Panel(
+        position_name(first.of), first.axes[name], curves=curves, xlim=window(places, half),
+        ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
+        bands=ends[:1] if half == _BESIDE and np.allclose(ends, ends[0], rtol=1e-9) else (),
+    )  # fmt: skip
+    panel, measured = replace(panel, **options), first.of.choice.measured
+    return measured.over_stress(panel, name, first.of.units) if measured else panel
 
 
 #: Ends of captions by the ends of the contact.
@@ -150,91 +203,36 @@ _ENDS = {SHARP: ": at its edges they grow without bound.", PRESCRIBED: "."} | di
 )
 
 
-def place_of(of: Archive, state: int) -> tuple[float, float]:
-    """What positions over a of a state are multiplied by, and what is added, in the figure's units."""
-    scale = of.units.position
-    return tuple(float(z[state]) if np.ndim(z) else float(z) for z in (scale.factor, scale.offset))  # type: ignore[return-value]
-
-
-def position_name(of: Archive, words: str = "position on the surface ") -> str:
-    """Name of the axis of positions."""
-    return f"{words}$X/a$" if of.units.dimensionless else f"{words}$X$ ({of.units.position.unit})"
-
-
-def contacts_of(of: Archive, states: Sequence[int]) -> list[tuple[float, float]]:
-    """Ends of some states' contacts in the figure's units, each once."""
-    ends = {
-        tuple(round(b + s * a, 12) for s in (-1.0, 1.0)) for a, b in (place_of(of, i) for i in states)
-    }
-    return sorted(ends)  # type: ignore[arg-type]
-
-
 def surface(of: Archive) -> Drawing:
     """Figure of stresses along the surface: a column for each speed, or else for each value of the
     parameter that varies most slowly."""
-    data, scene, choice = of.data, of.scene, of.choice
-    loops, labels, width = Loops(of), of.labels, choice.size.width if choice.size else PAGE
-    same = scene.body.alike and N in labels.parameters and not choice.states and of.units.dimensionless
+    choice, labels, stressed = of.choice, of.labels, Surface(of)
+    width = choice.size.width if choice.size else PAGE
+    same = of.scene.body.alike and N in labels.parameters and not choice.states and of.units.dimensionless
     states = labels.where(labels.all, **{N: labels.values(N)[0]}) if same else labels.all
     groups = _groups(labels, states, choice.states, width)
-    shown = surface_stresses(of)
-    X = data[SURFACE_X.path]
+    every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
-    for n, (name, (label, values)) in enumerate(zip(stress_names(of), shown.items())):
-        drawn = next(iter(values.values()))
-        half = along(X, drawn)
-        ranges = _ranges(X, drawn, [numbers for _, numbers, _ in groups])
+    for n, name in enumerate(stressed.values):
+        drawn = stressed.drawn(name)
+        ranges = _ranges(stressed.X, drawn, [numbers for _, numbers, _ in groups])
         for column, (title, numbers, names) in enumerate(groups):
             styles = labels.looks(numbers, names)
-            curves = [
-                curve
-                for k, (i, look) in enumerate(zip(numbers, styles))
-                for curve in surface_curves(
-                    X, {method: of_method[i] for method, of_method in values.items()}, look,
-                    labels.label(i, names), k / len(numbers), place_of(of, i),
-                )
-            ]  # fmt: skip
-            ends = contacts_of(of, numbers)
-            places = [place_of(of, i) for i in numbers]
-            window = (
-                min(b - half * a for a, b in places), max(b + half * a for a, b in places)
-            )  # fmt: skip
-            bare = len(set(ranges)) == 1 and column > 0
-            panel = Panel(
-                position_name(of), None if bare else label, curves=curves, title=title if not n else "",
-                xlim=window, ylim=ranges[column], at_y=(0.0,),
-                bands=ends if len(ends) == 1 and half == _BESIDE else (),
-                after=_inset(of, loops, numbers, styles) if not n and half == _UNDER else None,
-            )  # fmt: skip
-            measured = choice.measured
-            panels.append(measured.over_stress(panel, name, of.units) if measured else panel)
-    if not any(panel.after for panel in panels) or _same_places(of, loops, groups):
-        panels[1 : len(groups)] = [replace(panel, after=None) for panel in panels[1 : len(groups)]]
-    if len([1 for _, numbers, _ in groups for _ in numbers]) == len(groups) == 1:
-        panels = [
-            replace(
-                panel,
-                curves=[
-                    curve if curve.form == DOTS else replace(curve, label="") for curve in panel.curves
-                ],
-            )
-            for panel in panels
-        ]
-    methods = {method for values in shown.values() for method in values}
-    columns, size = len(groups), choice.size
-    if columns == 1 and width > 4.5 and len(shown) > 1:  # side by side
+            called = [labels.label(i, names) if len(every) > 1 else "" for i in numbers]
+            shown = [Shown(stressed, *one) for one in zip(numbers, styles, called)]
+            panel = surface_panel(name, shown, ranges[column], title=title if not n else "")
+            panels.append(replace(panel, y=None) if column and len(set(ranges)) == 1 else panel)
+    columns = len(groups)
+    if columns == 1 and width > 4.5 and len(stressed.values) > 1:  # side by side
         columns = 2
-    figure = render(panels, size, columns, explained(methods))
-    every = [state for _, numbers, _ in groups for state in numbers]
-    varied = labels.varied(every)
-    fixed = [name for name in labels.varied() if name not in varied]
-    caption = "Stresses along the surface, under the punch (grey) and beside it" + _ENDS[scene.body.ends]
+    methods = {method for values in stressed.values.values() for method in values}
+    figure = render(panels, choice.size, columns, explained(methods))
+    caption = (
+        "Stresses along the surface, under the punch (grey) and beside it" + _ENDS[of.scene.body.ends]
+    )
     if same:
         caption += " Over N/(2a) they are the same under every load."
-    if any(axis.child_axes for axis in figure.axes):
-        caption += " Insets show where on the friction loop each curve sits."
-    if fixed:
-        caption += f" All at {labels.text(every[0], fixed)}."
+    caption += labels.all_at(every)
     missing = not_shown(labels, every, "--figure surface --states", choice.states)
     return Drawing("surface", caption, figure, left_out=missing)
 
@@ -254,7 +252,8 @@ def _groups(
     varied = labels.varied(states)
     most = max(1, min(_COLUMNS, int(width / _LEAST)))
     by = varied[0] if len(varied) > 1 else ""
-    if by and requested and len(labels.distinct(by, states)) > most:
+    values = labels.distinct(by, states) if by else []
+    if requested and len(values) > most:
         by = ""
     if not by:
         names, shown = (
@@ -262,344 +261,12 @@ def _groups(
         )
         return [("", shown.tolist(), names)]
     groups = []
-    values = labels.distinct(by, states)
     for value in spread(values, most) if most > 1 else values[-1:]:
         group, names = labels.where(states, **{by: value}), [name for name in varied if name != by]
         if not requested:
             names, group = states_for_panel(labels, names, group, _CURVES)
         groups.append((labels.label(int(group[0]), [by]), labels.ordered(group).tolist(), names))
     return groups
-
-
-#: Size of an inset, of the names of its axes, and where it may begin, all over that of the panel.
-_INSET, _NAMES = (0.27, 0.31), (0.07, 0.12)
-_CORNERS = ((0.37, 0.18), (0.075, 0.13), (0.7, 0.13), (0.37, 0.64), (0.075, 0.64), (0.7, 0.64))
-
-
-def _same_places(of: Archive, loops: Loops, groups: Sequence[tuple[str, list[int], list[str]]]) -> bool:
-    places = [
-        [(of.data[POSITION.path][i], of.data[FRICTION.path][i], id(loops.of(i))) for i in numbers]
-        for _, numbers, _ in groups
-    ]
-    return all(place == places[0] for place in places)
-
-
-def _inset(
-    of: Archive, loops: Loops, numbers: Sequence[int], styles: Sequence[Look]
-) -> Callable[[Axes], None] | None:
-    """Function that draws the places of states on their friction loops in a corner where no curve is.
-
-    A loop that all share is grey. It shows places, not values: axes have no numbers. None where friction
-    is the same all along.
-    """
-    shown = loops.of_all(numbers)
-    if not shown or not any(loop.varies for loop in shown):
-        return None
-
-    def draw(axis: Axes) -> None:
-        to_panel = axis.transData + axis.transAxes.inverted()
-        points = np.concatenate([to_panel.transform(line.get_xydata()) for line in axis.lines])
-        points = points[np.isfinite(points).all(axis=1)]
-        for corner in _CORNERS:
-            first, last = np.array(corner) - _NAMES, np.array(corner) + _INSET + 0.02
-            if not ((first <= points) & (points <= last)).all(axis=1).any():
-                break
-        else:
-            return
-        inset = axis.inset_axes((*corner, *_INSET))
-        shared = all(loop is shown[0] for loop in shown)
-        for n, (i, loop, look) in enumerate(zip(numbers, shown, styles)):
-            if n == 0 or not shared:
-                inset.plot(loop.X_over_L, loop.f, color=GREY if shared else look.colour, linewidth=0.6)
-            place = float(of.data[POSITION.path][i]), float(of.data[FRICTION.path][i])
-            inset.plot(*place, look.marker, color=look.colour, markersize=4)
-        inset.axhline(0.0, color=GREY, linewidth=0.4, zorder=0)
-        inset.set(xticks=[], yticks=[])
-        inset.margins(0.08, 0.12)
-        inset.set_xlabel("$X/L$", fontsize=SMALL, labelpad=1.0)
-        inset.set_ylabel("$f$", fontsize=SMALL, labelpad=1.0, rotation=0, va="center", ha="right")
-
-    return draw
-
-
-#: Curves of an interface, the least width of its column [in], and positions shown over a and its depth.
-_INTERFACE_CURVES, _LEAST_INTERFACE, _OVER_A, _OVER_DEPTH = 4, 2.2, 2.0, 2.5
-#: What axes call stresses, and which of them share one: both sides of an interface.
-_AT_INTERFACES = {
-    ("sigma_YY",): r"normal traction $\sigma_{YY}$",
-    ("sigma_XY",): r"shear traction $\sigma_{XY}$",
-    ("sigma_XX_above", "sigma_XX_below"): r"in-plane stress $\sigma_{XX}$",
-}
-
-
-def interface_names(of: Archive, method: str | None = None) -> list[str]:
-    """Names of the stresses that an archive has along interfaces."""
-    return list(of.by_method(STATE, INTERFACE, ALONG, method=method))
-
-
-def interfaces(of: Archive) -> Drawing:
-    """Figure of stresses along interfaces: a column for each interface, or for some of many."""
-    labels, choice = of.labels, of.choice
-    states, width = of.selected(), choice.size.width if choice.size else PAGE
-    names = labels.varied(states)
-    if not choice.states:
-        names, states = states_for_panel(labels, names, states, _INTERFACE_CURVES)
-    states = labels.ordered(states)
-    styles = looks(len(states), len(names) == 1 and labels.numeric(names[0]))
-    depths, reach, unit = _depths(of)
-    shown = spread(range(len(depths)), max(1, int(width / _LEAST_INTERFACE)))
-    available = of.by_method(STATE, INTERFACE, ALONG)
-    chosen = [require_one_of("quantity", name, available) for name in choice.quantities] or list(
-        available
-    )
-    X, both_sides = of.data[ALONG_X.path], False
-    panels: list[Panel] = []
-    methods: set[str] = set()
-    for sides, words in _AT_INTERFACES.items():
-        rows = [available[name] for name in sides if name in chosen]
-        both_sides |= len(rows) > 1
-        for i in shown if rows else ():
-            half = max(_OVER_A, _OVER_DEPTH * float(reach[i]))
-            inside = np.abs(X) <= half
-            curves = []
-            for side, row in enumerate(rows):
-                methods |= row.keys()
-                values = {method: of.values(quantity) for method, quantity in row.items()}
-                for k, (state, look) in enumerate(zip(states.tolist(), styles)):
-                    factor, offset = place_of(of, state)
-                    at = {method: y[state, i][inside] for method, y in values.items()}
-                    look = look._replace(line="-" if side == 0 else (0, (4.0, 1.5)))
-                    label = labels.label(state, names) if side == 0 and len(states) > 1 else ""
-                    curves += both(offset + factor * X[inside], at, look, label, k / len(states))
-            ends = [place_of(of, state) for state in states.tolist()]
-            label = named(words, of.scaled(next(iter(rows[0].values()))).unit)
-            title = f"depth {number(depths[i])} {unit}" if len(depths) > 1 or len(panels) == 0 else ""
-            panels.append(Panel(
-                position_name(of, "position along the interface "), label if i == shown[0] else "",
-                curves=curves, title=title if len(panels) < len(shown) else "",
-                xlim=(min(b - half * a for a, b in ends), max(b + half * a for a, b in ends)),
-                bands=contacts_of(of, states.tolist()), at_y=(0.0,),
-            ))  # fmt: skip
-    notes = explained(methods)
-    if both_sides:
-        sides_look = [handle(Look(GREY, line, ""), f"{side} the interface")
-                      for side, line in (("above", "-"), ("below", (0, (4.0, 1.5))))]  # fmt: skip
-        notes = sides_look + notes
-    columns = len(shown)
-    if columns == 1 and width > 4.5:
-        columns = len(panels)
-    figure = render(panels, choice.size, columns, notes)
-    caption = (
-        "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
-        "sides share, and in-plane stress, which jumps."
-    )
-    if len(shown) < len(depths):
-        caption += f" {len(shown)} of {len(depths)} interfaces are shown; a wider --size shows more."
-    fixed = [name for name in labels.varied() if name not in labels.varied(states)]
-    if fixed:
-        caption += f" All at {labels.text(int(states[0]), fixed)}."
-    missing = not_shown(labels, states.tolist(), "--figure interfaces --states", choice.states)
-    return Drawing("interfaces", caption, figure, left_out=missing)
-
-
-def _depths(of: Archive) -> tuple[NDArray, NDArray, str]:
-    """Depths of interfaces as titles show them, their reach over a half-width, and the unit of titles."""
-    unit, of_states = interface_depths(of.data)
-    depths, a = of_states[0], of.scene.body.half_width
-    reach, in_m = (depths, depths * a) if unit == "1" else (depths / a, depths)
-    if of.units.dimensionless and unit == "1":
-        return depths, reach, "$a$"
-    scale = replace_unit(of)
-    return in_m * scale[0], reach, scale[1]
-
-
-def replace_unit(of: Archive) -> tuple[float, str]:
-    """What lengths in m are multiplied by in a figure, and their unit."""
-    if of.units.dimensionless:
-        return 1e3, "mm"
-    scale = of.units.scale(CONTACT)
-    return float(np.max(scale.factor)), scale.unit
-
-
-#: Name of the stresses that maps show by default.
-_MAPS = {
-    "von_mises": r"von Mises $\sigma_{\mathrm{vM}}$",
-    "sigma_XX": r"in-plane $\sigma_{XX}$",
-    "sigma_YY": r"normal $\sigma_{YY}$",
-    "sigma_XY": r"shear $\sigma_{XY}$",
-    "max_shear": r"largest shear $\tau_{\mathrm{max}}$",
-}
-#: Columns of states, and the share of values that have colours of their own: those at the edges of the
-#: punch would leave none for the rest.
-_STATES, _SHARE = 2, 0.985
-
-
-class Fields:
-    """Stresses inside on the grid of an archive."""
-
-    def __init__(self, of: Archive, method: str | None = None) -> None:
-        self._of, data = of, of.data
-        self._shape = tuple(data[stresses.MAP.path].tolist())
-        self._quantities = of.by_method(STATE, INSIDE, method=method)
-        self.methods = [m for m in METHODS if any(m in rows for rows in self._quantities.values())]
-
-    @property
-    def names(self) -> list[str]:
-        """Names of all stresses inside that can be mapped."""
-        names = dict.fromkeys(self._quantities)
-        if {"sigma_XX", "sigma_YY", "sigma_XY"} <= names.keys():
-            names |= dict.fromkeys(_MAPS)
-        return list(names)
-
-    def grid(self) -> tuple[NDArray, NDArray]:
-        """Positions over a along both axes."""
-        X, Y = (self._on_grid(self._of.data[row.path]) for row in (stresses.INSIDE_X, stresses.INSIDE_Y))
-        return X[0], Y[:, 0]
-
-    def place(self, state: int) -> tuple[NDArray, NDArray]:
-        """Positions of a state along both axes in the figure's units."""
-        (X, Y), (a, b) = self.grid(), place_of(self._of, state)
-        return b + a * X, a * Y
-
-    def values(self, name: str, method: str, state: int) -> NDArray:
-        """One quantity of a state, (rows, columns), in the figure's units."""
-        if name in self._quantities:
-            return self._scaled(self._quantities[name][method], state)
-        rows = stresses.STRESSES_INSIDE[method]
-        XX, YY, XY = (self._scaled(row, state) for row in rows)
-        if name == "max_shear":
-            return maximum_shear(XX, YY, XY)
-        return von_mises(XX, YY, XY, self._of.scene.solid.σ_ZZ(XX, YY, XY))
-
-    def label(self, name: str) -> str:
-        """Label of the colour bar of a quantity."""
-        row = next(iter((self._quantities.get(name) or next(iter(self._quantities.values()))).values()))
-        return named(_MAPS.get(name) or short_name(row), self._of.scaled(row).unit)
-
-    def _scaled(self, row: Quantity, state: int) -> NDArray:
-        scale = self._of.scaled(row)
-        return scale.of(self._on_grid(self._of.data[row.path][state])[None], [state])[0]
-
-    def _on_grid(self, values: NDArray) -> NDArray:
-        return values[: np.prod(self._shape)].reshape(self._shape)
-
-
-def has_map(of: Archive, method: str | None = None) -> bool:
-    """Return True if an archive holds a map of stresses."""
-    return of.has(stresses.MAP) and bool(of.by_method(STATE, INSIDE, method=method))
-
-
-def map_of(
-    of: Archive, fields: Fields, name: str, method: str, state: int, limit: float, **options: Any
-) -> Map:
-    """Map of a stress of a state."""
-    values = fields.values(name, method, state)
-    X, Y = fields.place(state)
-    strength = of.scene.half_plane.yield_strength
-    level = 0.0
-    if name == "von_mises" and strength and not of.scene.layers:
-        scale = of.units.stress  # of stresses over N/(2a) with the unit of Pa
-        level = strength * float(of.units.scale("Pa").factor) if scale.unit != "N/(2a)" else 0.0
-    return Map(X, Y, values, limit=limit, signed=name.startswith("sigma"), level=level, **options)
-
-
-def inside(of: Archive) -> Drawing:
-    """Figure of maps of stresses at the slowest and the fastest speed."""
-    fields, labels, choice = Fields(of), of.labels, of.choice
-    names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
-    names = names or [name for name in _MAPS if name in fields.names]
-    states = list(choice.states) or _two_states(labels)
-    alone = len(names) == len(states) == 1
-    apart = labels.varied(states) or ([C] if C in labels.varied() or alone else [])
-    size = choice.size
-    if size is None and len(states) == 1:
-        size = Size(COLUMN if len(names) < 3 else PAGE)
-    method, *others = fields.methods
-    lines = list(_interfaces(of))
-    places = [fields.place(i) for i in states]
-    window = (min(X[0] for X, _ in places), max(X[-1] for X, _ in places))
-    depth = (min(Y[0] for _, Y in places), 0.0)
-    unit, panels, off = of.units.length.unit, [], 0.0
-    wide = len(states) > 1
-    for n, name in enumerate(names):
-        every = np.array([fields.values(name, method, i) for i in states])
-        limit = float(np.quantile(np.abs(every), _SHARE)) or 1.0
-        signed = name.startswith("sigma")
-        ends = (signed and bool(every.min() < -limit)), bool(every.max() > limit)
-        extend = {(True, True): "both", (False, True): "max", (True, False): "min"}.get(ends, "neither")
-        for other in others:
-            beside = np.array([fields.values(name, other, i) for i in states])
-            off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
-        for k, state in enumerate(states):
-            last = k == len(states) - 1
-            shown = map_of(
-                of, fields, name, method, state, limit, extend=extend, lines=alone,
-                label=fields.label(name) if last else "",
-            )  # fmt: skip
-            a, b = place_of(of, state)
-            bottom = not wide or n == len(names) - 1
-            panels.append(Panel(
-                ("$X/a$" if of.units.dimensionless else f"$X$ ({unit})") if bottom else None,
-                ("$Y/a$" if of.units.dimensionless else f"$Y$ ({unit})") if k == 0 else None,
-                map=shown, bar=(b - a, b + a), xlim=window, ylim=depth, at_y=(),
-                title=labels.label(state, apart) if n == 0 or not wide else "", dashes=lines,
-            ))  # fmt: skip
-    columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
-    figure = render(panels, size, columns)
-    fixed = [name for name in labels.parameters if name not in labels.varied(states)]
-    caption = (
-        f"Stresses inside below the punch (black bar), {METHODS[method]}, at "
-        f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
-        "bar its colours are clipped."
-    )
-    caption += " Dashed lines are the interfaces." * bool(lines)
-    if any(
-        panel.map and panel.map.level and panel.map.values.max() > panel.map.level for panel in panels
-    ):
-        caption += " Within the white line the solid would yield."
-    if off:
-        caption += (
-            f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."
-        )
-    how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
-    return Drawing("inside", caption, figure, True, not_shown(labels, states, how, choice.states))
-
-
-def _interfaces(of: Archive) -> Sequence[float]:
-    """Heights of the lower faces of layers in the figure's units; none where these differ by state."""
-    if INTERFACE_DEPTHS.path in of.data:
-        return []
-    unit, depths = of.scene.body.depths
-    if unit == "1":
-        scale = of.units.length
-        return [] if np.ndim(scale.factor) else (-scale.factor * depths).tolist()
-    return [] if of.units.dimensionless else (-depths * replace_unit(of)[0]).tolist()
-
-
-def _two_states(labels: StateLabels) -> list[int]:
-    """First and last state of the parameter that varies most slowly, others at one of their values."""
-    varied = labels.varied()
-    states = labels.where(labels.all, **labels.fixed(varied[1:], labels.all))
-    return sorted({int(states[0]), int(states[-1])})[:_STATES]
-
-
-def has_surface(of: Archive) -> bool:
-    """Return True if an archive has the chosen stresses along the surface."""
-    return _has(surface_names(of), of)
-
-
-def has_interfaces(of: Archive) -> bool:
-    """Return True if an archive has the chosen stresses along interfaces."""
-    return _has(interface_names(of), of)
-
-
-def _has(names: Sequence[str], of: Archive) -> bool:
-    return bool(names) and set(of.choice.quantities) <= set(names)
-
-
-def has_inside(of: Archive) -> bool:
-    """Return True if an archive has a map, and the chosen stresses in it."""
-    return has_map(of) and set(of.choice.quantities) <= set(Fields(of).names)
 
 
 #: States of each archive that can be told apart.
@@ -627,45 +294,343 @@ def compared(
                 f'{label} holds no stresses along the surface; add "surface" to output.quantities'
             )
     chosen, styles = spread(range(len(pairs)), _COMPARED), looks(len(archives))
+    surfaces, several = [Surface(of) for of in archives], len(chosen) > 1
     panels = []
-    methods = {method for of in archives for by in surface_stresses(of).values() for method in by}
-    for name in dict.fromkeys(name for of in archives for name in stress_names(of)):
-        curves, ranges, windows, ends = [], [], [], []
-        for n, of in enumerate(archives):
-            shown = dict(zip(stress_names(of), surface_stresses(of).items()))
-            if name not in shown:
-                continue
-            axis, values = shown[name]
-            X, drawn = of.data[SURFACE_X.path], next(iter(values.values()))
-            states = [pairs[k][n] for k in chosen]
-            half = along(X, drawn)
-            ranges.append(limits(X, drawn[states]))
-            ends += contacts_of(of, states) if half > 1.5 else []
-            for order, (k, state) in enumerate(zip(chosen, states)):
-                line = LINES[order % len(LINES)] if len(chosen) > 1 else styles[n].line
-                a, b = place_of(of, state)
-                windows += [b - half * a, b + half * a]
-                curves += surface_curves(
-                    X, {method: y[state] for method, y in values.items()}, styles[n]._replace(line=line),
-                    f"{labels[n]}, {titles[k]}" if len(chosen) > 1 else labels[n],
-                    n / len(archives), (a, b),
-                )  # fmt: skip
-        low, high = np.min(ranges, axis=0)[0], np.max(ranges, axis=0)[1]
-        panel = Panel(
-            position_name(archives[0]), axis, curves=curves, xlim=(min(windows), max(windows)),
-            ylim=(float(low), float(high)), at_y=(0.0,),
-            bands=ends[:1] if ends and np.allclose(ends, ends[0], rtol=1e-9) else (),
-        )  # fmt: skip
-        measured = archives[0].choice.measured
-        panels.append(measured.over_stress(panel, name, archives[0].units) if measured else panel)
+    for name in dict.fromkeys(name for one in surfaces for name in one.values):
+        shown = [
+            Shown(
+                one, pairs[k][n], look._replace(line=LINES[order % len(LINES)]) if several else look,
+                f"{label}, {titles[k]}" if several else label,
+            )
+            for n, (one, look, label) in enumerate(zip(surfaces, styles, labels)) if name in one.values
+            for order, k in enumerate(chosen)
+        ]  # fmt: skip
+        panels.append(surface_panel(name, shown))
+    methods = {method for one in surfaces for values in one.values.values() for method in values}
     try:
         figure = render(panels, None, min(2, len(panels)), explained(methods))
     except TooSmall as error:
         raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
-    left_out = (
-        f"{len(pairs) - len(chosen)} of {len(pairs)} pairs of states not shown; choose by --states."
+    missing = len(pairs) - len(chosen)
+    left_out = f"{missing} of {len(pairs)} pairs of states not shown; choose by --states." * bool(missing)
+    caption = f"Stresses along the surface: {', '.join(labels)}."
+    return Drawing("compare", caption, figure, left_out=left_out)
+
+
+#: Curves of friction along the contact that can be told apart.
+_FRICTIONS = 4
+
+
+def friction_along(of: Archive) -> Drawing:
+    """Figure of f over X, and of the pressure beside that of one friction with the same resultant."""
+    data, labels, X = of.data, of.labels, of.data[SURFACE_X.path]
+    names, chosen = states_for_panel(labels, labels.varied(of.selected()), of.selected(), _FRICTIONS)
+    states, rows = chosen.tolist(), {method: row for method, row in PRESSURE.items() if of.has(row)}
+    of_one = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
+    under, scale = np.abs(X) < 1.0, of.scaled(next(iter(rows.values())))
+    pressures = {method: -of.values(row)[:, under] for method, row in rows.items()}
+    curves: tuple[list[Curve], ...] = ([], [], [])
+    for k, (i, look) in enumerate(zip(states, labels.looks(states, names))):
+        (a, middle), turn = place_of(of, i), k / len(states)
+        x, f = middle + a * X[under], of.scene.friction.stress_ratio * data[RATIO_ALONG.path][i][under]
+        punch = FlatPunch(of.scene.body.response(float(data[SPEED.path][i])), float(of_one[i]))
+        one = scale.of(-punch.σ_YY(X[under])[None], [i])[0]
+        each = {method: p[i] for method, p in pressures.items()}
+        curves[0].append(Curve(x, f, look, labels.label(i, names)))
+        curves[1].extend(both(x, each, look, "", turn))
+        curves[1].append(Curve(x, one, look._replace(line=LINES[3]), "", width=0.7))
+        curves[2].extend(both(x, {method: p / one for method, p in each.items()}, look, "", turn))
+    axes = (
+        ("friction coefficient $f$", 0.0),
+        (named(SHOWN["sigma_YY"][0], scale.unit), 0.0),
+        ("over that of one friction", 1.0),
     )
-    return Drawing(
-        "compare", f"Stresses along the surface: {', '.join(labels)}.", figure,
-        left_out=left_out if len(pairs) > len(chosen) else "",
-    )  # fmt: skip
+    panels = [
+        Panel(
+            position_name(of, "position "), y, curves=drawn, at_y=(level,),
+            xlim=window([place_of(of, i) for i in states], _UNDER),
+            ylim=limits(X[under], np.array([curve.y for curve in drawn])) if drawn != curves[0] else None,
+        )
+        for drawn, (y, level) in zip(curves, axes)
+    ]  # fmt: skip
+    dotted = handle(Look(GREY, LINES[3], ""), "dotted: one friction of the same resultant")
+    figure = render(panels, of.size, 0 if of.size else 3, [*explained(set(pressures)), dotted], 0.8)
+    caption = (
+        "Friction along the contact, and the contact pressure beside that of one friction with the same "
+        "resultant (dotted). At each end the pressure has the exponent of the friction there."
+    )
+    missing = not_shown(labels, states, "--figure along --states", of.choice.states)
+    return Drawing("along", caption, figure, left_out=missing)
+
+
+#: Curves of an interface, the least width of its column [in], and positions shown over a and its depth.
+_INTERFACE_CURVES, _LEAST_INTERFACE, _OVER_A, _OVER_DEPTH = 4, 2.2, 2.0, 2.5
+#: What axes call stresses, and which of them share one: both sides of an interface, with their lines.
+_AT_INTERFACES = {
+    ("sigma_YY",): r"normal traction $\sigma_{YY}$",
+    ("sigma_XY",): r"shear traction $\sigma_{XY}$",
+    ("sigma_XX_above", "sigma_XX_below"): r"in-plane stress $\sigma_{XX}$",
+}
+_SIDES = {"above": "-", "below": (0, (4.0, 1.5))}
+
+
+def interfaces(of: Archive) -> Drawing:
+    """Figure of stresses along interfaces: a column for each interface, or for some of many."""
+    labels, choice = of.labels, of.choice
+    states, width = of.selected(), choice.size.width if choice.size else PAGE
+    names = labels.varied(states)
+    if not choice.states:
+        names, states = states_for_panel(labels, names, states, _INTERFACE_CURVES)
+    numbers = labels.ordered(states).tolist()
+    styles = looks(len(numbers), len(names) == 1 and labels.numeric(names[0]))
+    depths, reach, unit = _depths(of)
+    columns = spread(range(len(depths)), max(1, int(width / _LEAST_INTERFACE)))
+    available = of.by_method(STATE, INTERFACE, ALONG)
+    for name in choice.quantities:
+        require_one_of("quantity", name, available)
+    X, places = of.data[ALONG_X.path], [place_of(of, state) for state in numbers]
+    panels: list[Panel] = []
+    sides_drawn, methods = 0, set[str]()
+    for of_sides, words in _AT_INTERFACES.items():
+        rows = [available[name] for name in of_sides if name in (choice.quantities or available)]
+        sides_drawn = max(sides_drawn, len(rows))
+        values = [{method: of.values(row) for method, row in by_method.items()} for by_method in rows]
+        methods.update(*rows)
+        for i in columns if rows else ():
+            half = max(_OVER_A, _OVER_DEPTH * float(reach[i]))
+            inside, curves = np.abs(X) <= half, []
+            for line, by_method in zip(_SIDES.values(), values):
+                for k, (state, look, (a, b)) in enumerate(zip(numbers, styles, places)):
+                    label = labels.label(state, names) if line == "-" and len(numbers) > 1 else ""
+                    at = {method: y[state, i][inside] for method, y in by_method.items()}
+                    x, turn = b + a * X[inside], k / len(numbers)
+                    curves += both(x, at, look._replace(line=line), label, turn)
+            titled = len(panels) < len(columns) and (len(depths) > 1 or not panels)
+            label = named(words, of.scaled(next(iter(rows[0].values()))).unit)
+            panels.append(Panel(
+                position_name(of, "position along the interface "), label if i == columns[0] else "",
+                curves=curves, title=f"depth {number(depths[i])} {unit}" if titled else "",
+                xlim=window(places, half), bands=_contacts(places), at_y=(0.0,),
+            ))  # fmt: skip
+    sides = [
+        handle(Look(GREY, line, ""), f"{side} the interface")
+        for side, line in _SIDES.items()
+        if sides_drawn > 1
+    ]
+    across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
+    figure = render(panels, choice.size, across_, sides + explained(methods))
+    caption = (
+        "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
+        "sides share, and in-plane stress, which jumps."
+    )
+    if len(columns) < len(depths):
+        caption += f" {len(columns)} of {len(depths)} interfaces are shown; a wider --size shows more."
+    caption += labels.all_at(numbers)
+    missing = not_shown(labels, numbers, "--figure interfaces --states", choice.states)
+    return Drawing("interfaces", caption, figure, left_out=missing)
+
+
+def _depths(of: Archive) -> tuple[NDArray, NDArray, str]:
+    """Depths of interfaces as titles show them, their reach over a half-width, and the unit of titles."""
+    unit, of_states = interface_depths(of.data)
+    depths, a = of_states[0], of.scene.body.half_width
+    reach, in_m = (depths, depths * a) if unit == "1" else (depths / a, depths)
+    if of.units.dimensionless and unit == "1":
+        return depths, reach, "$a$"
+    factor, name = _length(of)
+    return in_m * factor, reach, name
+
+
+def _length(of: Archive) -> tuple[float, str]:
+    """What lengths in m are multiplied by in a figure, and their unit."""
+    scale = of.units.scale(CONTACT)
+    return (1e3, "mm") if of.units.dimensionless else (float(np.max(scale.factor)), scale.unit)
+
+
+#: Names of the stresses that maps show by default.
+_MAPS = {
+    "von_mises": r"von Mises $\sigma_{\mathrm{vM}}$",
+    "sigma_XX": r"in-plane $\sigma_{XX}$",
+    "sigma_YY": r"normal $\sigma_{YY}$",
+    "sigma_XY": r"shear $\sigma_{XY}$",
+    "max_shear": r"largest shear $\tau_{\mathrm{max}}$",
+}
+#: Columns of states, and the share of values that have colours of their own: those at the edges of the
+#: punch would leave none for the rest.
+_STATES, _SHARE = 2, 0.985
+
+
+class Fields:
+    """Stresses inside on the grid of an archive."""
+
+    def __init__(self, of: Archive, method: str | None = None) -> None:
+        self._of, data = of, of.data
+        self._shape = tuple(data[stresses.MAP.path].tolist())
+        self._quantities = of.by_method(STATE, INSIDE, method=method)
+        self.methods = [m for m in METHODS if any(m in rows for rows in self._quantities.values())]
+        X, Y = (self._on_grid(data[row.path]) for row in (stresses.INSIDE_X, stresses.INSIDE_Y))
+        #: Positions over a along both axes.
+        self.X, self.Y = X[0], Y[:, 0]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all stresses inside that can be mapped."""
+        components = {"sigma_XX", "sigma_YY", "sigma_XY"} <= self._quantities.keys()
+        return [*dict.fromkeys([*self._quantities, *(_MAPS if components else ())])]
+
+    def values(self, name: str, method: str, state: int) -> NDArray:
+        """One quantity of a state, (rows, columns), in the figure's units."""
+        if name in self._quantities:
+            return self._scaled(self._quantities[name][method], state)
+        XX, YY, XY = (self._scaled(row, state) for row in stresses.STRESSES_INSIDE[method])
+        if name == "max_shear":
+            return maximum_shear(XX, YY, XY)
+        return von_mises(XX, YY, XY, self._of.scene.solid.σ_ZZ(XX, YY, XY))
+
+    def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
+        """One quantity of states, (states, rows, columns), and the largest with its own colour."""
+        values = np.array([self.values(name, method, i) for i in states])
+        return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
+
+    def label(self, name: str) -> str:
+        """Label of the colour bar of a quantity."""
+        row = next(iter((self._quantities.get(name) or next(iter(self._quantities.values()))).values()))
+        return named(_MAPS.get(name) or short_name(row), self._of.scaled(row).unit)
+
+    def panel(self, name: str, values: NDArray, state: int, limit: float, **options: Any) -> Panel:
+        """Panel with the map of a stress of a state, and a black bar for the punch above it.
+
+        Args:
+            name: of the stress.
+            values: of the state, (rows, columns).
+            state: its number.
+            limit: largest number with a colour of its own.
+            options: further attributes of the map.
+        """
+        of, (a, b) = self._of, place_of(self._of, state)
+        strength, scale = of.scene.half_plane.yield_strength, of.units.stress
+        level = 0.0
+        if name == "von_mises" and strength and not of.scene.layers and scale.unit != "N/(2a)":
+            level = strength * float(of.units.scale("Pa").factor)
+        shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
+        x = position_name(of, "")
+        return Panel(
+            x, x.replace("X", "Y"), map=Map(b + a * self.X, a * self.Y, values, limit=limit, **shown),
+            bar=(b - a, b + a),
+        )  # fmt: skip
+
+    def _scaled(self, row: Quantity, state: int) -> NDArray:
+        values = self._on_grid(self._of.data[row.path][state])
+        return self._of.scaled(row).of(values[None], [state])[0]
+
+    def _on_grid(self, values: NDArray) -> NDArray:
+        return values[: np.prod(self._shape)].reshape(self._shape)
+
+
+def inside(of: Archive) -> Drawing:
+    """Figure of maps of stresses at the slowest and the fastest speed."""
+    fields, labels, choice = Fields(of), of.labels, of.choice
+    names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
+    names = names or [name for name in _MAPS if name in fields.names]
+    states = list(choice.states) or _two_states(labels)
+    alone, wide = len(names) == len(states) == 1, len(states) > 1
+    apart = labels.varied(states) or ([C] if C in labels.varied() or alone else [])
+    size = choice.size
+    if size is None and not wide:
+        size = Size(COLUMN if len(names) < 3 else PAGE)
+    method, *others = fields.methods
+    dashes, panels, off, yields = _interfaces(of), [], 0.0, False
+    for n, name in enumerate(names):
+        every, limit = fields.of_states(name, method, states)
+        clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
+        extend = {(True, True): "both", (False, True): "max", (True, False): "min"}.get(
+            clipped, "neither"
+        )
+        for other in others:
+            beside = fields.of_states(name, other, states)[0]
+            off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
+        for k, state in enumerate(states):
+            label = fields.label(name) if k == len(states) - 1 else ""
+            options = {"extend": extend, "lines": alone, "label": label}
+            panel = fields.panel(name, every[k], state, limit, **options)
+            assert panel.map
+            yields |= bool(0.0 < panel.map.level < panel.map.values.max())
+            panels.append(replace(
+                panel, x=panel.x if not wide or n == len(names) - 1 else None,
+                y=panel.y if k == 0 else None, dashes=dashes,
+                title=labels.label(state, apart) if n == 0 or not wide else "",
+            ))  # fmt: skip
+    maps = [panel.map for panel in panels if panel.map]
+    xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
+    panels = [replace(panel, xlim=xlim, ylim=(ylim, 0.0)) for panel in panels]
+    columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
+    figure = render(panels, size, columns)
+    fixed = [name for name in labels.parameters if name not in labels.varied(states)]
+    caption = (
+        f"Stresses inside below the punch (black bar), {METHODS[method]}, at "
+        f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
+        "bar its colours are clipped."
+    )
+    caption += " Dashed lines are the interfaces." * bool(dashes)
+    caption += " Within the white line the solid would yield." * yields
+    if off:
+        caption += (
+            f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."
+        )
+    how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
+    return Drawing("inside", caption, figure, True, not_shown(labels, states, how, choice.states))
+
+
+def _interfaces(of: Archive) -> list[float]:
+    """Heights of the lower faces of layers in the figure's units; none where these differ by state."""
+    unit, depths = of.scene.body.depths
+    factor = of.units.length.factor if unit == "1" else _length(of)[0]
+    if INTERFACE_DEPTHS.path in of.data or np.ndim(factor) or (unit != "1" and of.units.dimensionless):
+        return []
+    return (-factor * depths).tolist()
+
+
+def _two_states(labels: StateLabels) -> list[int]:
+    """First and last state of the parameter that varies most slowly, others at one of their values."""
+    varied = labels.varied()
+    states = labels.where(labels.all, **labels.fixed(varied[1:], labels.all))
+    return sorted({int(states[0]), int(states[-1])})[:_STATES]
+
+
+def surface_names(of: Archive) -> list[str]:
+    """Names of the stresses that an archive has along the surface."""
+    return list(of.by_method(STATE, POINT))
+
+
+def interface_names(of: Archive) -> list[str]:
+    """Names of the stresses that an archive has along interfaces."""
+    return list(of.by_method(STATE, INTERFACE, ALONG))
+
+
+def map_names(of: Archive) -> list[str]:
+    """Names of the stresses that an archive has maps of."""
+    return Fields(of).names if of.has(stresses.MAP) and of.by_method(STATE, INSIDE) else []
+
+
+def has_surface(of: Archive) -> bool:
+    """Return True if an archive has the chosen stresses along the surface."""
+    return _has(surface_names(of), of)
+
+
+def has_interfaces(of: Archive) -> bool:
+    """Return True if an archive has the chosen stresses along interfaces."""
+    return _has(interface_names(of), of)
+
+
+def has_inside(of: Archive) -> bool:
+    """Return True if an archive has a map, and the chosen stresses in it."""
+    return _has(map_names(of), of)
+
+
+def _has(names: Sequence[str], of: Archive) -> bool:
+    return bool(names) and set(of.choice.quantities) <= set(names)
+
+
+def has_along(of: Archive) -> bool:
+    """Return True if an archive has friction that varies along the contact."""
+    return of.has(RATIO_ALONG)

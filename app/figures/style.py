@@ -81,6 +81,13 @@ def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
     return in_style
 
 
+def as_hex(colour: Any) -> str:
+    """Colour as pages write it: ``#0072b2``."""
+    from matplotlib.colors import to_hex
+
+    return to_hex(colour)
+
+
 class Look(NamedTuple):
     """Look of one of several curves: colour, line and marker."""
 

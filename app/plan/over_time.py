@@ -1,15 +1,14 @@
 """Plan of motions in time: loads, ways and friction over time, meshes, degrees and steps for a tolerance.
 
-:class:`Load`, :class:`Way` and :class:`Drive` are the history of a punch: its load, its direction and
-σ_XY/σ_YY under it. :func:`check_in_time` refuses scenes that motions in time do not cover. :func:`starts`
-lists the motions of a scene, and :class:`Starts` plans their finite elements.
+:func:`starts` lists the motions of a scene, and refuses what they do not cover; :class:`Starts` plans
+their finite elements.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby, pairwise
+from itertools import groupby
 from math import ceil, log10, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -19,12 +18,12 @@ from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import OF_SIE, rules
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.friction.integrate import INTEGRATORS
-from galinx.solvers.friction.motion import follow
+from galinx.solvers.friction.motion import Leg, follow
 from galinx.solvers.profiles.flat import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.solids.solid import Solid
+from galinx.solvers.transient.history import Drive, Load, Way
 from galinx.solvers.transient.line_load import fastest
-from galinx.solvers.transient.punch import smooth
 from galinx.texts import counted
 
 from ..errors import BadInput
@@ -33,99 +32,8 @@ from .states import States
 
 #: Positions on a stroke between which friction is interpolated; fewest steps of a stroke.
 _PLACES, _OF_STROKE = 801, 12
-#: Number of short steps in place of one after a turn.
+#: Number of short steps in place of one after a turn: the pressure changes with the root of time.
 _FINELY = 8
-
-
-@dataclass(frozen=True)
-class Load:
-    """The load over time, smooth from each point to the next.
-
-    Attributes:
-        points: times over a/c_s and loads over N, from t = 0 on.
-    """
-
-    points: tuple[tuple[float, float], ...]
-
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Load over N at times t over a/c_s, in the shape of t."""
-        t = np.asarray(t, dtype=float)
-        share = np.full(t.shape, self.points[0][1])
-        for (before, low), (after, high) in pairwise(self.points):
-            share = share + (high - low) * smooth(t - before, after - before)
-        return share
-
-    @property
-    def shortest(self) -> float:
-        """Shortest time over a/c_s from a point to the next, infinite where the load is constant."""
-        return min((after[0] - before[0] for before, after in pairwise(self.points)), default=np.inf)
-
-
-@dataclass(frozen=True)
-class Way:
-    """Strokes in one direction from one turn to the next, as far as the motion lasts.
-
-    Attributes:
-        direction: 1 as the first of all strokes, -1 the other way.
-        duration: over a/c_s.
-        steps: number of steps of the finite elements, even.
-        part_of: duration over a/c_s of the whole way where this is a part of it, else 0.
-    """
-
-    direction: int
-    duration: float
-    steps: int
-    part_of: float = 0.0
-
-    @property
-    def stroke(self) -> float:
-        """Duration of the whole way over a/c_s."""
-        return self.part_of or self.duration
-
-    @property
-    def begun_finely(self) -> "tuple[Way, ...]":
-        """The way in two parts, with shorter steps in place of the first two.
-
-        After a turn of the punch the pressure changes with the root of time.
-        """
-        if self.steps <= 2:
-            return (self,)
-        first = 2.0 * self.duration / self.steps
-        return (
-            Way(self.direction, first, 2 * _FINELY, self.duration),
-            Way(self.direction, self.duration - first, self.steps - 2, self.duration),
-        )
-
-
-@dataclass(frozen=True)
-class Drive:
-    """Direction of a punch, and σ_XY/σ_YY under it over time.
-
-    Attributes:
-        way: ±1, direction of the first stroke along X.
-        constant: σ_XY/σ_YY where it is constant, None where it changes.
-        starts: times at which strokes begin over a/c_s.
-        along: σ_XY/σ_YY of each stroke where it changes, a polynomial by pieces of the time since its
-            beginning over a/c_s.
-    """
-
-    way: int
-    constant: float | None = None
-    starts: tuple[float, ...] = ()
-    along: tuple[Any, ...] = ()
-
-    def __call__(self, t: float) -> float:
-        """σ_XY/σ_YY at a time over a/c_s; where a stroke ends, that at its end."""
-        if self.constant is not None:
-            return self.constant
-        at = max(int(np.searchsorted(self.starts, t - 1e-9 * (1.0 + t), side="left")) - 1, 0)
-        return float(self.along[at](t - self.starts[at]))
-
-    @cached_property
-    def shortest(self) -> float:
-        """Inverse of the largest rate of σ_XY/σ_YY, a time over a/c_s; infinite where it is constant."""
-        slopes = [float(np.abs(g(g.x, 1)).max()) for g in self.along]
-        return 1.0 / max(*slopes, 0.0) if any(slopes) else np.inf
 
 
 def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
@@ -140,41 +48,36 @@ def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
     return np.asarray(directions, dtype=np.int64) * round(-scene.friction.stress_ratio)
 
 
-def load_of(scene: Scene) -> Load:
-    """The load of a scene over time."""
-    assert scene.time
-    if scene.time.load:
-        return Load(scene.time.load)
-    return Load(((0.0, 1.0),) if scene.time.steady else ((0.0, 0.0), (scene.time.load_ramp, 1.0)))
+def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
+    """Steps of the punch at a speed over c_s, at most so long, up to the motion's end.
 
-
-def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
-    """Ways of the punch from turn to turn at a speed, until the motion's end.
-
-    Args:
-        scene: the scene.
-        c: speed over c_s.
-        largest: longest step over a/c_s.
+    The number of steps between turns is even. The first way has the direction 1. After a turn the first
+    two steps are divided.
 
     Raises:
         BadInput: the strokes are over before the end.
     """
     assert scene.time
-    end = scene.time.end
-    if not scene.time.by_law:
-        return (_way(1, end, _dividing(scene, largest)),)
-    first = scene.legs[0].s
+    end, every, t = scene.time.end, scene.time.every, 0.0
+    strokes = [(1, [end], largest)]
+    if scene.time.by_law:
+        strokes = []
+        for direction, legs in groupby(scene.legs, lambda leg: leg.s * scene.legs[0].s):
+            durations = _durations(scene, legs, c)
+            strokes.append((direction, durations, min(largest, min(durations) / _OF_STROKE)))
     ways: list[Way] = []
-    t = 0.0
-    for direction, legs in groupby(scene.legs, lambda leg: leg.s):
-        durations = [leg.length * _whole(scene) / c for leg in legs]
+    for direction, durations, longest in strokes:
         # A step less than a millionth of a stroke is rounding.
-        if (duration := min(sum(durations), end - t)) > 1e-6 * durations[0]:
-            way = _way(
-                direction * first, duration, _dividing(scene, min(largest, min(durations) / _OF_STROKE))
-            )
-            ways += way.begun_finely if ways else (way,)
-            t += duration
+        if (duration := min(sum(durations), end - t)) <= 1e-6 * durations[0]:
+            continue
+        if every and not scene.time.step:  # an even number of steps is the time between outputs
+            longest = every / (2.0 * ceil(every / longest / 2.0 - 1e-9))
+        steps, finely = 2 * ceil(duration / longest / 2.0 - 1e-9), 0.0
+        if ways and steps > 2:
+            finely, steps = 2.0 * duration / steps, steps - 2
+            ways.append(Way(direction, finely, 2 * _FINELY))
+        ways.append(Way(direction, duration - finely, steps))
+        t += duration
     if end - t > 1e-6 * end:
         raise BadInput(
             f"time.end = {end:g} a/c_s: the strokes are over at {t:.6g} a/c_s at c = {c:g}, expected no "
@@ -183,24 +86,12 @@ def ways_at(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     return tuple(ways)
 
 
-def _dividing(scene: Scene, largest: float) -> float:
-    """Longest step over a/c_s of which an even number is the time between outputs of the surface."""
-    assert scene.time
-    if scene.time.every is None or scene.time.step:
-        return largest
-    return scene.time.every / (2.0 * ceil(scene.time.every / largest / 2.0 - 1e-9))
+def _durations(scene: Scene, legs: Iterable[Leg], c: float) -> list[float]:
+    """Durations over a/c_s of strokes at a speed over c_s."""
+    return [leg.length * scene.friction.pre_sliding / scene.body.half_width / c for leg in legs]
 
 
-def _way(direction: int, duration: float, largest: float) -> Way:
-    return Way(direction, duration, 2 * ceil(duration / largest / 2.0 - 1e-9))
-
-
-def _whole(scene: Scene) -> float:
-    """Length of a stroke over a."""
-    return scene.friction.pre_sliding / scene.body.half_width
-
-
-def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
+def _drives_by_law(scene: Scene, c: float) -> tuple[Drive, ...]:
     """Drives under each law of a scene along its strokes at a speed over c_s, from rest at X = 0.
 
     Raises:
@@ -208,16 +99,18 @@ def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
     """
     from scipy.interpolate import PchipInterpolator  # a slow import
 
-    friction, length, V = scene.friction, scene.friction.pre_sliding, c * scene.solid.c_s
-    shares = np.linspace(0.0, 1.0, _PLACES)
+    friction, shares = scene.friction, np.linspace(0.0, 1.0, _PLACES)
     places = [leg.start + (leg.end - leg.start) * shares for leg in scene.legs]
-    durations = np.array([leg.length * _whole(scene) / c for leg in scene.legs])
+    durations = _durations(scene, scene.legs, c)
     starts = (0.0, *np.cumsum(durations)[:-1].tolist())
     (way,) = headings(scene, [scene.legs[0].s]).tolist()
     drives = []
     try:
         for law in friction.laws():
-            strokes = follow(law, scene.legs, length, places, V, INTEGRATORS[friction.integrator])
+            strokes = follow(
+                law, scene.legs, friction.pre_sliding, places, c * scene.solid.c_s,
+                INTEGRATORS[friction.integrator],
+            )  # fmt: skip
             along = [
                 PchipInterpolator(shares * duration, friction.stress_ratio * stroke.f)
                 for stroke, duration in zip(strokes, durations)
@@ -228,81 +121,41 @@ def drives_at(scene: Scene, c: float) -> tuple[Drive, ...]:
     return tuple(drives)
 
 
-def work_of_friction(ways: tuple[Way, ...], load: Load, drive: Drive) -> NDArray[np.float64]:
-    """Work ∫ -σ_XY/σ_YY ±N dt that friction takes at unit speed, over N a/c_s, + towards +X; (steps,).
-
-    Args:
-        ways: of the punch.
-        load: of the punch over time.
-        drive: of the punch.
-    """
-    x, w = leggauss(4)
-    work, t0 = [], 0.0
-    for way in ways:
-        h = way.duration / way.steps
-        for n in range(way.steps):
-            t = t0 + h * (n + (1.0 + x) / 2.0)
-            power = drive.way * way.direction * -np.array(list(map(drive, t))) * load(t)
-            work.append(h / 2.0 * float(w @ power))
-        t0 += way.duration
-    return np.cumsum(work)
-
-
 #: Tightest and loosest tolerance of motions in time.
 _TIGHTEST, _COARSEST = 1e-5, 1e-2
 #: Least thickness over a of a layer under motions in time.
 _THINNEST = 0.1
 
 
-def check_in_time(scene: Scene, methods: tuple[str, ...]) -> None:
-    """Refuse scenes whose motions in time cannot be computed.
-
-    Args:
-        scene: the scene.
-        methods: the scene's methods that compute motions in time.
+def _check(scene: Scene, methods: tuple[str, ...]) -> None:
+    """Refuse scenes whose motions in time cannot be computed, by these of their methods.
 
     Raises:
         BadInput: the message lists all reasons.
     """
-    solid, tolerance = scene.solid, scene.solve.tolerance
-    faults = []
-    if not isinstance(scene.punch.profile, Flat):
-        words = scene.punch.profile.words()
-        faults.append(f"found a {words}; a start from rest is computed for flat punches")
-    if not methods:
-        faults.append("solve.methods has neither fem nor sie, which follow a start from rest")
-    if not _TIGHTEST <= tolerance <= _COARSEST:
-        faults.append(
-            f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3"
-        )
-    if scene.layers:
-        faults += _of_layers(scene)
-    if solid.nearly_incompressible:
-        faults.append(
-            "a start from rest is computed where ν is not near 1/2: pressure waves are too fast"
-        )
-    if scene.time and scene.time.by_law and any(leg.speed is not None or leg.rest for leg in scene.legs):
-        faults.append("strokes with a speed or a rest of their own are not computed in time")
-    if scene.solve.mode != "contact":
-        faults.append('a start from rest needs solve.mode = "contact"')
-    if faults:
-        raise BadInput("time: " + "; ".join(faults))
-
-
-def _of_layers(scene: Scene) -> list[str]:
-    """Reasons why motions in time over these layers cannot be computed."""
-    faults = []
-    if any(layer.bottom for layer in scene.layers):
-        faults.append("layers: found a graded one, expected uniform ones for motions in time")
-    thinnest = min(layer.thickness for layer in scene.layers) / scene.body.half_width
-    if thinnest < _THINNEST:
-        faults.append(
-            f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a, the "
-            "punch's half-width, for motions in time"
-        )
-    if scene.time and scene.time.steady:
-        faults.append('time.start: found "steady" over layers, expected "rest"')
-    return faults
+    assert scene.time
+    tolerance, layers = scene.solve.tolerance, scene.layers
+    thinnest = min((layer.thickness for layer in layers), default=np.inf) / scene.body.half_width
+    by_law = scene.time.by_law
+    faults = {
+        f"found a {scene.punch.profile.words()}; a start from rest is computed for flat punches":
+            not isinstance(scene.punch.profile, Flat),
+        "solve.methods has neither fem nor sie, which follow a start from rest": not methods,
+        f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3":
+            not _TIGHTEST <= tolerance <= _COARSEST,
+        "layers: found a graded one, expected uniform ones for motions in time":
+            any(layer.bottom for layer in layers),
+        f"layers: found a thickness of {thinnest:.4g} a, expected at least {_THINNEST:g} a, the "
+        "punch's half-width, for motions in time": thinnest < _THINNEST,
+        'time.start: found "steady" over layers, expected "rest"': bool(layers) and scene.time.steady,
+        "a start from rest is computed where ν is not near 1/2: pressure waves are too fast":
+            scene.solid.nearly_incompressible,
+        "strokes with a speed or a rest of their own are not computed in time":
+            by_law and any(leg.speed is not None or leg.rest for leg in scene.legs),
+        'a start from rest needs solve.mode = "contact"': scene.solve.mode != "contact",
+    }  # fmt: skip
+    if any(faults.values()):
+        raise BadInput("time: " + "; ".join(fault for fault, found in faults.items() if found))
 
 
 #: Shortest time over a/c_s of changing friction for which steps and cells are made.
@@ -362,7 +215,8 @@ class Starts:
     Attributes:
         drives: of the punch by speed over c_s.
         methods: names of the methods that compute them.
-        ways: of the punch from turn to turn; the integral equation computes the first.
+        ways: steps of the finite elements, an even number of each; directions from that of the first
+            stroke, 1, on. The integral equation computes the first way.
         load: over time.
         steady: True where they begin in steady motion, False where they begin at rest.
         tolerance: accuracy, relative to the largest value over time.
@@ -391,7 +245,7 @@ class Starts:
 
     def times(self, every: int = 1) -> NDArray[np.float64]:
         """Ends over a/c_s of the finite elements' steps, or of every ``every`` steps together."""
-        h = [np.full(way.steps // every, every * way.duration / way.steps) for way in self.ways]
+        h = [np.full(way.steps // every, every * way.h) for way in self.ways]
         return np.asarray(np.cumsum(np.concatenate(h)))
 
     @property
@@ -400,22 +254,31 @@ class Starts:
         times = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
         return np.unique(2 * np.abs(np.subtract.outer(times, self.times(2))).argmin(axis=1) + 2)
 
-    def dissipated(self, c: float, drive: Drive) -> NDArray[np.float64]:
-        """Work ∫ f V N dt of friction after each step over N a, but for its second order; (steps,)."""
-        return work_of_friction(self.ways, self.load, drive) * c
-
     def directions(self, drive: Drive) -> NDArray[np.float64]:
         """Direction ±1 of the punch along X in each step, (steps,)."""
-        return drive.way * np.repeat(
-            [float(way.direction) for way in self.ways], [way.steps for way in self.ways]
-        )
+        ways = [float(drive.way * way.direction) for way in self.ways]
+        return np.repeat(ways, [way.steps for way in self.ways])
+
+    def dissipated(self, c: float, drive: Drive) -> NDArray[np.float64]:
+        """Work ∫ f V N dt of friction after each step over N a, but for its second order; (steps,)."""
+        x, w = leggauss(4)
+        h, t = np.repeat([way.h for way in self.ways], [way.steps for way in self.ways]), self.times()
+        at = (t - h)[:, None] + h[:, None] * (1.0 + x) / 2.0
+        work = self.directions(drive) * h / 2.0 * ((-drive(at) * self.load(at)) @ w)
+        return np.asarray(c * np.cumsum(work))
 
     @property
+    def strokes(self) -> list[float]:
+        """Durations over a/c_s from turn to turn, as far as the motion lasts."""
+        return [
+            sum(way.duration for way in ways) for _, ways in groupby(self.ways, lambda way: way.direction)
+        ]
+
+    @cached_property
     def shortest(self) -> float:
         """Shortest time over a/c_s within which load, direction or friction changes."""
-        ways = [way.stroke for way in self.ways if self.changing]
         frictions = [max(drive.shortest, _QUICK) for drives in self.drives.values() for drive in drives]
-        return min(self.load.shortest, *ways, *frictions)
+        return min(self.load.shortest, *(self.strokes if self.changing else ()), *frictions)
 
     @property
     def changing(self) -> bool:
@@ -423,17 +286,12 @@ class Starts:
         return any(drive.constant is None for drives in self.drives.values() for drive in drives)
 
     @property
-    def turns(self) -> bool:
-        """True where the punch turns round."""
-        return len({way.direction for way in self.ways}) > 1
-
-    @property
     def sharp(self) -> bool:
         """True where waves are too sharp for cells: they begin at the edges, suddenly."""
-        return self.turns or not self.tells_K_I
+        return len(self.strokes) > 1 or not self.smooth
 
     @property
-    def tells_K_I(self) -> bool:
+    def smooth(self) -> bool:
         """True where the pressure is smooth enough for K_I, but for its exponents at the edges.
 
         A wave that begins at an edge of the punch, suddenly, has to cross the contact before.
@@ -456,21 +314,20 @@ class Starts:
         """Plan in words, one line for each method."""
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
-        turns = "" if len(self.ways) == 1 else (
-            f"; only to t = {self.ways[0].duration:.6g} a/c_s, where the punch turns round"
-        )  # fmt: skip
+        turns = (
+            f"; only to t = {self.strokes[0]:.6g} a/c_s, where the punch turns round: the equation is of "
+            "a constant velocity"
+        ) * (len(self.strokes) > 1)
         lines = [f"integral equation in time: {what}{turns}"] if SIE in self.methods else []
-        lines += ["no K_I over time: strokes are over before waves cross the contact"] * (
-            not self.tells_K_I
-        )
-        if FEM in self.methods:
-            for c in self.drives:
-                _, level = self.levels(solid, c)
-                lines.append(
-                    f"finite elements in time at c = {c:g} (over c_s): {what}, {self.steps} steps, "
-                    f"degree {level.degree}, about {level.unknowns} unknowns; one of a degree less and "
-                    "twice the step, on larger cells, measures the error"
-                )
+        if not self.smooth:
+            lines.append("no K_I over time: strokes are over before waves cross the contact")
+        for c in self.drives if FEM in self.methods else ():
+            _, level = self.levels(solid, c)
+            lines.append(
+                f"finite elements in time at c = {c:g} (over c_s): {what}, {self.steps} steps, "
+                f"degree {level.degree}, about {level.unknowns} unknowns; one of a degree less and "
+                "twice the step, on larger cells, measures the error"
+            )
         return lines
 
     def response(self, solid: Solid, c: float) -> HalfPlane:
@@ -516,8 +373,8 @@ class Starts:
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
         beside, below = _SEEN if self.every else (0.0, 0.0)
-        if self.turns:
-            farthest = c * max(way.stroke for way in self.ways)
+        if len(self.strokes) > 1:
+            farthest = c * max(self.strokes)
             return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0
         ahead = 1.0 + T * (fast**2 - c**2) / (2.0 * fast)
         # On the way down and up the punch goes ahead by c T, but for the places of outputs.
@@ -546,24 +403,29 @@ def starts(scene: Scene, states: States) -> Starts | None:
     if scene.time is None:
         return None
     methods = tuple(name for name in (FEM, SIE) if name in scene.solve.methods)
-    tolerance = scene.solve.tolerance
-    check_in_time(scene, methods)
-    load = load_of(scene)
+    tolerance, steady = scene.solve.tolerance, scene.time.steady
+    _check(scene, methods)
+    comes_on = ((0.0, 1.0),) if steady else ((0.0, 0.0), (scene.time.load_ramp, 1.0))
+    load = Load(scene.time.load or comes_on)
     largest = min(_STEP, load.shortest / _OF_RAMP) / (_OF_LAYERS if scene.layers else 1.0)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     drives = _drives(scene, states)
-    ways = ways_at(scene, next(iter(drives)), step)
+    ways = _ways(scene, next(iter(drives)), step)
     if methods == (SIE,) and len(ways) > 1:
         raise BadInput(
             f"solve.methods: found sie only, which computes no way back, and the punch turns round at "
             f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
         )
     planned = Starts(
-        drives, methods, ways, load, scene.time.steady, tolerance, scene.time.every,
-        scene.body.half_width,
-    )  # fmt: skip
-    if FEM in methods:
-        _check_size(planned, scene)
+        drives, methods, ways, load, steady, tolerance, scene.time.every, scene.body.half_width
+    )
+    for c in drives if FEM in methods else ():
+        if (unknowns := planned.levels(scene.solid, c)[1].unknowns) > LARGEST:
+            raise BadInput(
+                f"time.end = {planned.end:g} needs {unknowns} unknowns at c = {c:g}, as far "
+                f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
+                "end, a larger solve.tolerance, or a smaller Poisson's ratio"
+            )
     return planned
 
 
@@ -583,7 +445,7 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
                 f'time.friction = "law": found {len(speeds)} speeds, the first {speeds[0]:g} over c_s; '
                 "expected one that is not 0, for strokes of another take another time"
             )
-        drives[speeds[0]] = drives_at(scene, speeds[0])
+        drives[speeds[0]] = _drives_by_law(scene, speeds[0])
     else:
         different = np.unique(np.column_stack([c, states.g, headings(scene, states.directions)]), axis=0)
         for speed, ratio, way in different.tolist():
@@ -599,19 +461,3 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
             f"time: c = {', '.join(fast)} is not below the Rayleigh speed {limit:.6g} (over c_s)"
         )
     return drives
-
-
-def _check_size(planned: Starts, scene: Scene) -> None:
-    """Refuse meshes with too many unknowns.
-
-    Raises:
-        BadInput: a mesh has more than ``LARGEST``.
-    """
-    for c in planned.drives:
-        _, level = planned.levels(scene.solid, c)
-        if level.unknowns > LARGEST:
-            raise BadInput(
-                f"time.end = {planned.end:g} needs {level.unknowns} unknowns at c = {c:g}, as far "
-                f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
-                "end, a larger solve.tolerance, or a smaller Poisson's ratio"
-            )

@@ -1,26 +1,36 @@
 """Plan of a scene's work, derived from the outputs that the scene names.
 
-:func:`make_plan` chooses methods and quantities. Checks refuse scenes whose outputs have no answer, and
-warn where an answer costs accuracy. :func:`lines` are the plan's steps in words, with their sizes, and
-:func:`expense` its memory and archive.
+:func:`make_plan` chooses methods and quantities, refuses scenes whose outputs have no answer, and warns
+where an answer costs accuracy. :func:`lines` are the plan's steps in words, with their sizes, and
+:func:`expense` the memory that grows with them.
 """
 
 import json
 from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, log2
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes import MESHES, Requirements, store
+from galinx.meshes import MESHES, Requirements
+from galinx.postprocess.compare import FINITE as FINITE_RULE
+from galinx.postprocess.compare import RULES
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
+    ALONG,
+    CLOSED_FORM,
     FEM,
+    INSIDE,
+    INTERFACE,
+    LAYER,
     LOCAL,
+    POINT,
+    SIE,
     SWEPT,
 )
 from galinx.postprocess.quantities.runs import SLIDER
@@ -34,6 +44,7 @@ from galinx.solvers.contact.fem_plan import (
     LADDERS,
     NEAR_FREE_END,
     OWN_MESHES,
+    OWN_MESHES_KEPT,
     FemPlan,
     kind_of,
     largest_level,
@@ -58,11 +69,13 @@ from galinx.solvers.contact.solution import (
     ONE_FREE,
     PRESCRIBED,
     SHARP,
+    SOLVED,
     Contact,
     Places,
+    Task,
 )
 from galinx.solvers.contact.uniform import contacts
-from galinx.solvers.contact.yielding_of_layers import places as yield_places
+from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent
 from galinx.solvers.rays import NEAR
@@ -73,31 +86,160 @@ from .. import ranks
 from ..errors import BadInput, listed
 from ..methods import METHODS, OWN_METHODS, fem_mode
 from ..scene.scene import FRICTIONS, Scene, oddities
-from .over_time import starts
-from .states import enumerate_states, order
-from .task import CHUNK_NUMBERS, Plan, Tasks
+from .over_time import Starts, starts
+from .states import Order, States, enumerate_states, order
 
+#: Most floating-point numbers that the states of a chunk hold at once, and bytes of each while they are
+#: computed.
+CHUNK_NUMBERS, _HELD = 1_200_000, 18
+#: Bytes of a state's friction.
+_FRICTION = 300.0
 #: Largest distance of points inside over that of walls, and over a for meshes without walls.
 _INNER, _OUTERMOST = 0.6, 1e6
-
 #: Most knots of a prescribed pressure over layers, and their least distance over a.
 _KNOTS, _APART = 12, 0.02
-
-#: Most sliders of a scene.
-_SLIDERS = 200
-
 #: Narrowest piece of a prescribed pressure, over a, within which positions have enough digits.
 _NARROWEST = 1e-9
+#: Most sliders of a scene.
+_SLIDERS = 200
+#: Most unknowns of a speed that one rank solves faster than two ranks together.
+SMALL = 200_000
 
 
-#: Bytes of a number of the states that are computed together, and of a number in an archive.
-_HELD, _ARCHIVED = 18, 8
-#: Bytes of an archive without results, and of a dataset without numbers.
-_EMPTY, _DATASET = 7e4, 1.5e3
-#: Bytes of a program without finite elements, of a state's friction, of the libraries of finite elements.
-_PROGRAM, _FRICTION, _LIBRARIES = 130e6, 300.0, 170e6
-#: Numbers of element matrices that are computed at once.
-_AT_ONCE = 2e6
+@dataclass(frozen=True)
+class Tasks:
+    """All tasks, each made when it is its turn: there may be a million.
+
+    Attributes:
+        body: contact of punch and solid, under the first of the loads.
+        places: points where stresses are output.
+        order: of the states.
+    """
+
+    body: Contact
+    places: Places
+    order: Order
+
+    def __len__(self) -> int:
+        return len(self.order.speeds)
+
+    def __iter__(self) -> Iterator[Task]:
+        for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs())):
+            response = self.body.response(c)
+            yield Task(i, self.body, response, self.places, runs, self.order.loads)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Plan of the work of a scene.
+
+    Attributes:
+        body: contact of punch and solid, under the first of the loads.
+        places: points where stresses are output.
+        methods: names of the methods that solve the contact, none for friction alone.
+        quantities: evaluated from their solutions, in the order of the table.
+        tasks: one a speed.
+        tolerance: relative accuracy to reach.
+        starts: motions in time, None for none.
+        friction: of all states, None where the plan does not depend on it.
+        fem: plan of the finite elements, None without.
+        skipped: messages about work that is not done, with the reason.
+        warnings: messages to the user before the work starts.
+    """
+
+    body: Contact
+    places: Places
+    methods: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
+    tasks: Tasks
+    tolerance: float
+    fem: FemPlan | None
+    skipped: tuple[str, ...]
+    warnings: tuple[str, ...]
+    starts: Starts | None = None
+    friction: States | None = None
+
+    @property
+    def states(self) -> int:
+        """Number of states."""
+        return len(self.tasks.order)
+
+    @property
+    def different(self) -> int:
+        """Number of states that are solved: one for all loads where contacts are similar under them."""
+        loads = self.tasks.order.loads
+        return self.states // len(loads) * len(self.body.dissimilar(loads))
+
+    @property
+    def shared(self) -> bool:
+        """True where several ranks work on the same solution."""
+        return self.fem is not None or self.starts is not None
+
+    def asks(self, word: str, method: str = "") -> bool:
+        """True where a quantity of this name in output.quantities is computed, by a method or by any."""
+        return any(
+            quantity.asked_by == word and method in ("", quantity.method) for quantity in self.quantities
+        )
+
+    @property
+    def positions(self) -> dict[str, NDArray]:
+        """Datasets of the positions of archived stresses, by path."""
+        datasets = {}
+        if self.asks(stresses.ON_SURFACE):
+            datasets[stresses.SURFACE_X.path] = self.places.X
+        if self.asks(stresses.BELOW):
+            X, Y = self.places.points.T
+            datasets |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
+        if self.asks(layers.AT_INTERFACES):
+            unit, depths = self.body.depths
+            datasets[layers.DEPTHS[unit].path] = depths
+            datasets[layers.ALONG_X.path] = self.places.along
+        return datasets
+
+    @property
+    def rules(self) -> frozenset[str]:
+        """Names of the rules by which computed quantities are compared.
+
+        A prescribed pressure is compared with its own exact solution: it need not carry the load.
+        """
+        names = {FINITE_RULE, *(rule for quantity in self.quantities for rule in quantity.compared)}
+        own = SOLVED in self.body.lacks
+        in_time = self.starts.rules if self.starts else frozenset()
+        return in_time | frozenset(name for name in names if RULES[name].own_pressure or not own)
+
+    def shape(self, quantity: Quantity) -> tuple[int, ...]:
+        """Shape of a quantity of one state."""
+        sizes = {
+            POINT: len(self.places.X), INSIDE: len(self.places.points),
+            INTERFACE: len(self.places.interfaces), ALONG: len(self.places.along),
+            LAYER: len(self.places.interfaces) + 1,
+        }  # fmt: skip
+        return tuple(sizes[dimension] for dimension in quantity.over[1:])
+
+    @cached_property
+    def chunk(self) -> int:
+        """Number of states that are computed at once, which bounds their memory."""
+        own_meshes = self.fem is not None and self.fem.mode in (FREE_ON_LAYERS, OWN_MESHES)
+        most = OWN_MESHES_KEPT if own_meshes else 1000
+        return int(np.clip(CHUNK_NUMBERS // max(self.numbers, 1), 1, most))
+
+    @property
+    def numbers(self) -> int:
+        """Number of floating-point numbers of a state that methods give or evaluate."""
+        around = 3 * len(self.places.around)
+        return around + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
+
+    def chunks(self, task: Task) -> list[slice]:
+        """Rows of a task's states, at most :attr:`chunk` at a time."""
+        return [
+            slice(first, min(first + self.chunk, run.stop))
+            for run in task.runs
+            for first in range(run.start, run.stop, self.chunk)
+        ]
+
+    def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
+        """Load of the states of these rows [N/m], (rows,)."""
+        return self.tasks.order.load(rows)
 
 
 def free_memory() -> float:
@@ -124,25 +266,167 @@ def lacking(needed: float) -> str:
     return f"about {needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free"
 
 
-def check_size(body: Contact, methods: Collection[str]) -> None:
-    """Check that floating-point numbers can hold stresses, strains and displacements.
+def too_many(states: int) -> Iterator[str]:
+    """Fault of a scene of so many states that memory does not hold their friction."""
+    if lack := lacking(_FRICTION * states):
+        yield (
+            f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
+            "them, or make several scenes"
+        )
 
-    Raises:
-        BadInput: one of them is too small or too large.
-    """
+
+def _faults(scene: Scene, body: Contact, methods: Collection[str], places: Places) -> Iterator[str]:
+    """Faults of outputs without an answer by the scene's methods, one sentence each."""
+    states = order(scene)
+    yield from too_many(len(states))
+    sliders = scene.friction.count * len(states.loads)
+    if SLIDER in scene.output.quantities and sliders > _SLIDERS:
+        yield (
+            f"the scene's lists multiply to {sliders} friction laws and loads, expected at most "
+            f"{_SLIDERS} with a slider each: shorten them, or make several scenes"
+        )
+    if methods:
+        for load in {min(states.loads), max(states.loads)}:
+            yield from _beyond_numbers(body.loaded(load))
+    if scene.layers:
+        yield from _faults_of_layers(scene, body, methods)
+    if GIVEN_ENDS in body.lacks:
+        about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
+        if scene.solve.mode == "traction":
+            yield f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch'
+        if scene.solve.methods and not methods and _contact(scene):
+            yield (
+                f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted "
+                'flat punches on meshes of their own: take mesh = "confocal" without degree, or add '
+                '"closed_form"'
+            )
+    if FEM in scene.solve.methods and scene.solve.assembler == DOLFINX:
+        if scene.solve.own_pressure:
+            yield (
+                'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": '
+                "its pieces are put together from the deformation of condensed cells"
+            )
+        if scene.time is not None:
+            yield (
+                'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
+                "matrices of their own"
+            )
+    if FEM in methods:
+        yield from _faults_of_meshes(scene, body, places)
+
+
+def _beyond_numbers(body: Contact) -> Iterator[str]:
+    """Fault of stresses, strains or displacements that no floating-point number holds."""
     least, most = np.finfo(float).tiny, np.finfo(float).max
-    magnitudes = (
-        {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement} if methods else {}
-    )
+    magnitudes = {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement}
     if wrong := [f"{value:g} {unit}" for unit, value in magnitudes.items() if not least <= value <= most]:
-        raise BadInput(
+        yield (
             f"punch: load {body.load:g} N/m on the half-width {body.half_width:g} m makes "
             f"{listed(wrong)}, expected numbers from {least:.0e} to {most:.0e}"
         )
 
 
-def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
-    """Warnings about speeds near or above the Rayleigh speed.
+def _faults_of_layers(scene: Scene, body: Contact, methods: Collection[str]) -> Iterator[str]:
+    """Fault of outputs and methods that are not computed over layers, with all reasons."""
+    solve = scene.solve
+    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
+    reasons = [
+        f'output.quantities has "{word}"' for word in scene.output.quantities if word not in computed
+    ]
+    if YIELD in scene.output.quantities and YIELD in body.lacks:
+        reasons.append(f'output.quantities has "yield", and {body.lacks[YIELD]}')
+    if solve.mode == "traction" and not solve.own_pressure:
+        reasons.append(
+            'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
+        )
+    for key, default in {"mesh": "confocal", "degree": None}.items():
+        if FEM in solve.methods and (value := getattr(solve, key)) != default:
+            reasons.append(
+                f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
+            )
+    if solve.methods and not methods and _contact(scene) and not reasons:
+        about = f" with a {body.profile.words()}" * (GIVEN_ENDS in body.lacks)
+        reasons.append(f"solve.methods is {json.dumps(solve.methods)}{about}")
+    if reasons:
+        yield (
+            f"layer: found layers, and {'; '.join(reasons)}. Over layers methods = "
+            '["sie"] solves all punches, ["fem"] those with two sharp edges, parabolas and other smooth '
+            "ones, with the quantities friction, sif, surface, interior, interfaces and yield"
+        )
+
+
+def _faults_of_meshes(scene: Scene, body: Contact, places: Places) -> Iterator[str]:
+    """Faults of what finite elements cannot compute, one sentence each."""
+    solve, mixed, words = scene.solve, scene.solid.nearly_incompressible, scene.solid.words
+    if solve.mode == "traction" and not solve.own_pressure and FLAT in body.lacks:
+        yield (
+            'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
+            'give solve.pressure, or take mode = "contact"'
+        )
+    if solve.own_pressure:
+        yield from _faults_of_pressure(scene, body.knots)
+    points = np.concatenate([places.points, places.around])
+    far, limit = float(np.abs(points).max(initial=0.0)), farthest_inside(scene)
+    if far > limit:
+        yield (
+            f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
+            f"{solve.mesh} mesh at the tolerance {solve.tolerance:g}"
+        )
+    if len(points) and mixed and not {CLOSED_FORM, SIE} & {*solve.methods}:
+        yield (
+            f"output.{'points' if len(places.points) else 'quantities'}: found {words()}, expected "
+            'ν <= 0.49 for stresses inside from finite elements; use methods = ["closed_form"]'
+        )
+    if mixed and solve.degree and solve.degree < 3:
+        yield (
+            f"solve.degree: found {solve.degree} with {words()}, expected at least 3: "
+            "the pressure, an unknown of its own there, has two degrees less"
+        )
+    if mixed and solve.solver in ("boomeramg", "gamg"):
+        yield (
+            f"solve.solver: found {solve.solver} with {words()}, expected direct or auto: "
+            "with an unknown pressure the matrix is indefinite"
+        )
+
+
+def _faults_of_pressure(scene: Scene, knots: Sequence[float]) -> Iterator[str]:
+    """Faults of a prescribed pressure with knots X/a that cannot load the cells of a mesh."""
+    width, mesh, kind = float(np.diff(knots).min()), scene.solve.mesh, MESHES[scene.solve.mesh]
+    if scene.layers:
+        if len(knots) > _KNOTS or width < _APART:
+            yield (
+                f"solve.pressure: found {len(knots)} positions X/a, {width:.3g} apart at the least, "
+                f"expected at most {_KNOTS}, {_APART:g} apart, with finite elements over layers, whose "
+                'cells are graded towards each; take methods = ["sie"]'
+            )
+        return
+    if kind.walls or not kind.rings:
+        yield (
+            f'solve.mesh: found "{mesh}" with a prescribed pressure, expected "confocal" or '
+            '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
+            "and has no walls"
+        )
+    if kind.chart.name != "confocal" and scene.solid.nearly_incompressible:
+        yield (
+            f'solve.mesh: found "{mesh}" with a prescribed pressure and '
+            f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
+            "differ so much in size that with an unknown pressure rounding spoils the matrix"
+        )
+    if width < _NARROWEST:
+        yield (
+            f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
+            f'{_NARROWEST:g} with finite elements; leave one out, or take methods = ["closed_form"]'
+        )
+
+
+def farthest_inside(scene: Scene) -> float:
+    """Largest distance over a of fields inside from finite elements: well inside walls, if any."""
+    walls = MESHES[scene.solve.mesh].walls
+    return _INNER * walls if walls else _OUTERMOST
+
+
+def _near_limit(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
+    """Warnings about speeds over c_s near or above the Rayleigh speed.
 
     Args:
         scene: the scene.
@@ -153,230 +437,56 @@ def check_speeds(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str
         BadInput: the form of finite elements is indefinite at a speed, or a wave inside the solid is not
             faster than the punch.
     """
+
+    def margin(c: float) -> float:
+        try:
+            return scene.solid.response(c).margin
+        except ValueError:  # a wave in the solid is not faster
+            return -inf
+
     # All speeds above a limit are beyond it: of a million speeds some twenty are evaluated.
     ordered = sorted(speeds)
-    first = bisect_left(ordered, True, key=lambda c: _margin(scene, c) <= 0.0)
-    almost = bisect_left(ordered[:first], True, key=lambda c: _margin(scene, c / 0.99) <= 0.0)
-    formal = bisect_left(ordered, True, lo=first, key=lambda c: _margin(scene, c) == -inf)
+    first = bisect_left(ordered, True, key=lambda c: margin(c) <= 0.0)
+    almost = bisect_left(ordered[:first], True, key=lambda c: margin(c / 0.99) <= 0.0)
+    formal = bisect_left(ordered, True, lo=first, key=lambda c: margin(c) == -inf)
+    if almost == len(ordered):
+        return []
     near, beyond, none = (
-        [f"{c:g}" for c in part] for part in (ordered[almost:first], ordered[first:], ordered[formal:])
+        listed([f"{c:g}" for c in part])
+        for part in (ordered[almost:first], ordered[first:], ordered[formal:])
     )
-    c_R = scene.solid.limit() if beyond or near else 0.0
-    name = "speed limit of the layers" if scene.layers else "Rayleigh speed"
+    c_R, name = scene.solid.limit(), "speed limit of the layers" if scene.layers else "Rayleigh speed"
     limit = f"the {name} c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
-    if beyond and scene.elastic_punch:
-        raise BadInput(
-            f"motion: c = {listed(beyond)} is not below {limit}: a wave along the plate's surface is not "
-            "faster than the contact; take lower speeds"
+    reason = ""
+    if scene.elastic_punch:
+        reason = "a wave along the plate's surface is not faster than the contact; take lower speeds"
+    elif scene.layers:
+        reason = "a wave along the layers is not faster than the punch; take lower speeds"
+    elif fem:
+        reason = (
+            "the finite element form is indefinite there and does not converge; take lower speeds, or "
+            'methods = ["closed_form"]'
         )
-    if beyond and scene.layers:
-        raise BadInput(
-            f"motion: c = {listed(beyond)} is not below {limit}: a wave along the layers is not faster "
-            "than the punch; take lower speeds"
-        )
-    if fem and beyond:
-        raise BadInput(
-            f"motion: c = {listed(beyond)} is not below {limit}: the finite element form is indefinite "
-            'there and does not converge; take lower speeds, or methods = ["closed_form"]'
-        )
+    if beyond and reason:
+        raise BadInput(f"motion: c = {beyond} is not below {limit}: {reason}")
     if none:
         raise BadInput(
-            f"motion: c = {listed(none)} is not below {limit}, and some wave inside the solid is not "
+            f"motion: c = {none} is not below {limit}, and some wave inside the solid is not "
             "faster: nothing decays with depth there; take lower speeds"
         )
     warnings = []
     if beyond:
-        warnings.append(f"c = {listed(beyond)} is not below {limit}: the closed form is formal there")
+        warnings.append(f"c = {beyond} is not below {limit}: the closed form is formal there")
     if near:
         warnings.append(
-            f"c = {listed(near)} is within 1 % of {limit}: displacements grow without bound and errors "
-            "with them"
+            f"c = {near} is within 1 % of {limit}: displacements grow without bound and errors with them"
         )
     return warnings
-
-
-def _margin(scene: Scene, c: float) -> float:
-    """Margin of the response at a speed over c_s; -∞ where a wave in the solid is not faster."""
-    try:
-        return scene.solid.response(c).margin
-    except ValueError:
-        return -inf
-
-
-def check_states(states: int) -> None:
-    """Check that memory holds the friction of all states.
-
-    Raises:
-        BadInput: it does not.
-    """
-    if lack := lacking(_FRICTION * states):
-        raise BadInput(
-            f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
-            "them, or make several scenes"
-        )
-
-
-def check_sliders(scene: Scene) -> None:
-    """Check the number of sliders of a scene.
-
-    Raises:
-        BadInput: a scene has more sliders than are followed.
-    """
-    count = scene.friction.count * len(scene.punch.loads)
-    if SLIDER in scene.output.quantities and count > _SLIDERS:
-        raise BadInput(
-            f"the scene's lists multiply to {count} friction laws and loads, expected at most {_SLIDERS} "
-            "with a slider each: shorten them, or make several scenes"
-        )
-
-
-def check_mode(scene: Scene, body: Contact) -> None:
-    """Check that the mode "traction" has a pressure to prescribe.
-
-    Raises:
-        BadInput: the scene gives none, and the punch has none in closed form.
-    """
-    if scene.solve.mode == "traction" and not scene.solve.own_pressure and FLAT in body.lacks:
-        raise BadInput(
-            'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
-            'give solve.pressure, or take mode = "contact"'
-        )
-
-
-def check_free_ends(scene: Scene, body: Contact, methods: Collection[str]) -> None:
-    """Check that a method computes the free ends of the contact.
-
-    Raises:
-        BadInput: none does, or the scene prescribes a pressure, which would need the ends.
-    """
-    if GIVEN_ENDS not in body.lacks:
-        return
-    about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
-    if scene.solve.mode == "traction":
-        raise BadInput(f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch')
-    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS:
-        raise BadInput(
-            f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted flat "
-            'punches on meshes of their own: take mesh = "confocal" without degree, or add "closed_form"'
-        )
-
-
-def check_layers(scene: Scene, body: Contact, methods: Collection[str]) -> None:
-    """Check that the scene's outputs and methods can be computed over layers.
-
-    Raises:
-        BadInput: they cannot; the message lists all reasons.
-    """
-    if not scene.layers:
-        return
-    computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
-    faults = [
-        f'output.quantities has "{word}"' for word in scene.output.quantities if word not in computed
-    ]
-    if YIELD in scene.output.quantities and YIELD in body.lacks:
-        faults.append(f'output.quantities has "yield", and {body.lacks[YIELD]}')
-    if scene.solve.mode == "traction" and not scene.solve.own_pressure:
-        faults.append(
-            'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
-        )
-    if "fem" in scene.solve.methods:
-        faults += _of_meshes(scene)
-    if scene.solve.methods and not methods and set(scene.output.quantities) - FRICTIONS and not faults:
-        about = f" with a {body.profile.words()}" * (GIVEN_ENDS in body.lacks)
-        faults.append(f"solve.methods is {json.dumps(scene.solve.methods)}{about}")
-    if faults:
-        raise BadInput(
-            f"layer: found layers, and {'; '.join(faults)}. Over layers methods = "
-            '["sie"] solves all punches, ["fem"] those with two sharp edges, parabolas and other smooth '
-            "ones, with the quantities friction, sif, surface, interior, interfaces and yield"
-        )
-
-
-def _of_meshes(scene: Scene) -> Iterator[str]:
-    """Faults of keys that set the mesh or degree of a half-plane: layers have their own."""
-    keys = {"mesh": (scene.solve.mesh, "confocal"), "degree": (scene.solve.degree, None)}
-    for key, (value, default) in keys.items():
-        if value != default:
-            yield f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
-
-
-def check_pressure(scene: Scene, knots: Sequence[float]) -> None:
-    """Check that finite elements can be loaded by a prescribed pressure with knots X/a.
-
-    Raises:
-        BadInput: they cannot.
-    """
-    if scene.layers:
-        _check_knots(knots)
-        return
-    kind = MESHES[scene.solve.mesh]
-    if kind.walls or not kind.rings:
-        raise BadInput(
-            f'solve.mesh: found "{scene.solve.mesh}" with a prescribed pressure, expected "confocal" or '
-            '"graded": the mesh is scaled to the width of every piece of it, graded towards both ends, '
-            "and has no walls"
-        )
-    if kind.chart.name != "confocal" and scene.solid.nearly_incompressible:
-        raise BadInput(
-            f'solve.mesh: found "{scene.solve.mesh}" with a prescribed pressure and '
-            f'{scene.solid.words()}, expected "confocal" or ν <= 0.49: cells of its meshes for pieces '
-            "differ so much in size that with an unknown pressure rounding spoils the matrix"
-        )
-    width = float(np.diff(knots).min())
-    if width < _NARROWEST:
-        raise BadInput(
-            f"solve.pressure: found positions X/a that differ by {width:.3g}, expected at least "
-            f'{_NARROWEST:g} with finite elements; leave one out, or take methods = ["closed_form"]'
-        )
-
-
-def _check_knots(knots: Sequence[float]) -> None:
-    """Check that cells along interfaces can be graded towards all knots X/a of a pressure."""
-    width = float(np.diff(knots).min())
-    if len(knots) > _KNOTS or width < _APART:
-        raise BadInput(
-            f"solve.pressure: found {len(knots)} positions X/a, {width:.3g} apart at the least, expected "
-            f"at most {_KNOTS}, {_APART:g} apart, with finite elements over layers, whose cells are "
-            'graded towards each; take methods = ["sie"]'
-        )
-
-
-def check_places(scene: Scene, places: Places) -> None:
-    """Check that finite elements can compute stresses at all points inside.
-
-    Raises:
-        BadInput: they cannot.
-    """
-    points = np.concatenate([places.points, places.around])
-    if not len(points):
-        return
-    key = "output.points" if len(places.points) else "output.quantities"
-    far = float(np.abs(points).max())
-    limit = farthest_inside(scene)
-    if far > limit:
-        raise BadInput(
-            f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
-            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
-        )
-    if scene.solid.nearly_incompressible:
-        raise BadInput(
-            f"{key}: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from "
-            'finite elements; use methods = ["closed_form"]'
-        )
-
-
-def farthest_inside(scene: Scene) -> float:
-    """Largest distance over a of fields inside from finite elements: well inside walls, if any."""
-    walls = MESHES[scene.solve.mesh].walls
-    return _INNER * walls if walls else _OUTERMOST
 
 
 #: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
 #: that is rounding.
 _MOST_SHAPES, _ROUNDED = 48, 1e-13
-#: Most unknowns of a speed that one rank solves faster than two ranks together.
-SMALL = 200_000
-
 
 #: Positions along the contact at which friction is sampled for its extremes.
 _ACROSS = 201
@@ -390,16 +500,12 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         responses: of its solid, one a speed.
         places: points where stresses are output.
         g: all values of σ_XY/σ_YY.
-
-    Raises:
-        BadInput: the weak form does not allow the scene's degree or solver.
     """
     solve, kind, name = scene.solve, MESHES[scene.solve.mesh], scene.solve.mesh
     mode = fem_mode(scene)
     if scene.layers:
         depths = scene.solid.depths / scene.body.half_width
         kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
-    _check_degree_and_solver(scene)
     ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, _ACROSS))
     mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
     exponent = min(
@@ -478,40 +584,6 @@ def _shapes(scene: Scene, responses: Sequence[HalfPlane], g: NDArray) -> int:
 def shares_speeds(unknowns: int, speeds: int) -> bool:
     """True where ranks take whole speeds: small systems gain nothing from being cut in pieces."""
     return 1 < ranks.size() <= speeds and unknowns < SMALL
-
-
-def _check_degree_and_solver(scene: Scene) -> None:
-    solve, mixed = scene.solve, scene.solid.nearly_incompressible
-    if mixed and solve.degree and solve.degree < 3:
-        raise BadInput(
-            f"solve.degree: found {solve.degree} with {scene.solid.words()}, expected at least 3: "
-            "the pressure, an unknown of its own there, has two degrees less"
-        )
-    if mixed and solve.solver in ("boomeramg", "gamg"):
-        raise BadInput(
-            f"solve.solver: found {solve.solver} with {scene.solid.words()}, expected direct or auto: "
-            "with an unknown pressure the matrix is indefinite"
-        )
-
-
-def check_assembler(scene: Scene) -> None:
-    """Check that dolfinx's assembler serves the scene, where it is chosen.
-
-    Raises:
-        BadInput: the scene has a prescribed pressure or a motion in time.
-    """
-    if scene.solve.assembler != DOLFINX or FEM not in scene.solve.methods:
-        return
-    if scene.solve.own_pressure:
-        raise BadInput(
-            'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": its '
-            "pieces are put together from the deformation of condensed cells"
-        )
-    if scene.time is not None:
-        raise BadInput(
-            'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
-            "matrices of their own"
-        )
 
 
 def warnings_of(fem: FemPlan) -> Iterator[str]:
@@ -593,26 +665,26 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
 
 
 def expense(*plans: Plan) -> str:
-    """Estimated memory of plans of all variants of a scene, and the size of their archive."""
+    """Estimated memory of plans of all variants of a scene, and the numbers that they archive, in words.
+
+    Memory is that of matrices and stresses, with finite elements of a rank; programs and libraries take
+    as much as they take on the machine.
+    """
     first = plans[0]
-    datasets, positions = len(first.quantities), sum(map(len, first.positions.values()))
-    numbers = sum(plan.states for plan in plans) * (first.numbers + datasets) + positions
-    archive = _EMPTY + _DATASET * datasets + _ARCHIVED * numbers
+    numbers = sum(plan.states for plan in plans) * (first.numbers + len(first.quantities))
+    archived = bytes_in_words(8.0 * (numbers + sum(map(len, first.positions.values()))), 2)
     needed = bytes_in_words(max(map(_bytes, plans)), 2)
-    return f"about {needed}{' a rank' * bool(first.fem)} and an archive of {bytes_in_words(archive, 2)}"
+    return f"about {needed}{' a rank' * bool(first.fem)} beside the programs, results of {archived}"
 
 
 def _bytes(plan: Plan) -> float:
-    """Estimated memory [B] of a plan, with finite elements of a rank."""
-    together, fem = plan.chunk * plan.numbers, plan.fem
+    """Estimated memory [B] of a plan's matrices and stresses, with finite elements of a rank."""
+    held, fem = _HELD * plan.chunk * plan.numbers, plan.fem
     if not fem:
-        return _PROGRAM + _FRICTION * plan.states + _HELD * together
-    degree = max(fem.degrees)
-    finest = max(p * k for p, k in levels(degree, fem.cuts, fem.fixed))
+        return held + _FRICTION * plan.states
+    finest = max(p * k for p, k in levels(max(fem.degrees), fem.cuts, fem.fixed))
     most = unknowns(fem.pattern, finest) / (1 if fem.shared_speeds else ranks.size())
-    dense = 3 * 8 * max(_AT_ONCE, 16 * (2 * (degree + 1) ** 2) ** 2)
-    of_levels = memory(most, fem.solver == "direct")
-    return _LIBRARIES + of_levels + dense + _HELD * max(CHUNK_NUMBERS, together)
+    return held + memory(most, fem.solver == "direct")
 
 
 #: Descriptions of names in output.quantities, for a plan in words.
@@ -638,36 +710,26 @@ def make_plan(
     Raises:
         BadInput: an output of the scene has no answer by the scene's methods.
     """
-    states = order(scene)
-    check_states(len(states))
-    check_sliders(scene)
-    body = scene.body
+    states, body = order(scene), scene.body
     methods = _methods(scene, body)
-    for load in {min(states.loads), max(states.loads)}:
-        check_size(body.loaded(load), methods)
-    check_layers(scene, body, methods)
-    check_free_ends(scene, body, methods)
-    check_assembler(scene)
     around = yield_places(body) if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     depths, positions = interface_grid(body)
     places = Places(surface_grid(), points, around, depths, positions if along is None else along)
-    warnings = [*oddities(scene), *check_speeds(scene, states.speeds, "fem" in methods)]
+    for fault in _faults(scene, body, methods, places):
+        raise BadInput(fault)
+    warnings = [*oddities(scene), *_near_limit(scene, states.speeds, FEM in methods)]
     warnings += _left_out(scene, body, methods)
-    friction = enumerate_states(scene, done) if "fem" in methods or scene.time else None
+    friction = enumerate_states(scene, done) if FEM in methods or scene.time else None
     fem = None
-    if "fem" in methods:
+    if FEM in methods:
         assert friction
-        check_mode(scene, body)
-        if scene.solve.own_pressure:
-            check_pressure(scene, body.knots)
-        check_places(scene, places)
         responses = [body.response(c) for c in states.speeds]
         fem = plan_fem(scene, responses, _output_places(scene, places), friction.g)
         warnings += warnings_of(fem)
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
-    skipped = (*_skipped(scene, body, methods, fem, quantities), *refused)
+    skipped = (*_skipped(scene, body, methods, quantities), *refused)
     plan = Plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
@@ -740,7 +802,6 @@ def _skipped(
     scene: Scene,
     body: Contact,
     methods: tuple[str, ...],
-    fem: FemPlan | None,
     quantities: Iterable[Quantity],
 ) -> list[str]:
     """Messages about work that is not done, with the reason."""
@@ -753,8 +814,6 @@ def _skipped(
         for name, kind in METHODS.items()
         if name not in methods and (scene.layers or not kind.of_layers)
     ]
-    if fem and fem.cuts == 1 and store.is_kept(fem.pattern):
-        skipped.append("gmsh: an earlier run made the same mesh")
     words = {quantity.asked_by for quantity in quantities}
     for word, what in _PLACES.items():
         if word not in words:

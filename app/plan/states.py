@@ -4,10 +4,10 @@ An :class:`Order` is the product of speeds, loads, laws and places on the stroke
 the friction of every state, which :func:`enumerate_states` computes along the strokes.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, nan
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,8 @@ from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.postprocess.quantities.validity import SIGNS
 from galinx.solvers.friction import FrictionLaw
-from galinx.solvers.friction.integrate import INTEGRATORS, Integrator, closely
-from galinx.solvers.friction.motion import Stroke, Work, follow, last_cycle, works
+from galinx.solvers.friction.integrate import INTEGRATORS, closely
+from galinx.solvers.friction.motion import follow, last_cycle, works
 from galinx.solvers.solids.solid import Solid
 
 from ..errors import BadInput, listed
@@ -93,7 +93,7 @@ class Order:
         for speed in self.speeds:
             yield tuple(by_speed[speed])
 
-    def load(self, rows: slice) -> NDArray[np.float64]:
+    def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
         """Load of the states of these rows [N/m], (rows,)."""
         return np.array(self.loads)[self.numbers[1, rows]]
 
@@ -205,22 +205,28 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     Raises:
         BadInput: the integrator refuses the parameters.
     """
-    friction, order_, count = scene.friction, order(scene), laws_followed(scene)
-    f, loops, at = np.empty((count, len(order_.own))), _Loops(), 0
-    inner: NDArray | None = None
+    friction, order_, count, legs = scene.friction, order(scene), laws_followed(scene), scene.legs
+    fine = [leg.start + (leg.end - leg.start) * FINE for leg in legs]
     advance = INTEGRATORS[friction.integrator]
+    advance_finely = closely if friction.integrator == "exact" else advance
+    f, z, loops, at = np.empty((count, len(order_.own))), list[NDArray](), list[NDArray](), 0
+    taken: dict[str, list[NDArray]] = {"dissipated": [], "breakaway": [], "slope": []}
     try:
         for c, law, laws in _laws(scene):
-            strokes = _strokes(scene, law, c, scene.places, laws is not None, advance)
-            n = laws or 1
+            n, V = laws or 1, c * scene.solid.c_s
+            L, many = friction.pre_sliding, laws is not None
+            strokes = follow(law, legs, L, scene.places, V, advance, many)
             f[at : at + n] = _joined([stroke.f for stroke in strokes])
-            z = _joined([stroke.z for stroke in strokes], -2)
-            if inner is None:
-                inner = np.empty((*f.shape, z.shape[-1]))
-            inner[at : at + n] = z
+            inner = _joined([stroke.z for stroke in strokes], -2)
+            z.append(np.broadcast_to(inner, (n, *inner.shape[-2:])))
             most = LOOPS if laws or _has_formula(law) else INTEGRATED_LOOPS
             if at < most:
-                loops.add(*_loops(scene, law, c, laws), n, min(n, most - at))
+                drawn = _joined([s.f for s in follow(law, legs, L, fine, V, advance_finely, many)])
+                loops.append(np.broadcast_to(drawn, (n, drawn.shape[-1]))[: most - at])
+                done_on = works(law, legs, L, V, advance_finely, many)
+                for name, rows in taken.items():
+                    each = [np.broadcast_to(getattr(stroke, name), (n,)) for stroke in done_on]
+                    rows.append(np.stack(each, axis=-1)[: most - at])
             at += n
             if at % _TOGETHER == 0:
                 done(at, count)
@@ -228,17 +234,28 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         raise BadInput(f"friction: {error}") from None
     if friction.state == ADVECTED:
         f[:] = friction.stress_ratio * np.array(list(scene.along))[:, None]
-    assert inner is not None
+    drawn_loops = np.concatenate(loops)
     loop = np.arange(count)
-    loop[len(loops.f) :] = -1
-    columns = _columns(scene, order_, _of_all(order_, f))
-    travel = _joined([leg.start + (leg.end - leg.start) * FINE for leg in scene.legs])
-    along = np.repeat([leg.s for leg in scene.legs], [len(X) for X in scene.places])
+    loop[len(drawn_loops) :] = -1
+    along = np.repeat([leg.s for leg in legs], [len(X) for X in scene.places])
     return States(
-        columns, _of_all(order_, inner), _of_all(order_, np.tile(along, (count, 1))),
-        _of_all(order_, np.tile(loop[:, None], f.shape[1])), travel, np.array(loops.f),
-        loops.archived(scene),
+        _columns(scene, order_, _of_all(order_, f)), _of_all(order_, np.concatenate(z)),
+        _of_all(order_, np.tile(along, (count, 1))), _of_all(order_, np.tile(loop[:, None], f.shape[1])),
+        _joined(fine), drawn_loops,
+        _archived_work(scene, *(np.concatenate(rows) for rows in taken.values())),
     )  # fmt: skip
+
+
+def _archived_work(scene: Scene, *of_unit_load: NDArray) -> dict[str, NDArray]:
+    """Work, breakaway and slope of strokes under the load, (loops, strokes), by path as archived."""
+    with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
+        dissipated, breakaway, slope = (scene.punch.load * rows for rows in of_unit_load)
+    first = last_cycle(scene.legs)
+    cycle = np.full(len(dissipated), np.nan) if first is None else dissipated[:, first:].sum(axis=1)
+    return {
+        runs.LOOP_WORK.path: dissipated, runs.LOOP_CYCLE.path: cycle,
+        runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
+    }  # fmt: skip
 
 
 def _of_all(order: Order, values: NDArray) -> NDArray:
@@ -269,7 +286,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         **{key: np.full(f.size, value) for key, value in scene.swept.items()},
         **{key: column[law] for key, column in friction.columns().items()},
         "speed": np.where(np.isnan(own), np.multiply(order.given, scene.solid.c_s)[speed], own),
-        **{f"flutter_{sign}": np.full(f.size, g) for sign, g in zip(SIGNS, _flutter(scene.solid))},
+        **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": _crossings(scene, lengths, half_widths[load], c),
         "f": f,
@@ -277,9 +294,13 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     }
 
 
-def _flutter(solid: Solid) -> list[float]:
-    """Flutter thresholds of both signs of σ_XY/σ_YY; NaN for none, or of a solid without ``flutter``."""
-    return [g if isfinite(g) else nan for g in getattr(solid, "flutter", (nan, nan))]
+def _flutter(solid: Solid, c: NDArray) -> NDArray[np.float64]:
+    """Flutter thresholds of both signs of σ_XY/σ_YY, (2, states); NaN for none, or for a solid without
+    ``flutter``."""
+    flutter = getattr(solid, "flutter", lambda c: (nan, nan))
+    speeds, of = np.unique(c, return_inverse=True)
+    each = np.array([flutter(speed) for speed in speeds.tolist()])
+    return np.where(np.isfinite(each), each, nan)[of].T
 
 
 def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:
@@ -306,56 +327,6 @@ def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:
         else:
             for law in friction.laws():
                 yield c, law, None
-
-
-def _strokes(
-    scene: Scene, law: FrictionLaw, c: float, places: Sequence[NDArray], many: bool, advance: Integrator
-) -> list[Stroke]:
-    V = c * scene.solid.c_s
-    return follow(law, scene.legs, scene.friction.pre_sliding, places, V, advance, many)
-
-
-def _loops(scene: Scene, law: FrictionLaw, c: float, laws: int | None) -> tuple[list[Stroke], list[Work]]:
-    """Friction along every stroke at the positions of loops, and work and stiffness of every stroke."""
-    friction, V = scene.friction, c * scene.solid.c_s
-    fine = [leg.start + (leg.end - leg.start) * FINE for leg in scene.legs]
-    advance = closely if friction.integrator == "exact" else INTEGRATORS[friction.integrator]
-    drawn = _strokes(scene, law, c, fine, laws is not None, advance)
-    taken = works(law, scene.legs, friction.pre_sliding, V, advance, laws is not None)
-    return drawn, taken
-
-
-class _Loops:
-    """Loops and the work of their strokes, in the order in which they are computed.
-
-    Attributes:
-        f: friction coefficient along each loop.
-        taken: work and stiffness by name of :class:`Work`, a row of strokes for each loop.
-    """
-
-    def __init__(self) -> None:
-        self.f: list[NDArray] = []
-        self.taken: dict[str, list[NDArray]] = {"dissipated": [], "breakaway": [], "slope": []}
-
-    def add(self, drawn: list[Stroke], taken: list[Work], laws: int, kept: int) -> None:
-        """Append the loops of the first ``kept`` of so many laws."""
-        f = _joined([np.broadcast_to(stroke.f, (laws, len(FINE))) for stroke in drawn])
-        self.f += list(f[:kept])
-        for name, rows in self.taken.items():
-            columns = [np.broadcast_to(getattr(stroke, name), (laws,)) for stroke in taken]
-            rows += list(np.stack(columns, axis=-1)[:kept])
-
-    def archived(self, scene: Scene) -> dict[str, NDArray]:
-        """Work and stiffness of strokes as archived, by path; those of unit load times the load."""
-        N = scene.punch.load
-        with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
-            dissipated, breakaway, slope = (N * np.array(rows) for rows in self.taken.values())
-        first = last_cycle(scene.legs)
-        cycle = np.full(len(dissipated), np.nan) if first is None else dissipated[:, first:].sum(axis=1)
-        return {
-            runs.LOOP_WORK.path: dissipated, runs.LOOP_CYCLE.path: cycle,
-            runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
-        }  # fmt: skip
 
 
 def _joined(parts: list[NDArray], axis: int = -1) -> NDArray:

@@ -17,9 +17,8 @@ from galinx.texts import counted
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene
-from .plan import check_states, interface_grid, lines, make_plan
+from .plan import Plan, interface_grid, lines, make_plan, too_many
 from .states import States, enumerate_states, order
-from .task import Plan
 
 
 @dataclass(frozen=True)
@@ -64,14 +63,23 @@ def make_variants(
         BadInput: an output has no answer by the scene's methods, or not the same answers in all variants.
     """
     scenes = scene.each
-    check_states(sum(len(order(variant)) for variant in scenes))
+    for fault in too_many(sum(len(order(variant)) for variant in scenes)):
+        raise BadInput(fault)
     plans, along = [], positions_along(scene)
     for variant in scenes:
         try:
             plans.append(make_plan(variant, done, along))
         except BadInput as error:
             raise BadInput(f"with {variant.variant}: {error}" if variant.swept else str(error)) from None
-    _check_alike(plans, scenes)
+    # An archive has one set of quantities for all states.
+    kinds = [({quantity.path for quantity in plan.quantities}, plan.states) for plan in plans]
+    for kind, variant in zip(kinds, scenes):
+        if kind != kinds[0]:
+            some = listed(sorted(kind[0] ^ kinds[0][0])[:3]) or "another number of states"
+            raise BadInput(
+                f"sweep: with {variant.variant} the contact is of another kind than with "
+                f"{scenes[0].variant}: {some} is there for one of them only; make two scenes of it"
+            )
     variants: list[Variant] = []
     state = speed = 0
     for variant, plan in zip(scenes, plans):
@@ -81,44 +89,22 @@ def make_variants(
     return variants
 
 
+#: Ratio of depths so near to each other that one grid suits both.
+_NEAR = 1.5
+
+
 def positions_along(scene: Scene) -> NDArray[np.float64] | None:
     """Positions along interfaces that suit all variants; None for a scene that is alone."""
     if not scene.variants or not scene.layers:
         return None
     depths = np.sort(
-        [variant.solid.depths / variant.body.half_width for variant in scene.variants], axis=0
+        [variant.solid.depths / variant.body.half_width for variant in scene.variants], axis=None
     )
-    return interface_grid(scene.body, _apart(depths))[1]
-
-
-#: Ratio of depths so near to each other that one grid suits both.
-_NEAR = 1.5
-
-
-def _apart(depths: NDArray) -> NDArray[np.float64]:
-    """Some of the depths of interfaces, (variants, interfaces), that stand for all, sorted, (n,)."""
-    kept: list[float] = []
-    for depth in np.sort(depths, axis=None).tolist():
-        if not kept or depth > _NEAR * kept[-1]:
-            kept.append(depth)
-    return np.array([*kept[:-1], float(depths.max())])
-
-
-def _check_alike(plans: Sequence[Plan], scenes: Sequence[Scene]) -> None:
-    """Check that all variants have the same quantities, as an archive has one set for all states.
-
-    Raises:
-        BadInput: they do not.
-    """
-    first = {quantity.path for quantity in plans[0].quantities}
-    for plan, scene in zip(plans, scenes):
-        own = {quantity.path for quantity in plan.quantities}
-        if own != first or plan.states != plans[0].states:
-            some = listed(sorted(own ^ first)[:3]) or "another number of states"
-            raise BadInput(
-                f"sweep: with {scene.variant} the contact is of another kind than with "
-                f"{scenes[0].variant}: {some} is there for one of them only; make two scenes of it"
-            )
+    apart: list[float] = []  # depths that stand for all
+    for depth in depths.tolist():
+        if not apart or depth > _NEAR * apart[-1]:
+            apart.append(depth)
+    return interface_grid(scene.body, np.array([*apart[:-1], depths[-1]]))[1]
 
 
 def joined_states(variants: Sequence[Variant]) -> States:
@@ -146,14 +132,10 @@ def joined_states(variants: Sequence[Variant]) -> States:
 
 def _of_variants(variants: Sequence[Variant]) -> dict[str, NDArray]:
     """Columns of what an archive of a single problem has once, where variants differ in it."""
-    scenes, counts = (
-        [variant.scene for variant in variants],
-        [len(variant.states) for variant in variants],
-    )
-    values = {
-        HALF_WIDTH: [scene.body.half_width for scene in scenes] if scenes[0].body.shared_ends else [],
-        WAVE_SPEED: [scene.solid.c_s for scene in scenes],
-    }
+    scenes, counts = zip(*((variant.scene, len(variant.states)) for variant in variants))
+    values = {WAVE_SPEED: [scene.solid.c_s for scene in scenes]}
+    if not scenes[0].body.found:
+        values = {HALF_WIDTH: [scene.body.half_width for scene in scenes]} | values
     return {
         row.path.partition("/")[2]: np.repeat(each, counts)
         for row, each in values.items()

@@ -46,7 +46,7 @@ from galinx.solvers.profiles import smooth
 
 from ..console import Progress
 from ..methods import METHODS
-from ..plan.task import Plan
+from ..plan.plan import Plan
 from ..plan.variants import Variant, joined_positions, joined_states, make_variants, restricted
 from ..run.flow import Judge, scene_attributes
 from ..run.solve import Work
@@ -67,32 +67,54 @@ _FROM_EXACT = 1e-2
 _ONE_MESH = ("contact", "traction", FREE_ENDS)
 
 
-def recomputed_faults(archive: Any, scene: Scene, plan: Plan) -> Iterator[str]:
-    """Differences between archived numbers and numbers computed again, one sentence each.
+class _Part:
+    """An archive as that of a single variant, with its scene and plan.
 
     Args:
-        archive: one that fits the schema, of states of one problem.
-        scene, plan: of the archive.
+        archive: of all variants.
+        variant: the variant.
     """
-    data = archive.data
-    if runs.RECORD["c"].path in data and not len(data[runs.FAILURES.path]):
-        yield from _of_record(data, plan)
-    for methods, selected, quantities in _recomputed(plan):
-        for rows, computed in _computed(plan, data, methods, selected, quantities):
-            yield from _different(archive, rows, computed, plan)
-    yield from _of_finite_elements(archive, scene, plan)
+
+    def __init__(self, archive: Archive, variant: Variant) -> None:
+        self._archive, self._first = archive, 0 if variant.alone else variant.rows.start
+        self.scene, self.plan = variant.scene, variant.plan
+        quantities = table()
+        self.data: Mapping[str, Any] = (
+            archive.data
+            if variant.alone
+            else restricted(archive.data, variant, lambda path: quantities[path].over)
+        )
+        self.attributes, self.names = archive.attributes, archive.names
+
+    def held(self, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Archived values of some states, (states, …)."""
+        if path in self.data:
+            return np.asarray(self.data[path][rows])
+        each = (slice(row, row + 1) for row in (rows + self._first).tolist())
+        return np.concatenate([self._archive.rows(row, [path])[path] for row in each])
 
 
-def _of_warnings(data: Mapping[str, Any], warnings: str, scene: Scene, plan: Plan) -> Iterator[str]:
+def _recomputed_faults(part: _Part) -> Iterator[str]:
+    """Differences between archived numbers and numbers computed again, one sentence each."""
+    if runs.RECORD["c"].path in part.data and not len(part.data[runs.FAILURES.path]):
+        yield from _of_record(part.data, part.plan)
+    for methods, selected, quantities in _recomputed(part.plan):
+        for rows, computed in _computed(part.plan, part.data, methods, selected, quantities):
+            yield from _different(part, rows, computed)
+    if part.plan.fem and not part.scene.layers:
+        selected = _spread(part.plan.states, _most(part.plan.body.profile))
+        yield from _of_invariants(part, selected)
+        yield from _of_finite_elements(part, selected)
+
+
+def _of_warnings(archive: Archive, scene: Scene) -> Iterator[str]:
     """Warnings of the scene that the archive lacks, one sentence each.
 
     Sentences are compared without their numbers, which follow the order in which states were solved.
     """
-    if not plan.methods:
-        return
     judge = Judge(scene, ())
-    judge.validity.see(data)
-    archived = [_without_numbers(_present(text)) for text in json.loads(warnings)]
+    judge.validity.see(archive.data)
+    archived = [*map(_without_numbers, _texts(archive, "warnings"))]
     for text in judge.validity.words():
         if _without_numbers(text) not in archived:
             yield f'warnings does not have "{text}"'
@@ -109,18 +131,12 @@ _FORMER = {
 }
 
 
-def _present(text: str) -> str:
-    """Text of an archive of any age in the words of now."""
+def _texts(archive: Archive, name: str) -> Any:
+    """Attribute of an archive of any age that holds texts, in the words of now."""
+    text = archive.attributes[name]
     for former, today in _FORMER.items():
-        if today not in text:
-            text = text.replace(former, today)
-    return text
-
-
-def _archived_comparisons(archive: reader.Archive) -> dict[str, float]:
-    """Archived value of each comparison by its text in the words of now."""
-    values = json.loads(archive.attributes["comparisons"])
-    return {_present(text): value for text, value in values.items()}
+        text = text.replace(former, today)
+    return json.loads(text)
 
 
 def _without_numbers(text: str) -> str:
@@ -148,7 +164,7 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
 
 def _recomputed(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
     """Numbers to compute again: methods, states and quantities."""
-    count, most_of_all = plan.states, _most(plan) if FLAT in plan.body.lacks else _FLAT
+    count, most_of_all = plan.states, _most(plan.body.profile) if FLAT in plan.body.lacks else _FLAT
     for method in (CLOSED_FORM, SIE):
         # Residuals may be rounding alone; comparisons have them.
         own = [
@@ -170,9 +186,9 @@ def _recomputed(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64]
                 yield methods, _spread(count, few), quantities
 
 
-def _most(plan: Plan) -> int:
+def _most(profile: Any) -> int:
     """Number of states at most whose slow closed form is computed again."""
-    return _SMOOTH if smooth(plan.body.profile) else _KINKED
+    return _SMOOTH if smooth(profile) else _KINKED
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
@@ -208,17 +224,15 @@ def _computed(
             yield rows, work.of_states(task, rows)
 
 
-def _different(
-    archive: Archive, rows: NDArray[np.int64], computed: Mapping[str, NDArray], plan: Plan
-) -> Iterator[str]:
+def _different(part: _Part, rows: NDArray[np.int64], computed: Mapping[str, NDArray]) -> Iterator[str]:
     """Differences between archived and computed values, one sentence each."""
     for path, values in computed.items():
-        held = _held(archive, path, rows)
+        held = part.held(path, rows)
         with np.errstate(invalid="ignore"):
             finite = np.where(np.isfinite(values), np.abs(values), 0.0)
             axes = tuple(range(1, values.ndim))
             size = np.maximum(finite, 0.0 if values.ndim == 1 else finite.max(axis=axes, keepdims=True))
-            allowed = _TOLERANCES * plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
+            allowed = _TOLERANCES * part.plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
             near = np.abs(held - values) <= allowed * size + _PLACE * _is_place(path)
         same = near | (held == values) | (np.isnan(held) & np.isnan(values))
         if not same.all():
@@ -226,84 +240,69 @@ def _different(
             yield f"{path} is not what is computed of state {rows[i]}"
 
 
-def _near(held: NDArray, exact: NDArray, share: float) -> bool:
-    return bool(np.allclose(held, exact, rtol=share, atol=0.0, equal_nan=True))
-
-
-def _held(archive: Archive, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Archived values of some states, (states, …)."""
-    if path in archive.data:
-        return np.asarray(archive.data[path][rows])
-    return np.concatenate([archive.rows(slice(row, row + 1), [path])[path] for row in rows.tolist()])
-
-
 def _is_place(path: str) -> bool:
     """True for the place of a largest value, which may lie anywhere where the values are flat."""
     return path.endswith(("_position", "_over_a", "_X", "_Y"))
 
 
-def _of_finite_elements(archive: Archive, scene: Scene, plan: Plan) -> Iterator[str]:
+def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
     """Differences of finite elements from the closed form, even if the scene asks for none."""
-    data, fem, body = archive.data, plan.fem, plan.body
-    if not fem or scene.layers:
-        return
-    selected = _spread(plan.states, _most(plan))
-    yield from _of_invariants(archive, plan, selected)
-    slow = body.solid.limit() > max(plan.tasks.order.speeds)
+    data, scene, plan, body = part.data, part.scene, part.plan, part.plan.body
+    closed_form = METHODS[CLOSED_FORM]
     if (
-        archive.attributes["verdict"] == "FAIL"
-        or METHODS[CLOSED_FORM].refusal(scene, body, None)
-        or not slow
+        part.attributes["verdict"] == "FAIL"
+        or closed_form.refusal(scene, body, None)
+        or body.solid.limit() <= max(plan.tasks.order.speeds)
     ):
         return
-    if states.INDENTATION.path in data and fem.terms:
+    assert plan.fem
+    if states.INDENTATION.path in data and plan.fem.terms:
         yield from _of_indentations(data, plan, selected)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
-    if all(path in data for path in loads) and not _near(data[loads[0]], data[loads[1]], _FROM_EXACT):
+    if all(path in data for path in loads) and not np.allclose(
+        data[loads[0]], data[loads[1]], rtol=_FROM_EXACT, atol=0.0, equal_nan=True
+    ):
         yield f"{' and '.join(loads)} are not near each other"
     twins = {
-        quantity.path: quantity.path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
+        quantity: quantity.path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
         for quantity in QUANTITIES.values()
         if quantity.of and quantity.method == CLOSED_FORM and quantity.mode in scene.modes
         and not _is_place(quantity.path)
         # Next to kinks numbers are infinite, or nearly so; and of yield a few states were looked at.
         and (smooth(body.profile) or quantity.over == (STATE,)) and quantity.asked_by != YIELD
-        and not METHODS[CLOSED_FORM].refusal(scene, body, quantity)
+        and not closed_form.refusal(scene, body, quantity)
     }  # fmt: skip
-    both = {path: other for path, other in twins.items() if other in archive.names}
-    for rows, computed in _computed(
-        plan, data, (CLOSED_FORM,), selected, [QUANTITIES[path] for path in both]
-    ):
+    both = {quantity.path: other for quantity, other in twins.items() if other in part.names}
+    quantities = [QUANTITIES[path] for path in both]
+    for rows, computed in _computed(plan, data, (CLOSED_FORM,), selected, quantities):
         intensities = [abs(values) for path, values in computed.items() if "K_I" in path]
         for path, exact in computed.items():
-            held = _held(archive, both[path], rows)
+            size = np.max(intensities, axis=0) if "K_I" in path else np.abs(exact)
             if path == states.CENTRE[CLOSED_FORM].path:
                 size = computed[states.HALF_WIDTH[CLOSED_FORM].path]
-            else:
-                size = np.max(intensities, axis=0) if "K_I" in path else np.abs(exact)
             if exact.ndim > 1:
                 finite = np.where(np.isfinite(exact), np.abs(exact), 0.0)
                 size = np.maximum(size, np.median(finite, axis=1, keepdims=True))
-            far = np.abs(held - exact) > max(_FROM_EXACT, _TOLERANCES * plan.tolerance) * np.where(
-                size > 0.0, size, 1.0
-            )
+            allowed = max(_FROM_EXACT, _TOLERANCES * plan.tolerance) * np.where(size > 0.0, size, 1.0)
+            far = np.abs(part.held(both[path], rows) - exact) > allowed
             if far.any():
                 state = rows[far.reshape(len(rows), -1).any(axis=1)][0]
                 yield f"{both[path]} is not near the closed form of state {state}"
 
 
-def _of_invariants(archive: Archive, plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
+def _of_invariants(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
     """Principal and von Mises stresses inside that do not follow from the archived components."""
     rows = (*stresses.STRESSES_INSIDE[FEM], *stresses.INVARIANTS_INSIDE[FEM])
-    if any(row.path not in archive.names for row in rows):
+    if any(row.path not in part.names for row in rows):
         return
-    inside = [_held(archive, row.path, selected) for row in stresses.STRESSES_INSIDE[FEM]]
+    inside = [part.held(row.path, selected) for row in stresses.STRESSES_INSIDE[FEM]]
     for row in stresses.INVARIANTS_INSIDE[FEM]:
         assert row.of
-        expected = row.of(SimpleNamespace(inside=inside), plan.body)
-        if not np.allclose(
-            _held(archive, row.path, selected), expected, rtol=1e-9, atol=1e-12, equal_nan=True
-        ):
+        expected, held = (
+            row.of(SimpleNamespace(inside=inside), part.plan.body),
+            part.held(row.path, selected),
+        )
+        if not np.allclose(held, expected, rtol=1e-9, atol=1e-12, equal_nan=True):
             yield f"{row.path} is not what the components give"
 
 
@@ -313,7 +312,7 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.i
     method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
     held, g = data[states.INDENTATION.path], data[states.RATIO.path]
     for task, rows in _tasks(looked_at, selected):
-        load = np.concatenate([plan.load(slice(row, row + 1)) for row in rows.tolist()])
+        load = plan.load(rows)
         body = plan.body.loaded(load)
         try:
             with method.at(task, np.unique(g[rows])) as solver:
@@ -353,42 +352,17 @@ def faults(path: Path) -> list[str]:
         texts = [*_of_states(archive, variants)]
         if archive.attributes["version"] == __version__:  # other versions plan and tell otherwise
             texts += _of_plan(archive, scene, variants)
-            if not texts:
-                texts += _of_warnings(
-                    archive.data, archive.attributes["warnings"], scene, variants[0].plan
-                )
-                texts += _recomputed_faults(archive, variants)
+            fits = not texts
+            if fits and variants[0].plan.methods:
+                texts += _of_warnings(archive, scene)
+            for variant in variants if fits else ():
+                part = _Part(archive, variant)
+                name = "" if variant.alone else f"with {variant.scene.variant}: "
+                texts += [name + text for text in _recomputed_faults(part)]
         return [*texts, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
-def _recomputed_faults(archive: reader.Archive, variants: Sequence[Variant]) -> Iterator[str]:
-    """Differences from numbers that are computed again, variant by variant."""
-    for variant in variants:
-        view = archive if variant.alone else _View(archive, variant)
-        for text in recomputed_faults(view, variant.scene, variant.plan):
-            yield text if variant.alone else f"with {variant.scene.variant}: {text}"
-
-
-class _View:
-    """An archive as that of a single variant.
-
-    Args:
-        archive: of all variants.
-        variant: the variant.
-    """
-
-    def __init__(self, archive: reader.Archive, variant: Variant) -> None:
-        self._archive, self._first = archive, variant.rows.start
-        quantities = table()
-        self.data = restricted(archive.data, variant, lambda path: quantities[path].over)
-        self.attributes, self.names = archive.attributes, archive.names
-
-    def rows(self, rows: slice, names: Sequence[str] | None = None) -> dict[str, Any]:
-        """Values of some of the variant's states."""
-        return self._archive.rows(slice(rows.start + self._first, rows.stop + self._first), names)
-
-
-def _of_states(archive: reader.Archive, variants: Sequence[Variant]) -> Iterator[str]:
+def _of_states(archive: Archive, variants: Sequence[Variant]) -> Iterator[str]:
     """States and friction that differ from those of the scene, whose friction is followed once more."""
     data, older = archive.data, archive.attributes["schema_version"] < VERSION
     states = joined_states(variants)
@@ -413,7 +387,7 @@ def _same(archived: Any, expected: Any) -> bool:
     return np.allclose(archived, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
 
-def _of_plan(archive: reader.Archive, scene: Scene, variants: Sequence[Variant]) -> Iterator[str]:
+def _of_plan(archive: Archive, scene: Scene, variants: Sequence[Variant]) -> Iterator[str]:
     """Attributes, positions and names of datasets that differ from those of the scene."""
     plan = variants[0].plan
     attributes, data = archive.attributes, archive.data
@@ -431,7 +405,7 @@ def _of_plan(archive: reader.Archive, scene: Scene, variants: Sequence[Variant])
     yield from (f"{name} is not what its scene asks for" for name in sorted(held - planned))
 
 
-def _of_numbers(archive: reader.Archive) -> Iterator[str]:
+def _of_numbers(archive: Archive) -> Iterator[str]:
     """Numbers that are not finite, not in balance, or not as the archived comparisons say."""
     rules = json.loads(archive.attributes["rules"])
     failures = archive.data.get(runs.FAILURES.path, ())
@@ -448,7 +422,7 @@ def _of_numbers(archive: reader.Archive) -> Iterator[str]:
             yield from _out_of_balance(comparison, start)
     for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
         worst[comparison.text] = comparison.value
-    archived = _archived_comparisons(archive)
+    archived = _texts(archive, "comparisons")
     if archived.keys() != worst.keys() or any(
         not np.isclose(worst[text], archived[text], rtol=_SAME, atol=0.0, equal_nan=True)
         for text in archived
@@ -494,7 +468,7 @@ def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]
         yield f"{comparison.text} in states {start} ...: {value}"
 
 
-def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
+def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:
     """Verdict and reasons that do not follow from the archived comparisons."""
     attributes = archive.attributes
     rules = {
@@ -503,7 +477,7 @@ def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
         if name in compare.RULES
     }
     judge = Judge(scene, rules.values())
-    archived = _archived_comparisons(archive)
+    archived = _texts(archive, "comparisons")
     judge.see(
         [compare.Comparison(rules[text], text, archived[text]) for text in archived if text in rules]
     )
@@ -511,5 +485,5 @@ def _of_verdict(archive: reader.Archive, scene: Scene) -> Iterator[str]:
     verdict, reasons = judge.verdict()
     if attributes["verdict"] != verdict:
         yield f"verdict says {attributes['verdict']}, its comparisons give {verdict}"
-    if [_present(text) for text in json.loads(attributes["verdict_reasons"])] != reasons:
+    if _texts(archive, "verdict_reasons") != reasons:
         yield f"verdict_reasons says {attributes['verdict_reasons']}, its comparisons give {reasons}"

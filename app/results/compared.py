@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -54,57 +55,62 @@ class Comparison:
                     f"have a partner: {listed([str(i) for i in self.pairs[:, 0]])}"
                 )
             self.pairs = self.pairs[np.isin(self.pairs[:, 0], chosen)]
-        self._tables = [_by_head(state_columns(r.data, u)) for r, u in zip(results, self.units)]
+        tables = [_by_head(state_columns(r.data, u)) for r, u in zip(results, self.units)]
+        #: Columns of each result by head, in the rows of the pairs; None where a result has none.
+        self._rows: dict[tuple[str, ...], list[Column | None]] = {
+            key: [
+                replace(column, values=[column.values[i] for i in of_result]) if column else None
+                for column, of_result in zip((table.get(key) for table in tables), self.pairs.T.tolist())
+            ]
+            for key in dict.fromkeys(key for table in tables for key in table)
+        }
 
     @property
     def titles(self) -> list[str]:
         """Numbers of the states of each pair, and the parameters that pair them."""
-        table = self._tables[0]
-        of_key = [c for c in table.values() if c.path in self._by and c.path]
+        of_key = [c for c, *_ in self._rows.values() if c and c.path and c.path in self._by]
         titles = []
-        for pair in self.pairs.tolist():
+        for p, pair in enumerate(self.pairs.tolist()):
             same = len(set(pair)) == 1
             numbers = f"state {pair[0]}" if same else f"states {', '.join(map(str, pair))}"
-            values = [
-                f"{c.head} {c.words(pair[0])}" if c.unit != "none" else c.words(pair[0]) for c in of_key
-            ]
+            values = [f"{c.head} {c.words(p)}" if c.unit != "none" else c.words(p) for c in of_key]
             titles.append(numbers + f" ({', '.join(values)})" * bool(values))
         return titles
 
     def columns(self) -> list[Column]:
         """One row a pair: each quantity of every result, then its difference from the first [%]."""
         columns = []
-        for key in dict.fromkeys(key for table in self._tables for key in table):
-            first = self._tables[0].get(key)
-            for n, table in enumerate(self._tables):
-                if (column := table.get(key)) is None:
+        for key, row in self._rows.items():
+            for n, (column, percent) in enumerate(zip(row, self._differences(key))):
+                if column is None:
                     continue
-                rows, head = self.pairs[:, n].tolist(), ", ".join([*key, self.labels[n]])
-                values = [column.values[i] for i in rows]
-                texts = column.unit == "none" or isinstance(values[0], str)
-                columns.append(Column(
-                    head, values if texts else np.array(values, dtype=float), column.unit,
-                    f"{column.name}_{n + 1}", "", column.digits, column.place, column.step,
-                ))  # fmt: skip
-                if n and first is not None and not texts:
-                    difference = self._difference(first, column, n)
-                    columns.append(
-                        Column(
-                            f"{head}, difference", difference, "%", f"{column.name}_{n + 1}_difference"
-                        )
-                    )
+                head, name = ", ".join([*key, self.labels[n]]), f"{column.name}_{n + 1}"
+                values = np.array(column.values, dtype=float) if _is_number(column) else column.values
+                columns.append(replace(column, head=head, values=values, name=name, path=""))
+                if percent is not None:
+                    columns.append(Column(f"{head}, difference", percent, "%", f"{name}_difference"))
         return columns
 
-    def _difference(self, first: Column, other: Column, n: int) -> NDArray[np.float64]:
-        """Difference of a column from the first result's [%], of places over the half-width; NaN where
-        units differ, (pairs,)."""
-        i, k = self.pairs[:, 0], self.pairs[:, n]
-        a, b = np.asarray(first.values, dtype=float)[i], np.asarray(other.values, dtype=float)[k]
+    def _differences(self, key: tuple[str, ...]) -> list[NDArray[np.float64] | None]:
+        """Difference of each result from the first [%], of places over the half-width, (pairs,).
+
+        NaN where units differ; None of the first itself, of texts, and of what one of both has not.
+        """
+        first, *others = self._rows[key]
+        return [None, *(self._difference(first, other, n) for n, other in enumerate(others, 1))]
+
+    def _difference(
+        self, first: Column | None, other: Column | None, n: int
+    ) -> NDArray[np.float64] | None:
+        if not first or not other or not _is_number(other):
+            return None
+        a, b = (np.asarray(column.values, dtype=float) for column in (first, other))
         size, dimensionless = np.abs(a), self.units[0].dimensionless
+        width = self._rows.get(("half-width",), [None])[0]
         if first.place and dimensionless:
             size = np.ones(len(a))
-        elif (first.place or first.head == "centre") and ("half-width",) in self._tables[0]:
-            size = np.asarray(self._tables[0]["half-width",].values, dtype=float)[i]
+        elif width and (first.place or first.head == "centre"):
+            size = np.asarray(width.values, dtype=float)
         with np.errstate(divide="ignore", invalid="ignore"):
             percent = np.where(a == b, 0.0, 100.0 * (b - a) / size)
         percent[~np.isfinite(percent) | np.isnan(a) | np.isnan(b)] = np.nan
@@ -112,36 +118,32 @@ class Comparison:
             path = (states.BETA if first.head.endswith("left") else states.ALPHA).path
             exponents = [self.results[m].data.get(path) for m in (0, n)]
             if exponents[0] is not None and exponents[1] is not None:
-                percent[np.abs(exponents[0][i] - exponents[1][k]) > 1e-9] = np.nan
+                apart = exponents[0][self.pairs[:, 0]] - exponents[1][self.pairs[:, n]]
+                percent[np.abs(apart) > 1e-9] = np.nan
         return percent if first.unit == other.unit else np.full(len(a), np.nan)
 
     def sheets(self) -> Iterator[Sheet]:
         """A table for each pair of states, results side by side; of many the first."""
-        keys = [
-            key for key in dict.fromkeys(key for table in self._tables for key in table)
-            if not any(key in t and t[key].path and t[key].path in self._by for t in self._tables)
-        ]  # fmt: skip
         heads = [textwrap.fill(self.labels[0], _NARROW)]
         for label in self.labels[1:]:
             heads += [textwrap.fill(label, _NARROW), "difference\n[%]"]
-        texts = [{key: column.texts() for key, column in table.items()} for table in self._tables]
-        differences_ = {
-            (key, n): self._difference(self._tables[0][key], table[key], n)
-            for n, table in enumerate(self._tables)
-            for key in keys
-            if n and key in table and key in self._tables[0] and _is_number(table[key])
-        }
-        for p, (title, pair) in enumerate(zip(self.titles[:LIMIT], self.pairs.tolist())):
+        shown = []
+        for key, columns in self._rows.items():
+            if not any(column and column.path and column.path in self._by for column in columns):
+                texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
+                first = next(column for column in columns if column)
+                shown.append((first, [*zip(*texts)], self._differences(key)[1:]))
+        for p, title in enumerate(self.titles[:LIMIT]):
             rows = []
-            for key in keys:
-                column = next(table[key] for table in self._tables if key in table)
-                cells = [text[key][i] if key in text else "" for text, i in zip(texts, pair)]
-                if not any(cells) or (column.path == states.MOTION.path and len(set(cells)) == 1):
+            for column, texts_of_pairs, percents in shown:
+                cells = texts_of_pairs[p]
+                same_motion = column.path == states.MOTION.path and len({*cells}) == 1
+                if not any(cells) or same_motion:
                     continue
                 row = [f"{'  ' * column.place}{column.label}", cells[0]]
-                for n, cell in enumerate(cells[1:], 1):
-                    percent = differences_[key, n][p] if (key, n) in differences_ else np.nan
-                    row += [cell, "" if np.isnan(percent) else f"{percent:+.3g}" if percent else "0"]
+                for cell, percent in zip(cells[1:], percents):
+                    off = np.nan if percent is None else percent[p]
+                    row += [cell, "" if np.isnan(off) else f"{off:+.3g}" if off else "0"]
                 rows.append(row)
             yield Sheet(title, ["", *heads], rows)
 
@@ -159,7 +161,7 @@ class Comparison:
             yield f"states without a partner: {found}"
         if not self._by and len(self.pairs) > 1:
             yield "states are paired by their order: their parameters do not agree"
-        intensities = any(head.startswith("K_I") for head, *_ in self._tables[0])
+        intensities = any(key[0].startswith("K_I") and row[0] for key, row in self._rows.items())
         yield "difference: from the first, of places and the centre over its half-width" + (
             "; of K_I none where the exponents, and so the units, differ" * intensities
         )

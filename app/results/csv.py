@@ -1,10 +1,10 @@
 """Archives as comma-separated values: one tidy table, read and written some rows at a time."""
 
 import csv
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from io import StringIO
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,9 +34,11 @@ TABLES: dict[str, tuple[tuple[str, ...], str]] = {
 _NUMBERED = {
     STATE: "state", INTERFACE: "interface", runs.LOOP: "loop", over_time.START: "start", runs.LAW: "law",
 }  # fmt: skip
-
 #: Rows held at once.
 _TOGETHER = 20_000
+
+#: Head of a column, and its values in some rows of the outermost dimension, an axis for each dimension.
+_Column = tuple[str, Callable[[slice, dict[str, Any]], NDArray]]
 
 
 def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> Iterator[str]:
@@ -56,54 +58,65 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
         units = Units(scene.body, archive.data, dimensionless)
-        if which == "states":
-            yield from _states(archive, units)
-            return
         rows = _rows(archive, over)
-        if not any(row.over == over for row in rows):
+        if word and not any(row.over == over for row in rows):
             raise BadInput(
                 f"{path} holds nothing for --{which}; a scene asks for it by "
                 f'output.quantities = ["{word}"]'
             )
-        columns = [(row, scaled) for row in rows if (scaled := units(row))]
-        if over[0] == STATE:
-            of_states_ = _parameters(archive.data, units)
-            outer = [(column.head, column.values) for column in of_states_]
-        else:
-            outer = []
-        numbered = [_NUMBERED[name] for name in over if name in _NUMBERED]
-        yield _text([[*numbered, *(head for head, _ in outer), *(scaled.head for _, scaled in columns)]])
-        yield from _blocks(archive, over, [values for _, values in outer], columns, dimensionless)
+        sizes = [_size(archive, name) for name in over]
+        columns = _of_states(archive.data, units) if which == "states" else _over(rows, over, units)
+        if STATE in over and which != "states":
+            columns = _parameters(archive.data, units, len(over)) + columns
+        columns = [
+            (_NUMBERED[name], _counting(axis, size, len(over)))
+            for axis, (name, size) in enumerate(zip(over, sizes))
+            if name in _NUMBERED
+        ] + columns
+        yield _text([[head for head, _ in columns]])
+        large = [row.path for row in rows if STATE in row.over] if which != "states" else []
+        together = max(1, _TOGETHER // max(1, int(np.prod(sizes[1:]))))
+        for start in range(0, sizes[0], together):
+            block = slice(start, min(start + together, sizes[0]))
+            data = {**archive.data, **(archive.rows(block, large) if large else {})}
+            shape = block.stop - block.start, *sizes[1:]
+            whole = [np.broadcast_to(values(block, data), shape).flat for _, values in columns]
+            for first in range(0, int(np.prod(shape)), _TOGETHER):
+                part = slice(first, first + _TOGETHER)
+                yield _text(zip(*(_cells(values[part], dimensionless) for values in whole)))
 
 
-class _Of(NamedTuple):
-    """Column with one value a state."""
+def _counting(axis: int, size: int, axes: int) -> Callable[[slice, dict[str, Any]], NDArray]:
+    """Function that gives numbers along an axis."""
+    numbers = np.arange(size).reshape(*(-1 if n == axis else 1 for n in range(axes)))
+    return lambda block, _: numbers[block] if axis == 0 else numbers
 
-    head: str
-    values: Any
+
+def _held(values: Any, axes: int = 1) -> Callable[[slice, dict[str, Any]], NDArray]:
+    """Function that gives values of states."""
+    return lambda block, _: np.asarray(values)[block].reshape(-1, *(1,) * (axes - 1))
 
 
-def _parameters(data: dict[str, Any], units: Units) -> list[_Of]:
+def _parameters(data: dict[str, Any], units: Units, axes: int) -> list[_Column]:
     """Columns that tell states apart, and their load."""
     columns = [
-        _Of(scaled.head, scaled.of(data[path]))
+        (scaled.head, _held(scaled.of(data[path]), axes))
         for path, row in parameters(data).items()
         if path != LOAD.path and (scaled := units(row))
     ]
     load = units.scale(LOAD.unit)
     loads = load.of(np.full(len(data[FRICTION.path]), units.load))
-    return [*columns, _Of(f"load [{load.unit}]", loads)]
+    return [*columns, (f"load [{load.unit}]", _held(loads, axes))]
 
 
-def _states(archive: reader.Archive, units: Units) -> Iterator[str]:
-    """Table of states: the columns of :func:`galinx.postprocess.tables.state_columns`, then all others.
+def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
+    """Columns of :func:`galinx.postprocess.tables.state_columns`, then those of all other quantities.
 
     Quantities of a state that have several numbers, as those of interfaces, have a column for each.
     """
-    data = archive.data
-    columns = [_Of(f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, c.values) for c in (
-        state_columns(data, units))]  # fmt: skip
-    taken = {column.path for column in state_columns(data, units)}
+    first = state_columns(data, units)
+    columns = [(f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, _held(c.values)) for c in first]
+    taken = {column.path for column in first}
     for path, row in table().items():
         if path not in data or path.split("/")[0] not in ("states", "interfaces") or path in taken:
             continue
@@ -112,73 +125,48 @@ def _states(archive: reader.Archive, units: Units) -> Iterator[str]:
             continue
         values = scaled.of(data[path])
         if len(row.over) == 1:
-            columns.append(_Of(scaled.head, values))
+            columns.append((scaled.head, _held(values)))
         else:
             unit = scaled.head.removeprefix(scaled.name)
-            columns += [_Of(f"{scaled.name}_{i + 1}{unit}", of) for i, of in enumerate(values.T)]
-    yield _text([["state", *(column.head for column in columns)]])
-    count = len(data[FRICTION.path])
-    for start in range(0, count, _TOGETHER):
-        block = slice(start, min(start + _TOGETHER, count))
-        cells = [_cells(np.asarray(column.values)[block], units.dimensionless) for column in columns]
-        yield _text(zip(range(block.start, block.stop), *cells))
+            columns += [(f"{scaled.name}_{i + 1}{unit}", _held(of)) for i, of in enumerate(values.T)]
+    return columns
 
 
 def _rows(archive: reader.Archive, over: tuple[str, ...]) -> list[Quantity]:
     """Quantities of a table, positions first: those along its dimensions, but of one value a state."""
-    there = [row for path, row in table().items() if path in archive.names]
-    rows = [row for row in there if row.over and set(row.over) <= set(over)]
     rows = [
         row
-        for row in rows
+        for path, row in table().items()
+        if path in archive.names and row.over and set(row.over) <= set(over)
         if over[0] != STATE or row.over not in ((STATE,), over[:2]) or row.over == over
     ]
     return sorted(rows, key=lambda row: (len(row.over), over[0] in row.over))
 
 
-def _blocks(
-    archive: reader.Archive, over: tuple[str, ...], outer: list[Any],
-    columns: list[tuple[Quantity, Scaled]],
-    exact: bool,
-) -> Iterator[str]:  # fmt: skip
-    """Text of the rows of a table, some at a time."""
-    sizes = {name: _size(archive, name) for name in over}
-    inside = int(np.prod([sizes[name] for name in over[1:]]))
-    together = max(1, _TOGETHER // max(1, inside))
-    large = [row.path for row, _ in columns if STATE in row.over]
-    for start in range(0, sizes[over[0]], together):
-        block = slice(start, min(start + together, sizes[over[0]]))
-        data = {**archive.data, **(archive.rows(block, large) if large else {})}
-        shape = (block.stop - block.start, *(sizes[name] for name in over[1:]))
-        whole = [
-            np.arange(size).reshape(*(-1 if n == axis else 1 for n in range(len(over))))
-            + (block.start if axis == 0 else 0)
-            for axis, (name, size) in enumerate(zip(over, shape))
-            if name in _NUMBERED
-        ]
-        whole += [np.asarray(values)[block].reshape(-1, *(1,) * (len(over) - 1)) for values in outer]
-        whole += [_scaled(row, scaled, data, over, block) for row, scaled in columns]
-        for first in range(0, int(np.prod(shape)), _TOGETHER):
-            at = np.unravel_index(np.arange(first, min(first + _TOGETHER, int(np.prod(shape)))), shape)
-            yield _text(zip(*(_cells(np.broadcast_to(values, shape)[at], exact) for values in whole)))
+def _over(rows: Iterable[Quantity], over: tuple[str, ...], units: Units) -> list[_Column]:
+    """Columns of quantities along a table's dimensions."""
+    columns = [(row, scaled) for row in rows if (scaled := units(row))]
+    return [(scaled.head, _along(row, scaled, over)) for row, scaled in columns]
 
 
-def _scaled(
-    row: Quantity, scaled: Scaled, data: dict[str, Any], over: tuple[str, ...], block: slice
-) -> NDArray:
-    """Values of a quantity in its units, an axis for each dimension of the table."""
-    values = np.asarray(data[row.path])
-    if over[0] in row.over and STATE not in row.over:
-        values = values[block]
-    shape, sizes = [], dict(zip(row.over, values.shape))
-    for name in over:
-        shape.append(sizes.get(name, 1))
-    values = values.reshape(shape)
-    if values.dtype.kind not in "fiu":
-        return values
-    if np.ndim(scaled.factor) and len(values) == 1:
-        values = np.broadcast_to(values, (block.stop - block.start, *values.shape[1:]))
-    return scaled.of(values, block)
+def _along(
+    row: Quantity, scaled: Scaled, over: tuple[str, ...]
+) -> Callable[[slice, dict[str, Any]], NDArray]:
+    """Function that gives a quantity in its units."""
+
+    def values(block: slice, data: dict[str, Any]) -> NDArray:
+        held = np.asarray(data[row.path])
+        if over[0] in row.over and STATE not in row.over:
+            held = held[block]
+        sizes = dict(zip(row.over, held.shape))
+        held = held.reshape([sizes.get(name, 1) for name in over])
+        if held.dtype.kind not in "fiu":
+            return held
+        if np.ndim(scaled.factor) and len(held) == 1:
+            held = np.broadcast_to(held, (block.stop - block.start, *held.shape[1:]))
+        return scaled.of(held, block)
+
+    return values
 
 
 def _size(archive: reader.Archive, name: str) -> int:

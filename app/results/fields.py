@@ -32,9 +32,8 @@ from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed, listed
 from ..methods import METHODS
-from ..plan.plan import farthest_inside, make_plan
+from ..plan.plan import Plan, farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
-from ..plan.task import Plan
 from ..plan.variants import of_state
 from ..scene.scene import FRICTIONS, Output, Scene
 

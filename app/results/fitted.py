@@ -75,17 +75,15 @@ def read(path: Path) -> Table:
     Raises:
         BadInput: it is none; the message names the line.
     """
-    table = read_table(path, _FORM)
-    columns = {
-        kind: next((n for n, name in enumerate(table.names) if _is(table, n, kind, name)), None)
-        for kind in _NAMES
-    }
-    slip, time, position = columns["slip"], columns["time"], columns["position"]
-    if (slip is None and None in (time, position)) or not (
-        columns["friction"] is not None or columns["force"] is not None
-    ):
-        raise BadInput(f"{path}, line 1: found the columns {excerpt(table.names)}, expected {_FORM}")
-    f, notes = _friction(table, columns["friction"], columns["force"], columns["load"]), []
+    table, notes = read_table(path, _FORM), []
+    forces = [_unit_of_force(table, column) for column in range(len(table.names))]
+    columns: dict[str, int] = {}
+    for n, (name, unit) in enumerate(zip(table.names, forces)):
+        kind = next((kind for kind, valid in _NAMES.items() if name in valid), "")
+        if kind == "friction" and unit:  # F [N] is a force, N without a unit of one no load
+            kind = "force"
+        if name != "n" or unit:
+            columns.setdefault(kind, n)
 
     def numbers(column: int, unit: str) -> NDArray[np.float64]:
         values = table.numbers(column, unit)
@@ -96,71 +94,53 @@ def read(path: Path) -> Table:
             )
         return values
 
-    if time is None or position is None:
-        assert slip is not None
-        clock, X = numbers(slip, "m"), None
+    timed = {"time", "position"} <= columns.keys()
+    if not (timed or "slip" in columns) or not {"friction", "force"} & columns.keys():
+        raise BadInput(f"{path}, line 1: found the columns {excerpt(table.names)}, expected {_FORM}")
+    if "friction" in columns:
+        f = table.numbers(columns["friction"], "")
     else:
-        clock, X = numbers(time, "s"), numbers(position, "m")
+        f = _force_over_load(table, columns["force"], columns.get("load"), forces)
+    clock = numbers(columns["time"], "s") if timed else numbers(columns["slip"], "m")
+    X = numbers(columns["position"], "m") if timed else clock
     back = np.flatnonzero(np.diff(clock) <= 0.0)
     if len(clock) < 3 or len(back):
         row = int(back[0]) + 1 if len(clock) >= 3 else len(clock) - 1
-        line, name = (table.line(row) if len(clock) else 1), "slip" if X is None else "time"
+        line, name = (table.line(row) if len(clock) else 1), "time" if timed else "slip"
         raise BadInput(f"{path}, line {line}: expected three or more rows in which the {name} grows")
-    if X is None:
-        return Table(path.name, _from_rest(clock, f), False, tuple(notes))
     if not np.ptp(X):
         raise BadInput(f"{path}: found one position in all rows, expected a motion")
-    return Table(path.name, Measured(clock, X, f), True, tuple(notes))
-
-
-def _is(table: TextTable, column: int, kind: str, name: str) -> bool:
-    """True if a column of that name and unit is of a kind."""
-    if kind in ("friction", "force") and name in _NAMES["friction"]:
-        return (kind == "force") == _is_force(table, column)
-    return name in _NAMES[kind] and (name != "n" or _is_force(table, column))
-
-
-def _is_force(table: TextTable, column: int) -> bool:
-    return _unit_of_force(table, column) is not None
+    if not timed and X[0] < 0.0:
+        raise BadInput(f"found the slip {X[0]:g} m, expected slips from 0 on")
+    if not timed and X[0] > 0.0:  # counted from rest, of which the table has no row
+        clock = X = np.append(0.0, X)
+        f = np.append(np.nan, f)
+    return Table(path.name, Measured(clock, X, f), timed, tuple(notes))
 
 
 def _unit_of_force(table: TextTable, column: int) -> str | None:
     """SI unit of a column of forces; None for anything else."""
     for unit in _FORCES if table.units[column] not in ("", "1", "-") else ():
-        try:
+        with suppress(BadInput):
             table.factor(column, unit)
-        except BadInput:
-            continue
-        return unit
+            return unit
     return None
 
 
-def _friction(
-    table: TextTable, friction: int | None, force: int | None, load: int | None
+def _force_over_load(
+    table: TextTable, force: int, load: int | None, units: Sequence[str | None]
 ) -> NDArray[np.float64]:
-    """Friction coefficient of a table, or friction force over the size of the normal load."""
-    if friction is not None:
-        return table.numbers(friction, "")
-    assert force is not None
+    """Friction force over the size of the normal load."""
     if load is None:
         raise BadInput(f"{table.path}, line 1: found a friction force without a load, expected {_FORM}")
-    units = [_unit_of_force(table, column) for column in (force, load)]
-    if None in units or units[0] != units[1]:
+    unit = units[force]
+    if unit is None or units[load] != unit:
         found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in (force, load))
         raise BadInput(f"{table.path}, line 1: found {found}, expected both in N, or both in N/m")
-    N = np.abs(table.numbers(load, units[1] or ""))
+    N = np.abs(table.numbers(load, unit))
     if not N.all():
         raise BadInput(f"{table.path}, line {table.line(int(np.argmin(N)))}: found no load, expected one")
-    return table.numbers(force, units[0] or "") / N
-
-
-def _from_rest(slip: NDArray, f: NDArray) -> Measured:
-    """Friction over a slip that is counted from rest, whether the table has a row of rest or not."""
-    if slip[0] < 0.0:
-        raise BadInput(f"found the slip {slip[0]:g} m, expected slips from 0 on")
-    if slip[0] > 0.0:
-        slip, f = np.append(0.0, slip), np.append(np.nan, f)
-    return Measured(slip, slip, f)
+    return table.numbers(force, unit) / N
 
 
 #: Name that stands for every law.
@@ -175,33 +155,51 @@ class Fit:
 
     Attributes:
         model: name of the law.
-        law: the law, for :mod:`galinx.solvers.friction`.
-        parameters: its parameters by key, in SI, those that the data do not determine among them: with
-            other values of these the rest would be others, too.
-        deviations: standard deviation by the name of each fitted number, as ``"mu_c"`` or ``"elements[2,
-            1]"``, in SI; NaN or larger than the number where the data do not determine it.
-        not_determined: names of these.
-        rms: root mean square of measured less fitted f, dimensionless.
-        aic: Akaike's criterion; laws with a smaller one describe the same data better.
+        result: the law, its parameters with their covariance, and friction along the measurements.
         seconds: wall time.
         tables: the measurements.
-        result: friction along them, and the covariance.
         others: other laws fitted to the same data, best first.
         failed: reasons why further laws were not, by name.
     """
 
     model: str
-    law: FrictionLaw
-    parameters: dict[str, Any]
-    deviations: dict[str, float]
-    not_determined: tuple[str, ...]
-    rms: float
-    aic: float
+    result: FittedLaw = field(repr=False)
     seconds: float
     tables: tuple[Table, ...]
-    result: FittedLaw = field(repr=False)
     others: tuple["Fit", ...] = field(default=(), repr=False)
     failed: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law, for :mod:`galinx.solvers.friction`."""
+        return self.result.law
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Parameters by key, in SI, those that the data do not determine among them: with other values of
+        these the rest would be others, too."""
+        return self.result.values
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation by the name of each fitted number, as ``"mu_c"`` or ``"elements[2, 1]"``, in
+        SI; NaN or larger than the number where the data do not determine it."""
+        return dict(zip(self.result.names, self.result.deviations.tolist()))
+
+    @property
+    def not_determined(self) -> tuple[str, ...]:
+        """Names of numbers that the data do not determine."""
+        return tuple(np.array(self.result.names)[~self.result.determined].tolist())
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of measured less fitted f, dimensionless."""
+        return self.result.rms
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion; laws with a smaller one describe the same data better."""
+        return self.result.aic
 
     def scene(self, path: str | Path | None = None) -> str:
         """Section ``[friction]`` with the law, each number with its deviation as a comment.
@@ -232,15 +230,13 @@ class Fit:
     def sheet(self) -> Sheet:
         """Table of all laws, best first."""
         rows = [
-            (
-                one.model, f"{one.rms:.3g}", f"{one.aic:.1f}",
-                str(len(one.deviations)), str(len(one.not_determined)), f"{one.seconds:.1f}",
-            )
+            [
+                one.model, f"{one.rms:.3g}", f"{one.aic:.1f}", str(len(one.deviations)),
+                str(len(one.not_determined)), f"{one.seconds:.1f}",
+            ]
             for one in (self, *self.others)
         ]  # fmt: skip
-        columns = (
-            "law", "RMS of f [1]", "AIC", "parameters", "not determined", "time [s]",
-        )  # fmt: skip
+        columns = ["law", "RMS of f [1]", "AIC", "parameters", "not determined", "time [s]"]
         notes = [f"{name}: {reason}" for name, reason in self.failed.items()]
         return Sheet("", columns, rows, ["AIC: the less the better; by 10, clearly", *notes])
 
@@ -275,6 +271,7 @@ def fit(
     if model != ALL and model not in LAWS:
         raise BadInput(f"friction law {short(model)!r}: there is none{nearest(model, [*LAWS, ALL])}")
     names = [*LAWS] if model == ALL else [model]
+    # Parameters of each law that it has, from texts and numbers.
     fixed, started = (_values(names, given or {}) for given in (fix, start))
     tables, speedless = _at_speeds([_source(source) for source in sources], speed)
     _resists(tables)
@@ -283,14 +280,20 @@ def fit(
     progress = progress or Progress(quiet=True)
     for n, name in enumerate(names):
         progress.say(LAWS[name].about)
+        begun, kind = perf_counter(), LAWS[name]
 
         def step(done: int, of: int, before: int = n) -> None:
             progress.done(before + done / of, len(names), "laws")
 
         try:
-            if speedless and LAWS[name].depends_on_speed:
+            if speedless and kind.depends_on_speed:
                 raise ValueError("depends on the speed: give --speed, as in --speed '1 mm/s'")
-            fits.append(_fit(name, tables, fixed, started, rows, step))
+            known, guess = (
+                {key: given[key] for key in parameters(kind) if key in given}
+                for given in (fixed, started)
+            )
+            result = solver.fit(kind, [table.measured for table in tables], known, guess, rows, step)
+            fits.append(Fit(name, result, perf_counter() - begun, tables))
         except ValueError as error:
             failed[name] = str(error)
     if not fits:
@@ -339,36 +342,13 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
     for text in texts:
         try:
             speeds.append(Number("m/s")(text))
-            if speeds[-1] <= 0.0:
-                raise ValueError(f"found {speeds[-1]:g} m/s, expected > 0")
         except ValueError as error:
             raise BadInput(f"--speed: {error}") from None
+        if speeds[-1] <= 0.0:
+            raise BadInput(f"--speed: found {speeds[-1]:g} m/s, expected > 0")
     left = iter(speeds * slips if len(speeds) == 1 else speeds)
-    moving = tuple(
-        table.at_speed(next(left)) if not table.timed and speeds else table for table in tables
-    )
-    return moving, bool(slips and not speeds)
-
-
-def _fit(
-    name: str, tables: tuple[Table, ...], fixed: dict[str, Any], started: dict[str, Any], rows: int,
-    step: Any,
-) -> Fit:  # fmt: skip
-    """A law fitted to tables; values of other laws' keys are left alone.
-
-    Raises:
-        ValueError: it cannot be.
-    """
-    begun, kind = perf_counter(), LAWS[name]
-    declared = parameters(kind)
-    fixed, started = ({key: given[key] for key in declared if key in given} for given in (fixed, started))
-    result = solver.fit(kind, [table.measured for table in tables], fixed, started, rows, step)
-    errors = dict(zip(result.names, result.deviations.tolist()))
-    lost = tuple(key for key, known in zip(result.names, result.determined) if not known)
-    return Fit(
-        name, result.law, result.values, errors, lost, result.rms, result.aic, perf_counter() - begun,
-        tables, result,
-    )  # fmt: skip
+    moving = [table if table.timed or not speeds else table.at_speed(next(left)) for table in tables]
+    return tuple(moving), bool(slips and not speeds)
 
 
 def split(words: Iterable[str]) -> dict[str, str]:
@@ -446,8 +426,7 @@ def _section(one: Fit) -> str:
         if parameter.columns:
             text = [[float(f"{number:.9g}") for number in row] for row in value]
         elif not isinstance(value, str):
-            number = f"{value:.9g}"
-            text = f"{number} {parameter.unit}" if parameter.unit else float(number)
+            text = f"{value:.9g} {parameter.unit}" if parameter.unit else float(f"{value:.9g}")
         lines.append(f"{key} = {json.dumps(text)}  # {_comment(one, parameter)}")
     return "\n".join(lines) + "\n"
 

@@ -1,18 +1,29 @@
 """The report of an archive: one HTML page that needs nothing else.
 
-The verdict and a row of results for every state come first, then one large chart with a slider over the
-states, then the other figures. Charts are plotly's, which the page holds once.
+The verdict and a row of results for every state come first, then charts of stresses with a slider over
+the states, then the other figures. What is drawn on paper is drawn on a page by the same panels: hover,
+zoom and legends are those of plotly, which the page holds once.
 """
 
 import json
+import re
+from base64 import b64encode
 from collections import Counter
+from collections.abc import Sequence
+from functools import cache
+from gzip import compress
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
+from unicodedata import normalize
 
 import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 from galinx.postprocess.compare import checked
-from galinx.postprocess.page import render
 from galinx.postprocess.quantities import runs, states
+from galinx.postprocess.quantities.quantity import FEM, METHODS
 from galinx.postprocess.tables import (
     BESIDE,
     Sheet,
@@ -23,12 +34,24 @@ from galinx.postprocess.tables import (
     states_sheet,
 )
 from galinx.postprocess.units import Units, engineering
-from galinx.texts import counted
+from galinx.texts import counted, folded, plain
 
 from ..console import program
 from ..figures.choice import Archive, Choice, Drawing
 from ..figures.files import embedded, in_a_page
-from ..figures.interactive import charts, explorer
+from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel
+from ..figures.states import spread
+from ..figures.stresses import (
+    SHOWN,
+    Fields,
+    Shown,
+    Surface,
+    limits,
+    map_names,
+    surface_names,
+    surface_panel,
+)
+from ..figures.style import as_hex, looks
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
@@ -40,18 +63,163 @@ from ..study.published import (
 
 #: Width of tables of few states in characters: the states stand side by side.
 _WIDE = 100
-#: Most cells of the table: a page stays below 6 MB.
-_CELLS = 60_000
+#: Most cells of the table, and most numbers of all states in one chart: a page stays below 6 MB.
+_CELLS, _NUMBERS = 60_000, 60_000
+
+#: Names of stresses, factors and coefficients, as archives, verdicts and figures write them.
+_INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
+#: Powers of ten as numbers in programs and as plain text write them.
+_POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
+_RAISED = re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
+#: plotly.js beside its Python package: of PyPI, and of Debian.
+_SCRIPTS = ("package_data/plotly.min.js", "/usr/share/python3-plotly/plotly.js")
+
+
+def markup(text: str) -> Markup:
+    """Markup of a text with its symbols set: K_I, σ_XX, ``$\\mu_C$`` and 4.8e-07 with indices and powers.
+
+    Whatever else the text holds is escaped.
+    """
+
+    def power(digits: str) -> str:
+        return f"&#8239;×&#8239;10<sup>{digits}</sup>"
+
+    page = str(escape(plain(text))).replace("sigma_", "σ_")
+    page = _RAISED.sub(lambda found: power(normalize("NFKC", found[1])), page)
+    page = _INDEXED.sub(r"<i>\1</i><sub>\2</sub>", page)
+    return Markup(_POWER.sub(lambda found: found[1] + power(str(int(found[2])).replace("-", "−")), page))
+
+
+@cache
+def _plotly() -> str:
+    """plotly.js, compressed, as text; browsers unpack it."""
+    spec = find_spec("plotly")
+    folder = Path(spec.origin).parent if spec and spec.origin else Path()
+    path = next(path for path in (folder / name for name in _SCRIPTS) if path.is_file())
+    return b64encode(compress(path.read_bytes(), 9, mtime=0)).decode()
+
+
+_MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "markers"}
+_SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open",
+            "x": "x", "_": "line-ew-open", ".": "circle"}  # fmt: skip
+_DASHES = {"-": "solid", "--": "dash", ":": "dot", "none": "solid"}
+#: Characters of a line along a chart's height.
+_LINE = 34
+
+
+def chart(panel: Panel) -> dict[str, Any]:
+    """Panel as a chart of plotly: its data and its layout."""
+    unit, shown = f" ({panel.unit})" if panel.unit else "", panel.map
+    data = [_trace(curve) for curve in panel.curves]
+    layout: dict[str, Any] = {
+        "title": {"text": plain(panel.title)} if panel.title else {},
+        "xaxis": _axis(plain(panel.x or ""), panel.xlim, "x" in panel.log),
+        "yaxis": _axis(_lines(plain(panel.y or "") + unit), panel.ylim, "y" in panel.log),
+        "shapes": [_shape("y", "rect", "x", *band) for band in panel.bands]
+        + [_shape("y", "line", "x", x, x) for x in panel.at_x]
+        + [_shape("x", "line", "y", y, y) for y in panel.at_y],
+    }
+    if shown:
+        label = plain(shown.label)
+        data.append({
+            "type": "heatmap", "x": _numbers(shown.X), "y": _numbers(shown.Y), "zsmooth": "best",
+            "z": [_numbers(row, 4) for row in shown.values], "zmax": float(f"{shown.limit:.3g}"),
+            "zmin": -float(f"{shown.limit:.3g}") if shown.signed else 0,
+            "colorscale": "RdBu" if shown.signed else "Viridis",
+            "colorbar": {"title": {"text": label, "side": "right"}, "thickness": 14},
+            "hovertemplate": f"X = %{{x:.4g}}, Y = %{{y:.4g}}<br>%{{z:.4g}}<extra>{label}</extra>",
+        })  # fmt: skip
+        layout["yaxis"]["scaleanchor"] = "x"
+    return {"data": data, "layout": layout}
+
+
+def _trace(curve: Curve) -> dict[str, Any]:
+    dash, colour = curve.look.line, as_hex(curve.look.colour)
+    dash = dash if isinstance(dash, str) else ",".join(f"{2.0 * part:g}px" for part in dash[1])
+    return {
+        "x": _numbers(curve.x, 10), "y": _numbers(curve.y), "mode": _MODES[curve.form],
+        "name": plain(curve.label) or METHODS[FEM] * (curve.form == MARKERS),
+        "showlegend": bool(curve.label),
+        "line": {"color": colour, "width": 1.6 * curve.width, "dash": _DASHES.get(dash, dash)},
+        "marker": {"color": colour, "size": 3 if curve.form == DOTS else 6,
+                   "symbol": _SYMBOLS.get(curve.look.marker, "circle-open")},
+    }  # fmt: skip
+
+
+def _axis(title: str, ends: tuple[float, float] | None, logarithmic: bool) -> dict[str, Any]:
+    axis: dict[str, Any] = {"title": {"text": title}}
+    if logarithmic:
+        return axis | {"type": "log"}
+    return axis | ({"range": _numbers(ends, 6)} if ends else {})
+
+
+def _lines(title: str) -> str:
+    """Title of a vertical axis, in lines that are no longer than a chart is high."""
+    return folded(title, _LINE).replace("\n", "<br>")
+
+
+def _shape(across: str, kind: str, axis: str, low: float, high: float) -> dict[str, Any]:
+    """Grey line or band all across a chart."""
+    return {
+        "type": kind, f"{across}ref": "paper", f"{axis}0": low, f"{axis}1": high, f"{across}0": 0,
+        f"{across}1": 1, "layer": "below", "fillcolor": "rgba(128,128,128,0.13)",
+        "line": {"width": int(kind == "line"), "color": "#999"},
+    }  # fmt: skip
+
+
+def _numbers(values: Any, digits: int = 5) -> list[Any]:
+    """Numbers with so many digits, None for those that are none."""
+    flat = np.asarray(values, dtype=float).tolist()
+    return [float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in flat]
+
+
+def explorer(of: Archive) -> dict[str, Any] | None:
+    """Stresses of states behind a slider, along the surface and below it; None where there are none.
+
+    Returns:
+        ``states``: labels; ``of``: number of all states; ``surface``: for each stress a chart a state;
+        ``maps``: name and charts of each stress inside.
+    """
+    labels, below = of.labels, map_names(of)
+    if not surface_names(of) and not below:
+        return None
+    surface = Surface(of) if surface_names(of) else None
+    fields = Fields(of) if below else None
+    sizes = [4 * len(surface.X) if surface else 1, fields.X.size * fields.Y.size if fields else 1]
+    shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
+    varied, look = labels.varied(), looks(1)[0]
+    made: dict[str, Any] = {
+        "states": [f"state {i}{': ' * bool(varied)}{labels.text(i, varied)}" for i in shown],
+        "of": len(labels.all), "surface": [], "maps": [],
+    }  # fmt: skip
+    for name in surface.values if surface else ():
+        assert surface
+        ylim = limits(surface.X, surface.drawn(name)[shown])
+        method = next(iter(surface.values[name]))
+        panels = [surface_panel(name, [Shown(surface, i, look, METHODS[method])], ylim) for i in shown]
+        made["surface"].append([chart(panel) for panel in panels])
+        for drawn in made["surface"][-1]:
+            for trace in drawn["data"]:
+                trace["showlegend"] = bool(trace["name"])
+    for name in (name for name in ("von_mises", *SHOWN) if name in below):
+        assert fields
+        values, limit = fields.of_states(name, fields.methods[0], shown)
+        label = fields.label(name)
+        panels = [
+            fields.panel(name, of_state, i, limit, label=label) for i, of_state in zip(shown, values)
+        ]
+        made["maps"].append({"label": plain(label), "charts": [chart(panel) for panel in panels]})
+    return made
 
 
 def summary(data: dict[str, Any], scene: Scene) -> str:
     """Scene and finite elements of an archive, in two sentences with units."""
     count, c = len(data[states.FRICTION.path]), np.unique(data[states.SPEED.path])
     solid, c_s = scene.solid, scene.solid.c_s
-    moving = " to ".join(f"{v:.4g}" for v in sorted({c[0], c[-1]}))
-    speed = " to ".join(f"{v * c_s:.4g}" for v in sorted({c[0], c[-1]}))
-    ends = sorted({min(scene.punch.loads), max(scene.punch.loads)})
-    load = " to ".join(engineering(N, "N/m") for N in ends)
+    moving, speed = (" to ".join(f"{v * unit:.4g}" for v in sorted({c[0], c[-1]})) for unit in (1.0, c_s))
+    load = " to ".join(
+        engineering(N, "N/m") for N in sorted({min(scene.punch.loads), max(scene.punch.loads)})
+    )
     text = (
         f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
         f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
@@ -79,10 +247,9 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     same = [column for column in columns if column.constant and count > 1 and not column.place]
     shown = [column for column in columns if column not in same]
     kept = min(count, _CELLS // (len(shown) + 1))
-    heads: list[dict[str, Any]] = [{"head": "state", "name": "state", "csv": "state", "digits": None}]
-    heads += [
+    heads = [{"head": "state", "name": "state", "csv": "state", "digits": None}] + [
         {"head": c.label, "name": c.name or c.head, "csv": c.label, "digits": c.digits} for c in shown
-    ]  # fmt: skip
+    ]
     cells = [list(range(kept)), *([_cell(value) for value in c.values[:kept]] for c in shown)]
     note = counted(count, "state")
     if same:
@@ -93,9 +260,7 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
 
 
 def _cell(value: Any) -> Any:
-    if isinstance(value, str):
-        return value
-    return float(f"{value:.12g}") if np.isfinite(value) else None
+    return value if isinstance(value, str) else _numbers([value], 12)[0]
 
 
 #: Meanings of a report's terms; those that it does not use are left out.
@@ -149,21 +314,18 @@ class Report:
             drawing: which.
             png: its file's bytes; without it curves are charts, and all else is drawn for the page.
         """
-        made = [] if png is not None else charts(getattr(drawing.figure, "panels", ()))
+        as_picture = png is not None or drawing.pixels
+        panels: Sequence[Panel] = () if as_picture else getattr(drawing.figure, "panels", ())
         picture: dict[str, Any] = {
-            "caption": drawing.full_caption,
-            "charts": (),
-            "source": "",
-            "width": None,
-        }
-        picture |= {"pixels": drawing.pixels, "name": drawing.name}
-        if made:
-            picture["charts"] = made
-        elif png is None or drawing.pixels:
-            picture |= {"source": in_a_page(drawing.figure, drawing.pixels)}
-        else:  # as wide as it would be if it were drawn for the page
+            "name": drawing.name, "caption": drawing.full_caption, "pixels": drawing.pixels,
+            "charts": [chart(panel) for panel in panels if panel.curves and not panel.map],
+            "source": "", "width": None,
+        }  # fmt: skip
+        if png is not None and not drawing.pixels:  # as wide as it would be if it were drawn for the page
             width = round(96.0 * drawing.figure.get_figwidth())
             picture |= {"source": embedded(png), "width": width}
+        elif not picture["charts"]:
+            picture["source"] = in_a_page(drawing.figure, drawing.pixels)
         self._pictures.append(picture)
 
     def text(self) -> str:
@@ -172,18 +334,16 @@ class Report:
         seconds = data[runs.SECONDS.path]
         longest = max(float(seconds.max()), 1e-9)
         large = explorer(Archive(data, scene, Choice(units=self._units)))
-        # The large chart shows these.
-        covered = {"surface"} if large and large["surface"] else set()
-        covered |= {"inside"} if large and large["maps"] else set()
-        pictures = [{**p} for p in self._pictures if p["name"] not in covered]
-        made: list[dict[str, Any]] = []
-        for picture in pictures:
-            first = len(made)
-            made += picture["charts"]
-            picture["charts"] = range(first, len(made))
+        # Charts with the slider show these.
+        covered = {
+            "surface" if large and large["surface"] else "",
+            "inside" if large and large["maps"] else "",
+        }
+        pictures = [picture for picture in self._pictures if picture["name"] not in covered]
         few = len(data[states.FRICTION.path]) <= BESIDE
         tables = [states_sheet(data, self._units, "Every state", _WIDE)] if few else []
         tables += [f(data, self._units, _WIDE * few) for f in (starts_sheet, limits_sheet)]
+        versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
         content = {
             "title": attributes["title"] or "A sliding punch",
             "verdict": attributes["verdict"],
@@ -195,7 +355,6 @@ class Report:
             "sheets": self._sheets,
             "states": None if few else states_table(data, self._units),
             "explorer": large,
-            "charts": made,
             "pictures": pictures,
             "times": [
                 (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
@@ -203,14 +362,20 @@ class Report:
             ],
             "done": list(Counter(data[runs.DONE.path].tolist()).items()),
             "skipped": data[runs.SKIPPED.path].tolist(),
-            "versions": _versions(attributes),
+            "versions": f"{', '.join(map(' '.join, versions.items()))}; {attributes['machine']}; "
+            + attributes.get("created", "not archived"),
             "scene": data[runs.SCENE.path],
             "program": program(),
         }
-        shown = [picture["caption"] for picture in pictures]
-        words = str(content | {"pictures": shown, "charts": [], "explorer": large and "σ_XX, a, c, X/L"})
+        captions = [picture["caption"] for picture in pictures]
+        words = str(content | {"pictures": captions, "explorer": large and "σ_XX, a, c, X/L"})
         terms = [(t, meaning) for t, meaning in TERMS if any(word in words for word in t.split(", "))]
-        return render(content | {"terms": terms})
+        environment = Environment(
+            loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
+        )
+        environment.filters["typeset"] = markup
+        page = environment.get_template("page.html")
+        return page.render(content | {"terms": terms, "plotly": _plotly()})
 
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
@@ -223,9 +388,3 @@ def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
         for name, rows in rows_by_name.items()
         if rows
     ]
-
-
-def _versions(attributes: dict[str, Any]) -> str:
-    versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
-    text = ", ".join(f"{name} {version}" for name, version in versions.items())
-    return f"{text}; {attributes['machine']}; {attributes.get('created', 'not archived')}"

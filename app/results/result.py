@@ -163,10 +163,10 @@ class Result:
         Raises:
             BadInput: the result lacks a chosen figure or quantity.
         """
-        from ..figures.archive import in_units, of_archive
+        from ..figures.archive import of_archive
         from ..figures.choice import Choice
 
-        choice = in_units(Choice(**options), self.units(dimensionless))
+        choice = Choice(**options, units=self.units(dimensionless))
         return of_archive(self.data, self.scene, choice)
 
     def figure(self, name: str = "", **options: Any) -> Any:
@@ -211,11 +211,11 @@ class Result:
         """
         if to is None:
             return self.figure(dimensionless=dimensionless, **options)
-        from ..figures.archive import in_units, write
+        from ..figures.archive import write
         from ..figures.choice import Choice
         from ..figures.files import Files
 
-        choice = in_units(Choice(**options), self.units(dimensionless))
+        choice = Choice(**options, units=self.units(dimensionless))
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
         return [file.path for file in write(self.data, self.scene, choice, files)]
 

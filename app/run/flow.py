@@ -39,8 +39,8 @@ from .. import ranks
 from ..console import Progress
 from ..errors import BadInput
 from ..methods import METHODS
+from ..plan.plan import Plan
 from ..plan.states import States
-from ..plan.task import Plan
 from ..plan.variants import (
     Variant,
     joined_positions,
@@ -80,7 +80,7 @@ def _solid(solid: Solid) -> dict[str, Any]:
 
 
 #: Libraries that numbers depend on, by the module that holds the version.
-_LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "gmsh", "h5py")
+_LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "h5py")
 
 
 def libraries() -> dict[str, str]:
@@ -126,19 +126,6 @@ class Memory(dict[str, Any]):
 
     def write(self, name: str, rows: slice, values: NDArray) -> None:
         self[name][rows] = values
-
-
-class Nowhere:
-    """Sink of ranks other than 0, which keeps nothing."""
-
-    def put(self, name: str, value: Any) -> None:
-        declared(name)
-
-    def reserve(self, name: str, shape: tuple[int, ...]) -> None:
-        declared(name)
-
-    def write(self, name: str, rows: slice, values: NDArray) -> None:
-        pass
 
 
 #: Largest number of unsolved speeds whose reasons a verdict gives.
@@ -207,81 +194,55 @@ def _steady(scene: Scene) -> Steady | None:
 #: Seconds after which small parts wait no longer for others: the most that a killed run loses.
 _PATIENCE = 1.0
 
-#: Clock's step of the time spent on the archive.
-_STEP = "archive"
+
+def gathered(parts: Iterable[Part], most: int) -> Iterator[Part]:
+    """Parts of the same rows, small ones joined: a file a part, and a look at the archive, take time.
+
+    Args:
+        parts: in any order of states.
+        most: states from which on a part is large enough.
+    """
+    small: list[Part] = []
+    since = perf_counter()
+    for part in parts:
+        if small and ("failure" in (part.record or {}) or small[-1].rows.stop != part.rows.start):
+            yield joined(small)
+            small, since = [], perf_counter()
+        small.append(part)
+        states = part.rows.stop - small[0].rows.start
+        if part.record or states >= most or perf_counter() - since > _PATIENCE:
+            yield joined(small)
+            small, since = [], perf_counter()
+    if small:
+        yield joined(small)
 
 
 class Collector:
-    """Collector of finished parts: it judges, writes and keeps them.
+    """Collector of finished parts, which it judges and writes.
 
     Args:
         sink: destination of results.
         judge: takes comparisons into account.
         progress: shows the states done.
-        journal: keeps parts; None for no journal.
         variants: variants of the scene, with their plans.
         clock: takes wall time by step.
     """
 
     def __init__(
-        self,
-        sink: Sink,
-        judge: Judge,
-        progress: Progress,
-        journal: Journal | None,
-        variants: Sequence[Variant],
-        clock: Clock,
+        self, sink: Sink, judge: Judge, progress: Progress, variants: Sequence[Variant], clock: Clock
     ) -> None:
         self._sink, self._judge, self._progress, self._plan = sink, judge, progress, variants[0].plan
-        self._states = sum(variant.plan.states for variant in variants)
+        self._done, self._states = 0, sum(variant.plan.states for variant in variants)
         self._tasks = sum(len(variant.plan.tasks) for variant in variants)
-        self._journal, self._clock, self._done = journal, clock, 0
-        self._small: list[Part] = []
-        self._kept = perf_counter()
-        self._records: dict[int, dict[str, Any]] = {}
+        self._clock, self._records = clock, dict[int, dict[str, Any]]()
         for quantity in self._plan.quantities:
             sink.reserve(quantity.path, (self._states, *self._plan.shape(quantity)))
 
-    def earlier(self) -> NDArray[np.bool_]:
-        """Take in the journal's parts; True for the states they hold, (states,)."""
-        finished = np.zeros(self._states, dtype=bool)
-        if self._journal and self._journal.damaged:
-            self._progress.warn(f"kept parts that are damaged: {self._journal.damaged}; computed again")
-        for part in self._journal.parts() if self._journal else ():
-            finished[part.rows] = True
-            self._take(part)
-        return finished
-
     def take(self, part: Part) -> None:
-        """Take in a part that was just computed; a failure is tried again by a run that goes on."""
-        if not ranks.is_root():
-            return  # all ranks share one mesh and have the same results
-        if "failure" in (part.record or {}):
-            self._keep()
-            self._take(part)
-            return
-        if self._small and self._small[-1].rows.stop != part.rows.start:
-            self._keep()
-        self._small.append(part)
-        states = part.rows.stop - self._small[0].rows.start
-        if part.record or states >= self._plan.chunk or perf_counter() - self._kept > _PATIENCE:
-            self._keep()
-
-    def _keep(self) -> None:
-        """Keep the parts that wait, as one: a file a part, and a look at the archive, take their time."""
-        if self._small:
-            with self._clock(_STEP):
-                part = joined(self._small)
-                if self._journal:
-                    self._journal.keep(part)
-            self._small = []
-            self._take(part)
-        self._kept = perf_counter()
-
-    def _take(self, part: Part) -> None:
+        """Judge and write a part."""
         self._judge.see(part.comparisons)
         self._judge.validity.see(part.data)
-        with self._clock(_STEP):
+        with self._clock("archive"):
             for name, values in part.data.items():
                 self._sink.write(name, part.rows, values)
         if part.record:
@@ -295,9 +256,6 @@ class Collector:
         Raises:
             SolveError: no speed could be solved.
         """
-        if not ranks.is_root():
-            return
-        self._keep()
         records = [self._records[i] for i in sorted(self._records)]
         failures = [
             f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
@@ -389,7 +347,7 @@ def compute(
         SolveError: no speed could be solved.
     """
     if sink is None or not ranks.is_root():
-        sink = Nowhere()
+        sink = Memory()
     progress, clock = progress or Progress(), Clock() if clock is None else clock
     with clock("friction"):
         progress.say("friction")
@@ -406,26 +364,51 @@ def compute(
         _put_starts(sink, plan, judge, progress, clock)
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
-        collector = Collector(sink, judge, progress, journal, variants, clock)
-        finished = collector.earlier()
-        for variant in variants:
-            if not variant.alone:
-                progress.say(variant.scene.variant)
-            for part in _parts(variant.plan, variant.states, finished[variant.rows], progress, clock):
-                collector.take(_placed(part, variant))
-        collector.finish()
+        _solve(sink, judge, progress, journal, variants, clock)
     _put_work(sink, scene, variants, clock)
     return _attributes(scene, variants, judge)
 
 
+def _solve(
+    sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, variants: Sequence[Variant],
+    clock: Clock,
+) -> None:  # fmt: skip
+    """Solve the contacts of all variants and collect their parts on rank 0; collective."""
+    finished = np.zeros(sum(variant.plan.states for variant in variants), dtype=bool)
+    collector = Collector(sink, judge, progress, variants, clock) if ranks.is_root() else None
+    if journal and collector:
+        if journal.damaged:
+            progress.warn(f"kept parts that are damaged: {journal.damaged}; computed again")
+        for part in journal.parts():
+            finished[part.rows] = True
+            collector.take(part)
+    for part in gathered(_parts(variants, finished, progress, clock), variants[0].plan.chunk):
+        if collector:  # all ranks that share one mesh have the same results
+            if journal and "failure" not in (part.record or {}):  # a run that goes on tries it again
+                with clock("archive"):
+                    journal.keep(part)
+            collector.take(part)
+    if collector:
+        collector.finish()
+
+
+def _parts(
+    variants: Sequence[Variant], finished: NDArray[np.bool_], progress: Progress, clock: Clock
+) -> Iterator[Part]:
+    """Parts of all variants that are not finished, with their places among the states of all."""
+    for variant in variants:
+        if not variant.alone:
+            progress.say(variant.scene.variant)
+        for part in _parts_of(variant.plan, variant.states, finished[variant.rows], progress, clock):
+            yield _placed(part, variant)
+
+
 def _placed(part: Part, variant: Variant) -> Part:
     """A part of a variant with the places of its states and of its speed among those of all."""
-    if variant.alone:
-        return part
     (first, speed), record = variant.first, part.record
     if record:
         record = record | {"speed": record["speed"] + speed}
-        if "failure" in record:
+        if "failure" in record and not variant.alone:
             record["failure"] = f"{record['failure']}, {variant.scene.variant}"
     return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
 
@@ -438,7 +421,7 @@ def _put_states(sink: Sink, scene: Scene, variants: Sequence[Variant], states: S
     for path, positions in joined_positions(variants).items():
         sink.put(path, positions)
     if plan.asks(stresses.BELOW) and scene.output.map:
-        sink.put(stresses.MAP.path, np.array([axis.count for axis in reversed(scene.output.map)]))
+        sink.put(stresses.MAP.path, np.array([count for *_, count in reversed(scene.output.map)]))
 
 
 def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
@@ -454,15 +437,17 @@ def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock:
         judge.see(comparisons(datasets, plan.body.load, plan.rules))
 
 
-def _parts(
+def _parts_of(
     plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
     methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
     if ranks.size() > 1 and plan.fem:
-        from .share import same_on_all, shared_out
+        from mpi4py import MPI
 
-        finished = same_on_all(finished)
+        from .share import shared_out
+
+        finished = MPI.COMM_WORLD.bcast(finished)
     work = Work(plan, states.g, methods, clock, finished)
     tasks = (task for task in plan.tasks if work.to_do(task))
     if plan.fem and plan.fem.shared_speeds:

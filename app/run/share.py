@@ -1,37 +1,9 @@
-"""Tasks shared out over the ranks: a free rank takes the next, by a counter that all ranks share."""
+"""Tasks shared out over the ranks, and their results gathered on rank 0."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 
-import numpy as np
 from mpi4py import MPI
-from numpy.typing import NDArray
-
-
-class Counter:
-    """Counter from 0 whose numbers each go to a single rank; collective to make and to free."""
-
-    def __init__(self, comm: MPI.Comm) -> None:
-        self._next = MPI.Win.Allocate(8 if comm.rank == 0 else 0, 8, comm=comm)
-        if comm.rank == 0:
-            np.frombuffer(self._next.tomemory(), dtype=np.int64)[:] = 0
-        comm.barrier()
-
-    def until(self, end: int) -> Iterator[int]:
-        """Iterate over this rank's numbers below ``end``."""
-        increment, number = np.ones(1, dtype=np.int64), np.empty(1, dtype=np.int64)
-        while True:
-            self._next.Lock(0)
-            self._next.Fetch_and_op(increment, number, 0)
-            self._next.Unlock(0)
-            if number[0] >= end:
-                return
-            yield int(number[0])
-
-    def free(self) -> None:
-        """Free the counter, when every rank is done."""
-        self._next.Free()
-
 
 #: Most parts that a rank may have computed before rank 0 takes them in.
 AHEAD = 4
@@ -47,12 +19,11 @@ def shared_out(tasks: Sequence[_Task], solve: Callable[[_Task], Iterator[_Part]]
     bounded.
 
     Args:
-        tasks: the dearest first: begun last, they would leave the other ranks waiting.
+        tasks: ordered by their cost, so that all ranks get as much to do.
         solve: parts of a task, none of them None.
     """
     world = MPI.COMM_WORLD
-    counter = Counter(world)
-    mine = (part for i in counter.until(len(tasks)) for part in solve(tasks[i]))
+    mine = (part for task in tasks[world.rank :: world.size] for part in solve(task))
     if world.rank > 0:
         pending: list[MPI.Request] = []
         for part in mine:
@@ -60,27 +31,17 @@ def shared_out(tasks: Sequence[_Task], solve: Callable[[_Task], Iterator[_Part]]
             if len(pending) > AHEAD:
                 pending.pop(0).wait()
         MPI.Request.waitall([*pending, world.isend(None, 0)])
-    else:
-        yield from _taken_in(world, mine)
-    counter.free()
-
-
-def _taken_in(world: MPI.Comm, mine: Iterator[_Part]) -> Iterator[_Part]:
+        return
     working, busy = world.size - 1, True
     while working or busy:
         if busy:
-            part = next(mine, None)
-            busy = part is not None
-            if part is not None:
-                yield part
+            own = next(mine, None)
+            busy = own is not None
+            if own is not None:
+                yield own
         while working and (not busy or world.iprobe()):
             message = world.recv()
             if message is None:  # the last that a rank sends
                 working -= 1
             else:
                 yield message
-
-
-def same_on_all(finished: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Broadcast of rank 0's finished states, (states,), to every rank."""
-    return MPI.COMM_WORLD.bcast(finished)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from galinx.solvers.contact.solution import Contact, Places, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
-from ..plan.task import Plan
+from ..plan.plan import Plan
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,12 @@ class Work:
         """Results at one speed.
 
         The last part has the speed's record: numbers by the names of ``quantities.runs.RECORD``, the
-        ``speed``, and a ``failure`` where it could not be solved.
+        ``speed``, and a ``failure`` where it could not be solved. Under some of its loads a contact may
+        have no answer: the others are solved all the same.
         """
-        failures = _Failures()
+        failures: dict[str, str] = {}
+        of_loads: dict[str, str] = {}
+        different, solved = len(task.body.dissimilar(task.loads)) > 1, False
         with ExitStack() as stack:
             solvers: dict[str, Solver] = {}
             for name, method in self.methods.items():
@@ -73,14 +76,28 @@ class Work:
                     if self._together(name, task):
                         solvers[name] = stack.enter_context(method.at(task, np.unique(task.of(self.g))))
                 except SolveError as error:
-                    failures.whole[name] = str(error)
+                    failures[name] = str(error)
             last: Part | None = None
-            for part in self._all(task, solvers, failures):
-                if last:
-                    yield last
-                last = part
+            for runs in self._batches(task):
+                reasons = dict(failures)
+                parts = list(self._parts(task, runs, solvers, reasons))
+                if reasons != failures and different:
+                    parts = []
+                    for load, runs_of_load in self._by_load(runs):
+                        reasons = dict(failures)
+                        parts += self._parts(task, runs_of_load, solvers, reasons)
+                        solved |= not reasons
+                        for name in reasons.keys() - failures.keys() - of_loads.keys():
+                            of_loads[name] = f"N = {load:g} N/m: {reasons[name]}"
+                else:
+                    failures = reasons
+                    solved |= len(task.loads) > 1 and not reasons
+                for part in parts:
+                    if last:
+                        yield last
+                    last = part
             assert last
-            yield replace(last, record=_record(task, solvers, failures))
+            yield replace(last, record=_record(task, solvers, of_loads | failures, solved))
 
     def of_states(self, task: Task, rows: NDArray[np.int64]) -> dict[str, NDArray]:
         """Quantities of states of a speed by path, without comparisons.
@@ -94,7 +111,7 @@ class Work:
         """
         g, load = self.g[rows], None
         if len(task.loads) > 1:
-            load = np.concatenate([self.plan.load(slice(row, row + 1)) for row in rows.tolist()])
+            load = self.plan.load(rows)
         body = task.body.loaded(load)
         local = task.body.local_exponents(task.response, g, load)
         data = self._of(LOCAL, Edges(local, g, task.places), body)
@@ -105,22 +122,6 @@ class Work:
                     solver = stack.enter_context(method.at(task, np.unique(g)))
                 data |= self._read(name, solver, task, g, load)
         return data
-
-    def _all(self, task: Task, solvers: Mapping[str, Solver], failures: "_Failures") -> Iterator[Part]:
-        """Parts of all rows still to be computed; reasons of failures are added to ``failures``."""
-        for runs in self._batches(task):
-            reasons = dict(failures.whole)
-            parts = list(self._parts(task, runs, solvers, reasons))
-            if reasons == failures.whole or len(task.body.dissimilar(task.loads)) == 1:
-                failures.whole = reasons
-                failures.solved |= len(task.loads) > 1 and not reasons
-                yield from parts
-                continue
-            # Under some of its loads a contact may have no answer: the others are solved all the same.
-            for load, runs_of_load in self._by_load(runs):
-                reasons = dict(failures.whole)
-                yield from self._parts(task, runs_of_load, solvers, reasons)
-                failures.take(load, reasons)
 
     def _by_load(self, runs: Sequence[slice]) -> Iterator[tuple[float, list[slice]]]:
         """Runs of states, cut so that each has a single load, with that load [N/m]."""
@@ -222,34 +223,22 @@ class Work:
 _STEPS = {"fem": "recovery", "closed_form": "closed form"}
 
 
-@dataclass
-class _Failures:
-    """Reasons of failures at a speed, by method.
+def _record(
+    task: Task, solvers: Mapping[str, Solver], reasons: Mapping[str, str], solved: bool
+) -> dict[str, Any] | None:
+    """Numbers of the work at a speed, None where no method has any.
 
-    Attributes:
-        whole: reasons why states under any load could not be solved.
-        of_loads: reasons why states under single loads could not, with the first of these loads.
+    Args:
+        task: the speed.
+        solvers: of its states, by method.
+        reasons: why states could not be solved, by method.
         solved: True where states under another load were solved.
     """
-
-    whole: dict[str, str] = field(default_factory=dict)
-    of_loads: dict[str, str] = field(default_factory=dict)
-    solved: bool = False
-
-    def take(self, load: float, reasons: Mapping[str, str]) -> None:
-        """Take in the reasons, by method, for states under a load [N/m]; empty where solved."""
-        for name in reasons.keys() - self.whole.keys():
-            self.of_loads.setdefault(name, f"N = {load:g} N/m: {reasons[name]}")
-        self.solved |= not reasons
-
-
-def _record(task: Task, solvers: Mapping[str, Solver], failures: _Failures) -> dict[str, Any] | None:
-    """Numbers of the work at a speed, None where no method has any."""
-    speed, reasons = {"speed": task.number, "c": task.response.c}, failures.of_loads | failures.whole
+    speed: dict[str, Any] = {"speed": task.number, "c": task.response.c}
     numbers: dict[str, Any] = {}
-    if failures.solved or not reasons:
+    if solved or not reasons:
         numbers = {key: value for solver in solvers.values() for key, value in solver.record().items()}
     if reasons:
-        failure = {"failure": "; ".join(reasons.values()), "solved": failures.solved}
+        failure = {"failure": "; ".join(reasons.values()), "solved": solved}
         return dict.fromkeys(RECORD, 0.0) | numbers | speed | failure
     return numbers | speed if numbers else None

@@ -95,9 +95,10 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     """
     try:
         tree = tomlkit.parse(text)
-        keys = [*_keys(tree)]
+        values = _keys(tree)
+        keys = [*values]
         changes = {_own_name(key, keys): value for key, value in changes.items()}
-        if stale := [path for path in _stale(tree, changes) if path in keys]:
+        if stale := [path for path in _stale(values, changes) if path in keys]:
             changes = dict.fromkeys(stale) | dict(changes)
         for path, value in changes.items():
             if value is UNSET and path not in keys:
@@ -117,59 +118,47 @@ def _own_name(key: str, keys: Collection[str]) -> str:
     return other if other in keys else key
 
 
-def _stale(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    """Keys of parameters of the old solid, law or profile that a new one does not have."""
-    return [
-        *_of_old_solid(tree, changes),
-        *_of_old_model("friction.model", LAWS, tree, changes),
-        *_of_old_model("punch.profile", PROFILES, tree, changes),
-    ]
+#: Keys that name a model, and the models by name.
+_CHOSEN: dict[str, Mapping[str, Any]] = {
+    "solid.kind": SOLIDS, "punch.solid.kind": SOLIDS, "punch.profile": PROFILES, "friction.model": LAWS
+}  # fmt: skip
 
 
-def _of_old_model(
-    choice: str, models: Mapping[str, Any], tree: Any, changes: Mapping[str, Any]
-) -> list[str]:
-    """Keys of a section that only models other than the newly chosen one have.
+def _stale(keys: Mapping[str, Any], changes: Mapping[str, Any]) -> list[str]:
+    """Keys that a newly chosen material replaces, or that only other models than the new one have.
 
     Args:
-        choice: key that names the model, as ``"friction.model"``.
-        models: classes by name.
-        tree: the scene.
+        keys: the scene's values by ``"section.key"``.
         changes: new values by key.
     """
-    section = choice.partition(".")[0]
-    model, keys = changes.get(choice), tree.get(section)
-    if not isinstance(model, str) or model not in models or not isinstance(keys, dict):
-        return []
-    own = parameters(models[model])
-    every = {key for kind in models.values() for key in parameters(kind)}
-    stale = [
-        f"{section}.{key}" for key in keys if _parameter(key) in every and _parameter(key) not in own
-    ]
-    tables = keys.get("vary", ())
-    varied = {key for table in tables for key in table} if isinstance(tables, list) else set()
-    return stale + [f"{section}.vary"] * bool(varied & every - own.keys())
+    stale: list[str] = []
+    for chosen, models in _CHOSEN.items():
+        section = chosen.rpartition(".")[0]
+        if models is SOLIDS and f"{section}.material" in changes:
+            stale += [f"{section}.{key}" for key in _CONSTANTS]
+            continue
+        old = keys.get(chosen, "isotropic" if models is SOLIDS else None)
+        model = changes.get(chosen)
+        if not isinstance(model, str) or model not in models or model == old:
+            continue
+        own = parameters(models[model])
+        every = {key for kind in models.values() for key in parameters(kind)}
+        if models is SOLIDS:
+            every = every - {"plane"} | {"material", "yield_strength"}
+        stale += [
+            path for path in keys
+            if path.rpartition(".")[0] == section
+            and _parameter(path.rpartition(".")[2]) in every - own.keys()
+        ]  # fmt: skip
+        tables = keys.get(f"{section}.vary", ())
+        varied = {key for table in tables for key in table} if isinstance(tables, list) else set()
+        stale += [f"{section}.vary"] * bool(varied & every - own.keys())
+    return stale
 
 
 def _parameter(key: str) -> str:
     """Name of the parameter that a key sets."""
     return {"sigma0": "sigma0_over_load", "mu": "mu_c"}.get(key, key)
-
-
-def _of_old_solid(tree: Any, changes: Mapping[str, Any]) -> list[str]:
-    """Keys of both solids that a newly chosen material or kind replaces or does not have."""
-    punch = tree.get("punch")
-    stale: list[str] = []
-    for section, of in (("solid", tree), ("punch.solid", punch if isinstance(punch, dict) else {})):
-        solid = of.get("solid")
-        old = solid.get("kind", "isotropic") if isinstance(solid, dict) else None
-        kind = changes.get(f"{section}.kind", old)
-        if f"{section}.material" in changes:
-            stale += [f"{section}.{key}" for key in _CONSTANTS]
-        elif isinstance(kind, str) and kind != old and kind in SOLIDS:
-            own = parameters(SOLIDS[kind])
-            stale += [f"{section}.{key}" for key in ("material", *_CONSTANTS) if key not in own]
-    return stale
 
 
 def _keys(tree: Mapping[str, Any]) -> dict[str, Any]:

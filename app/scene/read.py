@@ -1,15 +1,14 @@
 """Reading of scenes: TOML with units, all of whose faults are listed before any work starts.
 
 A scene's text is read in four steps. A table that stands in a file of comma-separated values takes the
-place of the file's name. TOML is parsed; keys and sections that a scene has twice, which TOML's reader
-refuses without naming them, are named. Every text is checked for control characters, which HDF5 would
+place of the file's name. TOML is parsed. Every text is checked for control characters, which HDF5 would
 refuse only when results are archived. Then each section checks its keys.
 """
 
 import re
 import tomllib
-from collections import deque
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from itertools import product
 from math import prod
@@ -31,37 +30,6 @@ from .scene import ADVECTED, Scene, contradictions, in_words, usual_quantities
 from .sections import SECTIONS, SWEPT, Key
 from .values import Number, Numbers, Or, Rows, Wrapped
 
-_AT = re.compile(r"Cannot (?:overwrite a value|declare .* twice) \(at line (\d+),")
-_SECTION = re.compile(r"\s*\[+\s*([^\[\]]+?)\s*\]+")
-_KEY = re.compile(r"\s*([\"']?)([\w.-]+)\1\s*=")
-
-
-def repeated(text: str, said: str) -> str:
-    """A message that names the key or section that a scene has twice; "" for any other fault.
-
-    Args:
-        text: of the scene.
-        said: message of TOML's reader.
-    """
-    match = _AT.match(said)
-    if not match:
-        return ""
-    lines, last = text.splitlines(), int(match[1])
-    section = ""
-    places: dict[str, int] = {}
-    for number, line in enumerate(lines[:last], 1):
-        name = ""
-        if head := _SECTION.match(line):
-            section = name = f"[{head[1]}]"
-        elif key := _KEY.match(line):
-            name = f"{section} {key[2]}".strip()
-        if name and number == last and name in places:
-            what = "put its keys together" if head else "keep one"
-            return f"found {name} twice, in lines {places[name]} and {number}; {what}"
-        places.setdefault(name, number)
-    return ""
-
-
 #: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm.
 _PLACE = re.compile(r"\(at line (\d+),")
 _COMMA = re.compile(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$")
@@ -70,45 +38,42 @@ _UNIT = re.compile(
 )
 
 
-def unquoted(text: str, said: str) -> str:
-    """A message on a number with a comma, or with a unit without quotes; "" for any other fault.
+def explained(text: str, said: str) -> str:
+    """A message of TOML's reader, with the line and what to do where the fault is a usual one.
 
     Args:
         text: of the scene.
-        said: message of TOML's reader.
+        said: the message.
     """
-    place = _PLACE.search(said)
-    lines = text.splitlines()
+    place, lines = _PLACE.search(said), text.splitlines()
     if not place or int(place[1]) > len(lines):
-        return ""
-    line, number = lines[int(place[1]) - 1], place[1]
+        return said
+    number, line = place[1], lines[int(place[1]) - 1].strip()
+    if said.startswith(("Cannot overwrite a value", "Cannot declare")):
+        return f"found {short(line)} in line {number}, whose name stands above already; keep one of them"
     if comma := _COMMA.search(line):
         point = comma[1].replace(",", ".")
         return f"found {comma[1]} in line {number}, expected a decimal point, as in {point}"
     if unit := _UNIT.search(line):
         return f'found {unit[1]} in line {number}, expected quotes around a number and unit, "{unit[1]}"'
-    return ""
+    return said
 
 
-def control_characters(tree: dict[str, Any]) -> Iterator[str]:
+def control_characters(value: Any, place: str = "") -> Iterator[str]:
     """Faults of texts and keys of a scene with a control character, each with its place."""
-    waiting: deque[tuple[str, Any]] = deque([("", tree)])  # deeper than Python's calls may be
-    while waiting:
-        place, value = waiting.popleft()
-        if isinstance(value, str):
-            if fault := unseen(value):
-                yield f"{place}: {fault}"
-        elif isinstance(value, list):
-            texts = (str, list, dict)
-            waiting += (
-                (f"{place}[{i}]", entry) for i, entry in enumerate(value) if isinstance(entry, texts)
-            )
-        elif isinstance(value, dict):
-            for key, entry in value.items():
-                inside = f"{place}.{repr(key)[1:-1]}".removeprefix(".")
-                if fault := unseen(key):
-                    yield f"the key {inside}: {fault}"
-                waiting.append((inside, entry))
+    if isinstance(value, str):
+        if fault := unseen(value):
+            yield f"{place}: {fault}"
+    elif isinstance(value, list):
+        for i, entry in enumerate(value):
+            if isinstance(entry, str | list | dict):
+                yield from control_characters(entry, f"{place}[{i}]")
+    elif isinstance(value, dict):
+        for key, entry in value.items():
+            inside = f"{place}.{repr(key)[1:-1]}".removeprefix(".")
+            if fault := unseen(key):
+                yield f"the key {inside}: {fault}"
+            yield from control_characters(entry, inside)
 
 
 #: Most rows of a file of them.
@@ -230,8 +195,7 @@ def parse(text: str, name: str = "scene") -> Scene:
     try:
         tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        twice = repeated(text, str(error))
-        raise BadInput(f"{name} is not TOML: {twice or unquoted(text, str(error)) or error}") from None
+        raise BadInput(f"{name} is not TOML: {explained(text, str(error))}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be read: its brackets are nested too deeply") from None
     except ValueError:  # Python's limit of digits
@@ -343,9 +307,7 @@ def _checked(
 ) -> Scene | None:
     """Scene of single numbers, or None after its faults are added."""
     before = len(faults)
-    faults += _fill_in_stiffness(tree)
-    faults += _fill_in_along(tree)
-    faults += _fill_in_coefficient(tree)
+    faults += _fill_in_friction(tree)
     steady = _fill_in_motion(tree)
     named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
     title = tree.pop("title", "")
@@ -387,67 +349,56 @@ def _with_constants(table: Any) -> Any:
     return (LIBRARY.get(table["material"]) or next(iter(LIBRARY.values()))).constants | table
 
 
-def _fill_in_stiffness(tree: dict[str, Any]) -> list[str]:
-    """Replace a stiffness σ₀ by σ₀ l/N, σ₀ over the load; returns the faults of both together."""
-    friction, punch = tree.get("friction"), tree.get("punch", {})
-    if not isinstance(friction, dict) or not isinstance(punch, dict) or "sigma0" not in friction:
+#: Keys of friction along the contact.
+_BESIDE_ALONG = {"along", "sign", "pre_sliding"}
+
+
+def _fill_in_friction(tree: dict[str, Any]) -> list[str]:
+    """Make parameters of a law of other keys that say the same; returns the faults of both together.
+
+    These are σ₀, which over the load is σ₀ l/N; friction along the contact, whose mean Coulomb's law has;
+    and ``mu``, Coulomb's coefficient and his law by default.
+    """
+    friction = tree.get("friction")
+    if not isinstance(friction, dict):
         return []
-    friction_keys, punch_keys = (
-        SECTIONS[name].keys(tree.get(name, {})) for name in ("friction", "punch")
+    faults: list[str] = []
+    if "along" in friction and (others := sorted(friction.keys() - _BESIDE_ALONG)):
+        faults.append(f"friction: along gives f itself; take {', '.join(others)} away")
+        tree["friction"] = {key: friction[key] for key in friction.keys() & _BESIDE_ALONG}
+
+    def over_load(stiffness: tuple[float, ...]) -> list[float]:
+        punch = tree["punch"] if isinstance(tree.get("punch"), dict) else {}
+        load = SECTIONS["punch"].keys(punch)["load"]
+        loads = load.kind(punch["load"]) if "load" in punch else load.default
+        if len(loads) > 1:
+            faults.append(
+                f"friction.sigma0: found {len(loads)} loads, expected one punch.load to divide it by; "
+                "sigma0_over_load is the same under all"
+            )
+        return [value / loads[0] for value in stiffness]
+
+    others_of: tuple[tuple[str, str, dict[str, str], Callable[[Any], Any]], ...] = (
+        ("sigma0", "sigma0_over_load", {}, over_load),
+        ("along", "mu_c", {"model": "coulomb"}, lambda rows: tabulated(rows, 1.0).mean),
+        ("mu", "mu_c", {"model": "coulomb"}, list),
     )
-    if "sigma0" not in friction_keys:
-        return []  # the section says that there is no such key
-    if "sigma0_over_load" in friction:
-        return ["friction: sigma0 and sigma0_over_load exclude each other; keep one"]
-    # What cannot be read is a fault of its own section, where the other is not missing then.
-    tree["friction"] = friction | {"sigma0_over_load": 1.0}
-    try:
-        stiffness = friction_keys["sigma0"].kind(friction["sigma0"])
-        loads = punch_keys["load"].kind(punch["load"]) if "load" in punch else punch_keys["load"].default
-    except ValueError:
-        return []
-    if len(loads) > 1:
-        return [
-            f"friction.sigma0: found {len(loads)} loads, expected one punch.load to divide it by; "
-            "sigma0_over_load is the same under all"
-        ]
-    tree["friction"]["sigma0_over_load"] = [value / loads[0] for value in stiffness]
-    return []
-
-
-def _fill_in_coefficient(tree: dict[str, Any]) -> list[str]:
-    """Give ``friction.mu`` to Coulomb's coefficient, of Coulomb's law by default; returns the faults."""
-    friction = tree.get("friction")
-    if not isinstance(friction, dict) or "mu" not in friction:
-        return []
-    friction = {"model": "coulomb"} | friction
-    key = SECTIONS["friction"].keys(friction).get("mu")
-    if key is None:
-        return []  # the section says that there is no such key
-    if "mu_c" in friction:
-        return ["friction: mu and mu_c are the same number; keep one"]
-    try:
-        key.kind(friction["mu"])
-        tree["friction"] = friction | {"mu_c": friction["mu"]}
-    except ValueError:  # one fault, which mu's own key reports
-        tree["friction"] = friction | {"mu_c": 1.0}
-    return []
-
-
-def _fill_in_along(tree: dict[str, Any]) -> list[str]:
-    """Give the mean of friction along the contact to Coulomb's law; returns the faults."""
-    friction = tree.get("friction")
-    if not isinstance(friction, dict) or "along" not in friction:
-        return []
-    if others := sorted(friction.keys() - {"along", "sign", "pre_sliding"}):
-        return [f"friction: along gives f itself; take {', '.join(others)} away"]
-    tree["friction"] = friction | {"model": "coulomb", "mu_c": 1.0}
-    try:
-        rows = SECTIONS["friction"].keys(tree["friction"])["along"].kind(friction["along"])
-    except ValueError:
-        return []  # one fault, which its own key reports
-    tree["friction"]["mu_c"] = tabulated(rows, 1.0).mean
-    return []
+    for key, parameter, default, made in others_of:
+        if key not in tree["friction"]:
+            continue
+        friction = default | tree["friction"]
+        kinds = SECTIONS["friction"].keys(friction)
+        if key not in kinds:
+            continue  # the section says that there is no such key
+        if parameter in friction:
+            tree["friction"] = friction
+            faults.append(f"friction: {key} and {parameter} exclude each other; keep one")
+            continue
+        # What cannot be read is a fault of its own key, and the parameter is not missing besides.
+        tree["friction"] = friction | {parameter: 1.0}
+        with suppress(ValueError):
+            tree["friction"][parameter] = made(kinds[key].kind(friction[key]))
+    return faults
 
 
 def _fill_in_motion(tree: dict[str, Any]) -> bool:

@@ -5,7 +5,7 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, pairwise, product
@@ -27,7 +27,7 @@ from galinx.solvers.friction.along import Along, advected, tabulated
 from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.parameters import build_model, parameters
+from galinx.solvers.parameters import Parameter, build_model, parameters
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles import Profile, half_width
 from galinx.solvers.profiles.flat import Flat
@@ -35,7 +35,6 @@ from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
 from ..errors import listed
-from .values import Spread
 
 
 @dataclass(frozen=True)
@@ -148,27 +147,25 @@ class Friction:
         """Number of laws."""
         return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
 
+    @property
+    def _every(self) -> Iterable[tuple[Any, ...]]:
+        """Parameters of every law; the last changes fastest."""
+        return self._listed if self.vary else product(*self.parameters.values())
+
     def laws(self) -> Iterator[FrictionLaw]:
-        """Every law by itself; the last parameter changes fastest.
+        """Every law by itself, in the order of :meth:`columns`.
 
         Raises:
             ValueError: a law refuses its parameters.
         """
-        for values in self._listed if self.vary else product(*self.parameters.values()):
+        for values in self._every:
             yield build_model(self.law, dict(zip(self.parameters, values)))
 
     def columns(self) -> dict[str, NDArray]:
         """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
-        single = [key for key, parameter in parameters(self.law).items() if parameter.single]
-        if self.vary:
-            columns = dict(zip(self.parameters, zip(*self._listed)))
-            return {key: np.array(columns[key]) for key in self.parameters if key in single}
-        inner, columns_ = self.count, {}
-        for key, values in self.parameters.items():
-            inner //= len(values)
-            if key in single:
-                columns_[key] = np.tile(np.repeat(values, inner), self.count // (inner * len(values)))
-        return columns_
+        of_law = parameters(self.law)
+        columns = zip(self.parameters, zip(*self._every))
+        return {key: np.array(values) for key, values in columns if of_law[key].single}
 
     def together(self, columns: dict[str, NDArray], rows: slice) -> FrictionLaw:
         """A law whose parameters are arrays, which stands for many laws at once.
@@ -230,11 +227,14 @@ class Solve:
 
 @dataclass(frozen=True)
 class Output:
-    """[output]: names of groups of quantities, and points of stresses inside the solid, over a."""
+    """[output]: names of groups of quantities, and points of stresses inside the solid, over a.
+
+    The map has first and last position and number of positions, along X and along Y.
+    """
 
     quantities: tuple[str, ...]
     points: tuple[tuple[float, float], ...] = ()
-    map: tuple[Spread, Spread] | None = None
+    map: tuple[tuple[float, float, int], ...] | None = None
 
     @property
     def inside(self) -> NDArray[np.float64]:
@@ -242,7 +242,7 @@ class Output:
         single = np.reshape(np.array(self.points, dtype=float), (-1, 2))
         if self.map is None:
             return single
-        X, Y = np.meshgrid(*(np.linspace(axis.first, axis.last, axis.count) for axis in self.map))
+        X, Y = np.meshgrid(*(np.linspace(*axis) for axis in self.map))
         return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
@@ -415,67 +415,57 @@ def usual_quantities(scene: Scene) -> tuple[str, ...]:
 
 def contradictions(scene: Scene) -> list[str]:
     """Faults of keys that exclude or need one another, one sentence each."""
-    faults: list[str] = []
     quantities, solve = set(scene.output.quantities), scene.solve
-    faults += _of_motion(scene)
-    if (contact := sorted(quantities - FRICTIONS)) and not solve.methods:
-        faults.append(
-            f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
-            "closed_form, fem or both"
-        )
-    if (SLIDER in quantities) != (scene.slider is not None):
-        faults.append(
-            'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
-            "drive_speed and duration"
-        )
-    if (TIME in quantities) != (scene.time is not None):
-        faults.append('time: the quantity "time" and the section [time] go together, with end')
-    if ("interior" in quantities) != bool(scene.output.points or scene.output.map):
-        faults.append(
-            'output: the quantity "interior" and output.points or output.map go together, as in points = '
-            "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
-            "to, number)"
-        )
-    if "yield" in quantities and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes:
-        faults.append(
-            'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
-            '"205 MPa", or a material that has one: stresses at sharp edges have no largest value'
-        )
-    if "yield" in quantities and not scene.solid.knows_σ_ZZ:
-        faults.append(
-            'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
-            "without which σ_ZZ is not known in plane strain"
-        )
-    if scene.elastic_punch:
-        faults += _of_elastic_punch(scene, scene.elastic_punch.solid)
-    if AT_INTERFACES in quantities and not scene.layers:
-        faults.append(
-            'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are'
-        )
-    varies = scene.friction.along is not None or scene.friction.state == ADVECTED
-    if varies and (found := _not_varying(scene)):
-        faults.append(
+    contact, fixed = sorted(quantities - FRICTIONS), solve.degree is not None
+    of_yield = YIELD in quantities
+    faults = {
+        f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
+        "closed_form, fem or both": contact and not solve.methods,
+        'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
+        "drive_speed and duration": (SLIDER in quantities) != (scene.slider is not None),
+        'time: the quantity "time" and the section [time] go together, with end': (
+            (TIME in quantities) != (scene.time is not None)
+        ),
+        'output: the quantity "interior" and output.points or output.map go together, as in points = '
+        "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
+        "to, number)": ("interior" in quantities) != bool(scene.output.points or scene.output.map),
+        'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
+        '"205 MPa", or a material that has one: stresses at sharp edges have no largest value': (
+            of_yield and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes
+        ),
+        'output.quantities asks for "yield": expected solid.stiffness_Z = [c13, c23, c36], '
+        "without which σ_ZZ is not known in plane strain": of_yield and not scene.solid.knows_σ_ZZ,
+        'output.quantities asks for "interfaces": expected [[layer]], whose lower faces these are': (
+            AT_INTERFACES in quantities and not scene.layers
+        ),
+        f"solve.cuts: found {solve.cuts} without solve.degree, which it needs": (
+            not fixed and solve.cuts != 1
+        ),
+        'solve.degree needs solve.mode = "contact"': fixed and solve.mode == "traction",
+        'solve.pressure needs solve.mode = "traction"': (
+            solve.pressure != "closed_form" and solve.mode != "traction"
+        ),
+    }
+    of_keys = (text for text, holds in faults.items() if holds)
+    return [*_of_motion(scene), *of_keys, *_of_elastic_punch(scene), *_along_the_contact(scene)]
+
+
+def _along_the_contact(scene: Scene) -> Iterator[str]:
+    """Faults of friction that varies along the contact, one sentence each."""
+    if scene.friction.along is None and scene.friction.state != ADVECTED:
+        return
+    if found := _not_varying(scene):
+        yield (
             f"friction varies along the contact, but found {found}; expected steady sliding of a flat "
             "punch that is not tilted on a solid without layers, with a direct solver"
         )
-    elif varies and FEM in solve.methods:
+    elif FEM in scene.solve.methods:
         try:
             crowded = crowded_kinks(scene.body.friction_kinks)
         except ValueError as error:
             crowded = str(error)
         if crowded:
-            faults.append(
-                f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
-            )
-    fixed = solve.degree is not None
-    if not fixed and solve.cuts != 1:
-        faults.append(f"solve.cuts: found {solve.cuts} without solve.degree, which it needs")
-    if fixed and solve.mode == "traction":
-        faults.append('solve.degree needs solve.mode = "contact"')
-    own = solve.pressure != "closed_form"
-    if own and solve.mode != "traction":
-        faults.append('solve.pressure needs solve.mode = "traction"')
-    return faults
+            yield f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
 
 
 def _not_varying(scene: Scene) -> str:
@@ -498,8 +488,11 @@ def _not_varying(scene: Scene) -> str:
     return " and ".join(reason for reason, holds in reasons.items() if holds)
 
 
-def _of_elastic_punch(scene: Scene, solid: Solid) -> Iterator[str]:
+def _of_elastic_punch(scene: Scene) -> Iterator[str]:
     """Faults of section [punch.solid], one sentence each."""
+    if scene.elastic_punch is None:
+        return
+    solid = scene.elastic_punch.solid
     if solid.plane != scene.half_plane.solid.plane:
         yield f'punch.solid.plane: found "{solid.plane}", expected that of [solid], "{scene.solid.plane}"'
     if scene.solve.mode == "traction":
@@ -535,33 +528,63 @@ def _of_motion(scene: Scene) -> Iterator[str]:
 
 def oddities(scene: Scene) -> list[str]:
     """Warnings about unusual values, one sentence a key: the unit may be another than meant."""
-    warnings = []
-    for path, numbers, unit, (low, high) in _usual(scene):
-        odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0 has no unit
-        of_unit, usual = f" {unit}" * bool(unit), f"usual is {low:g} to {high:g}"
-        if len(odd) == 1:
-            warnings.append(f"{path} = {odd[0]}{of_unit} is unusual, {usual}; is its unit as meant?")
-        elif odd:
-            warnings.append(
-                f"{path} = {listed(odd)}{of_unit} are unusual, {usual}; is their unit as meant?"
-            )
-    return [*warnings, *_too_much(scene), *_too_small(scene), *_too_steep(scene)]
+    return [*_unusual_numbers(scene), *_unusual_contact(scene)]
 
 
-def _too_much(scene: Scene) -> Iterator[str]:
-    """Warning about a mean pressure that no solid bears: load and half-width do not fit one another."""
-    loads = scene.punch.loads
+def _unusual_numbers(scene: Scene) -> Iterator[str]:
+    """Warnings about numbers beyond their usual range."""
+    pre_sliding = Parameter("pre_sliding", "", "m", usual=_STROKE)
+    given: list[tuple[str, dict[str, Parameter], dict[str, Any]]] = [
+        ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
+        ("friction", parameters(scene.friction.law), scene.friction.values),
+    ]
+    models: dict[str, Any] = {"solid": scene.solid, "punch": scene.punch.profile}
+    if punch := scene.elastic_punch:
+        models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
+    given[1:1] = [(name, parameters(model), constants(model)) for name, model in models.items()]
+    for section, described, values in given:
+        for key, parameter in described.items():
+            if not parameter.usual:
+                continue
+            low, high = parameter.usual
+            numbers = np.atleast_1d(values[key]).tolist()
+            odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0: no unit
+            if odd:
+                are, their = ("is", "its unit") if len(odd) == 1 else ("are", "their unit")
+                yield (
+                    f"{section}.{key} = {listed(odd)}{f' {parameter.unit}' * bool(parameter.unit)} {are} "
+                    f"unusual, usual is {low:g} to {high:g}; is {their} as meant?"
+                )
+
+
+def _unusual_contact(scene: Scene) -> Iterator[str]:
+    """Warnings about loads and shapes for which no linear theory of a continuum is meant."""
+    loads, μ = scene.punch.loads, scene.solid.μ
     mean = scene.body.loaded(max(loads)).stress
-    if mean > _PRESSED * scene.solid.μ:
+    if mean > _PRESSED * μ:
         of_load = f" at N = {max(loads):g} N/m" * (len(loads) > 1)
         yield (
-            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / scene.solid.μ:.2g} "
+            f"punch: the mean pressure N/(2a) = {mean:.3g} Pa{of_load} is {mean / μ:.2g} "
             f"times the shear modulus, usual is less than {_PRESSED:g}; are load and half-width as meant?"
         )
-
-
-def _too_steep(scene: Scene) -> Iterator[str]:
-    """Warning about the slopes of a punch that is given by points: linear theory takes them for small."""
+    # Of a flat punch the key of its half-width warns.
+    a = scene.body.loaded(min(loads)).half_width if scene.body.ends == FREE else _ATOMS
+    if a < _ATOMS:
+        yield (
+            f"punch: under the load {min(loads):g} N/m the half-width of the contact at rest is {a:.2g} "
+            f"m, usual is at least {_ATOMS:g} m: that is no more than a few atoms, where a solid is no "
+            "continuum; is the load as meant?"
+        )
+    # Slopes that are keys themselves have warnings of their own.
+    if scene.body.ends == FREE and not {"slope", "shape"} & parameters(scene.punch.profile).keys():
+        widest = scene.body.loaded(max(loads)).half_width
+        slope = float(np.abs(scene.punch.profile.slope(np.array([-widest, widest]))).max())
+        if slope > _STEEP:
+            yield (
+                f"punch: under the load {max(loads):g} N/m the contact at rest reaches to slopes of "
+                f"{slope:.2g}, half-width {widest:.3g} m; linear theory takes slopes below {_STEEP:g}; "
+                "are load, profile and modulus as meant?"
+            )
     points = getattr(scene.punch.profile, "shape", ())
     steepest = max((abs((z1 - z0) / (x1 - x0)) for (x0, z0), (x1, z1) in pairwise(points)), default=0.0)
     if steepest > _STEEP:
@@ -569,35 +592,3 @@ def _too_steep(scene: Scene) -> Iterator[str]:
             f"punch.shape: slopes are up to {steepest:.3g}, usual is less than {_STEEP:g}; are the units "
             "of both columns as meant? Without one they are m"
         )
-
-
-def _too_small(scene: Scene) -> Iterator[str]:
-    """Warning about a contact with free ends that is a few atoms wide; for a flat punch its key warns."""
-    if scene.body.ends != FREE:
-        return
-    load = min(scene.punch.loads)
-    a = scene.body.loaded(load).half_width
-    if a < _ATOMS:
-        yield (
-            f"punch: under the load {load:g} N/m the half-width of the contact at rest is {a:.2g} m, "
-            f"usual is at least {_ATOMS:g} m: that is no more than a few atoms, where a solid is no "
-            "continuum; is the load as meant?"
-        )
-
-
-def _usual(scene: Scene) -> Iterator[tuple[str, list[float], str, tuple[float, float]]]:
-    """Numbers of a scene with their path, values, unit and usual range."""
-    yield "friction.pre_sliding", [scene.friction.pre_sliding], "m", _STROKE
-    punch = scene.elastic_punch
-    models = {"solid": scene.solid, "punch": scene.punch.profile}
-    if punch:
-        models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
-    given = [
-        *((name, parameters(model), constants(model)) for name, model in models.items()),
-        ("friction", parameters(scene.friction.law), scene.friction.values),
-    ]
-    for section, parameters_, values in given:
-        for key, parameter in parameters_.items():
-            if parameter.usual:
-                numbers = np.atleast_1d(values[key]).tolist()
-                yield f"{section}.{key}", numbers, parameter.unit, parameter.usual

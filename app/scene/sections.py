@@ -1,15 +1,15 @@
 """Sections of a scene: every key with its kind, default and meaning.
 
-A :class:`Section` checks the keys of a table of the scene and builds the section's object from their
-values. A :class:`ModelSection` has the parameters of a registered model among its keys, and
-:class:`LayerSections` reads the tables [[layer]], from the top down. The same keys make the JSON schema
-of scenes, by which editors complete and check TOML.
+A :class:`Section` checks the keys of a table of the scene, the parameters of a registered model among
+them, and builds the section's object from their values. :class:`LayerSections` reads the tables
+[[layer]], from the top down. The same keys make the JSON schema of scenes, by which editors complete and
+check TOML.
 """
 
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from galinx.meshes import MESHES
@@ -88,28 +88,51 @@ class Key:
 
 
 class Section:
-    """A section of a scene whose keys do not depend on one another.
+    """A section of a scene; that of a registered model has the model's parameters among its keys.
 
     Args:
-        build: makes the section from its values by key.
-        keys: keys by name.
+        build: makes the section from its values by key, after the model where there is one; where there
+            may be several models, after their class and lists of their values by key.
+        keys: keys by name, beside a model's parameters.
+        models: classes by name, None for a section without a model.
+        chosen: key that names the model.
+        default: name of the model where that key is absent.
+        several: True where a parameter may be a list.
+        defaults: of parameters, in scenes.
         or_else: alternative to a missing key, for messages.
+        optional: True where a scene may do without the section, which then is None.
     """
 
     #: Heading of the section in a scene.
     heading = "[{}]"
 
-    def __init__(self, build: Callable[..., Any], keys: Mapping[str, Key], or_else: str = "") -> None:
-        self.build, self._keys, self.or_else = build, dict(keys), or_else
+    def __init__(
+        self,
+        build: Callable[..., Any],
+        keys: Mapping[str, Key],
+        models: Registry[Any] | None = None,
+        chosen: str = "",
+        default: str = "",
+        *,
+        several: bool = False,
+        defaults: Mapping[str, Any] | None = None,
+        or_else: str = "",
+        optional: bool = False,
+    ) -> None:
+        self.build, self._keys, self._models, self._chosen = build, dict(keys), models, chosen
+        self._default, self._several, self._defaults = default, several, defaults or {}
+        self.or_else, self._optional = or_else, optional
 
     @property
     def alternatives(self) -> dict[str, dict[str, Key]]:
-        """Sets of keys that a section can have, by name of the model; here a single set, named ""."""
-        return {"": self._keys}
+        """Sets of keys that a section can have, by name of the model; a single set, named "", without."""
+        return {name: self._of(name) for name in self._models or ("",)}
 
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
         """Keys that a section with these values can have."""
-        return self._keys
+        name = given.get(self._chosen)
+        registered = isinstance(name, str) and name in (self._models or ())
+        return self._of(str(name) if registered else self._default)
 
     def read(self, name: str, given: Any, faults: list[str]) -> Any:
         """The section's object, or None after its faults are added.
@@ -119,10 +142,19 @@ class Section:
             given: values by key, as TOML gives them.
             faults: list to which messages are added.
         """
+        if self._optional and given == {}:
+            return None
         if not isinstance(given, dict):
             faults.append(f"{name}: found {excerpt(given)}, expected a section [{name}]")
             return None
         keys = self.keys(given)
+        if self._models and self._chosen in given:
+            try:  # which other keys there are depends on it
+                keys[self._chosen].kind(given[self._chosen])
+            except ValueError as error:
+                own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
+                faults.append(f"{name}.{self._chosen} ({keys[self._chosen].about}): {error}{own}")
+                return None
         own_faults = [
             f"{name}.{short(key)}: no such key{self._other_owner(key, given) or nearest(key, [*keys])}"
             for key in given
@@ -148,95 +180,44 @@ class Section:
         faults += own_faults
         return None
 
+    def _made(self, values: dict[str, Any]) -> Any:
+        if self._models is None:
+            return self.build(**values)
+        model = self._models[values.pop(self._chosen)]
+        own = {key: values.pop(key) for key in parameters(model)}
+        if self._several:
+            return self.build(model, own, **values)
+        return self.build(build_model(model, own), **values)
+
     def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
         """End of a message on a key that only other models have, which names them; "" for any other."""
-        return ""
-
-    def _made(self, values: dict[str, Any]) -> Any:
-        return self.build(**values)
-
-
-class ModelSection(Section):
-    """A section that describes a model of a registry: the model's parameters are keys of the section.
-
-    Args:
-        chosen: key that names the model.
-        default: name of the model where that key is absent.
-        models: classes by name.
-        build: makes the section from the model's class, the model's values by key, and the other values.
-        keys: keys beside the model's parameters, by name.
-        several: True where a parameter may be a list.
-        defaults: of parameters, in scenes.
-        or_else: alternative to a missing key, for messages.
-    """
-
-    def __init__(
-        self,
-        chosen: str,
-        default: str,
-        models: Registry[Any],
-        build: Callable[..., Any],
-        keys: Mapping[str, Key],
-        several: bool = False,
-        defaults: Mapping[str, Any] | None = None,
-        or_else: str = "",
-    ) -> None:
-        super().__init__(build, keys, or_else)
-        self._chosen, self._default, self._models, self._several = chosen, default, models, several
-        self._defaults = defaults or {}
-
-    @property
-    def alternatives(self) -> dict[str, dict[str, Key]]:
-        return {name: self._of(name) for name in self._models}
-
-    def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
-        name = given.get(self._chosen)
-        registered = isinstance(name, str) and name in self._models
-        return self._of(str(name) if registered else self._default)
-
-    def read(self, name: str, given: Any, faults: list[str]) -> Any:
-        model = given.get(self._chosen) if isinstance(given, dict) else None
-        if model is not None and (not isinstance(model, str) or model not in self._models):
-            # Which other keys there are depends on it.
-            try:
-                Choice(self._models)(model)
-            except ValueError as error:
-                own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
-                faults.append(f"{name}.{self._chosen} ({self._models.noun}): {error}{own}")
-            return None
-        return super().read(name, given, faults)
-
-    def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
-        others = [name for name, model in self._models.items() if key in parameters(model)]
+        models = self._models.items() if self._models else ()
+        others = [name for name, model in models if key in parameters(model)]
         own = given.get(self._chosen, self._default)
         return f' of {self._chosen} = "{own}"; {", ".join(others)} has it' if others else ""
 
     def _of(self, model: str) -> dict[str, Key]:
         """Keys of a section with a model of that name."""
+        if self._models is None:
+            return self._keys
         kind = self._models[model]
         own = {key: self._key(parameter, kind) for key, parameter in parameters(kind).items()}
         chosen = Key(Choice(self._models), self._models.noun, self._default)
         besides = {key: entry for key, entry in self._keys.items() if entry.stands_for in ("", *own)}
         keys = {**own, self._chosen: chosen, **besides}
-        return keys | {"vary": self._variations(model)} if self._several else keys
-
-    def _variations(self, model: str) -> Key:
-        """Key ``vary``, tables of parameters; a parameter that is a table itself cannot vary."""
-        single = {
-            name: [parameter for parameter in parameters(kind).values() if parameter.single]
-            for name, kind in self._models.items()
-        }
-        own = {
-            parameter.key: self._key(parameter, self._models[model]).kind for parameter in single[model]
-        }
-        every = tuple(
-            dict.fromkeys(parameter.key for several in single.values() for parameter in several)
-        )
-        return Key(
-            Variations(own, every), "parameters of the laws, table by table", (),
-            "instead of the product of the lists above: the product of each table, with what it leaves "
-            "out as the section has it; laws that are in several tables are computed once",
-        )  # fmt: skip
+        if self._several:  # a parameter that is a table itself cannot vary
+            single = {
+                name: [parameter.key for parameter in parameters(kind).values() if parameter.single]
+                for name, kind in self._models.items()
+            }
+            every = tuple(dict.fromkeys(chain(*single.values())))
+            keys["vary"] = Key(
+                Variations({key: own[key].kind for key in single[model]}, every),
+                "parameters of the laws, table by table", (),
+                "instead of the product of the lists above: the product of each table, with what it "
+                "leaves out as the section has it; laws that are in several tables are computed once",
+            )  # fmt: skip
+        return keys
 
     def _key(self, parameter: Parameter, model: Any) -> Key:
         """Key of a parameter of a model."""
@@ -258,11 +239,6 @@ class ModelSection(Section):
             if default is not REQUIRED:
                 default = (default,)
         return Key(value, parameter.about, default, parameter.note)
-
-    def _made(self, values: dict[str, Any]) -> Any:
-        model = self._models[values.pop(self._chosen)]
-        own = {key: values.pop(key) for key in parameters(model)}
-        return self.build(model, own, **values)
 
 
 #: Most layers of a scene.
@@ -301,14 +277,14 @@ _KEYS = {
 }  # fmt: skip
 
 
-class LayerSections(ModelSection):
+class LayerSections(Section):
     """Any number of tables [[layer]]."""
 
     heading = "[[{}]]"
 
     def __init__(self) -> None:
         super().__init__(
-            "kind", "isotropic", SOLIDS, _layer, _KEYS, or_else=", or material, or properties"
+            _layer, _KEYS, SOLIDS, "kind", "isotropic", or_else=", or material, or properties"
         )
 
     def read(self, name: str, given: Any, faults: list[str]) -> tuple[Layer, ...]:
@@ -371,7 +347,7 @@ def _plane(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _layer(
-    kind: type[Solid], values: dict[str, Any], thickness: float | None, material: str | None,
+    solid: Solid, thickness: float | None, material: str | None,
     to: Any, grading: str, exponent: float, properties: Any, yield_strength: float | None,
 ) -> dict[str, Any]:  # fmt: skip
     """Values of a layer by attribute; its constants at the lower face are still as TOML gives them."""
@@ -382,7 +358,7 @@ def _layer(
     if grading != "power" and exponent != 1.0:
         raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
     return {
-        "thickness": thickness, "solid": build_model(kind, values), "bottom": to, "grading": grading,
+        "thickness": thickness, "solid": solid, "bottom": to, "grading": grading,
         "exponent": exponent, "yield_strength": yield_strength,
     }  # fmt: skip
 
@@ -391,27 +367,12 @@ def _layer(
 MOST_OUTPUTS = 400
 
 
-def _solid(
-    kind: type[Solid], values: dict[str, Any], material: str | None, yield_strength: float | None
-) -> HalfPlane:
-    return HalfPlane(build_model(kind, values), material, yield_strength)
+def _elastic_punch(solid: Solid, material: str | None, speed: float) -> ElasticPunch:
+    return ElasticPunch(solid, speed)
 
 
-def _elastic_punch(
-    kind: type[Solid], values: dict[str, Any], material: str | None, speed: float
-) -> ElasticPunch:
-    return ElasticPunch(build_model(kind, values), speed)
-
-
-class PunchSection(ModelSection):
-    """Section [punch.solid], which rigid punches do not have."""
-
-    def read(self, name: str, given: Any, faults: list[str]) -> ElasticPunch | None:
-        return None if given == {} else super().read(name, given, faults)
-
-
-def _punch(kind: type[Profile], values: dict[str, Any], load: tuple[float, ...]) -> Punch:
-    return Punch(build_model(kind, values), tuple(dict.fromkeys(load)))
+def _punch(profile: Profile, load: tuple[float, ...]) -> Punch:
+    return Punch(profile, tuple(dict.fromkeys(load)))
 
 
 def _friction(
@@ -655,23 +616,20 @@ _OUTPUT_KEYS = {
 SWEPT = ("solid", "layer", "punch", "punch.solid", "friction")
 
 #: Sections of a scene, by name.
-SECTIONS: dict[str, Any] = {
-    "solid": ModelSection(
-        "kind", "isotropic", SOLIDS, _solid, _SOLID_KEYS, or_else=", or solid.material"
-    ),
+SECTIONS: dict[str, Section] = {
+    "solid": Section(HalfPlane, _SOLID_KEYS, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
     "layer": LayerSections(),
-    "punch": ModelSection(
-        "profile", "flat", PROFILES, _punch, _PUNCH_KEYS, defaults={"half_width": 1e-3}
-    ),
-    "punch.solid": PunchSection(
-        "kind",
-        "isotropic",
-        SOLIDS,
+    "punch": Section(_punch, _PUNCH_KEYS, PROFILES, "profile", "flat", defaults={"half_width": 1e-3}),
+    "punch.solid": Section(
         _elastic_punch,
         _PUNCH_SOLID_KEYS,
+        SOLIDS,
+        "kind",
+        "isotropic",
         or_else=", or punch.solid.material",
+        optional=True,
     ),
-    "friction": ModelSection("model", "dahl", LAWS, _friction, _FRICTION_KEYS, several=True),
+    "friction": Section(_friction, _FRICTION_KEYS, LAWS, "model", "dahl", several=True),
     "motion": Section(Motion, _MOTION_KEYS),
     "slider": Section(_slider, _SLIDER_KEYS),
     "time": Section(_time, _TIME_KEYS),

@@ -42,6 +42,10 @@ class Quantity:
     units: Units
 
 
+class _NoQuantity(ValueError):
+    """A text is no quantity."""
+
+
 def quantity(text: str) -> Quantity:
     """Read a quantity, as ``25000 1/m`` or ``7.86 g/mm^3``.
 
@@ -50,7 +54,7 @@ def quantity(text: str) -> Quantity:
     """
     head = _NUMBER.match(text) if len(text) <= LONGEST else None
     if not head:
-        raise ValueError("no number")
+        raise _NoQuantity("no number")
     return Quantity(float(head[1]), units(text[head.end() :]))
 
 
@@ -67,7 +71,7 @@ def units(text: str) -> Units:
         factor = _FACTOR.match(text, at)
         # Only what comes first needs no sign.
         if not factor or (bool(factors) != bool(factor[1]) and factor[1] != "/"):
-            raise ValueError("no product of units")
+            raise _NoQuantity("no product of units")
         sign = -1 if factor[1] == "/" else 1
         factors.append((factor[2], sign * int((factor[3] or factor[4] or "1").translate(_PLAIN))))
         at = factor.end()
@@ -94,24 +98,17 @@ def in_units(given: Quantity, target: Units) -> float | None:
     Raises:
         OverflowError: the factor is no floating-point number.
     """
-    source, goal = _product(given.units), _product(target)
-    if source is None or goal is None or source[1] != goal[1]:
+    power, dimension = 0, [0, 0, 0]
+    for units, sign in ((given.units, 1), (target, -1)):
+        for name, exponent in units:
+            if name not in _UNITS:
+                return None
+            ten, kind = _UNITS[name]
+            power += sign * ten * exponent
+            dimension = [a + sign * exponent * b for a, b in zip(dimension, kind)]
+    if any(dimension):
         return None
-    power = source[0] - goal[0]
     return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
-
-
-def _product(units: Units) -> tuple[int, tuple[int, ...]] | None:
-    """Power of ten and dimension of a product of units; None where a unit is not in the table."""
-    power = 0
-    dimension: tuple[int, ...] = (0, 0, 0)
-    for name, exponent in units:
-        if name not in _UNITS:
-            return None
-        ten, kind = _UNITS[name]
-        power += ten * exponent
-        dimension = tuple(a + b * exponent for a, b in zip(dimension, kind))
-    return power, dimension
 
 
 @lru_cache(maxsize=1)
@@ -146,31 +143,30 @@ def to_si(value: Any, unit: str) -> float:
         ValueError: not a number, not finite, an unknown unit or one of the wrong dimension.
     """
     expected = f"a number in {unit} or a string with a unit" if unit else "a dimensionless number"
+
+    def fault(why: str = "", form: str = "") -> ValueError:
+        return ValueError(f"found {excerpt(value)}{why}, expected {expected}{form}")
+
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ValueError(f"found {excerpt(value)}, expected {expected}")
+        raise fault()
     try:
-        number = _parsed(value, unit, expected) if isinstance(value, str) else float(value)
+        if isinstance(value, str):
+            given, target = quantity(value), units(unit)
+            metric = in_units(given, target)
+            number = _by_pint(given, target) if metric is None else metric
+        else:
+            number = float(value)
     except OverflowError:
         number = float("inf")
-    if not isfinite(number):
-        raise ValueError(f"found {excerpt(value)}, expected {expected} that is finite")
-    return number
-
-
-def _parsed(text: str, unit: str, expected: str) -> float:
-    """A text with a unit as a number in ``unit``; ``expected`` describes it in messages."""
-    try:
-        given = quantity(text)
-    except ValueError:
+    except _NoQuantity:
         form = ": a number, then units with * / ^ between them" if unit else ""
-        if _COMMA.match(text):
-            form += "; decimals have a point, as in 0.37"
-        raise ValueError(f"found {excerpt(text)}, expected {expected}{form}") from None
-    metric = in_units(given, units(unit))
-    try:
-        return _by_pint(given, units(unit)) if metric is None else metric
+        comma = "; decimals have a point, as in 0.37" if _COMMA.match(str(value)) else ""
+        raise fault(form=form + comma) from None
     except ValueError as error:
-        raise ValueError(f"found {excerpt(text)} {error}, expected {expected}") from None
+        raise fault(f" {error}") from None
+    if not isfinite(number):
+        raise fault(form=" that is finite")
+    return number
 
 
 def _by_pint(given: Quantity, target: Units) -> float:
@@ -179,7 +175,17 @@ def _by_pint(given: Quantity, target: Units) -> float:
     Raises:
         ValueError: a unit is unknown, or dimensions differ; angles, counts and bits are no numbers.
     """
-    table, source, goal = _registry(), _container(given.units), _container(target)
+    table, products = _registry(), []
+    for units in (given.units, target):
+        exponents: dict[str, int] = {}
+        for name, exponent in units:
+            try:
+                of_pint = table.get_name(name)
+            except _pint().UndefinedUnitError:
+                raise ValueError(f"with the unknown unit {excerpt(name)}") from None
+            exponents[of_pint] = exponents.get(of_pint, 0) + exponent
+        products.append(_pint().util.UnitsContainer(exponents))
+    source, goal = products
     try:
         if table.get_root_units(source)[1] == table.get_root_units(goal)[1]:
             return float(table.Quantity(given.number, source).to(goal).magnitude)
@@ -188,19 +194,3 @@ def _by_pint(given: Quantity, target: Units) -> float:
     dimension = table.get_dimensionality(source)
     counted = f"in {table.get_root_units(source)[1]}" if given.units else "without a unit"
     raise ValueError(f"of dimension {dimension}" if dimension else counted)
-
-
-def _container(product: Units) -> Any:
-    """pint's own form of a product of units.
-
-    Raises:
-        ValueError: a unit is unknown.
-    """
-    exponents: dict[str, int] = {}
-    for name, exponent in product:
-        try:
-            name_of_pint = _registry().get_name(name)
-        except _pint().UndefinedUnitError:
-            raise ValueError(f"with the unknown unit {excerpt(name)}") from None
-        exponents[name_of_pint] = exponents.get(name_of_pint, 0) + exponent
-    return _pint().util.UnitsContainer(exponents)

@@ -239,14 +239,10 @@ def _check_along(pairs: Sequence[Sequence[float]]) -> None:
         raise ValueError(f"found f from {min(f):g} to {max(f):g}, expected none below 0, and not all 0")
 
 
-def _check_points(pairs: Sequence[Sequence[float]]) -> None:
-    for _, Y in pairs:
-        _below(Y)
-
-
-def _below(Y: float) -> None:
-    if Y >= 0.0:
-        raise ValueError(f"found Y/a = {Y:g}, expected Y/a < 0: the solid lies below the punch")
+def _check_points(points: Sequence[Sequence[float]]) -> None:
+    for _, Y, *_ in points:
+        if Y >= 0.0:
+            raise ValueError(f"found Y/a = {Y:g}, expected Y/a < 0: the solid lies below the punch")
 
 
 _BY_DEPTH = "at least 2 rows [depth, E, nu, rho], depths rising from 0"
@@ -279,38 +275,26 @@ class Constants:
         return {"type": "object", "minProperties": 1}
 
 
-@dataclass(frozen=True)
-class Spread:
-    """Evenly spaced positions: ``count`` of them from ``first`` to ``last``, over a."""
-
-    first: float
-    last: float
-    count: int
-
-
 class Map:
     """``{X = [from, to, number], Y = [from, to, number]}``, over a, Y below the surface."""
 
-    def __call__(self, value: Any) -> tuple[Spread, Spread]:
+    def __call__(self, value: Any) -> tuple[tuple[float, float, int], ...]:
         if not isinstance(value, dict) or set(value) != {"X", "Y"}:
             raise ValueError(
                 f"found {excerpt(value)}, expected {{X = [from, to, number], Y = [from, to, number]}}, "
                 "over a"
             )
-        X, Y = (self._range(axis, value[axis]) for axis in ("X", "Y"))
-        _below(Y.last)
-        return X, Y
-
-    @staticmethod
-    def _range(axis: str, value: Any) -> Spread:
-        if not isinstance(value, list) or len(value) != 3:
-            raise ValueError(f"{axis}: found {excerpt(value)}, expected [from, to, number]")
-        first, last, count = (to_si(entry, "") for entry in value)
-        if not first < last or count != int(count) or not 2 <= count <= 2000:
-            raise ValueError(
-                f"{axis}: found {excerpt(value)}, expected [from, to, number], from < to, 2 ... 2000"
-            )
-        return Spread(first, last, int(count))
+        axes = []
+        for axis in ("X", "Y"):
+            found = f"{axis}: found {excerpt(given := value[axis])}, expected [from, to, number]"
+            if not isinstance(given, list) or len(given) != 3:
+                raise ValueError(found)
+            first, last, count = (to_si(entry, "") for entry in given)
+            if not first < last or count != int(count) or not 2 <= count <= 2000:
+                raise ValueError(f"{found}, from < to, 2 ... 2000")
+            axes.append((first, last, int(count)))
+        _check_points([axes[1]])
+        return tuple(axes)
 
     def schema(self) -> dict[str, Any]:
         axis = _array(Number().schema(), 3, 3)
@@ -318,7 +302,6 @@ class Map:
 
 
 _FORM = '{from = …, to = …, number = …}, with spacing = "log" where ratios are to be equal'
-_SPACINGS = ("linear", "log")
 #: Most numbers of a range.
 _MOST = 10**6
 
@@ -330,49 +313,50 @@ class Numbers:
     unit: str = ""
     bounds: Range = Range()
 
+    @property
+    def _range(self) -> dict[str, Kind]:
+        """Kinds of the keys of a range."""
+        end, number = Number(self.unit, self.bounds), Whole(Range(at_least=2, at_most=_MOST))
+        return {"from": end, "to": end, "number": number, "spacing": Choice(("linear", "log"))}
+
     def __call__(self, value: Any) -> tuple[float, ...]:
-        kind = Number(self.unit, self.bounds)
         if isinstance(value, dict):
-            return _spread(value, kind)
+            return tuple(_spread(value, self._range))
+        kind = Number(self.unit, self.bounds)
         numbers = tuple(kind(entry) for entry in (value if isinstance(value, list) else [value]))
         if not numbers:
             raise ValueError("found an empty list, expected at least one number")
         return numbers
 
     def schema(self) -> dict[str, Any]:
-        kind = Number(self.unit, self.bounds)
-        single = kind.schema()
-        keys = {key: value.schema() for key, value in _keys(kind).items()}
-        spread = _object(keys, ("from", "to", "number"))
-        return {"anyOf": [*single["anyOf"], _array(single, 1), spread]}
+        single = Number(self.unit, self.bounds).schema()
+        keys = {key: kind.schema() for key, kind in self._range.items()}
+        return {"anyOf": [*single["anyOf"], _array(single, 1), _object(keys, ("from", "to", "number"))]}
 
 
-def _keys(end: Number) -> dict[str, Kind]:
-    number = Whole(Range(at_least=2, at_most=_MOST))
-    return {"from": end, "to": end, "number": number, "spacing": Choice(_SPACINGS)}
+def _spread(given: dict[str, Any], keys: Mapping[str, Kind]) -> Iterator[float]:
+    """Numbers of a range, ends included; those between are within bounds where both ends are.
 
-
-def _spread(given: dict[str, Any], end: Number) -> tuple[float, ...]:
-    """Numbers of a range, ends included; those between are within bounds where both ends are."""
-    values = {"spacing": "linear"} | _by_key(given, _keys(end), "a range", "from to number", _FORM)
-    first, last, logarithmic = values["from"], values["to"], values["spacing"] == "log"
+    They are computed in decimals: 0.3 of 0, 0.1, … 0.9 is the float of "0.3".
+    """
+    values = {"spacing": "linear"} | _by_key(given, keys, "a range", "from to number", _FORM)
+    first, last, number, logarithmic = (
+        values["from"], values["to"], values["number"], values["spacing"] == "log",
+    )  # fmt: skip
     if first == last:
         raise ValueError(f"found a range from {first:g} to {last:g}, expected two different ends")
     if logarithmic and min(first, last) <= 0.0:
         raise ValueError(
             f'found a range from {first:g} to {last:g} with spacing = "log", expected both ends > 0'
         )
-    return first, *_between(first, last, values["number"], logarithmic), last
-
-
-def _between(first: float, last: float, number: int, logarithmic: bool) -> Iterator[float]:
-    """Numbers between the ends, computed in decimals: 0.3 of 0, 0.1, … 0.9 is the float of "0.3"."""
     low, high = (Decimal(repr(end)) for end in (first, last))
     if logarithmic:
         low, high = low.ln(), high.ln()
+    yield first
     for i in range(1, number - 1):
         at = (low * (number - 1 - i) + high * i) / (number - 1)
         yield float(at.exp() if logarithmic else at)
+    yield last
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ _PROCEDURE = (
 _BLOCK = (
     "Fig 4. The block that stands for the half-plane (scene box), W = 200 a wide and H = 100 a high, "
     "so that the punch is 2a/W = 0.01 and 2a/H = 0.02 of it, as the study has it, and the finer zone "
-    "under the punch (orange), whose cells are graded towards its edges. The study has 145 106 "
+    "under the punch (black), whose cells are graded towards its edges. The study has 145 106 "
     "quadrilaterals with mid-side nodes; these are {cells} of a high degree."
 )
 _SINE = (
@@ -231,13 +231,10 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         shown += [replace(loop, label=called) for loop in (loops.of(of[0], []),) if loop]
         place = np.array([_AT]), np.array([states.columns["f"][of[0]]])
         dots.append(Curve(*place, look, "", MARKERS))
-    row = _Row(f"FM2, $X/L = {_AT:g}$", curves)
+    row = f"FM2, $X/L = {_AT:g}$", curves
     left = loop_panel(shown)
     panels = [replace(left, curves=[*left.curves, *dots], title="loops, and the place shown")]
-    panels += [_stress_panel(X, [row], row, column, column == 0) for column in range(2)]
-    panels[1:] = [
-        replace(panel, curves=[replace(c, label="") for c in panel.curves]) for panel in panels[1:]
-    ]
+    panels += [_stress_panel(X, [row], row, column, False) for column in range(2)]
     figure = render(panels, None, 3, lines_and_markers(*_slow_and_fast(loops.labels, of)), high=0.95)
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
     return Drawing("laws", _LAWS.format(laws=names, at=_AT), figure)
@@ -276,13 +273,8 @@ class _Stressed:
     width: float = 1.0
 
 
-@dataclass(frozen=True)
-class _Row:
-    """Curves of one row of panels."""
-
-    title: str
-    curves: Sequence[_Stressed]
-
+#: Title and curves of a row of panels.
+_Row = tuple[str, list[_Stressed]]
 
 #: Axes of the two stresses.
 _AXES = (r"contact stress $\sigma_{YY}/(N/2a)$", r"in-plane stress $\sigma_{XX}/(N/2a)$")
@@ -292,52 +284,32 @@ _LEAST, _FLAT = 1e-15, 0.5
 
 def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, named: bool) -> Panel:
     """Panel of one stress of a row, between limits that all rows share."""
-    every = [values for of in rows for curve in of.curves for values in (curve.line, curve.markers)]
+    every = [values for _, of in rows for curve in of for values in (curve.line, curve.markers)]
     shown = np.array([values[column] for values in every if values is not None])
     half = along(X, shown)
+    title, stressed = row
     curves: list[Curve] = []
-    for n, curve in enumerate(row.curves):
+    for n, curve in enumerate(stressed):
         values = {CLOSED_FORM: curve.line[column]}
         if curve.markers is not None:
             values[FEM] = curve.markers[column]
-        drawn = surface_curves(X, values, curve.look, curve.label if named else "", n / len(row.curves))
+        drawn = surface_curves(X, values, curve.look, curve.label if named else "", n / len(stressed))
         curves += [replace(one, width=curve.width) for one in drawn]
     return Panel(
-        "position on the surface $X/a$", _AXES[column], curves=curves, title=row.title,
+        "position on the surface $X/a$", _AXES[column], curves=curves, title=title,
         xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,),
         bands=[(-1.0, 1.0)] if half == _BESIDE else (),
     )  # fmt: skip
 
 
-def _rows_figure(
-    X: NDArray, rows: Sequence[_Row], says: tuple[str, str], differ: dict[str, NDArray]
-) -> Any:
-    """Stresses row by row, and below them the largest differences of both methods."""
-    panels = [
-        panel if row is rows[-1] else replace(panel, x=None)
-        for row in rows
-        for panel in (_stress_panel(X, rows, row, column, column == 0) for column in range(2))
-    ]
-    how = ", ".join(f"{name} {line}" for name, line in zip(differ, ("line", "dashes")))
-    for column in range(2) if differ else ():
-        curves = [
-            Curve(
-                *broken(X, np.maximum(values[column], _LEAST)), Look(COLOURS[-2], LINES[n], ""), width=0.8
-            )
-            for n, values in enumerate(differ.values())
-        ]
-        above = panels[column]
-        panels.append(Panel(
-            "position on the surface $X/a$", r"$|\Delta\sigma|/(N/2a)$", curves=curves, xlim=above.xlim,
-            log="y", tall=_FLAT, title=f"largest difference of both methods: {how}",
-        ))  # fmt: skip
-    return render(panels, None, 2, lines_and_markers(*says), high=0.5)
-
-
 def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
-    """A figure of stresses by its name."""
-    figure = STRESSES[name]
-    rows, states = [], []
+    """A figure of stresses by its name: row by row, and below them the differences of both methods."""
+    figure, X = STRESSES[name], data[SURFACE_X.path]
+    single = len(figure.speeds) == 1
+    marked = FEM if single else CLOSED_FORM
+    solved = {method: PRESSURE[method].path in data for method in (CLOSED_FORM, FEM)}
+    rows: list[_Row] = []
+    states: list[list[int]] = []
     for value in figure.rows:
         at = figure.at | {figure.row: value}
         pairs = [
@@ -345,26 +317,46 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
             for curve in figure.curves
         ]
         states += pairs
-        styles = labels.looks([pair[0] for pair in pairs], [figure.curve])
         curves = [
-            _curve(labels.label(pair[0], [figure.curve]), look, data, pair)
-            for pair, look in zip(pairs, styles)
-        ]
+            _Stressed(
+                labels.label(pair[0], [figure.curve]), look, _values(data, CLOSED_FORM, pair[0]),
+                _values(data, marked, pair[-1]) if solved[marked] else None,
+            )
+            for pair, look in zip(pairs, labels.looks([pair[0] for pair in pairs], [figure.curve]))
+        ]  # fmt: skip
         if name == "fig7":
             travelled = _state(labels, at | {STROKE: BM1, C: SLOW, PLACE: 1.0 - value})
             dots = Look(COLOURS[6], LINES[3], "")
             label = "BM1 (SS), $X/L$ travelled since its turn"
             curves.append(_Stressed(label, dots, _values(data, CLOSED_FORM, travelled), width=0.8))
-        rows.append(_Row(labels.label(pairs[0][0], [figure.row]), curves))
-    if len(figure.speeds) == 1:
-        says = ("closed form", "finite elements")
-        differ: dict[str, NDArray] = {}
-    else:
-        says = _slow_and_fast(labels, states[0])
-        differ = {} if PRESSURE[FEM].path not in data else {
-            word: _differences(data, [pair[n] for pair in states]) for n, word in enumerate(("SS", "HS"))
-        }  # fmt: skip
-    return Drawing(name, figure.caption + _ENDS, _rows_figure(data[SURFACE_X.path], rows, says, differ))
+        rows.append((labels.label(pairs[0][0], [figure.row]), curves))
+    says = ("closed form", "finite elements") if single else _slow_and_fast(labels, states[0])
+    panels = [
+        panel if row is rows[-1] else replace(panel, x=None)
+        for row in rows
+        for panel in (_stress_panel(X, rows, row, column, column == 0) for column in range(2))
+    ]
+    if not single and solved[FEM]:
+        panels += [_difference_panel(data, states, column, panels[column]) for column in range(2)]
+    return Drawing(
+        name, figure.caption + _ENDS, render(panels, None, 2, lines_and_markers(*says), high=0.5)
+    )
+
+
+def _difference_panel(
+    data: dict[str, Any], states: Sequence[Sequence[int]], column: int, above: Panel
+) -> Panel:
+    """Panel of the largest difference of both methods, of pairs of states at both speeds."""
+    X, curves = data[SURFACE_X.path], list[Curve]()
+    for n in range(2):
+        of = [pair[n] for pair in states]
+        off = np.abs(_values(data, FEM, of) - _values(data, CLOSED_FORM, of)).max(axis=1)[column]
+        look = Look(COLOURS[-2], LINES[n], "")
+        curves.append(Curve(*broken(X, np.maximum(off, _LEAST)), look, width=0.8))
+    return Panel(
+        "position on the surface $X/a$", r"$|\Delta\sigma|/(N/2a)$", curves=curves, xlim=above.xlim,
+        log="y", tall=_FLAT, title="largest difference of both methods: SS line, HS dashes",
+    )  # fmt: skip
 
 
 def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str]:
@@ -373,21 +365,9 @@ def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str
     return f"SS, {slow}", f"HS, {fast}"
 
 
-def _curve(label: str, look: Look, data: dict[str, Any], states: Sequence[int]) -> _Stressed:
-    """A curve: the slow state as a line and the fast one as markers, or both methods at one speed."""
-    method = CLOSED_FORM if len(states) > 1 else FEM
-    markers = _values(data, method, states[-1]) if PRESSURE[method].path in data else None
-    return _Stressed(label, look, _values(data, CLOSED_FORM, states[0]), markers)
-
-
 def _values(data: dict[str, Any], method: str, states: Any) -> NDArray[np.float64]:
     """σ_YY and σ_XX of states over N/(2a), (2, …, points)."""
     return np.array([data[rows[method].path][states] for rows in (PRESSURE, IN_PLANE)])
-
-
-def _differences(data: dict[str, Any], states: list[int]) -> NDArray[np.float64]:
-    """Largest differences between closed form and finite elements of some states, (2, points)."""
-    return np.abs(_values(data, FEM, states) - _values(data, CLOSED_FORM, states)).max(axis=1)
 
 
 def _state(labels: StateLabels, values: dict[str, Any]) -> int:

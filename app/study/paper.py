@@ -24,7 +24,7 @@ from galinx.solvers.friction.motion import friction_along
 from galinx.solvers.solids.isotropic import Isotropic
 
 from .. import ranks
-from ..console import Progress, colours, program, say
+from ..console import Progress, colours, new_console, print_sheet, program, say
 from ..run.flow import Memory, compute
 from ..scene import read as scenes
 from ..scene.library import SCENES
@@ -131,22 +131,20 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         UnwritableArchive: the file system refused.
     """
     targets = {name: folder.target(name, kind) for name, kind in _FILES.items()}
-    study, inside = (_computed(name, targets[f"{name}.h5"], progress) for name in ("study", "inside"))
+    results = [
+        _computed(scenes.read(SCENES / f"{name}.toml"), progress, targets[f"{name}.h5"])
+        for name in ("study", "inside")
+    ]
+    results += [_computed(scene, progress) for scene in _beside()]
     if not ranks.is_root():
-        for scene in _beside():
-            compute(scene)
         return True  # the verdict is rank 0's
-    results = [study, inside]
-    for scene in _beside():
-        memory = Memory()
-        results.append(Computed(scene, memory, compute(scene, memory, progress)))
+    study, inside, *_ = results
     methods, checks = _judged(*results)
     failed = sum(result.attributes["verdict"] != "PASS" for result in results)
     checks.append(Check(f"runs behind these lines that are no PASS, of {len(results)}", failed, 0))
     good = all(check.good for check in checks)
     decided = statements_sheet(statements(study.data, study.solid))
-    tables = [*_tables(study), methods]
-    details = [*_details(study), _displacements(study)]
+    tables, details = [*_tables(study), methods], _details(study)
     verdict = {
         "verdict": "PASS" if good else "FAIL",
         "verdict_reasons": json.dumps([check.words for check in checks], ensure_ascii=False),
@@ -154,11 +152,13 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     judged = replace(study, attributes=study.attributes | verdict)
     page = _draw(judged, inside, [decided, *tables, *details], folder, progress)
     targets["report.html"].write(page.encode())
-    _write(targets["tables.txt"], [*tables, *details])
-    _write(targets["statements.txt"], [decided])
+    for name, sheets in (("tables.txt", [*tables, *details]), ("statements.txt", [decided])):
+        text = StringIO()
+        _print(sheets, new_console(text))
+        targets[name].write(text.getvalue().encode())
     if not quiet:
         lines = Sheet("Verdict", ("", "largest", "at most"), [check.cells for check in checks])
-        _print([*tables, decided, lines])
+        _print([*tables, decided, lines], new_console(colours=colours()))
         say(f"more in tables.txt: {', '.join(sheet.title.partition(',')[0] for sheet in details)}")
         drawn = "Figs 1-10, sinusoidal, laws, inside and mesh as PDF and PNG"
         say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
@@ -167,11 +167,12 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     return good
 
 
-def _computed(name: str, target: Target, progress: Progress) -> Computed:
-    """A scene, archived; collective, under MPI rank 0 alone has its data."""
-    scene = scenes.read(SCENES / f"{name}.toml")
-    if not ranks.is_root():
-        return Computed(scene, {}, compute(scene))
+def _computed(scene: Scene, progress: Progress, target: Target | None = None) -> Computed:
+    """Results of a scene, archived where there is a target; collective, rank 0 alone has the data."""
+    if target is None or not ranks.is_root():
+        memory = Memory()
+        attributes = compute(scene, memory, progress if ranks.is_root() else None)
+        return Computed(scene, memory, attributes)
     from galinx.postprocess.hdf5 import archive
 
     with archive.Writer(target) as writer:
@@ -224,20 +225,7 @@ def _beside() -> list[Scene]:
     return beside
 
 
-def _write(target: Target, sheets: Sequence[Sheet]) -> None:
-    from ..console import new_console, print_sheet
-
-    text = StringIO()
-    for sheet in sheets:
-        print_sheet(new_console(text), sheet)
-        text.write("\n")
-    target.write(text.getvalue().encode())
-
-
-def _print(sheets: Sequence[Sheet]) -> None:
-    from ..console import new_console, print_sheet
-
-    console = new_console(colours=colours())
+def _print(sheets: Sequence[Sheet], console: Any) -> None:
     for sheet in sheets:
         print_sheet(console, sheet)
         console.print()
@@ -252,34 +240,30 @@ def _tables(study: Computed) -> list[Sheet]:
 
 
 def _details(study: Computed) -> list[Sheet]:
-    """Tables of friction, of the moving frame, and of intensities with dimensions."""
-    scene = study.scene
+    """Tables of friction, of the moving frame, of intensities with dimensions, and of displacements."""
+    scene, data = study.scene, study.data
     laws = [law for law in scene.friction.laws() if isinstance(law, Dahl)]
-    return [
+    sheets = [
         friction_sheet(laws, scene.friction.pre_sliding),
         frame_sheet(study.solid),
-        dimensions_sheet(study.data, scene.punch.load, scene.body.half_width),
+        dimensions_sheet(data, scene.punch.load, scene.body.half_width),
     ]
-
-
-def _displacements(study: Computed) -> Sheet:
-    """u and v under the punch at both speeds, by finite elements."""
     from ..results.fields import displacement_under_punch
 
-    numbers = [state_of(study.data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
-    X, displacements = displacement_under_punch(study.scene, numbers, _DEGREE)
+    numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
+    X, displacements = displacement_under_punch(scene, numbers, _DEGREE)
     places = [int(np.abs(X - place).argmin()) for place in (-1.0, 0.0, 1.0)]
     rows = [
         (f"{name} ({component})", *(f"{1e6 * of_state[i][n]:+.4f}" for n in places))
         for name, of_state in zip(("SS", "HS"), displacements)
         for i, component in enumerate("uv")
     ]
-    return Sheet(
+    return [*sheets, Sheet(
         f"Displacements under the punch (µm), {_STROKE}, X/L = {_PLACE:g}, finite elements",
         ("", "X = -a", "X = 0", "X = a"),
         rows,
         ("Relative to the surface 100 a away; v is the same all over the contact.",),
-    )
+    )]  # fmt: skip
 
 
 def _judged(
@@ -287,12 +271,7 @@ def _judged(
 ) -> tuple[Sheet, list[Check]]:
     """Table of the methods beside each other, and every line of the verdict."""
     scene, data = study.scene, study.data
-    off = {
-        "rk4": _runge_kutta(scene),
-        "collocation": _collocation(scene, data),
-        "confocal": study.worst("K_I"),
-        "block": block.worst("K_I"),
-    }
+    methods, off = _methods(study, block)
     off_table = not_as_printed(scene.solid, scene.friction.pre_sliding)
     rows = [row for name in INTENSITIES for row in intensity_rows(name, data)]
     entries = sum(not row.agrees for row in rows) + 12 - len(rows)
@@ -316,34 +295,66 @@ def _judged(
             _apart(*assembled), 1e-9,
         ),
     ]  # fmt: skip
-    return _methods(study, block, off), checks
+    return methods, checks
 
 
-def _methods(study: Computed, block: Computed, off: dict[str, float]) -> Sheet:
-    """Table of the methods at one state, and their differences at all of Tables 4 and 5."""
-    scene, data = study.scene, study.data
-    numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
-    law = Dahl(*REFERENCE.values())
-    exact, by_steps = (_along(law, scene, how)[0] for how in ("exact", "rk4"))
-    f, stepped = (float(np.interp(_PLACE, _STEPS, values)) for values in (exact, by_steps))
-    sign = scene.friction.stress_ratio
+#: X/L of the steps of the study's Runge-Kutta scheme.
+_STEPS = np.linspace(0.0, 1.0, 21)
+
+
+def _methods(study: Computed, block: Computed) -> tuple[Sheet, dict[str, float]]:
+    """Table of the methods at one state, and their differences at all of Tables 4 and 5, by name."""
+    scene, data, sign = study.scene, study.data, study.scene.friction.stress_ratio
+    exact, by_steps = (
+        np.array([
+            stroke.f for stroke in friction_along(
+                Dahl(*REFERENCE.values()), scene.motion.strokes, scene.friction.pre_sliding, _STEPS,
+                integrator=integrator,
+            )
+        ])
+        for integrator in ("exact", "rk4")
+    )  # fmt: skip
+    f, stepped = (float(np.interp(_PLACE, _STEPS, values[0])) for values in (exact, by_steps))
+
+    def expanded(c: float, g: float) -> NDArray[np.float64]:
+        """K_I at the left and the right end by expansion and collocation, (2,)."""
+        return Equation(scene.solid.response(c), UNIFORM, g, np.zeros_like).pressure(_TERMS).K_I
+
+    of_tables = [
+        (c, state_of(data, c, motion, X))
+        for c, motion, X in product((SLOW, FAST), ("FM1", "BM1", "FM2"), (0.2, 0.8))
+    ]
+    off = {
+        "rk4": float(np.abs(exact - by_steps).max()),
+        "collocation": max(
+            float(np.abs(expanded(c, data[of.RATIO.path][i]) / data[of.K_I_BOTH.path][i] - 1.0).max())
+            for c, i in of_tables
+        ),
+        "confocal": study.worst("K_I"),
+        "block": block.worst("K_I"),
+    }
+
+    def row(name: str, f: str, K_I: Sequence[float], key: str = "") -> tuple[str, ...]:
+        blank = [""] * (2 - len(K_I))  # the block's state is a fast one
+        return name, f, *blank, *(f"{value:.8f}" for value in K_I), f"{off[key]:.1e}" if key else "-"
 
     def formula(f: float) -> list[float]:
         return [FlatPunch(scene.solid.response(c), sign * f).K_I for c in (SLOW, FAST)]
 
-    def row(name: str, f: str, K_I: Sequence[float], off: str) -> tuple[str, ...]:
-        return name, f, *(f"{value:.8f}" for value in K_I), *[""] * (2 - len(K_I)), off
-
-    expanded = [_expanded(scene, c, sign * f)[0] for c in (SLOW, FAST)]
-    confocal = [float(data[of.K_I_LEFT[FEM].path][i]) for i in numbers]
-    walls = block.data[of.K_I_LEFT[FEM].path].tolist()
+    K_I = data[of.K_I_LEFT[FEM].path]
     rows = [
-        row("exact law, closed form", f"{f:.6f}", formula(f), "-"),
-        row("Runge-Kutta, 20 steps a stroke", f"{stepped:.6f}", formula(stepped), f"{off['rk4']:.1e}"),
-        row(f"expansion-collocation, {_TERMS} terms", "", expanded, f"{off['collocation']:.1e}"),
-        row("finite elements, confocal mesh", "", confocal, f"{off['confocal']:.1e}"),
-        ("finite elements, block of Fig 4", "", "", f"{walls[0]:.8f}", f"{off['block']:.1e}"),
-    ]
+        row("exact law, closed form", f"{f:.6f}", formula(f)),
+        row("Runge-Kutta, 20 steps a stroke", f"{stepped:.6f}", formula(stepped), "rk4"),
+        row(
+            f"expansion-collocation, {_TERMS} terms", "",
+            [expanded(c, sign * f)[0] for c in (SLOW, FAST)], "collocation",
+        ),
+        row(
+            "finite elements, confocal mesh", "",
+            [K_I[state_of(data, c, _STROKE, _PLACE)] for c in (SLOW, FAST)], "confocal",
+        ),
+        row("finite elements, block of Fig 4", "", block.data[of.K_I_LEFT[FEM].path], "block"),
+    ]  # fmt: skip
     return Sheet(
         f"Methods beside each other: {_STROKE}, X/L = {_PLACE:g}, dimensionless",
         ("", "f", "K_I, SS", "K_I, HS", "off by"),
@@ -352,42 +363,7 @@ def _methods(study: Computed, block: Computed, off: dict[str, float]) -> Sheet:
             "off by: the largest difference of all strokes, of f absolute, of K_I relative. The block is "
             "as large as the study's, 100 punch widths: its walls, not its cells, cost that much.",
         ),
-    )
-
-
-#: X/L of the steps of the study's Runge-Kutta scheme.
-_STEPS = np.linspace(0.0, 1.0, 21)
-
-
-def _along(law: Dahl, scene: Scene, integrator: str) -> list[NDArray]:
-    """Friction coefficient along the strokes, in the order of travel."""
-    strokes = friction_along(
-        law, scene.motion.strokes, scene.friction.pre_sliding, _STEPS, integrator=integrator
-    )
-    return [stroke.f for stroke in strokes]
-
-
-def _runge_kutta(scene: Scene) -> float:
-    """Largest difference of f by the study's scheme from the exact law, over all strokes."""
-    law = Dahl(*REFERENCE.values())
-    exact, by_steps = (np.array(_along(law, scene, how)) for how in ("exact", "rk4"))
-    return float(np.abs(exact - by_steps).max())
-
-
-def _expanded(scene: Scene, c: float, g: float) -> NDArray[np.float64]:
-    """K_I at the left and the right end by expansion and collocation, (2,)."""
-    return Equation(scene.solid.response(c), UNIFORM, g, np.zeros_like).pressure(_TERMS).K_I
-
-
-def _collocation(scene: Scene, data: dict[str, Any]) -> float:
-    """Largest relative difference of K_I by expansion and collocation from the closed form, over both
-    ends and the states of Tables 4 and 5."""
-    worst = []
-    for c, motion, X in product((SLOW, FAST), ("FM1", "BM1", "FM2"), (0.2, 0.8)):
-        i = state_of(data, c, motion, X)
-        expanded = _expanded(scene, c, float(data[of.RATIO.path][i]))
-        worst.append(np.abs(expanded / data[of.K_I_BOTH.path][i] - 1.0).max())
-    return float(max(worst))
+    ), off
 
 
 def _apart(first: Computed, second: Computed) -> float:

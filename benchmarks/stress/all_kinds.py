@@ -40,11 +40,18 @@ ALONE = 0.03
 #: layers the integral equation's own estimate counts, too.
 TRUTHS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "estimate": (
-        ("K_I", "ends", "largest pressure", "K_I of layers", "sigma_YY of layers", "ends over layers"),
+        (
+            "K_I",
+            "ends",
+            "largest pressure",
+            "K_I over layers",
+            "sigma_YY over layers",
+            "ends over layers",
+        ),
         ("estimate of the integral equation",),
     ),
-    "estimate of sigma_XX": (("sigma_XX", "sigma_XX of layers"), ("estimate of sigma_XX, sie",)),
-    "estimate inside": (("stresses inside", "stresses inside layers"), ("estimate inside, sie",)),
+    "estimate of sigma_XX": (("sigma_XX", "sigma_XX over layers"), ("estimate of sigma_XX, sie",)),
+    "estimate inside": (("stresses inside", "stresses inside over layers"), ("estimate inside, sie",)),
     "estimate at interfaces, fem": (("stresses at interfaces",), ("estimate at interfaces, sie",)),
 }
 

@@ -1,24 +1,22 @@
 """Result archives in HDF5: their writer, the digest that seals them, and the one way of reading them.
 
-An archive appears under its final name only when it is complete: it is written beside it, closed,
-opened again and compared, sealed, synchronised with the disk and renamed. HDF5 crashes where a disk
-refuses what it holds, so it writes to a file that takes every write and remembers the refusal.
+An archive appears under its final name only when it is complete: it is written beside it, closed, sealed,
+synchronised with the disk and renamed. HDF5 crashes where a disk refuses what it holds, so it writes to a
+file that takes every write and remembers the refusal.
 
 The digest stands in the room that HDF5 leaves to others at a file's start. It is of every byte that
 follows, so names, shapes, types, units and attributes are covered like numbers. HDF5 itself crashes over
 some damaged files: the digest is verified before HDF5 opens one.
 
-All reading goes through :func:`opened` and :func:`read`: an archive that passes is as it was written, and
-fits the schema.
+All reading goes through :func:`opened` and :func:`read`: an archive that passes is as it was written, in
+a layout that this program knows.
 """
 
 import hashlib
 import io
 import json
 import re
-import zlib
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -31,12 +29,10 @@ from numpy.typing import NDArray
 from galinx.files import NewFile
 
 from .. import schema
-from ..errors import UnreadableArchive, UnwritableArchive, refused
+from ..errors import UnreadableArchive, refused
 from ..quantities import declared, large, of_states, table
-from ..quantities.quantity import STATE, TEXT
-from ..quantities.runs import FAILURES
-from ..quantities.stresses import SURFACE_X
-from ..schema import VERSION
+from ..quantities.quantity import STATE
+from ..quantities.runs import SCENE
 from ..target import Target, as_target
 
 
@@ -108,17 +104,13 @@ _TITLE, _WORDS = "galinx archive\n", "sha256 of all bytes after the first 512:\n
 _SCENE = re.compile(rb"\A[^\0-\x08\x0e-\x1f]*^\s*(?:\[[\w.]+\]|\w+\s*=)", re.MULTILINE)
 
 
-def put(path: Path, seal: bytes | None = None) -> None:
-    """Seal a file that was made with room for a seal.
-
-    Args:
-        path: the file, closed.
-        seal: what :func:`made` gave for it; made here if not given.
+def put(path: Path) -> None:
+    """Seal a closed file that was made with room for a seal.
 
     Raises:
         OSError: the file system refused.
     """
-    seal = seal or made(path)
+    seal = _made(path)
     with path.open("r+b") as file:
         file.write(seal)
 
@@ -142,19 +134,15 @@ def verify(path: Path) -> None:
             f"{path} does not begin as an archive of galinx does: it is something else, or damaged; "
             "expected a file that galinx wrote"
         )
-    if start != made(path):
+    if start != _made(path):
         raise UnreadableArchive(
             f"{path} is damaged: its bytes are not those that its digest is of; one was changed since it "
             "was written, or it was cut short; take another copy, or run again"
         )
 
 
-def made(path: Path) -> bytes:
-    """Seal that fits a file, ``ROOM`` bytes.
-
-    Raises:
-        OSError: the file cannot be read.
-    """
+def _made(path: Path) -> bytes:
+    """Seal that fits a file, ``ROOM`` bytes."""
     with path.open("rb", buffering=0) as file:
         file.seek(ROOM)
         digest = hashlib.file_digest(file, "sha256").hexdigest()
@@ -173,7 +161,7 @@ class Writer:
 
     Raises:
         Occupied: something is there that may not be replaced.
-        UnwritableArchive: the file system refused, or what was read back differs.
+        UnwritableArchive: the file system refused.
         KeyError: the path of a dataset is not in the table of quantities.
     """
 
@@ -183,7 +171,6 @@ class Writer:
         self._new = NewFile(self._target.place, folder)
         self._bytes = 0
         self._names: list[str] = []
-        self._written: list[tuple[str, slice, int]] = []
         #: Reserved datasets: opened anew for every write, they would read and write a chunk each time.
         self._open: dict[str, h5py.Dataset] = {}
 
@@ -238,22 +225,21 @@ class Writer:
     def write(self, name: str, rows: slice, values: NDArray) -> None:
         """Write rows of a reserved dataset."""
         with self._refusals():
-            dataset = self._open[name]
-            dataset[rows] = values
-            self._written.append((name, rows, _checksum(dataset.dtype, values)))
+            self._open[name][rows] = values
 
     def finish(self, attributes: dict[str, Any]) -> None:
         """Complete the archive, whose root gets these attributes, and give it its name."""
         with self._refusals():
             created = datetime.now(UTC).isoformat(timespec="seconds")
             common = {"program": "galinx", "created": created}
-            layout = {"schema_version": VERSION, "datasets": json.dumps(self._names), "complete": True}
+            layout = {
+                "schema_version": schema.VERSION,
+                "datasets": json.dumps(self._names),
+                "complete": True,
+            }
             self._file.attrs.update(common | attributes | layout)
             self._close()
-            with ThreadPoolExecutor(1) as beside:  # both read all of it, on two cores
-                digest = beside.submit(made, self._new.temporary)
-                self._compare()
-                put(self._new.temporary, digest.result())
+            put(self._new.temporary)
             self._target.publish(self._new, self._bytes)
 
     def _describe(self, name: str, dataset: h5py.Dataset, about: tuple[str, str] | None) -> None:
@@ -262,16 +248,6 @@ class Writer:
             row = declared(name)
             about = row.unit, row.about
         dataset.attrs["units"], dataset.attrs["long_name"] = about
-
-    def _compare(self) -> None:
-        """Compare the content read back: a full disk can leave a file that opens and lists datasets."""
-        with h5py.File(self._new.temporary, "r", locking=False) as file:
-            datasets = {name: file[name] for name, _, _ in self._written}
-            for name, rows, checksum in self._written:
-                if _checksum(datasets[name].dtype, datasets[name][rows]) != checksum:
-                    raise UnwritableArchive(
-                        f"cannot write {self.path}: {name} reads back differently; is the disk full?"
-                    )
 
     @contextmanager
     def _refusals(self) -> Iterator[None]:
@@ -289,16 +265,12 @@ class Writer:
             raise self._disk.refusal
 
 
-def _checksum(dtype: np.dtype, values: NDArray) -> int:
-    return zlib.crc32(np.ascontiguousarray(values, dtype=dtype).data)
-
-
 #: Faults that a message lists at most.
 _LISTED = 8
 
 
 class Archive:
-    """An open archive without faults.
+    """An open archive.
 
     Attributes:
         attributes: of the root.
@@ -308,20 +280,25 @@ class Archive:
 
     def __init__(self, path: Path, file: h5py.File) -> None:
         self._path, self._file = path, file
-        self.attributes, described = _described(path, file)
-        _refuse(path, schema.faults(self.attributes, described))
-        self.names = list(described)
+        self.names: list[str] = []
+        with _reading(path):
+            self.attributes = dict(file.attrs)
+            _check_kind(path, self.attributes)
+            file.visititems(
+                lambda name, item: self.names.append(name) if isinstance(item, h5py.Dataset) else None
+            )
+        scene = self._read(SCENE.path) if SCENE.path in self.names else ""
+        if faults := schema.faults(self.attributes, self.names, scene):
+            more = f"\n  and {len(faults) - _LISTED} more" if len(faults) > _LISTED else ""
+            lines = "".join(f"\n  {fault}" for fault in faults[:_LISTED])
+            raise UnreadableArchive(
+                f"{path} is not as this galinx writes archives; take another copy or rerun{lines}{more}"
+            )
         self.data = {name: self._read(name) for name in self.names if not large(name)}
-        _refuse(path, schema.faults_of_values(self.data, self.attributes))
-        _refuse(path, [*schema.faults_between(self.data, self.attributes)])
 
     def all(self) -> dict[str, Any]:
-        """Every dataset by path, large ones included.
-
-        Raises:
-            UnreadableArchive: a large one does not fit the schema.
-        """
-        return {name: self._large(name) if large(name) else self.data[name] for name in self.names}
+        """Every dataset by path, large ones included."""
+        return {name: self._read(name) if large(name) else self.data[name] for name in self.names}
 
     def rows(self, rows: slice, names: Iterable[str] | None = None) -> dict[str, Any]:
         """Datasets of some states by path, and positions that all states share.
@@ -329,29 +306,21 @@ class Archive:
         Args:
             rows: numbers of the states.
             names: of the datasets; all of states if not given.
-
-        Raises:
-            UnreadableArchive: a large one does not fit the schema.
         """
         data, quantities = {}, table()
         for name in filter(of_states, self.names) if names is None else names:
             if large(name):
-                data[name] = self._large(name, rows)
+                data[name] = self._read(name, rows)
             else:
                 data[name] = self.data[name][rows if STATE in quantities[name].over else slice(None)]
         return data
-
-    def _large(self, name: str, rows: slice = slice(None)) -> Any:
-        values = self._read(name, rows)
-        needed = {row.path: self.data[row.path] for row in (SURFACE_X, FAILURES) if row.path in self.data}
-        _refuse(self._path, schema.faults_of_values(needed | {name: values}, self.attributes))
-        return values
 
     def _read(self, name: str, rows: slice = slice(None)) -> Any:
         with _reading(self._path):
             dataset = self._file[name]
             selection = rows if dataset.shape else ()
-            return dataset.asstr()[selection] if _type(dataset) == TEXT else dataset[selection]
+            is_text = h5py.check_string_dtype(dataset.dtype)
+            return (dataset.asstr() if is_text else dataset)[selection]
 
 
 @contextmanager
@@ -359,7 +328,7 @@ def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
     """Archive that stays open within the context; for the arguments see :func:`read`.
 
     Raises:
-        UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
+        UnreadableArchive: no archive, a damaged one, or one that this program does not know.
     """
     with _reading(path):
         there = path.is_file()
@@ -387,25 +356,10 @@ def read(
         Arrays and text by path, and the root's attributes.
 
     Raises:
-        UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
+        UnreadableArchive: no archive, a damaged one, or one that this program does not know.
     """
     with opened(path, just_sealed) as archive:
         return archive.all() if stresses else archive.data, archive.attributes
-
-
-def _described(path: Path, file: h5py.File) -> tuple[dict[str, Any], dict[str, schema.Described]]:
-    datasets: dict[str, schema.Described] = {}
-
-    def visit(name: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset):
-            shape = item.shape or ()  # None: without any room
-            datasets[name] = schema.Described(_type(item), shape, dict(item.attrs), _whole(item))
-
-    with _reading(path):
-        attributes = dict(file.attrs)
-        _check_kind(path, attributes)
-        file.visititems(visit)
-    return attributes, datasets
 
 
 def _check_kind(path: Path, attributes: dict[str, Any]) -> None:
@@ -421,27 +375,6 @@ def _check_kind(path: Path, attributes: dict[str, Any]) -> None:
         raise UnreadableArchive(
             f"{path} has schema version {version}, this program reads up to {schema.VERSION}; install a "
             "newer one"
-        )
-
-
-def _type(dataset: h5py.Dataset) -> str:
-    return TEXT if h5py.check_string_dtype(dataset.dtype) else str(dataset.dtype)
-
-
-def _whole(dataset: h5py.Dataset) -> bool:
-    """True where the file has room for all values of a dataset, and a checksum of numbers."""
-    room = dataset.id.get_storage_size()
-    there = dataset.shape is not None and room >= dataset.size * dataset.dtype.itemsize
-    return there and (dataset.fletcher32 or _type(dataset) == TEXT)
-
-
-def _refuse(path: Path, faults: list[str]) -> None:
-    if faults:
-        more = f"\n  and {len(faults) - _LISTED} more" if len(faults) > _LISTED else ""
-        lines = "".join(f"\n  {fault}" for fault in faults[:_LISTED])
-        raise UnreadableArchive(
-            f"{path} is not as galinx writes archives: damaged, or changed; take another copy or rerun"
-            f"{lines}{more}"
         )
 
 

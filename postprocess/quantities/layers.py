@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import AT_INTERFACES
-from galinx.solvers.contact.stresses import extreme
+from galinx.solvers.contact.extremes import extreme
 from galinx.solvers.parameters import Range
 
 from .quantity import (
@@ -40,8 +40,8 @@ ALONG_X = Quantity(
 )  # fmt: skip
 
 _PARTS = {
-    "sigma_YY": "normal traction",
-    "sigma_XY": "shear traction",
+    "sigma_YY": "normal traction at",
+    "sigma_XY": "shear traction at",
     "sigma_XX_above": "in-plane stress above",
     "sigma_XX_below": "in-plane stress below",
 }
@@ -55,44 +55,39 @@ def _along(method: str, i: int, name: str, what: str) -> Quantity:
     )  # fmt: skip
 
 
-def _extremes(method: str, i: int, name: str, what: str) -> tuple[Quantity, ...]:
-    """Quantities of the largest and the smallest value along each interface, with their places."""
+def _extreme(
+    method: str, i: int, name: str, what: str, which_end: tuple[str, str, float]
+) -> tuple[Quantity, Quantity]:
+    """Quantities of the largest or the smallest value along each interface, and of its place."""
 
-    def quantity(end: str, sign: float, place: bool) -> Quantity:
-        def read(s: Any, _: Any) -> NDArray[np.float64]:
-            return extreme(s.interfaces[i], s.places.along, sign)[int(place)]
+    end, word, sign = which_end
 
-        word = {"max": "largest", "min": "smallest"}[end]
-        path, over = f"interfaces/{method}/{name}_{end}", (STATE, INTERFACE)
-        if place:
-            about = f"place of the {word} {what} each interface, over the half-width"
-            return Quantity(
-                f"{path}_X_over_a", "1", about, over, read, method, asked_by=AT_INTERFACES, scale=X_OVER_A
-            )
-        about = f"{word} {what} each interface"
-        return Quantity(path, "N/(2a)", about, over, read, method, asked_by=AT_INTERFACES)
+    def read(s: Any, part: int) -> NDArray[np.float64]:
+        return extreme(s.interfaces[i], s.places.along, sign)[part]
 
-    ends = (("max", 1.0), ("min", -1.0))
-    return tuple(quantity(end, sign, place) for end, sign in ends for place in (False, True))
-
-
-def _words(name: str, what: str) -> str:
-    return what if "in-plane" in what else f"{what} at"
+    path, over = f"interfaces/{method}/{name}_{end}", (STATE, INTERFACE)
+    about = f"{word} {what} each interface"
+    return (
+        Quantity(path, "N/(2a)", about, over, lambda s, _: read(s, 0), method, asked_by=AT_INTERFACES),
+        Quantity(
+            f"{path}_X_over_a", "1", f"place of the {about}, over the half-width", over,
+            lambda s, _: read(s, 1), method, asked_by=AT_INTERFACES, scale=X_OVER_A,
+        ),
+    )  # fmt: skip
 
 
 #: σ_YY, σ_XY, σ_XX above and below, by method.
 INTERFACES = {
-    method: tuple(
-        _along(method, i, name, _words(name, what)) for i, (name, what) in enumerate(_PARTS.items())
-    )
+    method: tuple(_along(method, i, *part) for i, part in enumerate(_PARTS.items()))
     for method in (SIE, FEM)
 }
 #: Extremes of the stresses at interfaces, by method.
 INTERFACE_EXTREMES = {
     method: tuple(
         row
-        for i, (name, what) in enumerate(_PARTS.items())
-        for row in _extremes(method, i, name, _words(name, what))
+        for i, part in enumerate(_PARTS.items())
+        for end in (("max", "largest", 1.0), ("min", "smallest", -1.0))
+        for row in _extreme(method, i, *part, end)
     )
     for method in (SIE, FEM)
 }

@@ -156,9 +156,6 @@ PRESSURE = _row(
     nan_allowed=ANYWHERE,
 )  # fmt: skip
 
-#: In the order in which a course of the integral equation gives them.
-ALL = OF_LOAD[SIE], OF_FRICTION[SIE], PRESSURE, LEFT[SIE], RIGHT[SIE]
-
 
 #: In which box about the punch, that goes with it, energy is near.
 _NEAR = "within 3 a of its middle and 2 a below it"

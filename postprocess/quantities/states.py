@@ -86,7 +86,7 @@ def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
             CLOSED_FORM: {"requires": (SOLVED,)},
             FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments", "compared": ("K_I",)},
             SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane",
-                  "compared": ("K_I of layers",)},
+                  "compared": ("K_I over layers",)},
         }, scale=EDGE,
     )  # fmt: skip
 

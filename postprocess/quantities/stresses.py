@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import BELOW, ON_SURFACE, VARYING
-from galinx.solvers.contact.free_ends import extreme_in_plane
 from galinx.solvers.contact.solution import OUT_OF_PLANE
-from galinx.solvers.contact.stresses import principal, von_mises
+from galinx.solvers.contact.stresses import extreme_in_plane, principal, von_mises
 from galinx.solvers.parameters import Range
 
 from .quantity import (
@@ -52,7 +51,7 @@ PRESSURE = by_method(
                          "sigma_YY of found ends over layers"),
         },
         SIE: {"about": "contact stress, NaN outside the contact, layered half-plane",
-              "compared": ("sigma_YY of layers",)},
+              "compared": ("sigma_YY over layers",)},
     }, asked_by=ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 RAW_PRESSURE = Quantity(
@@ -66,7 +65,7 @@ IN_PLANE = by_method(
         CLOSED_FORM: {"about": "in-plane stress on the surface (Eq 32)"},
         FEM: {"compared": ("sigma_XX",)},
         SIE: {"about": "in-plane stress on the surface, layered half-plane",
-              "compared": ("sigma_XX of layers",)},
+              "compared": ("sigma_XX over layers",)},
     }, asked_by=ON_SURFACE,
 )  # fmt: skip
 
@@ -155,7 +154,7 @@ def _component(method: str, source: str, i: int, ij: str, what: str) -> Quantity
     return Quantity(
         f"interior/{method}/sigma_{ij}", "N/(2a)", f"{what} inside, {source}", (STATE, INSIDE),
         lambda s, _: s.inside[i], method, asked_by=BELOW,
-        compared=("stresses inside", "stresses inside layers") * (method == FEM),
+        compared=("stresses inside", "stresses inside over layers") * (method == FEM),
     )  # fmt: skip
 
 

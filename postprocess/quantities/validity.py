@@ -39,7 +39,7 @@ def _flutter(sign: str, g: str) -> Quantity:
         f"states/flutter_{sign}", "1",
         f"flutter threshold for {g}, the |sigma_XY/sigma_YY| from which on waves along an interface with "
         "Coulomb friction grow, the shorter the faster; NaN for none",
-        (STATE,), nan_allowed=ANYWHERE, range=Range(above=0.0),
+        (STATE,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
     )  # fmt: skip
 
 

@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import log1p
 
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
@@ -75,10 +74,6 @@ class FlatPunch(EdgeExponents, Pressure):
         """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
 
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """Change of Φ, see :class:`galinx.solvers.solids.half_plane.Potential`."""
-        return self.at(z) * _growth(self.α, self.β, z, step, share)
-
     def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distances from X = -a and X = a, under the punch, within which -μ u,X over N/(2a) is large.
 
@@ -113,14 +108,6 @@ class FlatPunch(EdgeExponents, Pressure):
                 break
             t = moved
         return np.exp(t)
-
-
-def _growth(α: Any, β: Any, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-    """Relative change of (z - 1)^α (z + 1)^β for a step share·step, over share."""
-    by_right, by_left = step / (z - 1.0), step / (z + 1.0)
-    if share == 0.0:
-        return α * by_right + β * by_left
-    return np.expm1(α * log1p(share * by_right) + β * log1p(share * by_left)) / share
 
 
 #: |z| from which powers of 1/z serve, and their number: 3^-36 is below rounding.
@@ -166,28 +153,16 @@ class Weighted(Pressure):
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         far = np.abs(z) > _FAR
-        near = (self._X(z) * (self.A + self.B * z) - self._polynomial(z)) / self._sin
-        return np.where(far, self._far(np.where(far, z, np.inf)), near)
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        growth = _growth(self.α, self.β, z, step, share)
-        moved = z + share * step
-        near = self._X(z) * (growth * (self.A + self.B * moved) + self.B * step)
-        near = (near - self._leading * step) / self._sin
-        far = np.minimum(np.abs(z), np.abs(moved)) > _FAR
-        return np.where(far, self._far_change(np.where(far, z, np.inf), step, share), near)
+        X = np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
+        Φ = (X * (self.A + self.B * z) - self._polynomial(z)) / self._sin
+        columns = far.any(axis=tuple(range(z.ndim - 1)))
+        if columns.any():
+            Φ[..., columns] = np.where(far[..., columns], self._far(z[..., columns]), Φ[..., columns])
+        return Φ
 
     @property
     def _sin(self) -> Any:
         return np.sin(np.pi * self.α)
-
-    def _X(self, z: NDArray) -> NDArray[np.complex128]:
-        return np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
-
-    @property
-    def _leading(self) -> Any:
-        """Coefficient of z in [X q]; 0 for the orders 0 and -1, of which [X q] is a constant."""
-        return self.A if self.order == 1 else 0.0
 
     def _polynomial(self, z: Any) -> Any:
         """Polynomial [X q] at z; B vanishes where the order is 0 or 1."""
@@ -212,11 +187,3 @@ class Weighted(Pressure):
         for coefficient in reversed(self._powers):
             total = (total + coefficient) * y
         return total
-
-    def _far_change(self, z: NDArray, step: NDArray, share: complex) -> Any:
-        with np.errstate(invalid="ignore"):
-            y, other = 1.0 / z, 1.0 / (z + share * step)
-        value, divided = 0.0, 0.0  # of the sum so far at y, and its divided difference
-        for coefficient in reversed(self._powers):
-            value, divided = (value + coefficient) * y, (value + coefficient) + divided * other
-        return -step * y * other * divided

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from .closed_form import FlatPunch
 from .edges import Exponents
-from .free_ends import at_and_between, turns_at_knots
 from .method import Solver
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Surface, Task, Turns, solved_once, together
+from .solution import Task, solved_once
+from .stresses import Surface, Turns, at_and_between, together, turns_at_knots
 from .uniform import Contacts, Group, contacts_of
 from .yielding import Strength
 
@@ -181,9 +181,8 @@ class ExactSolution:
         between = None
         if kinks:
             places = np.array([-1.0, *kinks, 1.0])
-            _, between = at_and_between(
-                places, len(group.rows), lambda r: self.contacts.surface_of(group, r)[0]
-            )
+            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            _, between = at_and_between(places, lambda r: self.contacts.surface_of(group, r)[0], infinite)
         σ = np.array([σ_XX, σ_YY, self._g[group.rows, None] * σ_YY])
         return Turns(np.tile(X, (len(group.rows), 1)), σ, between)
 

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MeshKind, Requirements
-from galinx.meshes.kind import rings_at_kinks, with_kinks
-from galinx.meshes.layered import OnLayers, on_layers
-from galinx.meshes.rings import QuadMesh, Refinement
+from galinx.meshes.layered import OnLayers
+from galinx.meshes.rings import QuadMesh, Refinement, rings_at_kinks, with_kinks
 
 from ..rays import NEAR
 from ..solids import Solid
@@ -103,8 +102,8 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
     roots = [[p.imag for p in response.surface.roots.each] for response in responses]
     # Fields that live far apart have no middle.
     apart = max(response.spread for response in responses) > _APART
-    return on_layers(
-        depths.tolist(),
+    return OnLayers(
+        depths=tuple(depths.tolist()),
         drawn_together=float(np.min(roots)),
         wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
         far_length=max(response.far_length for response in responses),

@@ -25,13 +25,13 @@ from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch, in_plane
 from .edges import Exponents, under_punch, weights_hilbert
 from .equation import Contacts, ContactsAtSpeed, SolvedContact
-from .free_ends import at_and_between, turns_at_ends, turns_at_knots
 from .free_on_layers import FreeContactsAtSpeed, Punch
 from .method import Solver
 from .prescribed_pressure import COARSE, FINE, LinearPressure
-from .pressure import ENDS, Pressure, largest
-from .solution import Places, Surface, Task, Turns, together
-from .yielding_of_layers import StrengthOfLayers
+from .pressure import ENDS, Pressure, largest_of
+from .solution import Task
+from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .yielding import StrengthOfLayers
 
 #: The two frictions solved for a prescribed pressure.
 _NODES = np.array([0.0, 1.0])
@@ -56,7 +56,7 @@ def at_speed(task: Task, stack: LayersAtSpeed, tolerance: float, g: NDArray) -> 
         )
         nodes = Contacts(_NODES, [SolvedContact(fine, coarse, 0.0)] * len(_NODES))
         return AtSpeed(task, speed, nodes, np.zeros(1))
-    if body.shared_ends is None:
+    if body.found:
         punch = Punch(body.profile, body.half_width, body.compression)
         # A place inside is in one layer with one friction and in another with the next.
         every = bool(len(task.places.points) or len(task.places.around))
@@ -387,7 +387,7 @@ class LayeredSolution:
         σ_YY = pressure.σ_YY(X)
         between = None
         if len(X):
-            _, between = at_and_between(np.array([-1.0, *np.sort(X), 1.0]), 1, σ_XX)
+            _, between = at_and_between(np.array([-1.0, *np.sort(X), 1.0]), σ_XX)
         return Turns(X[None], np.array([σ_XX(X)[0], σ_YY, g * σ_YY])[:, None], between)
 
     def _kinks(self, i: int) -> NDArray[np.float64]:
@@ -402,7 +402,7 @@ class LayeredSolution:
         value, place = np.full((2, len(self.g)), np.nan)
         for i in np.flatnonzero(finite).tolist():
             of_state = partial(self._pressure, i)
-            value[i], place[i] = largest(of_state, self._kinks(i))
+            value[i], place[i] = largest_of(of_state, self._kinks(i))
         return value, place
 
     def _pressure(self, i: int, r: NDArray) -> NDArray[np.float64]:

@@ -45,9 +45,6 @@ _AT_ONCE = 20_000
 #: Distance from a cusp of the pressure that counts as none, and that from which it is extrapolated.
 _AT_CUSP, _BESIDE_CUSP = 1e-12, 1e-7
 
-#: Gauss points along a short step, from its start to its end, over which the derivative is summed.
-_along, _along_weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
-
 
 def ends_of_panels(kinks: NDArray, rough: bool) -> NDArray[np.float64]:
     """Ends of the panels in x, growing, (panels + 1,).
@@ -119,46 +116,31 @@ class Panels:
             f: values at :attr:`t`, (n,), or (points, n) if f differs from y to y.
             y: (points,).
         """
-        return self._transform(f, y, False)
-
-    def derivative(self, f: NDArray, y: NDArray) -> NDArray[np.complex128]:
-        """Derivative dT/dy off the real axis, (points,), for f at :attr:`t`, (n,)."""
-        return self._transform(f, y, True)
-
-    def _transform(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
         near = np.abs(ζ + root) < _NEAR
         rule = f[..., :-2] * (np.exp(self.b * self.x) * self.half[:, None] * _w).ravel()
         integral = np.concatenate([
-            _sums(self.b, self.x, y[of], near[of], rule if f.ndim == 1 else rule[of], derived)
+            _sums(self.b, self.x, y[of], near[of], rule if f.ndim == 1 else rule[of])
             for of in _blocks(len(y), self.x.size)
         ])  # fmt: skip
         point, panel = np.nonzero(near)
         ξ = self.x[panel] - y[point][:, None]
-        simple, double = _smooth(self.b, ξ, derived)
+        smooth = _smooth(self.b, ξ)
         values = f[..., :-2].reshape(*f.shape[:-1], *self.x.shape)
         of_panel = values[panel] if f.ndim == 1 else values[point, panel]
         # The distance from the end at which two panels meet is the same number, and logarithms cancel.
         from_start, from_end = (y[point] - self.ends[panel + i] for i in (0, 1))
-        Q, Q_derived = _second_kind(ζ[point, panel], from_start, from_end, self.half[panel], derived)
-        near_part = -2.0 * np.einsum("ik,ik->i", (of_panel * simple) @ _TO_LEGENDRE.T, Q)
-        if derived:
-            twice = np.einsum("ik,ik->i", (of_panel * double) @ _TO_LEGENDRE.T, Q_derived)
-            near_part = near_part - 2.0 * twice / self.half[panel]
+        Q = _second_kind(ζ[point, panel], from_start, from_end)
+        near_part = -2.0 * np.einsum("ik,ik->i", (of_panel * smooth) @ _TO_LEGENDRE.T, Q)
         np.add.at(integral := integral.astype(np.result_type(integral, near_part)), point, near_part)
-        return integral + self._tails(f, y, derived)
-
-    def _tails(self, f: NDArray, y: NDArray, derived: bool) -> NDArray[Any]:
-        """Part of T or -dT/dy beyond the panels, where f is that of the ends: two terms of a series."""
-        tails: Any = 0.0
+        # Beyond the panels f is that of the ends: two terms of a series.
         for value, rate, ξ, sign in (
             (f[..., -2], self.b, -_REACH - y, 1.0), (f[..., -1], self.a, y - _REACH, -1.0)
         ):  # fmt: skip
             for k in (rate, rate + 1.0):
-                term = np.exp(k * ξ) / k
-                tails = tails + value * (-k * term if derived else sign * term)
-        return tails
+                integral = integral + sign * value * np.exp(k * ξ) / k
+        return integral
 
 
 def _blocks(points: int, nodes: int) -> list[slice]:
@@ -167,7 +149,7 @@ def _blocks(points: int, nodes: int) -> list[slice]:
     return [slice(start, start + step) for start in range(0, max(points, 1), step)]
 
 
-def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derived: bool) -> NDArray[Any]:
+def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray) -> NDArray[Any]:
     """Sums of :func:`_kernel` at x - y over the panels that are not near, (points,).
 
     Args:
@@ -176,7 +158,6 @@ def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derive
         y: (points,).
         near: panels that are left out, (points, panels).
         rule: weights times values times e^(bx), (panels·nodes,) or (points, panels·nodes).
-        derived: True for the kernel's negative derivative.
     """
     far = np.abs(y.real) > _FAR
     at = np.where(far, 0.0, y)
@@ -186,9 +167,8 @@ def _sums(b: float, x: NDArray, y: NDArray, near: NDArray, rule: NDArray, derive
         close = (rest.real**2 + rest.imag**2 < _CLOSE**2) & ~near[..., None]
         point, *node = np.nonzero(close)
         factor[close] = _pole(x[tuple(node)] - y[point])
-        # k = e^(bξ) R with R = 1/(1 - e^ξ), and k' = k (b - 1 + R).
-        kernel = factor * (1.0 - b - factor) if derived else factor
-    kernel[far] = _kernel(b, x - y[far, None, None], derived) * np.exp(-b * x)
+    kernel = factor  # times e^(bξ)
+    kernel[far] = _kernel(b, x - y[far, None, None]) * np.exp(-b * x)
     kernel[near] = 0.0
     of_point = "j" if rule.ndim == 1 else "ij"
     sums = np.einsum(f"ij,{of_point}->i", kernel.reshape(len(y), x.size), rule)
@@ -201,64 +181,37 @@ def _pole(ξ: NDArray) -> NDArray[Any]:
     return 0.5 - 1.0 / ξ - ξ * (1 / 12 - of * (1 / 720 - of * (1 / 30240 - of / 1209600)))
 
 
-def _kernel(b: float, ξ: NDArray, derived: bool) -> NDArray[Any]:
-    """Kernel k = e^(bξ)/(1 - e^ξ), or -dk/dξ, stable for every ξ."""
+def _kernel(b: float, ξ: NDArray) -> NDArray[Any]:
+    """Kernel e^(bξ)/(1 - e^ξ), stable for every ξ."""
     lower = ξ.real < 0.0
     falling = np.where(lower, ξ, -ξ)
-    E, rest = np.exp(falling), -np.expm1(falling)
-    # For ξ > 0: k = -e^(-(1 - b) ξ)/(1 - e^(-ξ)).
-    kernel = np.where(lower, 1.0, -1.0) * np.exp(np.where(lower, b, 1.0 - b) * falling) / rest
-    if not derived:
-        return kernel
-    # k' = k (b + e^ξ/(1 - e^ξ))
-    inner = np.where(lower, E, -1.0) / rest
-    return -kernel * (b + inner)
+    # For ξ > 0: -e^(-(1 - b) ξ)/(1 - e^(-ξ)).
+    return np.where(lower, -1.0, 1.0) * np.exp(np.where(lower, b, 1.0 - b) * falling) / np.expm1(falling)
 
 
-def _smooth(b: float, ξ: NDArray, derived: bool) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Smooth factors of 1/ξ and 1/ξ² in the kernel, or in its negative derivative.
-
-    The kernel is κ/ξ with κ = -e^(bξ) ξ/(e^ξ - 1); its negative derivative is κ/ξ² - κ'/ξ.
-    """
+def _smooth(b: float, ξ: NDArray) -> NDArray[Any]:
+    """Smooth factor of 1/ξ in the kernel."""
     small = np.abs(ξ) < 1e-3
     safe = np.where(small, 1.0, ξ)
-    E = np.expm1(safe)
-    ratio = np.where(small, 1.0 - ξ / 2.0 + ξ**2 / 12.0 - ξ**4 / 720.0, safe / E)  # ξ/(e^ξ - 1)
-    κ = -np.exp(b * ξ) * ratio
-    if not derived:
-        return κ, κ
-    slope = np.where(small, -0.5 + ξ / 6.0 - ξ**3 / 180.0, (E - safe * (E + 1.0)) / E**2)
-    return np.exp(b * ξ) * (b * ratio + slope), κ
+    ratio = np.where(small, 1.0 - ξ / 2.0 + ξ**2 / 12.0 - ξ**4 / 720.0, safe / np.expm1(safe))
+    return -np.exp(b * ξ) * ratio
 
 
-def _second_kind(
-    ζ: NDArray, from_start: NDArray, from_end: NDArray, half: NDArray, derived: bool
-) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Legendre's functions of the second kind Q_k(ζ), and dQ_k/dζ: (n, nodes) each.
+def _second_kind(ζ: NDArray, from_start: NDArray, from_end: NDArray) -> NDArray[Any]:
+    """Legendre's functions of the second kind Q_k(ζ), (n, nodes).
 
     ∫ P_k(τ)/(τ - ζ) dτ = -2 Q_k, principal values for real ζ.
 
     Args:
         ζ: in a panel's own coordinate, (n,).
-        from_start, from_end: distances from its ends, of which ``half`` is half the difference, (n,).
-        half: half its length.
-        derived: True to compute derivatives.
+        from_start, from_end: distances from its ends, (n,).
     """
-    from_start, from_end = _off(from_start), _off(from_end)
-    if np.iscomplexobj(ζ):
-        first = 0.5 * (np.log(from_start) - np.log(from_end))
-    else:
-        first = 0.5 * np.log(np.abs(from_start / from_end))
+    ratio = _off(from_start) / _off(from_end)
+    first = 0.5 * np.log(ratio if np.iscomplexobj(ζ) else np.abs(ratio))
     Q = [first, ζ * first - 1.0]
     for k in range(1, _NODES - 1):
         Q.append(((2 * k + 1) * ζ * Q[k] - k * Q[k - 1]) / (k + 1))
-    if not derived:
-        return np.stack(Q, axis=-1), np.stack(Q, axis=-1)
-    steepness = -(half**2) / (from_start * from_end)
-    D = [steepness, first + ζ * steepness]
-    for k in range(1, _NODES - 1):
-        D.append(D[k - 1] + (2 * k + 1) * Q[k])
-    return np.stack(Q, axis=-1), np.stack(D, axis=-1)
+    return np.stack(Q, axis=-1)
 
 
 def _off(distance: NDArray) -> NDArray[Any]:
@@ -338,19 +291,6 @@ class FreeEnds(Pressure):
         value = self._phase * self.panels.transform(self.f, _logarithm(flat))
         return value.reshape(np.shape(z))
 
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        shape = np.broadcast_shapes(np.shape(z), np.shape(step))
-        z, step = (np.ravel(part).astype(complex) for part in np.broadcast_arrays(z, step))
-        change, stepped = np.zeros(z.shape, dtype=complex), step != 0.0
-        z, step = z[stepped], step[stepped]
-        δ: NDArray = -step / (1.0 - z) - step / (1.0 + z)
-        if share != 0.0:
-            δ = (_log1p(-share * step / (1.0 - z)) - _log1p(share * step / (1.0 + z))) / share
-        y = _logarithm(z)
-        for node, weight in zip(_along, _along_weights):
-            change[stepped] += weight * δ * self.panels.derivative(self.f, y + node * share * δ)
-        return (self._phase * change).reshape(shape)
-
     @property
     def _phase(self) -> complex:
         return complex(-self._factor * np.exp(-1j * np.pi * self.panels.a))
@@ -359,10 +299,4 @@ class FreeEnds(Pressure):
 def _logarithm(z: NDArray) -> NDArray[np.complex128]:
     """Coordinate y = log((1 - z)/(1 + z)), 0 < Im y <= π below the surface and beside the contact."""
     y = np.log((1.0 - z) / (1.0 + z))
-    return y.real + 1j * np.abs(y.imag)
-
-
-def _log1p(x: NDArray) -> NDArray[np.complex128]:
-    from scipy.special import log1p  # NumPy's loses digits for small complex arguments
-
-    return np.asarray(log1p(x))
+    return y.real + 1j * (y.imag % (2.0 * np.pi))

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import log1p
 
 from .edges import from_edge
 from .pressure import Pressure
@@ -85,9 +84,6 @@ class LinearPressure(Pressure):
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return self._sum(piece.at() for piece in self._pieces(z))
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        return self._sum(piece.change(step, share) for piece in self._pieces(z))
 
     def exponents(self, edges: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return np.zeros_like(edges.α), np.zeros_like(edges.β)
@@ -167,18 +163,6 @@ class _Pieces:
         L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
         far = self._summed(lambda t: 1.0 / (t - self._w))
         return np.where(self._far, far, self._pressure * L + 2.0 * self._slope)
-
-    def change(self, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """Change of the integrals for a step share·step of the points, over share, (pieces, ...)."""
-        d = step / self._half
-        from_left, from_right = self._left + share * d, self._right + share * d
-        growth = 2.0 * d / (from_left * self._right)
-        if share != 0.0:
-            growth = log1p(share * growth) / share  # of L
-        near = self._pressure * growth + self._slope * d * np.log(from_right / from_left)
-        far = self._far & (abs(self._w + share * d) > _FAR)
-        by_rule = self._summed(lambda t: d / ((t - self._w) * (t - self._w - share * d)))
-        return np.where(far, by_rule, near)
 
     def _summed(self, kernel: Callable[[float], NDArray]) -> NDArray[Any]:
         """∫ σ kernel dt over the pieces by Gauss's rule, for points that are far."""

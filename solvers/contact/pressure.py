@@ -12,14 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .edges import weights_hilbert
-
-#: Places at which the pressure is sampled for its largest value, and places about kinks; most tops that
-#: are refined. Where there is a kink: places between a top's neighbours, and least distance of these.
-_SAMPLES = np.sin(np.linspace(-np.pi / 2.0, np.pi / 2.0, 301))[1:-1]
-_BESIDE_KINKS = np.concatenate([[0.0], *(sign * np.geomspace(1e-4, 0.1, 10) for sign in (-1.0, 1.0))])
-_TOPS, _BETWEEN, _AT_KINK = 5, 21, 1e-6
-#: Rounds of refinement by parabolas through three places, factor of each, and least distance of these.
-_HALVINGS, _NEARER, _NEAREST, _THREE = 6, 8.0, 3e-5, np.array([-1.0, 0.0, 1.0])
+from .extremes import FINER, between, largest
 
 #: Both ends of a contact, over its half-width.
 ENDS = np.array([-1.0, 1.0])
@@ -87,7 +80,7 @@ class Pressure:
         """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
         if not self.finite:
             return np.full(1, np.nan), np.full(1, np.nan)
-        top, at = largest(lambda r: -self.σ_YY(r), self.kinks)
+        top, at = largest_of(lambda r: -self.σ_YY(r), self.kinks)
         return np.array([top]), np.array([at])
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
@@ -205,54 +198,15 @@ class Expansion(Pressure):
         return np.asarray(self.functions.moved_edges(self, r, length))
 
 
-def largest(
-    pressure: Callable[[NDArray], NDArray],
-    kinks: Sequence[float] | NDArray = (),
-    places: NDArray = _SAMPLES,
+def largest_of(
+    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] | NDArray
 ) -> tuple[float, float]:
-    """Largest pressure of a state under a punch and its place, by a search about several tops.
+    """Largest pressure of a state under a punch, and its place.
 
     Args:
-        pressure: at r in (-1, 1), (points,).
+        pressure: at r in (-1, 1), (points,); 0 at both ends.
         kinks: places at which it is not smooth.
-        places: places at which it is sampled besides, (n,).
     """
-    beside = np.ravel(np.add.outer(np.array(kinks, dtype=float), _BESIDE_KINKS))
-    r = np.unique(np.concatenate([places, beside[np.abs(beside) < 1.0]]))
-    p = pressure(r)
-    tops = 1 + np.flatnonzero((p[1:-1] >= p[:-2]) & (p[1:-1] >= p[2:]))
-    if not len(tops):  # nearer to an end than all samples
-        tops = np.clip([p.argmax()], 1, len(p) - 2)
-    tops = tops[np.argsort(-p[tops], kind="stable")][:_TOPS]
-    return max(_nearer(pressure, r[i - 1 : i + 2], np.asarray(kinks)) for i in tops.tolist())
-
-
-def _nearer(
-    pressure: Callable[[NDArray], NDArray], three: NDArray, kinks: NDArray
-) -> tuple[float, float]:
-    """Largest pressure about the middle one of three places, and its place.
-
-    It is that of ever closer parabolas; as long as there is a kink about, of ever finer samples.
-    """
-    while len(inside := kinks[(kinks >= three[0]) & (kinks <= three[2])]):
-        step = (three[2] - three[0]) / (_BETWEEN - 1)
-        r = np.union1d(np.linspace(three[0], three[2], _BETWEEN), inside)
-        p = pressure(r)
-        i = int(np.clip(np.argmax(p), 1, len(r) - 2))
-        three = r[i - 1 : i + 2]
-        if step < _AT_KINK:  # where the largest pressure may have a cusp
-            return float(p.max()), float(r[p.argmax()])
-    low, high = three[[0, 2]]
-    half = (high - low) / 2.0
-    least = min(_NEAREST, half)
-    for _ in range(_HALVINGS):
-        p = pressure(three)
-        slopes = np.diff(p) / np.diff(three)
-        bend = (slopes[1] - slopes[0]) / (three[2] - three[0])
-        top = (three[0] + three[1]) / 2.0 - slopes[0] / (2.0 * bend) if bend < 0.0 else np.nan
-        if not three[0] < top < three[2]:
-            top = three[p.argmax()]
-        value = p[0] + slopes[0] * (top - three[0]) + bend * (top - three[0]) * (top - three[1])
-        half = max(half / _NEARER, least)
-        three = np.clip(top, low + half, high - half) + half * _THREE
-    return float(value), float(top)
+    turns = np.array([-1.0, *np.sort(kinks), 1.0])
+    at_kinks = zip(pressure(turns[1:-1]).tolist(), turns[1:-1].tolist())
+    return max(largest(pressure, [*between(turns, FINER)], ends=False), *at_kinks, (-np.inf, np.nan))

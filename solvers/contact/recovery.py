@@ -19,22 +19,28 @@ graded from the surface on it also has terms dⁿ logᵐ d, 1 <= m <= n, of the 
 no polynomial represents; the first of these terms, with u = d/(d + h/4) for d, stand before the
 polynomials. Where elastic constants change much within h, omitted powers decrease slowly with the number
 of functions, and the last functions measure their effect on the intensities.
+
+**Next to ends and kinks.** Pressure and slopes are continued from a little farther away to free ends and
+kinks, where finite elements have few digits. By the local analysis they are sums of two terms there: a
+smooth function, and a smooth function times a power of the distance or its logarithm.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solveh_banded
-from scipy.special import gammaln, roots_legendre
+from scipy.special import beta, roots_legendre
 
 from ..approximation import lagrange
 from .edges import under_punch
+from .estimate import SAFETY
+from .extremes import between, largest
 from .panelled import Panels
-from .pressure import Expansion, Functions
+from .pressure import Expansion, Functions, Pressure
 
 #: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
 #: another profile add further moments, and the highest measure how well these are resolved.
@@ -56,8 +62,8 @@ class Polynomials(Functions):
             moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, functions).
             α, β: exponents of the weight at X = a and X = -a, (states,); α + β = -1.
         """
-        maps = _to_factors(np.asarray(α).tobytes(), np.asarray(β).tobytes())
-        return np.asarray(np.einsum("skm,sm->sk", maps, moments))
+        each = np.moveaxis(products(α, β), -1, 0)
+        return np.asarray(np.linalg.solve(each, moments[..., None])[..., 0])
 
     def unresolved(self, c: NDArray) -> NDArray[np.float64]:
         """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
@@ -78,12 +84,11 @@ def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     Returns:
         Coefficients of the quotients, (states, ``MOMENTS``).
     """
-    coefficients = np.array(p)
+    chebyshev, coefficients = np.polynomial.chebyshev, np.array(p)
     for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
         quotient = np.zeros((MOMENTS, MOMENTS))
-        for k, row in enumerate(np.eye(MOMENTS)):
-            part = np.polynomial.chebyshev.chebdiv(row[: k + 1], divisor)[0]
-            quotient[k, : len(part)] = part
+        for k in range(1, MOMENTS):
+            quotient[k, :k] = chebyshev.chebdiv(np.eye(k + 1)[k], divisor)[0]
         coefficients = np.where(zeros[:, [end]], coefficients @ quotient, coefficients)
     return coefficients
 
@@ -91,6 +96,20 @@ def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
 def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
     """Chebyshev polynomials T_0, T_1, … at r in [-1, 1], (len(r), count)."""
     return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
+
+
+def products(α: Any, β: Any, count: int = MOMENTS) -> NDArray[np.float64]:
+    """Integrals ∫ (1-r)^α (1+r)^β T_m T_n dr, (count, count, ...), in the shape of the exponents.
+
+    The products are halves of T_{m+n} + T_{|m-n|}, whose integrals follow from a three-term recurrence.
+    """
+    μ = [2.0 ** (α + β + 1.0) * beta(α + 1.0, β + 1.0)]
+    μ.append(μ[0] * (β - α) / (α + β + 2.0))
+    for k in range(1, 2 * count - 2):
+        μ.append((2.0 * (β - α) * μ[k] + (k - 2.0 - α - β) * μ[k - 1]) / (k + 2.0 + α + β))
+    n = np.arange(count)
+    of = np.array(μ)
+    return np.asarray((of[np.add.outer(n, n)] + of[np.abs(np.subtract.outer(n, n))]) / 2.0)
 
 
 def from_moments(
@@ -105,45 +124,6 @@ def from_moments(
         functions: functions f_k, which represent the smooth factor.
     """
     return Expansion(α[:, None], β[:, None], functions.coefficients(moments, α, β), functions)
-
-
-@lru_cache(maxsize=4)
-def _to_factors(α: bytes, β: bytes) -> NDArray[np.float64]:
-    """Maps from moments to coefficients of the smooth factor, (states, k, moments).
-
-    Levels by which an error is measured have equal exponents, so recent maps are kept.
-    """
-    of = np.frombuffer(α), np.frombuffer(β)
-    P = jacobi_in_chebyshev(*of)
-    return P.swapaxes(1, 2) @ (P / jacobi_norms(*of)[..., None])
-
-
-def jacobi_in_chebyshev(α: NDArray, β: NDArray) -> NDArray[np.float64]:
-    """Chebyshev coefficients of P_n^(α,β), α + β = -1, by the three-term recurrence: (states, n, k)."""
-    P = np.zeros((len(α), MOMENTS, MOMENTS))
-    P[:, 0, 0] = 1.0
-    P[:, 1, 0], P[:, 1, 1] = α + 0.5, 0.5
-    for n in range(1, MOMENTS - 1):
-        last = P[:, n]
-        times_r = np.zeros_like(last)  # r T_k = (T_{k+1} + T_{|k-1|})/2
-        times_r[:, 1:] += last[:, :-1] / 2.0
-        times_r[:, :-1] += last[:, 1:] / 2.0
-        times_r[:, 1] += last[:, 0] / 2.0
-        leading = (2 * n + 1) * (2 * n - 1) * times_r + (β - α)[:, None] * last
-        trailing = ((n + α) * (n + β) * (2 * n + 1) / n)[:, None] * P[:, n - 1]
-        P[:, n + 1] = (leading - trailing) / ((n + 1) * (2 * n - 1))
-    return P
-
-
-def jacobi_norms(α: NDArray, β: NDArray) -> NDArray[np.float64]:
-    """Norms ∫ (1-r)^α (1+r)^β P_n² dr of Jacobi polynomials for α + β = -1, (states, n).
-
-    Γ(n+α+1) Γ(n+β+1)/(2n n! Γ(n)), and π/sin(π(1+α)) for n = 0.
-    """
-    n = np.arange(1, MOMENTS)
-    a, b = α[:, None], β[:, None]
-    logs = gammaln(n + a + 1.0) + gammaln(n + b + 1.0) - gammaln(n + 1.0) - gammaln(n)
-    return np.concatenate([np.pi / np.sin(np.pi * (1.0 + a)), np.exp(logs) / (2.0 * n)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -456,3 +436,290 @@ def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
     inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
     moved = [stretch.values(at, count) for at in inwards]
     return np.array([(functions - _at_points(stretch, count)).T for functions in moved])
+
+
+#: Distances from an end, over that of the nearest kink, between which the pressure is sampled to continue
+#: it; number of samples, and degree of the polynomial fitted to them.
+_SAMPLED_AT_END, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
+#: Distances from an end, over that of the nearest kink, between which a function A(d) + d^a B(d), A and B
+#: smooth, is sampled on either side: slopes next to an end, the pressure next to a cusp. Number of
+#: samples, Chebyshev's in the root of d; terms of each of the two series.
+_RANGE_AT_END, _SAMPLES, _TERMS_OF_EACH = (2e-5, 5e-2), 24, 3
+#: Next to a kink: the nearest sample's distance over the farthest's; the least and the largest distance
+#: of the farthest sample; and the truncation error of the series over the cube of that distance, which
+#: may be a tenth of the tolerance.
+_NEAREST_AT_KINK, _FARTHEST_AT_KINK, _LEFT_OUT = 0.015, (5e-3, 2e-2), 7e-4
+#: Least distance of the farthest sample over the length of the innermost cell.
+_CELLS_SAMPLED = 2.0
+#: Distance of the farthest sample over the usual one, to measure the truncation error of the series.
+FARTHER = 2.0
+#: Distance from an end, over that of the nearest kink, up to which a remaining intensity is subtracted.
+_CLEARED = 0.1
+
+
+class Series:
+    """Continuation of A(d) + d^a B(d), A and B smooth, to nearer distances d from an end or a kink.
+
+    Where a is a whole number n, the second term is dⁿ log d times a smooth function.
+
+    Args:
+        gap: unit of the distances over a, of the next kink or end.
+        span: distances of the nearest and the farthest sample, over the gap.
+        exponent: a.
+        at_end: add the terms of solids graded from the surface on, d^(a + 1) log d and d^(a + 2) log d,
+            and that of a remaining intensity, d^(a - 1), the last of the terms.
+
+    Attributes:
+        samples: distances of the samples over a, (m,).
+        amplitudes: map from values at the samples to amplitudes of the terms, (terms, m).
+    """
+
+    def __init__(
+        self, gap: float, span: tuple[float, float], exponent: float, at_end: bool = False
+    ) -> None:
+        low, high = (np.sqrt(share * min(gap, 1.0)) for share in span)
+        t = np.cos(np.pi * (np.arange(_SAMPLES) + 0.5) / _SAMPLES)
+        self.samples = ((low + high) / 2.0 + (high - low) / 2.0 * t) ** 2
+        self._farthest, self._exponent, self._at_end = high**2, exponent, at_end
+        self.amplitudes = np.linalg.pinv(self.terms(self.samples))
+
+    def terms(self, d: NDArray) -> NDArray[np.float64]:
+        """Terms of both series at distances d, (n, terms)."""
+        x, a, powers = d / self._farthest, self._exponent, np.arange(_TERMS_OF_EACH)
+        log = np.log(np.maximum(x, np.finfo(float).tiny))[:, None]
+        second = np.power.outer(x, a + powers) * (log if a % 1.0 == 0.0 else 1.0)
+        both = [np.power.outer(x, powers), second]
+        if self._at_end:
+            both += [np.power.outer(x, a + powers[1:]) * log, x[:, None] ** (a - 1.0)]
+        return np.concatenate(both, axis=1)
+
+    def limit(self, values: NDArray) -> float:
+        """Limit at d = 0 of values at the samples, (m,); the first term alone is left there."""
+        return float(self.amplitudes[0] @ values)
+
+
+def towards_kink(gap: float, exponent: float, farthest: float, farther: float = 1.0) -> Series:
+    """Continuation of pressure or slopes to a kink where they are finite.
+
+    Args:
+        gap: distance of the next kink or end, over a.
+        exponent: power of the distance d from the kink, below 1 at a cusp; a whole number n for dⁿ log d.
+        farthest: usual distance of the farthest sample over the gap, from :func:`farthest_at_kink`.
+        farther: distance of the farthest sample over the usual distance.
+    """
+    return Series(gap, (_NEAREST_AT_KINK * farthest, farther * farthest), exponent)
+
+
+def farthest_at_kink(tolerance: float) -> float:
+    """Distance from a kink, over that of the next kink or end, of the farthest sample.
+
+    Nearer to the kink finite elements have fewer digits, farther away the series converge less.
+    """
+    return float(np.clip((0.1 * tolerance / _LEFT_OUT) ** (1.0 / 3.0), *_FARTHEST_AT_KINK))
+
+
+def error_at_kink(usual: NDArray, farther: NDArray, in_cells: float | None = None) -> float:
+    """Error of the limits from the left and the right of a kink, in their unit.
+
+    One part is the truncation error, which grows with the distance like the first term that the series
+    lack. The other is half of the difference of both limits, which should be equal.
+
+    Samples in the innermost cells have the error of these, which hardly falls with the degree. Changes to
+    values that have more of it, or less, then show it whole.
+
+    Args:
+        usual: both limits, (2,), from series sampled up to the usual distance.
+        farther: both limits, (2,), from series sampled up to ``FARTHER`` times that distance.
+        in_cells: value of the innermost cells at the kink; None where all samples are beyond these cells.
+    """
+    left_out = np.abs(farther - usual).max() / (FARTHER**_TERMS_OF_EACH - 1.0)
+    if in_cells is not None:
+        left_out = np.abs([farther - usual, in_cells - usual]).max()
+    return float(SAFETY * left_out + np.ptp(usual) / 2.0)
+
+
+def slopes_towards_ends(
+    X: NDArray, gaps: tuple[float, float], exponents: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Map from displacement gradients a little farther away to those next to free ends.
+
+    Nearer than ``_RANGE_AT_END`` a derivative of finite elements has fewer digits than two series have.
+    A remaining intensity, d^(a - 1), is subtracted up to ``_CLEARED``: a free end has none, and the few
+    moments of the pressure do not contain it.
+
+    Args:
+        X: positions over a, (n,).
+        gaps: distances of the left and the right end from the nearest kink, over a.
+        exponents: exponents a at the left and at the right end.
+
+    Returns:
+        Positions over a of the gradients that are needed, (m,), and the map from these, (n, m).
+    """
+    places, rows = [X], [np.eye(len(X))]
+    for end, gap, a in zip((-1.0, 1.0), gaps, exponents):
+        for side in (-1.0, 1.0):
+            d = side * (X - end)
+            near, cleared = (
+                (d > 0.0) & (d < share * min(gap, 1.0)) for share in (_RANGE_AT_END[0], _CLEARED)
+            )
+            if cleared.any():
+                series = Series(gap, _RANGE_AT_END, a, at_end=True)
+                rows[0][near] = 0.0
+                more = np.zeros((len(X), len(series.samples)))
+                more[cleared] = -series.terms(d[cleared])[:, -1:] * series.amplitudes[-1]
+                more[near] = series.terms(d[near])[:, :-1] @ series.amplitudes[:-1]
+                places.append(end + side * series.samples)
+                rows.append(more)
+    return np.concatenate(places), np.concatenate(rows, axis=1)
+
+
+def gaps_of(kinks: NDArray) -> tuple[float, float]:
+    """Distances over a of the left and the right end from the nearest kink, or 2 without kinks."""
+    return 1.0 + float(kinks.min(initial=1.0)), 1.0 - float(kinks.max(initial=-1.0))
+
+
+class KinkedPressure(Pressure):
+    """Pressure σ_YY over N/(2a) of one state, with free ends and kinks, from its nodal forces alone.
+
+    Its moments would converge slowly where it has a logarithm. But cells are small and many there, so
+    that the piecewise polynomial with these nodal forces is as accurate as the forces; towards ends and
+    kinks it goes as the local analysis says.
+
+    Args:
+        s: surface coordinates of the contact nodes in order of X, (F p + 1,).
+        degree: polynomial degree p.
+        chart: chart of the mesh, see :class:`galinx.meshes.charts.Chart`.
+        forces: consistent nodal forces over N/2, (F p + 1,).
+        kinks: rising positions of the kinks over a, (k,).
+        exponents: exponents of the pressure at the left and the right end, positive.
+        exponent: power of the distance d with which the pressure departs from its value at a kink, see
+            :func:`towards_kink`; 0 where it is infinite there.
+        tolerance: relative error allowed for the limit at a kink.
+        infinite: the pressure is infinite at its kinks.
+    """
+
+    kinks: NDArray[np.float64]
+
+    #: Both ends are free.
+    K_I = np.zeros((1, 2))  # type: ignore[assignment]
+
+    def __init__(
+        self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
+        exponents: tuple[float, float], exponent: float = 0.0, tolerance: float = 1e-6,
+        infinite: bool = False,
+    ) -> None:  # fmt: skip
+        self._infinite, self._chart, self._exponent = infinite, chart, exponent
+        self.kinks, (self.β, self.α) = kinks, exponents
+        self._farthest = farthest_at_kink(tolerance)
+        self._facets = ContactFacets(s, degree, chart)
+        self._density = self._facets.density(forces)
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Positions over a between which pressure times the chart's stretch is a polynomial, (n,)."""
+        return np.asarray(self._chart.surface_position(self._facets.start[1:]))
+
+    def cells_beside(self, places: NDArray) -> NDArray[np.float64]:
+        """Length over a of the longer of the two facets that meet at each end or kink, (n,)."""
+        return np.asarray(self._facets_beside(places).max(axis=0))
+
+    def _facets_beside(self, places: NDArray) -> NDArray[np.float64]:
+        """Lengths over a of the facets to the left and to the right of each end or kink, (2, n)."""
+        edges = np.concatenate([[-1.0], self.breaks, [1.0]])
+        lengths = np.pad(np.diff(edges), 1)
+        i = np.abs(edges[:, None] - places).argmin(axis=0)
+        return lengths[[i, i + 1]]
+
+    @cached_property
+    def _ends(self) -> list[tuple[float, float, np.polynomial.Chebyshev]]:
+        """Exponent, nearest sample's distance and smooth factor of the pressure next to each end."""
+        t, each = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES)), []
+        for side, gap, a in zip((-1.0, 1.0), gaps_of(self.kinks), (self.β, self.α)):
+            near, far = (share * min(gap, 1.0) for share in _SAMPLED_AT_END)
+            d = (near + far) / 2.0 + (far - near) / 2.0 * t
+            factor = self._piecewise(side * (1.0 - d)) / d**a
+            each.append((a, float(d[0]), np.polynomial.Chebyshev.fit(d, factor, _DEGREE)))
+        return each
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        σ, inside = np.full(len(r), np.nan), under_punch(r)
+        σ[inside] = self._piecewise(r[inside])
+        for d, (a, nearest, factor) in zip((1.0 + r, 1.0 - r), self._ends):
+            near = (d > 0.0) & (d < nearest)
+            σ[near] = d[near] ** a * factor(d[near])
+        for number, at in enumerate(self.kinks if self._exponent else ()):
+            for side in (-1.0, 1.0):
+                series, d = self._series(number, side), side * (r - at)
+                near = (d >= 0.0) & (d < series.samples.min())
+                if near.any():
+                    amplitudes = series.amplitudes @ self._piecewise(at + side * series.samples)
+                    σ[near] = series.terms(d[near]) @ amplitudes
+        return (σ / ((1.0 - r) ** self.α * (1.0 + r) ** self.β))[None]
+
+    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each."""
+        if self._infinite:
+            return np.full(1, np.nan), np.full(1, np.nan)
+        pieces = self._facets.start[:, None] + self._facets.length[:, None] * self._facets.nodes
+        ends = np.concatenate([[-1.0], self.breaks, [1.0]])
+        at_turn = np.isin(ends, [-1.0, *ends[np.abs(ends[:, None] - self.kinks).argmin(axis=0)], 1.0])
+        open_, pressure = at_turn[:-1] | at_turn[1:], lambda r: -self.σ_YY(r)[0]
+        top = max(
+            largest(pressure, [*between(ends)[open_]], ends=False),
+            largest(pressure, [*self._chart.surface_position(pieces[~open_])]),
+            *((-self.at_kink(i), float(kink)) for i, kink in enumerate(self.kinks)),
+            *zip(pressure(self.kinks).tolist(), self.kinks.tolist()),
+        )
+        return np.array(top[:1]), np.array(top[1:])
+
+    def at_kink(self, number: int) -> float:
+        """Contact stress σ_YY over N/(2a) at a kink."""
+        return self.limit_at_kink(number, self._piecewise)
+
+    def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
+        """Stress or strain at a kink; where it has an ``exponent``, the mean of limits from both sides.
+
+        A limit is taken because the innermost cells are so small that rounding of the nodal forces shows
+        in their values.
+
+        Args:
+            number: number of the kink, from the left.
+            values: function of positions over a, (n,), that gives the stress or strain, (n,).
+        """
+        if not self._exponent:
+            return float(values(self.kinks[[number]])[0])
+        return float(np.mean(self._limits(number, values)))
+
+    @property
+    def left_at_kinks(self) -> float:
+        """Largest error over N/(2a) of the limits at kinks, measured on limits from both sides."""
+        errors = [0.0]
+        for number in range(len(self.kinks) if self._exponent else 0):
+            kink = self.kinks[[number]]
+            nearest = [self._series(number, side).samples.min() for side in (-1.0, 1.0)]
+            in_cells = bool((nearest < self._facets_beside(kink)[:, 0]).any())
+            usual, farther = (self._limits(number, self._piecewise, by) for by in (1.0, FARTHER))
+            errors.append(error_at_kink(usual, farther, self._piecewise(kink)[0] if in_cells else None))
+        return max(errors)
+
+    def _limits(
+        self, number: int, values: Callable[[NDArray], NDArray], farther: float = 1.0
+    ) -> NDArray[np.float64]:
+        """Limits from the left and the right of a kink, (2,)."""
+        each = [(side, self._series(number, side, farther)) for side in (-1.0, 1.0)]
+        kink = self.kinks[number]
+        return np.array([series.limit(values(kink + side * series.samples)) for side, series in each])
+
+    def _series(self, number: int, side: float, farther: float = 1.0) -> Series:
+        """Continuation of the pressure to a kink from one side."""
+        gaps = np.diff(np.concatenate([[-1.0], self.kinks, [1.0]]))[number : number + 2]
+        right = int(side > 0.0)
+        # Either side's series are smooth as far as the nearer neighbour, whichever side that is on; but
+        # samples that all lie in the innermost cell would show nothing of its error.
+        cell = float(self._facets_beside(self.kinks[[number]])[right, 0])
+        gap = min(float(gaps[right]), max(float(gaps.min()), _CELLS_SAMPLED * cell / self._farthest))
+        return towards_kink(gap, self._exponent, self._farthest, farther)
+
+    def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
+        """Contact stress over N/(2a) of the piecewise polynomial at positions over a, (n,)."""
+        return self._facets.stress(self._density, r)

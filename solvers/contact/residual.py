@@ -182,17 +182,7 @@ class _LineLoads:
         self._t, self._loads = t, loads / np.pi
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
-        return self._sum(1.0 / (self._t - z[..., None]))
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        z, step = (np.broadcast_to(part, np.broadcast_shapes(z.shape, step.shape)) for part in (z, step))
-        moved = self._t - (z + share * step)[..., None]
-        return self._sum(step[..., None] / ((self._t - z[..., None]) * moved))
-
-    def _sum(self, kernel: NDArray) -> NDArray[np.complex128]:
-        return np.asarray(np.einsum("sn,spn->sp", self._loads, np.broadcast_to(
-            kernel, (len(self._loads), *kernel.shape[1:])
-        )))  # fmt: skip
+        return np.asarray(np.einsum("sn,pn->sp", self._loads, 1.0 / (self._t - z[0, :, None])))
 
 
 def of_field(

@@ -1,9 +1,7 @@
 """Contact of a punch and a half-plane, and its solutions by any method: friction states at one speed.
 
 Lengths are over the contact's half-width a, stresses over N/(2a), N the load per depth. A
-:class:`Contact` has the units of both in SI. At free ends of a contact and at kinks of its punch stresses
-change with a power of the distance, and the largest may lie between samples: a :class:`Surface` has
-limits there, :class:`Turns`.
+:class:`Contact` has the units of both in SI.
 """
 
 from collections.abc import Mapping
@@ -21,34 +19,10 @@ from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
-from .edges import EdgeExponents, Exponents, under_punch
+from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
 from .pressure import Pressure
-
-
-@dataclass(frozen=True)
-class Places:
-    """Places at which stresses are computed, over a.
-
-    Attributes:
-        X: positions on the surface, (n,).
-        points: positions X, Y inside, (m, 2).
-        around: positions X, Y at which stresses are compared with the yield strength, (k, 2).
-        interfaces: depths of a layered solid's interfaces, (layers,).
-        along: positions X along each interface, (l,).
-    """
-
-    X: NDArray[np.float64]
-    points: NDArray[np.float64]
-    around: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))
-    interfaces: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-    along: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-
-    @cached_property
-    def under(self) -> NDArray[np.bool_]:
-        """True at positions on the surface under the punch, (n,)."""
-        return under_punch(self.X)
-
+from .stresses import Places, Surface
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
 #: those of a prescribed pressure.
@@ -80,6 +54,16 @@ class Contact:
         yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
         ends: ``SHARP``, ``FREE``, ``ONE_FREE`` or ``PRESCRIBED``.
         found: True if an end of the contact is free: the half-width then depends on the state.
+        fem_mode: mode of finite elements, "" where that depends on the profile and the solid.
+        modes: modes by which quantities and rules that apply are selected.
+        flat: True if the punch is flat and not tilted.
+        finite: True if all stresses are finite: both ends are free, and the profile has no tip.
+        growth_exponent: exponent of the load by which similar contacts grow, those of a flat punch, of a
+            power of |X| on a uniform solid, and under a prescribed pressure; None if other loads make
+            others.
+        knots: positions X/a between which a prescribed pressure is linear; none under a punch.
+        friction_kinks: positions X/a at which friction along the contact is not smooth, in any state.
+        tips: positions from the punch's axis [m] at which stresses inside the contact are infinite.
     """
 
     solid: Solid
@@ -90,8 +74,14 @@ class Contact:
 
     ends: ClassVar[str]
     found: ClassVar[bool] = False
-    #: Mode of finite elements, "" where that depends on the profile and the solid.
     fem_mode: ClassVar[str] = ""
+    modes: ClassVar[Any] = (PUNCH,)
+    flat: ClassVar[Any] = False
+    finite: ClassVar[Any] = False
+    growth_exponent: ClassVar[Any] = None
+    knots: ClassVar[Any] = ()
+    friction_kinks: ClassVar[Any] = ()
+    tips: ClassVar[Any] = ()
 
     @property
     def half_width(self) -> Any:
@@ -99,38 +89,9 @@ class Contact:
         return half_width(self.profile)
 
     @property
-    def flat(self) -> bool:
-        """True if the punch is flat and not tilted."""
-        return False
-
-    @property
-    def growth_exponent(self) -> float | None:
-        """Exponent of the load by which similar contacts grow; None if other loads make others.
-
-        Similar are contacts of a flat punch, of a power of |X| on a uniform solid, and those under a
-        prescribed pressure.
-        """
-        return None
-
-    @property
     def alike(self) -> bool:
         """True if contacts under all loads are similar: they differ in size alone."""
         return self.growth_exponent is not None
-
-    @property
-    def finite(self) -> bool:
-        """True if all stresses are finite: both ends are free, and the profile has no tip."""
-        return False
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Modes by which quantities and rules that apply are selected."""
-        return (PUNCH,)
-
-    @property
-    def knots(self) -> tuple[float, ...]:
-        """Positions X/a between which a prescribed pressure is linear; none under a punch."""
-        return ()
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -183,11 +144,6 @@ class Contact:
         """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with means g."""
         return np.asarray(g)[:, None]
 
-    @property
-    def friction_kinks(self) -> tuple[float, ...]:
-        """Positions over a at which friction along the contact is not smooth, in any state."""
-        return ()
-
     def edges(self, response: HalfPlane, g: NDArray) -> Any:
         """Local analysis of sharp ends with frictions g, (states,): exponents α and β."""
         return EdgeExponents(response, g)
@@ -219,19 +175,9 @@ class Contact:
         return len(self.solid.depths) > 0
 
     @property
-    def shared_ends(self) -> tuple[Any, float] | None:
-        """Half-width and middle [m] of the contacts of all states; None where each has its own."""
-        return self.half_width, 0.0
-
-    @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:
         """Unit of interfaces' depths, "1" over a half-width that all states share or "m", and these."""
         return "1", self.solid.depths / self.half_width
-
-    @property
-    def tips(self) -> tuple[float, ...]:
-        """Positions from the punch's axis [m] at which stresses inside the contact are infinite."""
-        return ()
 
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         """True where stresses at the left and the right end are infinite, (states, 2).
@@ -336,8 +282,7 @@ class VaryingContact(SharpContact):
 
     along: Mapping[float, Along] = field(default_factory=dict)
 
-    modes = (PUNCH, VARYING)  # type: ignore[assignment]
-    fem_mode = VARYING
+    modes, fem_mode = (PUNCH, VARYING), VARYING
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -386,7 +331,7 @@ class PrescribedContact(SharpContact):
 class FreeEndContact(Contact):
     """Contact of which the pressure determines an end, or both."""
 
-    found, shared_ends = True, None
+    found = True
 
     @property
     def tips(self) -> tuple[float, ...]:
@@ -557,96 +502,6 @@ def solved_once(
         return g, load, slice(None), 1.0
     different, rows = np.unique(g, return_inverse=True)
     return different, None, rows, task.body.growth(load)
-
-
-@dataclass(frozen=True)
-class Turns:
-    """Limits of the stresses on the surface at free ends of a contact and at kinks of the punch.
-
-    Near these places stresses go with a power of the distance, and samples miss the largest stress.
-
-    Attributes:
-        X: places over a, NaN for none, (states, k).
-        σ: σ_XX, σ_YY, σ_XY over N/(2a) at these places, NaN for none, (3, states, k).
-        between: positions over a in intervals between neighbouring kinks, near both of which σ_XX has a
-            logarithm of the distance, and σ_XX there, NaN for none, (2, states, intervals, n); positions
-            are at :data:`galinx.solvers.contact.free_ends.GRADED`. None without kinks.
-    """
-
-    X: NDArray[np.float64]
-    σ: NDArray[np.float64]
-    between: NDArray[np.float64] | None = None
-
-    def of(self, rows: NDArray) -> "Turns":
-        """Turns of the states with these numbers, which may repeat."""
-        between = None if self.between is None else self.between[:, rows]
-        return Turns(self.X[rows], self.σ[:, rows], between)
-
-    def joined(self, other: "Turns") -> "Turns":
-        """Turns at these places and at other places of the same states."""
-        σ = np.concatenate([self.σ, other.σ], axis=2)
-        between = other.between if self.between is None else self.between
-        return Turns(np.concatenate([self.X, other.X], axis=1), σ, between)
-
-
-def together(each: list[Turns]) -> Turns | None:
-    """Turns of all states from those of some, padded with NaN where these have fewer places than others.
-
-    Args:
-        each: turns of one or several states.
-
-    Returns:
-        Turns of as many states; None where the list is empty.
-    """
-    if not each:
-        return None
-    X, σ = _padded([turns.X[None] for turns in each])[0], _padded([turns.σ for turns in each])
-    n = {turns.between.shape[-1] for turns in each if turns.between is not None}
-    between = [
-        np.empty((2, len(turns.X), 0, *n)) if turns.between is None else turns.between for turns in each
-    ]
-    return Turns(X, σ, _padded(between) if n else None)
-
-
-def _padded(each: list[NDArray]) -> NDArray[np.float64]:
-    """Arrays (components, states, k, ...), one after the other, padded with NaN to the largest k."""
-    most = max(values.shape[2] for values in each)
-
-    def whole(values: NDArray) -> NDArray[np.float64]:
-        widths = [(0, (most - values.shape[2]) * (axis == 2)) for axis in range(values.ndim)]
-        return np.pad(np.asarray(values, dtype=float), widths, constant_values=np.nan)
-
-    return np.concatenate([whole(values) for values in each], axis=1)
-
-
-@dataclass(frozen=True)
-class Surface:
-    """Stresses on the surface Y = 0.
-
-    Attributes:
-        places: positions at which the stresses are computed.
-        σ_YY: contact stress over N/(2a), NaN beside the punch, (states, n).
-        σ_XX: in-plane stress over N/(2a), (states, n).
-        raw: contact stress over N/(2a) without an assumed exponent, (states, n); of finite elements
-            alone.
-        v_X: slopes μ v,X over N/(2a), (states, n); of finite elements alone.
-        turns: limits of the stresses; None where they are infinite at both ends and have no cusp.
-    """
-
-    places: Places
-    σ_YY: NDArray[np.float64]
-    σ_XX: NDArray[np.float64]
-    raw: NDArray[np.float64] | None = None
-    v_X: NDArray[np.float64] | None = None
-    turns: Turns | None = None
-
-    def of(self, rows: NDArray) -> "Surface":
-        """Stresses of the states with these numbers, which may repeat."""
-        σ_YY, σ_XX, raw, v_X = (
-            None if values is None else values[rows]
-            for values in (self.σ_YY, self.σ_XX, self.raw, self.v_X)
-        )  # fmt: skip
-        return Surface(self.places, σ_YY, σ_XX, raw, v_X, self.turns and self.turns.of(rows))  # type: ignore[arg-type]
 
 
 class Solution(Protocol):

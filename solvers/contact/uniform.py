@@ -176,7 +176,7 @@ def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY, (states,).
     """
-    if body.shared_ends is None:
+    if body.found:
         return contacts(response, g, body.profile, body.compression)
     if known := body.known_pressures(response, g):
         return Contacts(response, g, tuple(_fixed(rows, p, body.half_width) for rows, p in known))

@@ -1,22 +1,25 @@
 """Yield by von Mises under a punch or a pressure: largest stresses, zones, and the load at first yield.
 
-**Finite stresses.** Computed are the largest stress below a pressure, and the largest depth at which the
-yield strength is reached. Stresses vary over the distance to the pressure's knots, all of which lie on
-the surface. So the solid is sampled at depths that double, at places along X half the depth apart.
-Shallow places are sampled only where knots are close enough to one another. The surface itself is sampled
-between all knots. Where a contact ends, or its punch has a kink, stresses vary like a power of the
-distance: there the solid is sampled on circles of growing radii, and the limit gives the stress at the
-place itself.
+**Largest stresses** of a uniform solid. Stresses vary over the distance to the pressure's knots, all of
+which lie on the surface. So the solid is sampled at depths that double, at places along X half the depth
+apart. Shallow places are sampled only where knots are close enough to one another. The surface itself is
+sampled between all knots. Where a contact ends, or its punch has a kink, stresses vary like a power of
+the distance: there the solid is sampled on circles of growing radii, and the limit gives the stress at
+the place itself. From the highest samples a search climbs to the largest stress.
 
-**Sharp edges.** At the two edges of a punch stresses are infinite, and yielded zones have a reach and a
-depth. Every ray from an edge has a last point in the zone. The farthest and the deepest of these points
-give the reach and the depth of a zone of any shape.
+**Layers.** A stress is largest on the surface, on either side of an interface, or inside a layer. Along
+the surface and the interfaces stresses are known at many positions. Inside, a layer is sampled at a few
+depths; where one of these has more than the faces beside it, the depth of the largest stress is searched
+for between its neighbours. So both methods need stresses at few points, one state at a time.
+
+**Zones** in which the yield strength is reached. How far one reaches is a search for the largest t, a
+depth or the distance from a sharp edge, at which the largest stress along another coordinate is the
+strength.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,236 +27,18 @@ from numpy.typing import NDArray
 
 from ..profiles import exponent
 from ..solids.half_plane import HalfPlane
-from .solution import Contact, Turns
-from .stresses import maximum_shear, von_mises
+from .extremes import extreme, largest
+from .solution import Contact
+from .stresses import Surface, Turns, maximum_shear, on_surface, turns_at_ends, von_mises
 
-#: Distances over a between which rays are sampled. Nearer, stresses are extrapolated; no zone reaches
-#: farther under a load that a punch can carry.
-NEAREST, FARTHEST = 1e-4, 10.0
-
-#: Angles from the free surface to the punch, and places along a ray.
-_ANGLES, _PLACES = np.linspace(0.0, np.pi, 33), 43
-
-#: Rounds of the search for the best angle, and factor by which the step between angles falls in each.
-_EDGE_ROUNDS, _EDGE_FINER = 3, 8.0
-
-#: Steps to the place on a ray where yield is reached, and allowed residual of the stress's logarithm.
-_STEPS, _OFF = 5, 1e-8
-
-#: Both edges, for reach and then for depth: the side of the punch, and whether it is a depth.
-_SIDE, _DEEP = np.array([-1.0, 1.0, -1.0, 1.0]), np.array([False, False, True, True])
-
-#: Function that gives the stress of every state over the yield strength, (states, n), at points over a,
-#: (states or 1, n, 2).
+#: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
 Stress = Callable[[NDArray], NDArray]
-
-
-def edge_places() -> NDArray[np.float64]:
-    """Places X, Y over a on rays from X = -a, then from X = a, at which stresses are sampled, (n, 2)."""
-    rays = (_points(side, _ANGLES[:, None], np.exp(_grid())).reshape(-1, 2) for side in (-1.0, 1.0))
-    return np.concatenate([*rays])
-
-
-@dataclass(frozen=True)
-class Zones:
-    """Reach and depth over a of the zones at sharp edges in which the yield strength is exceeded.
-
-    Both are NaN where a zone extends beyond ``FARTHEST``.
-
-    Attributes:
-        reach: largest distance from X = -a and from X = a, each on its side of the middle, (states, 2).
-        depth: largest depth, (states,).
-    """
-
-    reach: NDArray[np.float64]
-    depth: NDArray[np.float64]
-
-
-def zones(stress: Stress, stresses: NDArray, exponents: NDArray) -> Zones:
-    """Reach and depth over a of the zones in which the yield strength is exceeded, from sharp edges.
-
-    Args:
-        stress: von Mises stress over the yield strength.
-        stresses: von Mises stress over the yield strength at :func:`edge_places`, (states, n).
-        exponents: powers of the distance of stresses next to X = -a and to X = a, (states, 2).
-    """
-    rays = _Rays(stress, -np.tile(exponents, 2))
-    at_edges = _log(stresses).reshape(len(stresses), 2, *_grid().shape)
-    t, slope, beyond = (np.tile(values, (1, 2, 1)) for values in rays.on_grid(at_edges))
-    endless = np.asarray(beyond.any(axis=(1, 2)))
-    size = np.where(endless[:, None], np.nan, _largest(rays, t, slope))
-    return Zones(size[:, ~_DEEP], size[:, _DEEP].max(axis=1))
-
-
-def _points(side: float | NDArray, φ: NDArray, r: NDArray) -> NDArray[np.float64]:
-    """Points X, Y over a from polar coordinates at an edge, (..., 2).
-
-    Args:
-        side: the edge's X over a.
-        φ: angles from the free surface.
-        r: distances over a.
-    """
-    along = (φ <= 0.0) | (φ >= np.pi)  # the surface, to the last digit
-    return np.stack([side * (1.0 + r * np.cos(φ)), np.where(along, 0.0, -r * np.sin(φ))], axis=-1)
-
-
-def _end(φ: NDArray) -> NDArray[np.float64]:
-    """Logarithm of a ray's length over a, in the shape of φ: up to X = 0, or up to ``FARTHEST``."""
-    return -np.log(np.maximum(-np.cos(φ), 1.0 / FARTHEST))
-
-
-def _grid() -> NDArray[np.float64]:
-    """Logarithms of the distances over a at which every ray is sampled, (angles, places)."""
-    return np.linspace(np.log(NEAREST), _end(_ANGLES), _PLACES, axis=-1)
-
-
-def _log(stress: NDArray) -> NDArray[np.float64]:
-    return np.log(np.maximum(stress, np.finfo(float).tiny))  # 0 on the free surface without friction
-
-
-def _height(φ: NDArray) -> NDArray[np.float64]:
-    """Factor of a distance, (states, 4, n): 1 for reach, the sine of the angle for depth."""
-    return np.where(_DEEP[:, None], np.sin(φ), 1.0)
-
-
-@dataclass(frozen=True)
-class _Rays:
-    """Rays from the edges, on which t is the logarithm of the distance over a.
-
-    Attributes:
-        stress: von Mises stress over the yield strength.
-        power: power of the distance with which stresses fall next to the edges, (states, 4).
-    """
-
-    stress: Stress
-    power: NDArray[np.float64]
-
-    def on_grid(self, L: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """Approximate places where rays leave the zone, and slopes of the stress there.
-
-        Args:
-            L: logarithm of the stress along the rays of the grid, (states, 2, angles, places).
-
-        Returns:
-            t, dL/dt, and True where the zone extends beyond ``FARTHEST``, (states, 2, angles) each.
-        """
-        t, j, end = _grid(), np.arange(len(_ANGLES)), L.shape[-1] - 1
-        passed = L >= 0.0
-        last = np.where(passed.any(axis=-1), end - passed[..., ::-1].argmax(axis=-1), -1)
-        k = np.clip(last, 0, end - 1)
-        L_in, L_out = (np.take_along_axis(L, i[..., None], -1)[..., 0] for i in (k, k + 1))
-        slope = np.minimum((L_out - L_in) / (t[j, k + 1] - t[j, k]), -1e-3)
-        slope = np.where(last < 0, -self.power[:, :2, None], slope)
-        out = np.where(last == end, t[:, -1], t[j, k] - L_in / slope)
-        return out, slope, (last == end) & (t[:, -1] >= np.log(FARTHEST))
-
-    def outermost(self, φ: NDArray, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
-        """Logarithms t of the distances at which rays leave the zone, (states, 4, n); -inf for none.
-
-        Args:
-            φ: angles of the rays, (states, 4, n).
-            t, slope: guesses of t and of dL/dt at these places, (states, 4).
-        """
-        t, slope = t[..., None] + 0.0 * φ, slope[..., None] + 0.0 * φ
-        L = self._logarithm(φ, t)
-        for _ in range(_STEPS):
-            step = np.clip(-L / slope, -1.0, 1.0)
-            before, t = L, t + step
-            L = self._logarithm(φ, t)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                secant = (L - before) / step
-            slope = np.where(np.isfinite(secant) & (secant < 0.0), secant, slope)
-        return np.where(np.abs(L) <= _OFF, np.minimum(t - L / slope, _end(φ)), -np.inf)
-
-    def _logarithm(self, φ: NDArray, t: NDArray) -> NDArray[np.float64]:
-        """Logarithm of the stress at angles φ and t, (states, 4, n); it falls further beyond a ray's end.
-
-        Nearer than ``NEAREST`` the stress is a power of the distance r, times 1 + B r.
-        """
-        first, end = np.log(NEAREST), _end(φ)
-        r = np.exp(np.clip(t, first, end))
-        both = np.concatenate([r, np.full_like(r, 2.0 * NEAREST)], axis=-1)
-        points = _points(_SIDE[:, None], np.concatenate([φ, φ], axis=-1), both)
-        both_logs = _log(self.stress(points.reshape(len(φ), -1, 2))).reshape(both.shape)
-        L, second = np.split(both_logs, 2, axis=-1)
-        p, nearer = self.power[..., None], np.maximum(first - t, 0.0)
-        B = (second - L + p * np.log(2.0)) / NEAREST
-        near = L + p * nearer - B * NEAREST * -np.expm1(-nearer)
-        return np.where(nearer > 0.0, near, L - np.maximum(t - end, 0.0))
-
-
-def _largest(rays: _Rays, t: NDArray, slope: NDArray) -> NDArray[np.float64]:
-    """Largest distance over a at which a ray leaves the zone, then largest depth, (states, 4).
-
-    Args:
-        rays: rays from both edges.
-        t, slope: approximate t and dL/dt of rays of the grid, (states, 4, angles).
-    """
-    unit = t.max(axis=-1)  # distances themselves may be too small for squares
-    best = np.argmax(np.exp(t - unit[..., None]) * _height(_ANGLES), axis=-1)[..., None]
-    guess, slope = (np.take_along_axis(x, best, -1)[..., 0] for x in (t, slope))
-    φ, h = _ANGLES[best], _ANGLES[1]
-    size, solved = (np.exp(guess - unit)[..., None] * _height(φ))[..., 0], np.zeros(guess.shape, bool)
-    for _ in range(_EDGE_ROUNDS):
-        three = np.clip(φ, h, np.pi - h) + h * np.array([-1.0, 0.0, 1.0])
-        three = np.clip(three, 0.0, np.pi)
-        at = rays.outermost(three, guess, slope)
-        sizes = np.where(np.isfinite(at), np.exp(at - unit[..., None]) * _height(three), -np.inf)
-        top = sizes.max(axis=-1)
-        better = np.isfinite(top) & (~solved | (top > size))  # than interpolated, or than before
-        size, solved = np.where(better, top, size), solved | np.isfinite(top)
-        where = sizes.argmax(axis=-1)[..., None]
-        guess = np.where(better, np.take_along_axis(at, where, -1)[..., 0], guess)
-        φ = three[..., 1:2] + h * vertex(sizes)[..., None]
-        h /= _EDGE_FINER
-    return size * np.exp(unit)
-
-
-def vertex(values: NDArray) -> NDArray[np.float64]:
-    """Place in [-1, 1] of the largest value of the parabola through values at -1, 0, 1, (..., 3)."""
-    y_left, y, y_right = np.moveaxis(values, -1, 0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        bend = y_left - 2.0 * y + y_right
-        top = np.clip((y_left - y_right) / (2.0 * bend), -1.0, 1.0)
-    return np.where(np.isfinite(top) & (bend < 0.0), top, values.argmax(axis=-1) - 1.0)
-
-
-#: Depth over a to which the solid is sampled.
-_DEEPEST = 10.0
-
-#: Places along X: their distance over the depth; number of them on either side of a knot; and width of a
-#: piece over the depth above which this depth is left out, since the surface represents it.
-_APART, _AROUND, _SHALLOW = 0.5, 4, 4.0
-
-#: Places on the surface between two knots.
-_BETWEEN = 4
-
-#: Circles around a place where stresses vary like a power of the distance: radius over that of the next
-#: smaller circle, and directions from there, along the surface and down.
-_WIDER, _DIRECTIONS = 3.0, np.linspace(0.0, np.pi, 9)
-
-#: Places from which the search for the largest value starts, and most rounds of it; factor by which the
-#: step falls near the largest; and least step over the first one, at which a round without a better value
-#: is the last.
-_STARTS, _ROUNDS, _FINER, _SMALLEST = 8, 40, 2.0, 1e-3
-#: Number of rounds after which only the best starts go on, and number of these.
-_ALL_OF_THEM, _BEST = 3, 3
-#: Distance from a start, over its step, within which no place may have a larger value; and least stress
-#: of a start over the largest.
-_OWN, _LEAST = 1.5, 0.7
-
-#: Halvings towards a depth, and factor of the distance between places along X in each: places have to
-#: follow a largest stress that moves as the depth changes.
-_HALVINGS, _NEARER = 30, 0.7
-
-_STENCIL = np.array([(u, w) for u in (-1.0, 0.0, 1.0) for w in (-1.0, 0.0, 1.0)])
-#: Map from values on the stencil to coefficients of 1, u, w, u², uw, w².
-_FIT = np.linalg.pinv(
-    np.stack(
-        [np.ones(9), *_STENCIL.T, _STENCIL[:, 0] ** 2, _STENCIL.prod(axis=1), _STENCIL[:, 1] ** 2],
-        axis=1,
-    )
-)
+#: Function that gives σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points over a with Y <= 0,
+#: (states or 1, n, 2).
+Field = Callable[[NDArray], NDArray]
+#: Function of the number of a state and of points over a inside the solid, (n, 2), that gives σ_XX, σ_YY,
+#: σ_XY over N/(2a) there, (3, n).
+Inside = Callable[[int, NDArray], NDArray]
 
 
 @dataclass(frozen=True)
@@ -265,51 +50,67 @@ class Peak:
     Y: NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+def places(body: Contact) -> NDArray[np.float64]:
+    """Places X, Y over a at which the stresses of every state are sampled, (n, 2)."""
+    if body.layered:
+        depths = np.concatenate(sampled_depths(body.solid.depths / body.half_width))
+        X, Y = np.meshgrid(np.linspace(-1.5, 1.5, 7), -depths[depths >= _SHALLOWEST])
+        return np.column_stack([X.ravel(), Y.ravel()])
+    knots = _knots(body)
+    return _on_rays() if knots is None else Levels(knots).places
+
+
+#: Knots over a that stand for a smooth pressure; at the ends finite elements have no gradients.
+_SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
+
+
+def _knots(body: Contact) -> NDArray[np.float64] | None:
+    """Knots over a of a finite pressure, (k,); None under a punch with infinite stresses."""
+    if body.pressure:
+        return body.pressure.knots
+    return _SMOOTH if body.finite else None
+
+
+#: Depth over a to which the solid is sampled.
+_DEEPEST = 10.0
+#: Places along X: their distance over the depth; number of them on either side of a knot; and width of a
+#: piece over the depth above which this depth is left out, since the surface represents it.
+_APART, _AROUND, _SHALLOW = 0.5, 4, 4.0
+#: Places on the surface between two knots, and beside all of them on either side.
+_BETWEEN, _BESIDE = 4, 40
+
+
 class Levels:
-    """Levels of depth below a pressure at which the solid is sampled.
+    """Levels of depth below a pressure at which the solid is sampled, the surface first.
+
+    Args:
+        knots: rising positions over a of the pressure's knots, (k,).
 
     Attributes:
-        knots: rising positions over a of the pressure's knots, (k,).
+        places: X and Y over a, (n, 2).
+        steps: distances over a from each place to its neighbours, (n,).
+        depths: of the levels over a, rising, (levels,).
+        level: number of each place's level, (n,).
     """
 
-    knots: NDArray[np.float64]
-
-    @cached_property
-    def _by_level(self) -> list[tuple[NDArray, NDArray, NDArray]]:
-        """X and Y over a of the places of every level, and steps over a between them, (n,) each."""
-        width = np.diff(self.knots)
+    def __init__(self, knots: NDArray) -> None:
+        width = np.diff(knots)
         narrow = np.minimum(np.append(width, np.inf), np.append(np.inf, width))
-        levels = [_on_surface(self.knots, width)]
-        y = _DEEPEST
+        between = (knots[:-1, None] + width[:, None] * np.arange(_BETWEEN) / _BETWEEN).ravel()
+        left, right = (np.geomspace(w / _BETWEEN, _DEEPEST, _BESIDE) for w in width[[0, -1]])
+        X = [np.concatenate([knots[0] - left[::-1], between, knots[-1:], knots[-1] + right])]
+        own = np.concatenate([left[::-1], np.repeat(width, _BETWEEN), width[-1:], right])
+        steps, depths, y = [own / (2 * _BETWEEN)], [0.0], _DEEPEST
         while y > width.min() / _SHALLOW:
             apart = _APART * y
-            near = self.knots[narrow < _SHALLOW * y][:, None] / apart
-            X = apart * np.unique(np.round(near) + np.arange(-_AROUND, _AROUND + 1.0))
-            levels.insert(1, (X, np.full(len(X), -y), np.full(len(X), apart)))
+            near = knots[narrow < _SHALLOW * y][:, None] / apart
+            X.insert(1, apart * np.unique(np.round(near) + np.arange(-_AROUND, _AROUND + 1.0)))
+            steps.insert(1, np.full(len(X[1]), apart))
+            depths.insert(1, y)
             y /= 2.0
-        return levels
-
-    @cached_property
-    def places(self) -> NDArray[np.float64]:
-        """Places over a of all levels, from the surface on, (n, 2)."""
-        return np.concatenate([np.column_stack([X, Y]) for X, Y, _ in self._by_level])
-
-    @cached_property
-    def steps(self) -> NDArray[np.float64]:
-        """Distances over a from each place to its neighbours, (n,)."""
-        return np.concatenate([step for *_, step in self._by_level])
-
-    def best(self, values: NDArray) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Number of the place with the largest value on each level, and the value, (states, levels) each.
-
-        Args:
-            values: stress at :attr:`places`, (states, n).
-        """
-        first = np.cumsum([0, *(len(X) for X, *_ in self._by_level)])
-        levels = [values[:, i:j].argmax(axis=1) + i for i, j in pairwise(first)]
-        best = np.stack(levels, axis=1)
-        return best, np.take_along_axis(values, best, 1)
+        self.depths, self.steps = np.array(depths), np.concatenate(steps)
+        self.level = np.repeat(np.arange(len(depths)), [len(x) for x in X])
+        self.places = np.column_stack([np.concatenate(X), 0.0 - self.depths[self.level]])
 
     def depth(self, stress: Stress, there: NDArray, peak: Peak) -> NDArray[np.float64]:
         """Depth over a of the deepest place at which a stress is 1 or more, (states,); 0 without any.
@@ -317,31 +118,39 @@ class Levels:
         Args:
             stress: function that gives the stress at points.
             there: stress at :attr:`places`, (states, n).
-            peak: largest stress, see :func:`peak`.
+            peak: largest stress.
 
         Returns:
             Depths, NaN where the zone extends below all places.
         """
-        best, values = self.best(there)
-        passed, rows = values >= 1.0, np.arange(len(there))
-        deepest = np.where(passed.any(axis=1), passed.shape[1] - 1 - passed[:, ::-1].argmax(axis=1), 0)
-        X, Y = self.places[best[rows, deepest]].T
-        inner = np.where(passed[rows, deepest], 0.0 - Y, 0.0)
-        somewhere = passed.any(axis=1)
-        of_peak = (peak.value >= 1.0) & (~somewhere | (inner < -peak.Y))
-        inner, X = np.where(of_peak, -peak.Y, inner), np.where(of_peak, peak.X, X)
-        depths = np.array([-level[0] for _, level, _ in self._by_level])
-        outer = depths[np.minimum(np.searchsorted(depths, inner, side="right"), len(depths) - 1)]
-        depth = _deepest(stress, X, inner, outer)
-        depth = np.where(passed[:, -1], np.nan, depth)
-        return np.where(somewhere | (peak.value >= 1.0), depth, 0.0)
+        deepest = np.where(there >= 1.0, self.level, -1).max(axis=1)
+        at = np.where(self.level == deepest[:, None], there, -np.inf).argmax(axis=1)
+        X, inner = self.places[at, 0], np.where(deepest < 0, -1.0, self.depths[deepest])
+        of_peak = (peak.value >= 1.0) & (inner < -peak.Y)
+        X, inner = np.where(of_peak, peak.X, X), np.where(of_peak, -peak.Y, inner)
+        next_level = np.searchsorted(self.depths, inner, side="right")
+        outer = self.depths[np.minimum(next_level, len(self.depths) - 1)]
+
+        def log_stress(y: NDArray, X: NDArray) -> NDArray[np.float64]:
+            points = np.stack([X, np.broadcast_to(-y, X.shape)], axis=-1)
+            return _log(stress(points[:, 0]))[:, None]
+
+        inner, outer = np.maximum(inner, 0.0)[:, None], outer[:, None]
+        farthest = _farthest(log_stress, inner, outer, X[:, None], _APART * (outer - inner))[:, 0]
+        farthest = np.where(deepest == len(self.depths) - 1, np.nan, farthest)
+        return np.where((deepest >= 0) | (peak.value >= 1.0), farthest, 0.0)
+
+
+#: Circles around a place where stresses vary like a power of the distance: radius over that of the next
+#: smaller circle, and directions from there, along the surface and down.
+_WIDER, _DIRECTIONS = 3.0, np.linspace(0.0, np.pi, 9)
 
 
 def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places on circles around centres on the surface, and distances between neighbours.
 
     Args:
-        centres: X over a of every state's centres, (states, k); NaN for none.
+        centres: X over a of every state's centres, (states, k).
         nearest: radius over a of the smallest circle.
 
     Returns:
@@ -351,29 +160,66 @@ def circles(centres: NDArray, nearest: float) -> tuple[NDArray[np.float64], NDAr
     r, φ = (grid.ravel() for grid in np.meshgrid(radii, _DIRECTIONS, indexing="ij"))
     along, down = r * np.cos(φ), np.where((φ > 0.0) & (φ < np.pi), -r * np.sin(φ), 0.0)
     X = centres[:, :, None] + along
-    places = np.stack([X, np.broadcast_to(down, X.shape)], axis=-1)
-    return places.reshape(len(centres), -1, 2), np.tile(_APART * r, centres.shape[1])
+    at = np.stack([X, np.broadcast_to(down, X.shape)], axis=-1)
+    return at.reshape(len(centres), -1, 2), np.tile(_APART * r, centres.shape[1])
+
+
+#: Places from which the search for the largest value starts, and most rounds of it; factor by which the
+#: step falls near the largest; and least step over the first one, at which a round without a better value
+#: is the last.
+_STARTS, _ROUNDS, _FINER, _SMALLEST = 8, 40, 2.0, 1e-3
+#: Number of rounds after which only the best starts go on, and number of these.
+_ALL_OF_THEM, _BEST = 4, 3
+#: Distance from a start, over its step, within which no place may have a larger value; and least stress
+#: of a start over the largest.
+_OWN, _LEAST = 1.5, 0.7
+#: Nine places around a middle, in steps; map from values there to coefficients of 1, u, w, u², uw, w².
+_STENCIL = np.array([(u, w) for u in (-1.0, 0.0, 1.0) for w in (-1.0, 0.0, 1.0)])
+_FIT = np.linalg.pinv(
+    np.stack(
+        [np.ones(9), *_STENCIL.T, _STENCIL[:, 0] ** 2, _STENCIL.prod(axis=1), _STENCIL[:, 1] ** 2], axis=1
+    )
+)
 
 
 def peak(stress: Stress, places: NDArray, steps: NDArray, there: NDArray) -> Peak:
-    """Largest stress in the solid, and its place, from samples and a search around the largest of them.
+    """Largest stress in the solid, and its place, by a search around the largest samples.
+
+    A quadratic function is fitted to the values at nine places. Where none of these exceeds the largest
+    value so far, as at a kink, the next nine lie closer around its place.
 
     Args:
-        stress: function that gives the stress at points.
+        stress: function that gives the stress at points, NaN where it is not known.
         places: sampled places X, Y over a, for all states (1, n, 2) or for each (states, n, 2).
         steps: distances over a from each place to its neighbours, (n,).
         there: stress at the places, (states, n).
     """
     starts = _starts(places, steps, there)
-    climb = _Climb(np.take_along_axis(places, starts[..., None], 1), steps[starts])
+    middle, h = np.take_along_axis(places, starts[..., None], 1), steps[starts]
+    top, value, least = middle.copy(), np.full(h.shape, -np.inf), _SMALLEST * h
     for rounds in range(_ROUNDS):
-        climb.take(stress)
-        if climb.done:
-            break
         if rounds == _ALL_OF_THEM:
-            climb.keep(_BEST)
-    winner, rows = climb.value.argmax(axis=1), np.arange(len(there))
-    return Peak(climb.value[rows, winner], *climb.top[rows, winner].T)
+            best = np.argsort(-value, axis=1, kind="stable")[:, :_BEST]
+            value, h, least = (np.take_along_axis(x, best, 1) for x in (value, h, least))
+            top, middle = (np.take_along_axis(x, best[..., None], 1) for x in (top, middle))
+        middle[..., 1] = np.minimum(middle[..., 1], -h)  # no place lies above the surface
+        nine = middle[..., None, :] + h[..., None, None] * _STENCIL
+        nine[..., 1] = np.minimum(nine[..., 1], 0.0)
+        values = stress(nine.reshape(len(nine), -1, 2)).reshape(nine.shape[:-1])
+        values = np.where(np.isnan(values), -np.inf, values)
+        highest, where = values.max(axis=-1), np.asarray(values.argmax(axis=-1))
+        improved = highest > value
+        at = np.take_along_axis(nine, where[..., None, None], 2)[:, :, 0]
+        top, value = np.where(improved[..., None], at, top), np.where(improved, highest, value)
+        step = np.where(np.isfinite(values).all(axis=-1)[..., None], _summit(values), _STENCIL[where])
+        step[..., 1] = np.minimum(step[..., 1], -middle[..., 1] / h)
+        middle = np.where(improved[..., None], middle + h[..., None] * step, top)
+        if (~improved & (h <= least)).all():
+            break
+        near = ~improved | (np.abs(step).max(axis=-1) < 1.0)
+        h = np.maximum(np.where(near, h / _FINER, h), least)
+    winner, rows = value.argmax(axis=1), np.arange(len(there))
+    return Peak(value[rows, winner], *top[rows, winner].T)
 
 
 def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64]:
@@ -389,72 +235,6 @@ def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64
     return numbers
 
 
-def _on_surface(knots: NDArray, width: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """Places on the surface at, between and beside the knots: X, Y and steps over a, (n,) each."""
-    share = np.arange(_BETWEEN) / _BETWEEN
-    between = (knots[:-1, None] + width[:, None] * share).ravel()
-    r_left, r_right = (np.geomspace(w / _BETWEEN, _DEEPEST, 40) for w in width[[0, -1]])
-    X = np.concatenate([knots[0] - r_left[::-1], between, knots[-1:], knots[-1] + r_right])
-    step = np.concatenate([r_left[::-1], np.repeat(width, _BETWEEN), width[-1:], r_right]) / (
-        2 * _BETWEEN
-    )
-    return X, 0.0 * X, step
-
-
-class _Climb:
-    """Search for the largest value near each of several places.
-
-    A quadratic function is fitted to the values at nine places. Where none of these exceeds the largest
-    value so far, as at a kink, the next nine lie closer around its place.
-
-    Args:
-        places: places over a at which the search starts, (states, starts, 2).
-        steps: distances over a from each to its neighbours, (states, starts).
-
-    Attributes:
-        top, value: place of the largest value, (states, starts, 2), and the value, (states, starts).
-        done: True where further rounds would give no larger value.
-    """
-
-    def __init__(self, places: NDArray, steps: NDArray) -> None:
-        self.top, self.value = places.copy(), np.full(steps.shape, -np.inf)
-        self._middle, self._h, self._least = places.copy(), steps.copy(), _SMALLEST * steps
-        self.done = False
-
-    def keep(self, count: int) -> None:
-        """Restrict the search to the ``count`` starts with the largest values."""
-        starts = np.argsort(-self.value, axis=1, kind="stable")[:, :count]
-        self.value, self._h, self._least = (
-            np.take_along_axis(x, starts, 1) for x in (self.value, self._h, self._least)
-        )
-        self.top, self._middle = (
-            np.take_along_axis(x, starts[..., None], 1) for x in (self.top, self._middle)
-        )
-
-    def take(self, stress: Stress) -> None:
-        """Evaluate the stress at nine places around each middle, and move the middles."""
-        h = self._h[..., None]
-        middle = self._middle
-        middle[..., 1] = np.minimum(middle[..., 1], -self._h)  # no place lies above the surface
-        nine = middle[..., None, :] + h[..., None] * _STENCIL
-        nine[..., 1] = np.minimum(nine[..., 1], 0.0)
-        shape = nine.shape[:-1]
-        values = stress(nine.reshape(shape[0], -1, 2)).reshape(shape)
-        values = np.where(np.isnan(values), -np.inf, values)
-        largest, where = values.max(axis=-1), np.asarray(values.argmax(axis=-1))
-        improved = largest > self.value
-        at = np.take_along_axis(nine, where[..., None, None], 2)[:, :, 0]
-        self.top = np.where(improved[..., None], at, self.top)
-        self.value = np.where(improved, largest, self.value)
-        fitted = np.isfinite(values).all(axis=-1, keepdims=True)
-        step = np.where(fitted, _summit(values), _STENCIL[where])
-        step[..., 1] = np.minimum(step[..., 1], -middle[..., 1] / self._h)
-        self._middle = np.where(improved[..., None], middle + h * step, self.top)
-        near = ~improved | (np.abs(step).max(axis=-1) < 1.0)
-        self.done = bool((~improved & (self._h <= self._least)).all())
-        self._h = np.maximum(np.where(near, self._h / _FINER, self._h), self._least)
-
-
 def _summit(values: NDArray) -> NDArray[np.float64]:
     """Place of the fitted quadratic's largest value, in steps, (..., 2); without any the best of nine."""
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -467,57 +247,151 @@ def _summit(values: NDArray) -> NDArray[np.float64]:
     return np.clip(np.where(round_[..., None], summit, best), -1.0, 1.0)
 
 
-def _deepest(stress: Stress, X: NDArray, inner: NDArray, outer: NDArray) -> NDArray[np.float64]:
-    """Largest depth at which the stress reaches 1, by bisection, (states,).
+#: Halvings towards the end of a zone, and factor of the distance between places along the other
+#: coordinate in each: these have to follow a largest stress that moves.
+_HALVINGS, _NEARER = 20, 0.7
+
+
+def _farthest(
+    log_stress: Callable[[NDArray, NDArray], NDArray],
+    inner: NDArray, outer: NDArray, s: NDArray, apart: NDArray,
+    bounds: Callable[[NDArray], Any] = lambda t: (-np.inf, np.inf),
+) -> NDArray[np.float64]:  # fmt: skip
+    """Largest t at which the largest stress along s reaches 1, by bisection, (states, k).
 
     Args:
-        stress: function that gives the stress at points.
-        X: positions over a near which the stress is largest, (states,).
-        inner, outer: depths over a at which it reaches 1, and at which it does not, (states,).
+        log_stress: logarithm of the stress at t, (states, k, 1), and s, (states, k, 3): (states, k, 3).
+        inner, outer: t at which it reaches 1, and at which it does not, (states, k).
+        s: coordinate near which the stress is largest, (states, k).
+        apart: distance of places along s about the largest, (states, k).
+        bounds: least and largest s at t.
     """
-    apart = (outer - inner) * _APART
+    of_inner, of_outer = np.zeros_like(inner), np.full_like(inner, np.nan)
     for _ in range(_HALVINGS):
-        y = (inner + outer) / 2.0
-        three = X[:, None] + apart[:, None] * np.array([-1.0, 0.0, 1.0])
-        values = stress(np.stack([three, -y[:, None] + 0.0 * three], axis=-1))
-        u = vertex(values)
-        y_left, y_middle, y_right = values.T
-        top = y_middle + (y_right - y_left) * u / 2.0 + (y_left - 2.0 * y_middle + y_right) * u**2 / 2.0
-        passed = np.maximum(top, values.max(axis=1)) >= 1.0
-        X = X + apart * u
-        inner, outer = np.where(passed, y, inner), np.where(passed, outer, y)
-        apart *= _NEARER
-    return inner
+        t = (inner + outer) / 2.0
+        low, high = bounds(t)
+        s = np.clip(s, low + apart, high - apart)
+        values = log_stress(t[..., None], s[..., None] + apart[..., None] * np.array([-1.0, 0.0, 1.0]))
+        left, middle, right = np.moveaxis(values, -1, 0)
+        slope, bend = (right - left) / 2.0, left - 2.0 * middle + right
+        u = np.where(bend < 0.0, np.clip(-slope / np.where(bend < 0.0, bend, 1.0), -1.0, 1.0), 0.0)
+        u = np.where(bend < 0.0, u, values.argmax(axis=-1) - 1.0)
+        top = np.maximum(middle + slope * u + bend * u**2 / 2.0, values.max(axis=-1))
+        s, apart = s + apart * u, _NEARER * apart
+        passed = top >= 0.0
+        inner, of_inner = np.where(passed, t, inner), np.where(passed, top, of_inner)
+        outer, of_outer = np.where(passed, outer, t), np.where(passed, of_outer, top)
+    share = np.nan_to_num(of_inner / (of_inner - of_outer))
+    return np.asarray(inner + (outer - inner) * share)
 
 
-#: Function that gives σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points over a with Y <= 0,
-#: (states or 1, n, 2).
-Field = Callable[[NDArray], NDArray]
+def _log(stress: NDArray) -> NDArray[np.float64]:
+    return np.log(np.maximum(stress, np.finfo(float).tiny))  # 0 on the free surface without friction
 
 
-#: Knots over a that stand for a smooth pressure; at the ends finite elements have no gradients.
-_SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
+#: Distances over a between which rays are sampled. Nearer, stresses are extrapolated; no zone reaches
+#: farther under a load that a punch can carry.
+NEAREST, FARTHEST = 1e-4, 10.0
+#: Angles from the free surface to the punch, and places along a ray.
+_ANGLES, _PLACES = np.linspace(0.0, np.pi, 33), 43
+#: Logarithms of a zone's size between which it is searched for, from that by the samples.
+_LESS, _MORE = -0.1, 0.1
+#: Both edges.
+_SIDE = np.array([-1.0, 1.0])
+
+
+def _grid() -> NDArray[np.float64]:
+    """Logarithms of the distances over a at which every ray is sampled, (angles, places).
+
+    A ray ends at X = 0 or at ``FARTHEST``.
+    """
+    end = -np.log(np.maximum(-np.cos(_ANGLES), 1.0 / FARTHEST))
+    return np.linspace(np.log(NEAREST), end, _PLACES, axis=-1)
+
+
+def _points(side: Any, φ: NDArray, r: NDArray) -> NDArray[np.float64]:
+    """Points X, Y over a from polar coordinates at an edge, (..., 2).
+
+    Args:
+        side: the edge's X over a.
+        φ: angles from the free surface.
+        r: distances over a.
+    """
+    along = (φ <= 0.0) | (φ >= np.pi)  # the surface, to the last digit
+    return np.stack([side * (1.0 + r * np.cos(φ)), np.where(along, 0.0, -r * np.sin(φ))], axis=-1)
+
+
+def _on_rays() -> NDArray[np.float64]:
+    """Places X, Y over a on rays from X = -a, then from X = a, at which stresses are sampled, (n, 2)."""
+    rays = (_points(side, _ANGLES[:, None], np.exp(_grid())).reshape(-1, 2) for side in _SIDE)
+    return np.concatenate([*rays])
+
+
+def zones(
+    stress: Stress, there: NDArray, exponents: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Reach and depth over a of the zones at sharp edges in which the yield strength is exceeded.
+
+    Args:
+        stress: von Mises stress over the yield strength.
+        there: von Mises stress over the yield strength at places on rays, (states, n).
+        exponents: powers of the distance of stresses next to X = -a and to X = a, (states, 2).
+
+    Returns:
+        Largest distance from X = -a and from X = a, each on its side of the middle, (states, 2), and
+        largest depth, (states,); NaN where a zone extends beyond ``FARTHEST``.
+    """
+    t, first, power = _grid(), np.log(NEAREST), -exponents[..., None]
+    L = _log(there).reshape(len(there), 2, *t.shape)
+    passed = L >= 0.0
+    endless = (passed[..., -1] & (t[:, -1] >= np.log(FARTHEST))).any(axis=(1, 2))
+    with np.errstate(divide="ignore"):
+        flat = np.log(np.sin(_ANGLES))  # of the depth over the distance
+    # The last sample in the zone, and linear interpolation to the next one.
+    last = np.where(passed, np.arange(_PLACES), -1).max(axis=-1)
+    k, j = np.clip(last, 0, _PLACES - 2), np.arange(len(t))
+    L_in, L_out = (np.take_along_axis(L, i[..., None], -1)[..., 0] for i in (k, k + 1))
+    share = L_in / np.where(L_in > L_out, L_in - L_out, np.inf)
+    of_rays = np.where(last < _PLACES - 1, t[j, k] + (t[j, k + 1] - t[j, k]) * share, t[:, -1])
+    of_rays = np.where(last < 0, first + L[..., 0] / power, of_rays)
+
+    def logarithm(log_r: NDArray, φ: NDArray) -> NDArray[np.float64]:
+        """Logarithm of the stress; nearer than ``NEAREST`` that is a power of r, times 1 + B r."""
+        r = np.exp(np.clip(log_r, first, np.log(FARTHEST)))
+        both = np.concatenate([r, np.full_like(r, 2.0 * NEAREST)], axis=-1)
+        points = _points(_SIDE[:, None], np.concatenate([φ, φ], axis=-1), both)
+        L, second = np.split(_log(stress(points.reshape(len(φ), -1, 2))).reshape(both.shape), 2, axis=-1)
+        nearer = np.maximum(first - log_r, 0.0)
+        B = (second - L + power * np.log(2.0)) / NEAREST
+        return np.where(nearer > 0.0, L + power * nearer - B * NEAREST * -np.expm1(-nearer), L)
+
+    sizes = []
+    for deep in (False, True):
+        size = of_rays + flat * deep if deep else of_rays
+        guess, φ = size.max(axis=-1), _ANGLES[size.argmax(axis=-1)]
+
+        def at(t: NDArray, φ: NDArray) -> NDArray[np.float64]:
+            return logarithm(t - np.log(np.sin(φ)) if deep else t + 0.0 * φ, φ)  # noqa: B023
+
+        def bounds(t: NDArray) -> tuple[Any, NDArray]:
+            if deep:  # noqa: B023
+                return np.arcsin(np.exp(np.minimum(t, np.log(FARTHEST))) / FARTHEST), np.pi - np.arctan(
+                    np.exp(t)
+                )
+            return 0.0, np.arccos(-np.exp(-np.maximum(t, 0.0)))
+
+        apart = np.full(guess.shape, _ANGLES[1])
+        sizes.append(np.exp(_farthest(at, guess + _LESS, guess + _MORE, φ, apart, bounds)))
+    reach, depth = sizes[0], sizes[1].max(axis=1)
+    return np.where(endless[:, None], np.nan, reach), np.where(endless, np.nan, depth)
 
 
 #: Factor that covers rounding of a distance.
 _HARDLY = 1.0 - 1e-9
 
 
-def places(body: Contact) -> NDArray[np.float64]:
-    """Places X, Y over a at which the stresses of every state are sampled, (n, 2)."""
-    knots = _knots(body)
-    return edge_places() if knots is None else Levels(knots).places
-
-
-def _knots(body: Contact) -> NDArray[np.float64] | None:
-    """Knots over a of a finite pressure, (k,); None under a punch with infinite stresses."""
-    if body.pressure:
-        return body.pressure.knots
-    return _SMOOTH if body.finite else None
-
-
 class Strength:
-    """Yield of states at one speed.
+    """Yield of states at one speed on a uniform solid.
 
     Args:
         field: function that gives the stresses of the states by any method.
@@ -553,12 +427,12 @@ class Strength:
     @cached_property
     def von_mises(self) -> Peak:
         """Largest von Mises stress over N/(2a) below a finite pressure, NaN where it is infinite."""
-        return self._peak(self._von_mises, 0)
+        return self._peak(self._von_mises_of)
 
     @cached_property
     def shear(self) -> Peak:
         """Largest shear stress in the plane over N/(2a) below a finite pressure, NaN where infinite."""
-        return self._peak(lambda points: maximum_shear(*self._field(points)), 1)
+        return self._peak(lambda σ: maximum_shear(*σ))
 
     @property
     def first_load(self) -> NDArray[np.float64]:
@@ -572,92 +446,231 @@ class Strength:
         allowed = (self.strength / self.von_mises.value) ** power
         return np.where(self.infinite, 0.0, self._body.load * allowed)
 
-    @cached_property
-    def _zones(self) -> Zones:
-        exponents = np.column_stack([self._local.β, self._local.α])
-        return zones(self._over_strength, self._invariants[0] / self.strength[:, None], exponents)
-
     @property
     def reach(self) -> NDArray[np.float64]:
         """Reach over a of the yielded zones from X = -a and from X = a, (states, 2)."""
-        return self._zones.reach
+        return self._zones[0]
 
     @property
     def depth(self) -> NDArray[np.float64]:
         """Largest depth over a at which the solid yields under the load, (states,)."""
-        if _knots(self._body) is None:
-            return self._zones.depth
-        there, peak = self._invariants[0] / self.strength[:, None], self.von_mises
+        if self._levels is None:
+            return self._zones[1]
+        peak, there = self.von_mises, _known(self._von_mises_of(self._sampled))
         scaled = Peak(peak.value / self.strength, peak.X, peak.Y)
-        return self._levels.depth(self._over_strength, there, scaled)
+        return self._levels.depth(self._over_strength, there / self.strength[:, None], scaled)
 
     @cached_property
-    def _levels(self) -> Levels:
+    def _zones(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        there = _known(self._von_mises_of(self._sampled)) / self.strength[:, None]
+        return zones(self._over_strength, there, np.column_stack([self._local.β, self._local.α]))
+
+    @cached_property
+    def _levels(self) -> Levels | None:
         knots = _knots(self._body)
-        assert knots is not None
-        return Levels(knots)
+        return None if knots is None else Levels(knots)
 
     @cached_property
-    def _invariants(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Von Mises and largest shear stress over N/(2a) at :func:`places`, (states, n) each."""
-        return self._both(self._field(places(self._body)[None]))
-
-    def _both(self, σ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Von Mises and largest shear stress, (states, n) each, from stresses (3, states, n)."""
-        invariants = self._von_mises_of(σ), maximum_shear(*σ)
-        # At a jump of the pressure they are NaN; 0 keeps the search away.
-        of_mises, of_shear = (np.where(np.isnan(stress), 0.0, stress) for stress in invariants)
-        return of_mises, of_shear
+    def _sampled(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a) at :func:`places`, (3, states, n)."""
+        return self._field(places(self._body)[None])
 
     def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
         XX, YY, XY = σ
         return von_mises(XX, YY, XY, self._body.solid.σ_ZZ(XX, YY, XY))
 
-    def _von_mises(self, points: NDArray) -> NDArray[np.float64]:
-        return self._von_mises_of(self._field(points))
-
     def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
-        return self._von_mises(points) / self.strength[:, None]
+        return self._von_mises_of(self._field(points)) / self.strength[:, None]
 
     @cached_property
-    def _near_turns(self) -> tuple[NDArray, NDArray, tuple[NDArray, NDArray]] | None:
-        """Places around turns of the stresses, steps between them, both stresses; None without turns."""
+    def _around_turns(self) -> tuple[NDArray, NDArray, NDArray] | None:
+        """Places around turns of the stresses, steps between them, and stresses; None without turns."""
         if self._turns is None:
             return None
         centres = np.where(np.isnan(self._turns.X), self._turns.X[:, :1], self._turns.X)
         if np.array_equal(centres, np.broadcast_to(centres[:1], centres.shape)):
             centres = centres[:1]
-        around, steps = circles(centres, self._nearest)
-        return around, steps, self._both(self._field(around))
+        at, steps = circles(centres, self._nearest)
+        return at, steps, self._field(at)
 
-    def _off_turns(self, stress: Callable[[NDArray], NDArray]) -> Callable[[NDArray], NDArray]:
-        """Function of points that is NaN nearer to turns than the field is accurate, else the stress."""
-        if self._turns is None:
-            return stress
-        X = self._turns.X
+    def _peak(self, measure: Callable[[NDArray], NDArray]) -> Peak:
+        """Peak of a measure of the stresses (3, states, n)."""
+        assert self._levels
+        at, steps, there = self._levels.places[None], self._levels.steps, _known(measure(self._sampled))
+        turns, around = self._turns, self._around_turns
+        if turns is None or around is None:
+            best = peak(lambda points: measure(self._field(points)), at, steps, there)
+        else:
+            more, more_steps, σ = around
 
-        def off(points: NDArray) -> NDArray[np.float64]:
-            distance = np.hypot(points[..., None, 0] - X[:, None], points[..., None, 1])
-            near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self._nearest * _HARDLY
-            return np.where(near, np.nan, stress(points))
+            def stress(points: NDArray) -> NDArray[np.float64]:
+                """Measure, NaN nearer to turns than the field is accurate."""
+                distance = np.hypot(points[..., None, 0] - turns.X[:, None], points[..., None, 1])
+                near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self._nearest * _HARDLY
+                return np.where(near, np.nan, measure(self._field(points)))
 
-        return off
+            at = np.concatenate([np.broadcast_to(at, (len(more), *at.shape[1:])), more], axis=1)
+            there = np.concatenate([there, _known(measure(σ))], axis=1)
+            inside = peak(stress, at, np.append(steps, more_steps), there)
+            best = _higher(inside, _known(measure(turns.σ)), turns.X)
+        return Peak(*(np.where(self.infinite, np.nan, x) for x in (best.value, best.X, best.Y)))
 
-    def _peak(self, stress: Callable[[NDArray], NDArray], which: int) -> Peak:
-        """Peak of the von Mises stress (0) or of the largest shear stress (1)."""
-        at, steps, there = self._levels.places[None], self._levels.steps, self._invariants[which]
-        if self._near_turns and self._turns:
-            around, more, near = self._near_turns
-            at = np.concatenate([np.broadcast_to(at, (len(around), *at.shape[1:])), around], axis=1)
-            steps, there = np.append(steps, more), np.concatenate([there, near[which]], axis=1)
-        highest = peak(self._off_turns(stress), at, steps, there)
-        if self._turns:
-            limit = self._both(self._turns.σ)[which]
-            best, rows = limit.argmax(axis=1), np.arange(len(limit))
-            higher = limit[rows, best] > highest.value
-            highest = Peak(
-                np.where(higher, limit[rows, best], highest.value),
-                np.where(higher, self._turns.X[rows, best], highest.X),
-                np.where(higher, 0.0, highest.Y),
-            )
-        return Peak(*(np.where(self.infinite, np.nan, x) for x in (highest.value, highest.X, highest.Y)))
+
+def _known(stress: NDArray) -> NDArray[np.float64]:
+    """Stress, 0 where it is NaN, as at a jump of the pressure, which keeps the search away."""
+    return np.where(np.isnan(stress), 0.0, stress)
+
+
+def _higher(peak: Peak, values: NDArray, X: NDArray, Y: Any = 0.0) -> Peak:
+    """Highest of a peak and of values at places X and Y over a, (states, n)."""
+    rows, i = np.arange(len(values)), values.argmax(axis=1)
+    value, place, higher = values[rows, i], X[rows, i], values[rows, i] > peak.value
+    return Peak(
+        np.where(higher, value, peak.value), np.where(higher, place, peak.X), np.where(higher, Y, peak.Y)
+    )
+
+
+#: Depths below the surface, or below the lowest interface, over a, at which the solid is sampled.
+_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
+#: Relative depths within a thick layer, and within a thin one, up to a thickness over a.
+_WITHIN, _WITHIN_THIN, _THIN = np.array([0.2, 0.5, 0.8]), np.array([0.5]), 0.15
+#: Positions X/a at each depth, and places around both ends of the contact over the depth.
+_ALONG, _NEAR = np.linspace(-2.5, 2.5, 41), np.linspace(-3.0, 3.0, 13)
+#: Accuracy of the depth over the distance of depths.
+_ACCURACY = 1e-4
+#: Share of the largest stress on a layer's faces from which on a stress inside is searched for.
+_NEARLY = 0.98
+#: Least depth over a of places at which errors are estimated: nearer to ends one place would be all.
+_SHALLOWEST = 0.05
+#: Least distance from the surface, and from an interface, over that of the next depth of sampling, at
+#: which stresses inside are evaluated.
+_LEAST_DEPTH, _NEXT_TO_FACE = 0.3, 1e-6
+
+
+def sampled_depths(interfaces: NDArray) -> list[NDArray[np.float64]]:
+    """Depths over a inside each layer and the solid below at which stresses are sampled.
+
+    Args:
+        interfaces: depths of the interfaces over a, (layers,).
+    """
+    tops = np.concatenate([[0.0], interfaces])
+    each = [
+        _WITHIN_THIN * H if H <= _THIN else np.union1d(_DEPTHS[_DEPTHS < 0.9 * H], _WITHIN * H)
+        for H in np.diff(tops).tolist()
+    ]
+    return [top + depths for top, depths in zip(tops.tolist(), [*each, _DEPTHS])]
+
+
+@dataclass(frozen=True)
+class StrengthOfLayers:
+    """Largest von Mises stresses in layers, and in the solid below, of states at one speed.
+
+    Attributes:
+        inside: stresses inside, by any method.
+        surface: stresses on the surface.
+        interfaces: σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, layers, n).
+        along: positions X/a along interfaces, (n,).
+        g: σ_XY/σ_YY under the punch, (states,).
+        local: exponents α at X = a and β at X = -a, (states,) each.
+        body: punch and solid, under the load of each state.
+        half_width: of each state's contact [m], (states,).
+    """
+
+    inside: Inside
+    surface: Surface
+    interfaces: NDArray[np.float64]
+    along: NDArray[np.float64]
+    g: NDArray[np.float64]
+    local: object
+    body: Contact
+    half_width: NDArray[np.float64]
+
+    @cached_property
+    def peaks(self) -> Peak:
+        """Largest von Mises stress over N/(2a) of every layer and the solid below, (states, parts)."""
+        depths, solid = self.body.solid.depths, self.body.solid
+        of_layers = [self._on_surface()] + [Peak(*np.full((3, len(self.g)), -np.inf)) for _ in depths]
+        for i, depth in enumerate(depths.tolist()):
+            for side in (0, 1):
+                σ_YY, σ_XY, σ_XX = self.interfaces[[0, 1, 2 + side], :, i]
+                of_side = solid.beside(i)[side]  # type: ignore[attr-defined]
+                stress = von_mises(σ_XX, σ_YY, σ_XY, of_side.σ_ZZ(σ_XX, σ_YY, σ_XY))
+                value, X = (of[:, None] for of in extreme(stress, self.along, 1.0))
+                of_layers[i + side] = _higher(of_layers[i + side], value, X, -depth / self.half_width)
+        for layer, faces in enumerate(of_layers):
+            searched = [self._searched(i, layer, float(value)) for i, value in enumerate(faces.value)]
+            value, X, Y = np.array(searched).T
+            of_layers[layer] = _higher(faces, value[:, None], X[:, None], Y)
+        return Peak(*(np.stack(of, axis=1) for of in zip(*((p.value, p.X, p.Y) for p in of_layers))))
+
+    @property
+    def von_mises(self) -> Peak:
+        """Largest von Mises stress over N/(2a) of all layers and the solid below, (states,)."""
+        layer = self.peaks.value.argmax(axis=1)[:, None]
+        of_layers = self.peaks.value, self.peaks.X, self.peaks.Y
+        return Peak(*(np.take_along_axis(x, layer, 1)[:, 0] for x in of_layers))
+
+    @property
+    def over_strength(self) -> NDArray[np.float64]:
+        """Largest stress of every layer over its strength, NaN if not given, (states, parts)."""
+        strengths = np.array([np.nan if y is None else y for y in self.body.strengths])
+        unit = self.body.load / (2.0 * self.half_width)
+        return self.peaks.value * np.reshape(unit, (-1, 1)) / strengths
+
+    def _on_surface(self) -> Peak:
+        """Largest von Mises stress on the surface."""
+        surface, solid = self.surface, self.body.solid.at(0.0)  # type: ignore[attr-defined]
+        X, σ_YY = surface.places.X, np.nan_to_num(surface.σ_YY)
+
+        def stress(XX: NDArray, YY: NDArray, XY: NDArray) -> NDArray[np.float64]:
+            return von_mises(XX, YY, XY, solid.σ_ZZ(XX, YY, XY))
+
+        turns = turns_at_ends(surface, self.local)
+        if surface.turns:
+            turns = turns.joined(surface.turns)
+        curves = stress(surface.σ_XX, σ_YY, self.g[:, None] * σ_YY)
+        samples = Peak(curves.max(axis=1), X[curves.argmax(axis=1)], np.zeros(len(curves)))
+        at_turns = np.nan_to_num(stress(*turns.σ), nan=-np.inf), turns.X
+        return _higher(_higher(samples, *on_surface(X, curves, turns)), *at_turns)
+
+    def _searched(self, state: int, layer: int, faces: float) -> tuple[float, float, float]:
+        """Largest von Mises stress inside a layer, X and Y over a; -inf where its faces have more.
+
+        Args:
+            state, layer: their numbers.
+            faces: largest stress on the layer's faces.
+        """
+        from scipy.optimize import minimize_scalar  # a slow import
+
+        interfaces = self.body.solid.depths / self.half_width[state]
+        depths = sampled_depths(interfaces)[layer]
+        values = [self._at_depth(state, depth)[0] for depth in depths.tolist()]
+        best = int(np.argmax(values))
+        if values[best] < _NEARLY * faces:
+            return -np.inf, 0.0, 0.0
+        top = 0.0 if layer == 0 else float(interfaces[layer - 1])
+        # Between the first depth and the surface stresses vary ever faster.
+        above = top + (_NEXT_TO_FACE if layer else _LEAST_DEPTH) * (depths[0] - top)
+        bottom = float(interfaces[layer]) if layer < len(interfaces) else float(depths[-1])
+        lower = (
+            depths[best + 1] if best + 1 < len(depths) else bottom - _NEXT_TO_FACE * (bottom - depths[-1])
+        )
+        upper = depths[best - 1] if best else above
+        found = minimize_scalar(
+            lambda depth: -self._at_depth(state, depth)[0], bounds=(upper, lower), method="bounded",
+            options={"xatol": _ACCURACY * (lower - upper), "maxiter": 25},
+        )  # fmt: skip
+        depth = float(found.x) if -found.fun >= values[best] else float(depths[best])
+        return *self._at_depth(state, depth), -depth
+
+    def _at_depth(self, state: int, depth: float) -> tuple[float, float]:
+        """Largest von Mises stress at a depth over a, and its X over a."""
+        near = min(depth, 0.5) * _NEAR
+        X = np.unique(np.concatenate([_ALONG, near - 1.0, near + 1.0]))
+        return largest(lambda X: self._stress(state, X, depth), [X], refined=1)
+
+    def _stress(self, state: int, X: NDArray, depth: float) -> NDArray[np.float64]:
+        """Von Mises stress over N/(2a) at positions over a, (n,), and a depth over a, (n,)."""
+        σ_XX, σ_YY, σ_XY = self.inside(state, np.column_stack([X, np.full_like(X, -depth)]))
+        solid = self.body.solid.at(depth * self.half_width[state])  # type: ignore[attr-defined]
+        return von_mises(σ_XX, σ_YY, σ_XY, solid.σ_ZZ(σ_XX, σ_YY, σ_XY))

@@ -14,21 +14,22 @@ and middle follow; of a parabola directly, of other profiles by the conditions o
 speed.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import INTENSITIES
+from ..contact import VARYING
+from ..contact.along import Splines
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import FemPlan
 from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
-from ..contact.pressure import Expansion
+from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
+    ContactFacets,
     ContactRecovery,
     Polynomials,
     chebyshev,
@@ -36,54 +37,21 @@ from ..contact.recovery import (
     from_moments,
     without_zeros,
 )
-from ..contact.solution import Contact, Surface, Task, Turns
+from ..contact.solution import Contact, Task
+from ..contact.stresses import Surface, Turns, turns_at_ends
 from ..errors import SolveError
 from ..profiles.flat import Flat
 from ..profiles.power import Parabolic
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
-from .ladder import Gauge, Level, of_pressure, solved_to_tolerance
-from .punch import ContactStates, FittedPunch, Part, Punch, SlidingPunch, combined, sliding_punch
-from .solution import Solution, SolvedStates, solution_of
+from .ladder import Gauge, Level, joined, of_pressure
+from .punch import ContactStates, FittedPunch, Punch, sliding_punch
+from .solution import SolvedEnds, SolvedStates
 from .space import Space
-
-#: Change of the contact forces over the tolerance, and at most, for which no solution is refined and
-#: nothing more is added for friction. The most keeps results on any number of ranks equal to 1e-9.
-_NEGLIGIBLE, _NEGLIGIBLE_MOST = 1e-4, 1e-10
-
-#: Share of that where stresses are requested: next to an edge a force counts by the little load there.
-_BESIDE_EDGES = 0.1
 
 #: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
 _NEAREST = 1e-6
-
-#: Weights of a single field.
-_SINGLE = np.ones((1, 1))
-
-
-def negligible(work: Any) -> float:
-    """Relative change of the contact forces that affects no result."""
-    least = min(_NEGLIGIBLE * work.plan.tolerance, _NEGLIGIBLE_MOST)
-    return _BESIDE_EDGES * least if work.stresses else least
-
-
-@dataclass(frozen=True)
-class SolvedEnds:
-    """Contacts with their ends, as sums of a punch's parts.
-
-    Attributes:
-        contact: nodal forces and weights; v₀ of the punch's lowest point.
-        half_width, centre: half-width and middle of each contact [m], (states,).
-        free: True where the left and the right end are free, (states, 2).
-        unresolved: part of the profile's slope that its shapes leave out, relative, (states,) or 0.
-    """
-
-    contact: ContactStates
-    half_width: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    free: NDArray[np.bool_]
-    unresolved: Any = 0.0
 
 
 class Ends:
@@ -91,9 +59,10 @@ class Ends:
 
     Attributes:
         single: True where a level has a single state, on a mesh of its own.
+        mirrored: True where contacts have mirror images on the same mesh.
     """
 
-    single = False
+    single, mirrored = False, True
 
     def heights(self, level: "PunchLevel") -> NDArray[np.float64] | None:
         """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
@@ -115,6 +84,10 @@ class Ends:
         """Gauge of pressure and ends."""
         raise NotImplementedError
 
+    def along(self, level: "PunchLevel") -> Callable[[float], NDArray] | None:
+        """Gives G by g where friction varies along the contact, see :class:`SlidingPunch`."""
+        return None
+
     def task(self, task: Task) -> Task:
         """Task with the places at which stresses are measured."""
         return task
@@ -127,9 +100,9 @@ class Ends:
         """Least distance over a from free ends and kinks at which stresses are evaluated."""
         return _NEAREST
 
-    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns] | None:
-        """Function for limits of stresses on a surface; None for limits at free ends alone."""
-        return None
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        """Limits of stresses on a surface at free ends."""
+        return turns_at_ends(surface, states.local)
 
 
 class SharpEnds(Ends):
@@ -145,13 +118,64 @@ class SharpEnds(Ends):
         return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
 
     def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
-        return level.over_flat(ends.contact, ends.contact.g)
+        return level.over_flat(ends.contact.tested(level.moments), ends.contact.g)
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
         plan, margin = level.plan, level.task.response.margin
         moved = plan.kind.moved_edges(plan.wanted, level.space.degree, margin)
         return of_pressure(states.pressure, moments, moved)
+
+
+#: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
+#: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
+#: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
+_NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
+
+
+class VaryingEnds(SharpEnds):
+    """Sharp edges of a flat punch with friction that varies along the contact."""
+
+    mirrored = False
+
+    def along(self, level: "PunchLevel") -> Callable[[float], NDArray]:
+        nodes, along = level.space.contact, level.task.body.along  # type: ignore[attr-defined]
+        facets = ContactFacets(nodes.s, level.space.degree, level.space.chart)
+        return cache(lambda g: facets.product(along[g]))
+
+    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
+        return self._pressure(level, ends.contact, _NEXT)
+
+    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
+        gauge, coarse = super().gauge(level, states), self._pressure(level, states.contact, 4.0 * _NEXT)
+        # Without knots next to ends and kinks, splines of all degrees are off alike.
+        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
+        return replace(gauge, unresolved=gauge.unresolved + off)
+
+    def _pressure(self, level: "PunchLevel", contact: ContactStates, nearest: float) -> Expansion:
+        """Pressure of contacts, by splines without knots within a distance of ends and kinks."""
+        body, g, degree = level.task.body, contact.g, level.space.degree
+        kinks = np.array(body.friction_kinks)
+        places = np.concatenate([[-1.0], kinks, [1.0]])
+        ends_of_cells = level.r[::degree]
+        ratio = body.ratio(g, ends_of_cells)
+        steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
+        of_knots = [places]
+        within = (ends_of_cells[:-1, None] + np.diff(ends_of_cells)[:, None] * _INSIDE).ravel()
+        for some, least in ((ends_of_cells, nearest * np.sqrt(length)), (within, _WIDE * length)):
+            of_knots.append(some[np.abs(some[:, None] - places).min(axis=1) > least])
+        knots = np.unique(np.concatenate(of_knots))
+        # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
+        splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
+        local, at_nodes = body.edges(level.task.response, g), splines.values(level.r)
+        # Nodal forces know of tests their interpolants only.
+        facets = ContactFacets(level.space.contact.s, degree, level.space.chart)
+        return splines.fitted(
+            contact.tested(at_nodes), local.α, local.β,
+            lambda r: facets.interpolated(at_nodes.T, r).T,
+        )  # fmt: skip
 
 
 class FreeEnds(Ends):
@@ -168,34 +192,43 @@ class FreeEnds(Ends):
         return heights_of_shapes(level.r, self._shapes)
 
     def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
-        parts, local = level.punch.parts(g), EdgeExponents(level.task.response, g)
-        loads = np.stack([part.load for part in parts], axis=1)
+        (parts, loads, K), local = level.parts(g), EdgeExponents(level.task.response, g)
         solve = _SOLVES.get(type(body.profile), _smooth)
-        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, level.K_I(parts, g), local)
+        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
-        contact = combined(g, parts, amplitudes)
+        contact = level.punch.summed(g, parts, amplitudes)
         return SolvedEnds(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
 
     def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
-        whole, free = level.over_flat(ends.contact, ends.contact.g), ends.free
+        contact, free = ends.contact, ends.free
+        whole = level.over_flat(contact.tested(level.moments), contact.g)
         smooth = without_zeros(whole.c, free)
         return replace(whole, α=whole.α + free[:, 1:], β=whole.β + free[:, :1], c=smooth)
 
     def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
         moments = states.contact.tested(level.moments)
-        gauge = of_pressure(level.over_flat(states.contact, states.contact.g), moments)
-        lengths = np.column_stack([states.half_width, states.centre])
-        return replace(
-            gauge,
-            values=np.concatenate([gauge.values, lengths], axis=1),
-            scale=np.concatenate([gauge.scale, np.tile(states.half_width[:, None], 2)], axis=1),
-        )
+        gauge = of_pressure(level.over_flat(moments, states.contact.g), moments)
+        lengths = np.column_stack([states.ends.half_width, states.ends.centre])
+        groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
+        return joined(gauge.word, groups, gauge.unresolved)
 
 
 #: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
 #: point below the level of the first shape, over N/(2μ), and slope beyond the shapes, relative.
 _Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
+
+
+def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
+    """Amplitudes of parts whose sum carries the load and has no intensity at some ends, (states, parts).
+
+    Args:
+        loads: ∫σ_YY of every part, (states, parts).
+        K: intensities of every part at these ends, one less than there are parts, (states, ends, parts).
+    """
+    b = np.zeros((*loads.shape, 1))
+    b[:, 0] = -2.0
+    return np.asarray(np.linalg.solve(np.concatenate([loads[:, None], K], axis=1), b)[..., 0])
 
 
 def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
@@ -209,13 +242,12 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -
     """
     punch = body.profile
     assert isinstance(punch, Parabolic)
-    A = np.concatenate([loads[:, None, :3], K[..., :3]], axis=1)
-    first = np.linalg.solve(A, np.tile([-2.0, 0.0, 0.0], (len(A), 1))[..., None])[..., 0]
-    amplitudes = np.concatenate([first, np.zeros((len(A), loads.shape[1] - 3))], axis=1)
-    _, c1, c2 = first.T
+    amplitudes = np.zeros_like(loads)
+    amplitudes[:, :3] = without_intensity(loads[:, :3], K[..., :3])
+    _, c1, c2 = amplitudes[:, :3].T
     with np.errstate(invalid="ignore"):
         h = np.sqrt(punch.radius * c2 * body.displacement)
-    free = np.ones((len(A), 2), dtype=bool)
+    free = np.ones((len(h), 2), dtype=bool)
     return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
 
 
@@ -247,9 +279,8 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
     c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
     v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
     lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
-    A = np.stack([loads, K[:, side]], axis=1)
-    given_up = np.linalg.solve(A, np.tile([-2.0, 0.0], (len(A), 1))[..., None])[..., 0]
-    amplitudes = np.where(lifted[:, None], given_up, np.column_stack([v0, c1]))
+    balanced = without_intensity(loads, K[:, [side]])
+    amplitudes = np.where(lifted[:, None], balanced, np.column_stack([v0, c1]))
     h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
@@ -263,6 +294,8 @@ _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
 def ends_of(plan: FemPlan) -> Ends:
     """Ends of contacts on the mesh of all of them."""
+    if plan.mode == VARYING:
+        return VaryingEnds()
     return FreeEnds(plan.shapes) if plan.shapes else SharpEnds()
 
 
@@ -271,9 +304,9 @@ class PunchLevel(Level):
 
     Args:
         work, task, space, g: as of :class:`galinx.solvers.fem.ladder.Level`.
+        ends: ends of the contacts; by the plan if None.
         fitted: punch fitted through other speeds; it is solved if None.
         recovery: maps from contact forces to pressure on this space; computed if None.
-        ends: ends of the contacts; by the plan if None.
 
     Attributes:
         plan: plan of the finite elements.
@@ -282,55 +315,41 @@ class PunchLevel(Level):
     """
 
     def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray,
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, ends: Ends | None = None,
         fitted: FittedPunch | None = None, recovery: ContactRecovery | None = None,
-        ends: Ends | None = None,
     ) -> None:  # fmt: skip
         super().__init__(work, task, space, g)
         self.plan = work.plan
-        self.ends = ends or ends_of(work.plan)
-        self._fitted = fitted
         self.only: SolvedEnds | None = None
-        self._field: Any = None
+        self.ends = ends or ends_of(work.plan)
         self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
         if fitted is not None and recovery is not None:
             self.punch: Punch = fitted
-            self.recovery, self.moments = recovery, recovery.moments
+            self.fields, self.recovery, self.moments = fitted.fields, recovery, recovery.moments
             return
-        least, single = negligible(work), self.ends.single
-        # The rest of friction's iteration is equal at all degrees: no estimate of stresses would show it.
-        friction_rest = 0.0 if work.stresses or single else least
-        solved = self.sliding(
-            space, task.response, self.plan.solver, least, self.ends.heights(self), friction_rest
+        single = self.ends.single
+        self.punch = solved = sliding_punch(
+            space, task.response, self.plan.solver, self.ends.heights(self), self.ends.along(self)
         )
-        self.punch, self.factor = solved, solved.factor
+        self.factor = solved.factor
         try:
             # The basis is complete before traces are taken, and the same whatever states are still to do.
             solved.prepare(g)
+            self.fields = solved.fields
             if single:
                 self.only = self._summed(self.ends.solved(self, g, task.body))
         finally:
             if single:
                 solved.destroy()
-        self.stress_gauges  # noqa: B018 - cached
-
-    def sliding(self, *punch: Any) -> SlidingPunch:
-        """Punch of the level, of these arguments."""
-        return sliding_punch(*punch)
 
     def _summed(self, ends: SolvedEnds) -> SolvedEnds:
         """The only state, by its own displacement and nodal forces."""
-        field = self.punch.fields[0].duplicate()
+        field, contact = self.fields[0].duplicate(), ends.contact
         field.zeroEntries()
-        field.maxpy(ends.contact.weights[0].tolist(), self.punch.fields)
-        self._field, contact = field, ends.contact
+        field.maxpy(contact.weights[0].tolist(), self.fields)
+        self.fields = [field]
         forces = np.tensordot(contact.weights, contact.forces, 1)
-        return replace(ends, contact=replace(contact, weights=_SINGLE, forces=forces))
-
-    @property
-    def fields(self) -> Sequence[Any]:
-        """Displacements over N/(2μ), whose combinations are the states."""
-        return [self._field] if self.only else self.punch.fields
+        return replace(ends, contact=replace(contact, weights=np.ones((1, 1)), forces=forces))
 
     @cached_property
     def r(self) -> NDArray[np.float64]:
@@ -343,8 +362,10 @@ class PunchLevel(Level):
         return self._tests(self.r)
 
     @cached_property
-    def recovery(self) -> ContactRecovery:
-        """Maps from nodal forces to moments, raw pressure and exponents."""
+    def recovery(self) -> ContactRecovery | None:  # type: ignore[override]
+        """Maps from nodal forces to moments, raw pressure and exponents; none on a mesh of its own."""
+        if self.ends.single:
+            return None
         space, X = self.space, self.task.places.X
         return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
 
@@ -356,42 +377,46 @@ class PunchLevel(Level):
         """Slopes of the fields on the surface, at no place where no stress is requested."""
         count = len(self.fields)
         nowhere = Slopes(np.empty((2, 0, count)), np.empty((0, count)))
-        return self.stress_gauges.slopes if self.work.stresses else nowhere
+        return self.stress_gauges.displacement.slopes if self.work.stresses else nowhere
 
     def displacement_at(self, task: Task) -> Displacement:
-        slopes = self._fitted.slopes if self._fitted else None
+        slopes = self.punch.slopes if isinstance(self.punch, FittedPunch) else None
         return Displacement(task, self.space, self.fields, slopes, self.ends.continuation(self))
 
     @property
     def mirrored(self) -> bool:  # type: ignore[override]
         """True where there is a mirror image on the same mesh."""
-        return self.task.response.mirrored and not self.ends.single
+        return self.task.response.mirrored and self.ends.mirrored
 
-    def over_flat(self, part: Part, g: NDArray, more: float = 0.0) -> Expansion:
+    def over_flat(self, moments: NDArray, g: NDArray, more: float = 0.0) -> Expansion:
         """Pressure from moments, with exponents of sharp edges at frictions g, or larger ones."""
         local = EdgeExponents(self.task.response, g)
         functions = self.plan.tests.stretch if self.plan.tests else Polynomials()
-        moments = part.tested(self.moments)
         return from_moments(moments, local.α + more, local.β + more, functions)
 
-    def K_I(self, parts: Sequence[Part], g: NDArray) -> NDArray[np.float64]:
-        """Intensities of parts at both ends, (states, 2, parts)."""
-        return np.stack([self.over_flat(part, g).K_I for part in parts], axis=2)
+    def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """Parts of the punch, their loads, (states, parts), and intensities, (states, 2, parts)."""
+        parts = self.punch.parts(g)
+        moments = self.punch.tested(parts, self.moments).swapaxes(0, 1)
+        K_I = np.stack([self.over_flat(of_part, g).K_I for of_part in moments], axis=2)
+        return parts, self.punch.loads(parts), K_I
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         body = self.task.body.loaded(load)
         ends = self.only or self.ends.solved(self, g, body)
-        states = SolvedStates(
-            self.task, body, ends.contact, self.ends.pressure(self, ends), self.displacement,
-            ends.half_width, ends.centre, ends.free, ends.unresolved,
-            None if self.ends.single else lambda: self.recovery,
-        )  # fmt: skip
-        nearest = self.ends.nearest(states.pressure)
-        return replace(states, turns=self.ends.turns(states), nearest=nearest)
+        return SolvedStates(self, body, ends, self.ends.pressure(self, ends))
 
-    def gauges(self, states: SolvedStates) -> list[Gauge]:
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
+        return self.ends.turns(states, surface) if states.ends.free.any() else None
+
+    def nearest(self, states: SolvedStates) -> float:
+        return self.ends.nearest(states.pressure)
+
+    def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""
-        return [self.ends.gauge(self, states), *super().gauges(states)]
+        states = self.states(g, load)
+        of_stresses = self.stress_gauges.of(*self.fields_of(states)) if self.work.stresses else []
+        return [self.ends.gauge(self, states), *of_stresses]
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
@@ -403,30 +428,27 @@ class PunchLevel(Level):
         they are not, and their rounding is as large.
         """
         own = self.fields_of(self.states(g, load))
-        if not self.mirrored:
-            of_edges = self.factor.largest_residual
-            if not (self.ends.single or self.task.body.layered):
-                K_left, K_right = self.over_flat(self.punch.states(g, flat=True), g).K_I.T
-                of_edges = float(np.abs(K_left / K_right - 1.0).max())
-            return [of_edges, *self.stress_gauges.rounding(*own)]
-        both, size = [], self.stress_gauges.size(*own)
-        for sign in (1.0, -1.0):
+        if not self.ends.mirrored or (self.task.body.layered and not self.mirrored):
+            return [self.factor.largest_residual, *self.stress_gauges.rounding(own)]
+        X = self.measured_task(self.task).places.X
+        K_I, σ_XX = [], []
+        for sign in (1, -1) if self.mirrored else (1,):
             flat = self.punch.states(sign * g, flat=True)
-            pressure = self.over_flat(flat, sign * g)
-            σ_YY = pressure.σ_YY(self.measured_task(self.task).places.X)
-            gauges = self.stress_gauges.mirrored(sign, sign * g, flat.weights, σ_YY, size)
-            K_I = pressure.K_I[:, :: int(sign)]
-            both.append([Gauge(INTENSITIES, K_I, np.abs(K_I)), *gauges])
-        return [float(gauge.change(mirror).max()) for gauge, mirror in zip(*both)]
+            pressure = self.over_flat(flat.tested(self.moments), sign * g)
+            K_I.append(pressure.K_I[:, ::sign])
+            if self.work.stresses:
+                of_flat = sign * g, flat.weights, pressure.σ_YY(X)
+                σ_XX.append(self.stress_gauges.σ_XX(*of_flat)[:, ::sign])
+        if not self.mirrored:
+            K_left, K_right = K_I[0].T
+            return [float(np.abs(K_left / K_right - 1.0).max()), *self.stress_gauges.rounding(own)]
+        noise = np.abs(σ_XX[0] - σ_XX[1]) if σ_XX else None
+        of_edges = float((np.abs(K_I[0] - K_I[1]) / np.abs(K_I[0])).max())
+        return [of_edges, *self.stress_gauges.rounding(own, noise)]
 
-    def release(self) -> None:
-        """Free factor and fields; a single state keeps its field."""
-        if not self.only:
-            self.punch.release()
-
-    def destroy(self) -> None:
+    def close(self) -> None:
         if self.only:
-            self._field.destroy()
+            self.fields[0].destroy()
         else:
             self.punch.destroy()
 
@@ -437,47 +459,3 @@ def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
     if tests is None:
         return chebyshev
     return lambda r: tests.stretch.functions(r, tests.count + more * tests.a_degree)
-
-
-@dataclass(frozen=True)
-class AtSpeed:
-    """States at one speed on a mesh that they share, solved to the tolerance.
-
-    Attributes:
-        level: the last level, a :class:`galinx.solvers.fem.ladder.Level`.
-        error: error of that level.
-        record: gives numbers of the work.
-        fitted: True where the speed was fitted through others.
-    """
-
-    level: Any
-    error: Any
-    record: Callable[[], dict[str, Any]]
-    fitted: bool = False
-
-    def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self.level.task, self._solved, g, load)
-
-    def _solved(self, g: NDArray, load: Any) -> list[SolvedStates]:
-        states = self.level.states(g, load)
-
-        def errors() -> dict[str, NDArray[np.float64]]:
-            of = self.error.of(g, states.body.load, lambda: self.level.gauges(states))
-            return {word: values + states.unresolved for word, values in of.items()}
-
-        return [replace(states, errors=errors, fitted=self.fitted)]
-
-
-@contextmanager
-def shared_mesh(work: Discretisation, task: Task, g: NDArray, level: Any) -> Iterator[AtSpeed]:
-    """Raise the degree until the measured error of sample states is within tolerance.
-
-    Args:
-        work: gives spaces.
-        task: the speed.
-        g: all values of σ_XY/σ_YY that will be solved, sorted.
-        level: class of levels, made of ``work``, ``task``, a space and g.
-    """
-    with solved_to_tolerance(work, task, g, lambda space, g: level(work, task, space, g)) as solved:
-        ladder, error = solved
-        yield AtSpeed(ladder.levels[-1], error, lambda: ladder.record() | error.record())

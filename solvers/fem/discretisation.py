@@ -106,7 +106,7 @@ class Discretisation:
         with quiet_compiler():
             return SPACES[self.plan.assembler](
                 *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
-                self.clock, self._progress.warn,
+                self.clock,
             )  # fmt: skip
 
     def mesh(self, cuts: int) -> tuple[Any, Any]:
@@ -117,13 +117,15 @@ class Discretisation:
         return self._meshes[cuts]
 
     def _made(self, cuts: int) -> tuple[Any, Any]:
-        comm, kind, pattern = self.comm, self.plan.kind, self.plan.pattern
-        check_cells(pattern)
-        if self.plan.drawn is not None:  # no other run has the same
-            return distribute(pattern if comm.rank == 0 else None, comm)
-        if cuts > 1:  # gmsh's copy of a cut mesh would only be large
-            return distribute(kind.build(self.plan.refinement, cuts, comm.rank, comm.size), comm)
-        return distribute(obtain(pattern, self._progress.warn) if comm.rank == 0 else None, comm)
+        plan, comm = self.plan, self.comm
+        check_cells(plan.pattern)
+        if comm.rank:
+            return distribute(None, comm)
+        if plan.drawn is not None:  # no other run has the same
+            return distribute(plan.pattern, comm)
+        if cuts > 1:  # Gmsh's copy of a cut mesh would only be large
+            return distribute(plan.kind.build(plan.refinement, cuts), comm)
+        return distribute(obtain(plan.pattern), comm)
 
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:

@@ -4,20 +4,17 @@ Next to free ends of a contact, or to knots of a prescribed pressure, slopes may
 little farther away, where finite elements have more digits.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import AT_INTERFACES, BELOW, YIELD
-from ..contact.solution import Surface, Task
+from ..contact.solution import Task
+from ..contact.stresses import Surface
 from .fields import Gradients, InteriorGradients, KeptValues, Slopes, surface_slopes
 from .space import Space
-
-#: Derivatives that a word of output.quantities requests besides the slopes on the surface.
-_DERIVATIVES = {BELOW: "_gradients", YIELD: "_around", AT_INTERFACES: "_interfaces"}
 
 
 class Displacement:
@@ -37,15 +34,9 @@ class Displacement:
         continuation: Callable[[NDArray], tuple[NDArray, NDArray]] | None = None,
     ) -> None:  # fmt: skip
         self._task, self._space, self._fields, self._continuation = task, space, fields, continuation
+        self._kept: dict[tuple[int, int], Gradients] = {}
         if slopes is not None:
             self.slopes = slopes
-
-    def prepare(self, words: Collection[str]) -> None:
-        """Take the derivatives that words of output.quantities request, before the fields are freed."""
-        if words:
-            self.slopes  # noqa: B018 - cached
-        for word in words:
-            getattr(self, _DERIVATIVES.get(word, "slopes"))
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -61,34 +52,31 @@ class Displacement:
         return surface_slopes(self._space, self._fields[:1], X).of(np.ones((1, 1)))[0][0]
 
     @cached_property
-    def _gradients(self) -> Gradients:
-        return self._at(self._task.places.points)
-
-    @cached_property
-    def _around(self) -> Gradients:
-        return self._at(self._task.places.around)
-
-    @cached_property
     def _values(self) -> KeptValues:
         return KeptValues(self._space, self._task.response, self._fields)
 
     @cached_property
-    def _interfaces(self) -> list[tuple[NDArray, Gradients, Gradients]]:
-        """Points of each interface, (n, 2), and gradients above and below it."""
-        places, gradients = self._task.places, []
-        for depth in places.interfaces.tolist():
-            points = np.column_stack([places.along, np.full_like(places.along, -depth)])
-            gradients.append((points, self._at(points), self._at(points, -1)))
-        return gradients
+    def _along(self) -> list[NDArray[np.float64]]:
+        """Points along each interface, (n, 2)."""
+        places = self._task.places
+        return [
+            np.column_stack([places.along, np.full_like(places.along, -depth)])
+            for depth in places.interfaces
+        ]
 
     def _at(self, points: NDArray, side: int = 1) -> Gradients:
         """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
-        response = self._task.response
-        return InteriorGradients(self._space, response, self._values, points, side)
+        return InteriorGradients(self._space, self._task.response, self._values, points, side)
 
-    def _stresses(self, points: NDArray, gradients: NDArray, side: int = 1) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (n, 2), by gradients (states, n, 2, 2)."""
-        return self._task.response.stresses_at(points[:, 1], gradients, side)
+    def _stresses(self, points: NDArray, weights: NDArray, side: int = 1) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points of the task, (n, 2); gradients are kept."""
+        key = id(points), side
+        if key not in self._kept:
+            self._kept[key] = self._at(points, side)
+        σ = np.empty((3, len(weights), len(points)))
+        for batch, gradients in self._kept[key].by_batches(weights):
+            σ[:, :, batch] = self._task.response.stresses_at(points[batch, 1], gradients, side)
+        return σ
 
     def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
         """Stresses on the surface, by weights (states, fields) and σ_YY, (states, n) or (n,)."""
@@ -99,18 +87,22 @@ class Displacement:
         σ_YY = np.broadcast_to(np.where(places.under, σ_YY, np.nan), σ_XX.shape)
         return Surface(places, σ_YY, σ_XX, raw, v_X)
 
+    def inside(self, weights: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY inside by weights (states, fields), (3, states, m)."""
+        return self._stresses(self._task.places.points, weights)
+
     def around(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at the points checked for yield, (3, states, k)."""
-        return self._stresses(self._task.places.around, self._around.of(weights))
+        return self._stresses(self._task.places.around, weights)
 
     def at(self, points: NDArray, weights: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         flat = points.reshape(-1, 2)
         gradients = self._at(flat)
         if len(points) == 1:
-            return self._stresses(flat, gradients.of(weights))
+            return self._task.response.stresses_at(flat[:, 1], gradients.of(weights))
         each = gradients.of_each(weights)
-        whole = self._stresses(flat, each.reshape(1, -1, 2, 2))
+        whole = self._task.response.stresses_at(flat[:, 1], each.reshape(1, -1, 2, 2))
         return whole.reshape(3, *each.shape[:2])
 
     def interfaces(self, weights: NDArray) -> NDArray[np.float64]:
@@ -120,9 +112,8 @@ class Displacement:
         whose other stresses may be large beside them: each side's weight goes with the other's modulus.
         """
         stresses = []
-        for i, (points, above, below) in enumerate(self._interfaces):
-            σ_above = self._stresses(points, above.of(weights))
-            σ_below = self._stresses(points, below.of(weights), -1)
+        for i, points in enumerate(self._along):
+            σ_above, σ_below = (self._stresses(points, weights, side) for side in (1, -1))
             upper, lower = self._task.body.solid.beside(i)  # type: ignore[attr-defined]
             share = lower.μ / (upper.μ + lower.μ)
             tractions = share * σ_above[1:] + (1.0 - share) * σ_below[1:]
@@ -133,10 +124,3 @@ class Displacement:
         """Effect of rounding of the fields on σ_XX on the surface, (states, n)."""
         noise = self.slopes.rounding(weights)
         return np.abs(self._task.response.σ_XX(noise, 0.0 * noise, 0.0 * noise))
-
-    def inside(self, weights: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY inside by weights (states, fields), (3, states, m)."""
-        σ = np.empty((3, len(weights), len(self._task.places.points)))
-        for batch, gradients in self._gradients.by_batches(weights):
-            σ[:, :, batch] = self._stresses(self._task.places.points[batch], gradients)
-        return σ

@@ -97,7 +97,7 @@ class DolfinxSpace(Space):
         return self._form
 
     def _compiled(self, form: Any) -> Any:
-        with self.clock("forms"), compiling(self.comm, form.signature(), self._say) as options:
+        with self.clock("forms"), compiling(self.comm, form.signature()) as options:
             return versions.form(form, options)
 
     def assemble(self, response: HalfPlane) -> PETSc.Mat:

@@ -35,6 +35,7 @@ from scipy.special import roots_jacobi
 from galinx.clock import Clock
 
 from ..approximation import lagrange
+from ..transient.history import History, Way
 from .dynamic import Motion, Products, of_both
 from .fields import SurfaceTrace
 from .linear import ArraySolver
@@ -247,26 +248,6 @@ class Steps:
         return self.work_of_load + self.work_of_friction
 
 
-@dataclass(frozen=True)
-class Phase:
-    """Equal steps in one direction.
-
-    Attributes:
-        direction: ±1, towards +X or back.
-        duration: over a/c_s.
-        steps: number of steps.
-    """
-
-    direction: int
-    duration: float
-    steps: int
-
-    @property
-    def h(self) -> float:
-        """Length of a step over a/c_s."""
-        return self.duration / self.steps
-
-
 @dataclass
 class _State:
     """Displacements, velocities, accelerations, and powers of load, friction and damping."""
@@ -297,17 +278,13 @@ class SlidingInTime:
         self._punches: dict[tuple[float, int], PunchConstraint] = {}
 
     def run(
-        self,
-        phases: Sequence[Phase],
-        g: Callable[[float], float],
-        load: Callable[[float], float],
-        steady: bool = False,
+        self, ways: Sequence[Way], g: History, load: History, steady: bool = False,
         watching: Sequence[Watch] = (),
-    ) -> Steps:
-        """March through all phases.
+    ) -> Steps:  # fmt: skip
+        """March through all ways.
 
         Args:
-            phases: one after the other; in two directions only if the speed is not 0.
+            ways: one after the other; in two directions only if the speed is not 0.
             g: σ_XY/σ_YY under the punch at a time; it may jump at a turn.
             load: share of N at a time; from rest load(0) = 0 with no slope there.
             steady: begin in the steady motion under load and friction at t = 0, not at rest.
@@ -315,18 +292,18 @@ class SlidingInTime:
         """
         state = self._steady(g(0.0), load(0.0)) if steady else self._rest()
         first_v0, first_energy = -state.u[self._Y[0]], self._energy(state)
-        records, t, way = [], 0.0, phases[0].direction
-        watched = [[watch(state.u, state.w, way) for watch in watching]]
-        for phase in phases:
-            if phase.direction != way:
-                self._turn(state, phase.direction - way, g(t + _AFTER), load(t))
-                way = phase.direction
-            stages = self._stages(phase.h, way)
-            for _ in range(phase.steps):
-                r, done = self._step(state, stages, phase.h, t, g, load)
-                t += phase.h
+        records, t, direction = [], 0.0, ways[0].direction
+        watched = [[watch(state.u, state.w, direction) for watch in watching]]
+        for way in ways:
+            if way.direction != direction:
+                self._turn(state, way.direction - direction, g(t + _AFTER), load(t))
+                direction = way.direction
+            stages = self._stages(way.h, direction)
+            for _ in range(way.steps):
+                r, done = self._step(state, stages, way.h, t, g, load)
+                t += way.h
                 records.append((t, -state.u[self._Y[0]] - first_v0, r, *done, self._energy(state)))
-                watched.append([watch(state.u, state.w, way) for watch in watching])
+                watched.append([watch(state.u, state.w, direction) for watch in watching])
         times, v0, forces, by_load, by_friction, absorbed, energy = map(np.array, zip(*records))
         return Steps(
             times, v0, forces, np.cumsum(by_load), np.cumsum(by_friction), energy - first_energy,
@@ -339,24 +316,21 @@ class SlidingInTime:
 
     def _steady(self, g: float, load: float) -> _State:
         state = self._rest()
-        punch = self._under(self._K)
-        state.u, _ = punch.solve(np.zeros(self._motion.size), g, -2.0 * load)
+        punch = PunchConstraint(self._K, self._motion, self._clock)
+        state.u, _ = punch.solve(state.u, g, -2.0 * load)
         punch.destroy()
         return state
 
     def _turn(self, state: _State, change: int, g: float, load: float) -> None:
         """Turn the punch round: velocities seen from it jump, and accelerations change."""
         Δc, way = self._motion.response.c * change, np.sign(change)
-        punch = self._under(kron(self._M, identity(2)).tocsr())
+        punch = PunchConstraint(kron(self._M, identity(2)).tocsr(), self._motion, self._clock)
         pushed = of_both(self._M, state.w) + Δc * of_both(self._B, state.u)
         state.w, _ = punch.solve(pushed, g, 0.0)
         force = -of_both(self._rates(way), state.w) - self._K @ state.u
         state.a, r = punch.solve(force, g, -2.0 * load)
         punch.destroy()
         state.powers = self._powers(r, state.w, g)
-
-    def _under(self, matrix: csr_matrix) -> PunchConstraint:
-        return PunchConstraint(matrix, self._motion, self._clock)
 
     def _rates(self, way: int) -> csr_matrix:
         return self._D - 2.0 * way * self._motion.response.c * self._B
@@ -366,12 +340,12 @@ class SlidingInTime:
         key = (round(h, 12), way)
         if key not in self._punches:
             S = kron(self._M + γ * h * self._rates(way), identity(2)) + (γ * h) ** 2 * self._K
-            self._punches[key] = self._under(S.tocsr())
+            self._punches[key] = PunchConstraint(S.tocsr(), self._motion, self._clock)
         return self._punches[key]
 
     def _step(
         self, state: _State, stages: PunchConstraint, h: float, t: float,
-        g: Callable[[float], float], load: Callable[[float], float],
+        g: History, load: History,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
         """Take a step; returns normal reactions at its end, and both works and absorbed energy in it."""
         powers, reactions = [state.powers], []

@@ -1,7 +1,7 @@
 """Finite elements as a method: solvers by the mode of their plan."""
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from functools import cached_property
 from typing import Any
 
@@ -14,9 +14,9 @@ from ..contact import FREE_ENDS, OWN_PRESSURE, VARYING
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
 from ..contact.method import ContactStress, Solver
 from ..contact.solution import Task
-from .along import VaryingLevel
-from .contact import PunchLevel, shared_mesh
+from .contact import PunchLevel
 from .discretisation import Discretisation, quiet_compiler
+from .ladder import to_tolerance
 from .own_meshes import between_kinks, over_layers
 from .prescribed_pressure import FormulaLevel, PiecesLevel, WholeLevel
 from .space import Space
@@ -26,7 +26,7 @@ from .sweep import Trained, train
 LEVELS: dict[str, Any] = {
     "contact": PunchLevel,
     FREE_ENDS: PunchLevel,
-    VARYING: VaryingLevel,
+    VARYING: PunchLevel,
     "traction": FormulaLevel,
     OWN_PRESSURE: PiecesLevel,
     PRESCRIBED_ON_LAYERS: WholeLevel,
@@ -73,13 +73,13 @@ class FiniteElements:
             self._progress.say(
                 f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
             )
-            mode = self.work.plan.mode
-            if not solver:
-                own = OWN.get(mode)
-                solving = (
-                    own(self.work, task, g) if own else shared_mesh(self.work, task, g, LEVELS[mode])
-                )
-                solver = stack.enter_context(solving)
+            mode, work = self.work.plan.mode, self.work
+            if not solver and mode in OWN:
+                solver = stack.enter_context(OWN[mode](work, task, g))
+            elif not solver:
+                kind = LEVELS[mode]
+                solved = to_tolerance(work, task, g, lambda space, g: kind(work, task, space, g))
+                solver = stack.enter_context(closing(solved))
             yield solver
 
     @contextmanager
@@ -95,9 +95,7 @@ class FiniteElements:
         whole = mode == OWN_PRESSURE
         with quiet_compiler():
             space = self.work.space(degree, 2 if whole else cuts)
-            level = (WholeLevel if whole else LEVELS[mode])(self.work, task, space, of_one)
-            try:
+            kind = WholeLevel if whole else LEVELS[mode]
+            with closing(kind(self.work, task, space, of_one)) as level:
                 states = level.states(of_one)
                 yield space, level.fields, states.contact.weights[0], lambda X: states.pressure.σ_YY(X)[0]
-            finally:
-                level.destroy()

@@ -20,15 +20,14 @@ all loads differ in size alone, a single state of a friction stands for all of t
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import ceil, log
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.kind import DEGREES, rings_at_kinks, with_kinks
-from galinx.meshes.rings import Refinement
+from galinx.meshes.kind import DEGREES
+from galinx.meshes.rings import Refinement, rings_at_kinks, with_kinks
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents
@@ -43,27 +42,18 @@ from ..contact.fem_plan import (
     pressure_moments,
     requirements,
 )
-from ..contact.free_ends import (
-    SHAPES,
-    EndConditions,
-    KinkedPressure,
-    at_and_between,
-    free_ends,
-    gaps_of,
-    slopes_towards_ends,
-    turns_at_ends,
-)
-from ..contact.pressure import Expansion
-from ..contact.solution import Contact, Places, Surface, Task, Turns
-from ..contact.stresses import NEAR_TIP, off_tips
+from ..contact.free_ends import SHAPES, free_ends
+from ..contact.pressure import ENDS, Expansion
+from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
+from ..contact.solution import Contact, Task
+from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.flat import Flat
-from .contact import Ends, FreeEnds, PunchLevel, SolvedEnds
+from .contact import Ends, FreeEnds, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
-from .ladder import Gauge, Ladder, MeasuredError, WorkDone, climbed, solved_to_tolerance
-from .punch import combined
-from .solution import Solution, SolvedStates, solution_of
+from .ladder import Gauge, Solved, WorkDone, climb, joined, to_tolerance
+from .solution import Solution, SolvedEnds, SolvedStates, solution_of
 from .space import Space
 
 #: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
@@ -88,45 +78,32 @@ class EndsLevel(PunchLevel):
     def __init__(
         self, work: Discretisation, task: Task, space: Space, g: NDArray, near: dict[State, Lengths]
     ) -> None:
-        super().__init__(work, task, space, g, ends=FreeEnds(SHAPES))
+        super().__init__(work, task, space, g, FreeEnds(SHAPES))
         self._near = near
-        self._conditions: dict[float, EndConditions] = {}
-        self._lengths: dict[State, Lengths] = {}
 
-    def conditions(self, g: NDArray) -> list[EndConditions]:
-        """Conditions at free ends of every friction."""
-        missing = np.array([value for value in np.unique(g).tolist() if value not in self._conditions])
-        if len(missing):
-            parts, local = self.punch.parts(missing), EdgeExponents(self.task.response, missing)
-            loads = np.stack([part.load for part in parts], axis=-1)
-            solved = free_ends(local, self.K_I(parts, missing), loads)
-            self._conditions |= zip(missing.tolist(), solved)
-        return [self._conditions[value] for value in g.tolist()]
-
-    def lengths(self, g: NDArray, load: Any = None) -> list[Lengths]:
-        """Middle and half-width [m] of every state.
+    def lengths(self, g: NDArray, load: Any = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Middle and half-width [m] of every state, (states, 2), and what shapes leave out, (states,).
 
         Raises:
             SolveError: no contact carries the load.
         """
-        body, last = self.task.body, None
+        body, last, each = self.task.body, None, []
+        _, N, K = self.parts(g)
+        conditions = free_ends(EdgeExponents(self.task.response, g), K, N)
         loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
-        states = list(zip(g.tolist(), loads))
-        for state, condition in zip(states, self.conditions(g)):
-            if state not in self._lengths:
-                unit = body.loaded(state[1]).displacement
-                start = self._near.get(state, last)
-                self._lengths[state] = self._near[state] = condition.solve(body.profile, unit, start)
-            last = self._lengths[state]
-        return [self._lengths[state] for state in states]
+        for state, condition in zip(zip(g.tolist(), loads), conditions):
+            start = self._near.get(state, last)
+            last = condition.solve(body.profile, body.loaded(state[1]).displacement, start)
+            self._near[state] = last
+            each.append(last)
+        return np.array(each), np.array([condition.unseen for condition in conditions])
 
-    def measured(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        ends = np.array(self.lengths(g, load))
+    def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        ends, unseen = self.lengths(g, load)
         h = ends[:, 1:]
-        unseen = np.array([[condition.unseen] for condition in self.conditions(g)])
         # Differences of the half-widths' logarithms are relative changes.
-        values = np.concatenate([np.log(h), ends[:, :1] / h, unseen], axis=1)
-        return [Gauge(INTENSITIES, values, np.ones_like(values))]
+        groups = (np.log(h), 1.0), (ends[:, :1] / h, 1.0), (unseen[:, None], 1.0)
+        return [joined(INTENSITIES, groups)]
 
 
 #: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
@@ -152,7 +129,7 @@ class EndsBetweenKinks(Ends):
         SolveError: cells cannot be graded towards the kinks.
     """
 
-    single = True
+    single, mirrored = True, False
 
     def __init__(self, body: Contact, lengths: Lengths, tolerance: float) -> None:
         self._body, self._tolerance = body, tolerance
@@ -234,35 +211,28 @@ class EndsBetweenKinks(Ends):
         at_kinks = [pressure.at_kink(i) for i in range(len(self._kinks))]
         σ = np.append(pressure.σ_YY(_ACROSS[off_tips(_ACROSS, self._tips)]), at_kinks)[None]
         size = float(np.abs(σ).max())
-        scale = np.concatenate([2.0 + 0.0 * moments, size + 0.0 * σ], axis=1)
         unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
-        return Gauge(INTENSITIES, np.concatenate([moments, σ], axis=1), scale, unresolved)
+        return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
 
-    def turns(self, states: SolvedStates) -> Callable[[Surface], Turns]:
-        def at(surface: Surface) -> Turns:
-            """Stresses at both ends, and under kinks where they are finite."""
-            X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
-            σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
-            u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
-            g, response = float(states.contact.g[0]), states.task.response
-            under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        """Limits of stresses at both ends, and under kinks where they are finite."""
+        X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
+        σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+        u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
+        g, response = float(states.contact.g[0]), states.task.response
+        under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
 
-            def in_plane(r: NDArray) -> NDArray[np.float64]:
-                r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
-                σ = pressure.σ_YY(r)
-                return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
+        def in_plane(r: NDArray) -> NDArray[np.float64]:
+            r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
+            σ = pressure.σ_YY(r)
+            return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
 
-            between = None
-            if len(X):
-                places = np.array([-1.0, *X, 1.0])
-                _, between = at_and_between(places, 1, in_plane)
-                # Nearer to ends and kinks the limits there stand for the stress.
-                near = np.abs(between[0][..., None] - places).min(axis=-1) < self.nearest(pressure)
-                between[1, near] = np.nan
-            ends = turns_at_ends(surface, states.local)
-            return ends.joined(Turns(X[None], under[:, None], between))
-
-        return at
+        between = None
+        if len(X):
+            places = np.array([-1.0, *X, 1.0])
+            # Nearer to ends and kinks the limits there stand for the stress.
+            _, between = at_and_between(places, in_plane, nearest=self.nearest(pressure))
+        return super().turns(states, surface).joined(Turns(X[None], under[:, None], between))
 
 
 def _gentle(plan: FemPlan) -> Refinement:
@@ -287,19 +257,6 @@ def _exponents(task: Task, g: NDArray) -> tuple[float, float]:
 GROWTH = 2.0
 
 
-@dataclass(frozen=True)
-class BalancedContact(SolvedEnds):
-    """Contact without intensities on a mesh drawn for its half-width; see :class:`SolvedEnds`.
-
-    Attributes:
-        off: logarithm of the load that makes a contact of the mesh's half-width, over the task's load.
-        lean: middle of the contact over the mesh's half-width.
-    """
-
-    off: float = 0.0
-    lean: float = 0.0
-
-
 class BalancedEnds(Ends):
     """Ends of one contact over layers, without intensities, on a mesh drawn for its half-width.
 
@@ -312,7 +269,7 @@ class BalancedEnds(Ends):
         near: middle of a contact near by [m].
     """
 
-    single = True
+    single, mirrored = True, False
 
     def __init__(self, profile: Any, half_width: float, near: float) -> None:
         self._profile, self._half_width, self._near = profile, half_width, near
@@ -322,28 +279,24 @@ class BalancedEnds(Ends):
         X = self._near + h * level.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> BalancedContact:
+    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
         """Contact without intensities.
 
         Raises:
             SolveError: no load makes such a contact.
         """
-        parts, h = level.punch.parts(g), self._half_width
-        loads = np.array([part.load[0] for part in parts])
-        amplitudes = np.linalg.solve(
-            np.vstack([loads, level.K_I(parts, g)[0]]), np.array([-2.0, 0.0, 0.0])
-        )
+        (parts, loads, K), h = level.parts(g), self._half_width
+        amplitudes = without_intensity(loads, K)
         # Over its own load the punch's height is that over the task's load times their quotient.
-        _, share, slope = amplitudes.tolist()
+        _, share, slope = amplitudes[0].tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        off, lean = float(-np.log(share)), self._near / h + slope / share
-        contact = combined(g, parts, amplitudes[None])
-        lengths = np.full(1, h * np.exp(-off / GROWTH)), np.full(1, h * lean)
-        return BalancedContact(contact, *lengths, _FREE, off=off, lean=lean)
+        half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
+        contact = level.punch.summed(g, parts, amplitudes)
+        return SolvedEnds(contact, np.full(1, half_width), np.full(1, centre), _FREE)
 
     def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
-        return level.over_flat(ends.contact, ends.contact.g, 1.0)
+        return level.over_flat(ends.contact.tested(level.moments), ends.contact.g, 1.0)
 
     def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
         assert level.plan.tests
@@ -353,66 +306,51 @@ class BalancedEnds(Ends):
     def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
         """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
         pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
-        balanced: Any = level.only
-        σ, lengths = pressure.σ_YY(_ACROSS), np.array([[balanced.off / GROWTH, balanced.lean]])
-        of_others = [2.0 + 0.0 * moments, np.ones_like(lengths)]
+        h, σ = self._half_width, pressure.σ_YY(_ACROSS)
+        # Differences of the half-widths' logarithms are relative changes.
+        lengths = np.column_stack([np.log(states.ends.half_width / h), states.ends.centre / h])
         # What the last functions add is largest where they are multiplied by most.
         factor = np.abs(pressure.series(_ACROSS)).max(axis=1)
-        ends = np.abs(pressure.series(np.array([-1.0, 1.0]))).max(axis=1)
-        values = np.concatenate([σ, moments, lengths], axis=1)
-        scale = np.concatenate([stresses.of_factor(σ), *of_others], axis=1)
-        return Gauge(INTENSITIES, values, scale, pressure.unresolved * ends / factor)
+        ends = np.abs(pressure.series(ENDS)).max(axis=1)
+        groups = (σ, stresses.of_factor(σ)), (moments, 2.0), (lengths, 1.0)
+        return joined(INTENSITIES, groups, pressure.unresolved * ends / factor)
 
 
-@dataclass(frozen=True)
-class Sized:
-    """Task scaled to a contact: its lengths are over the contact's half-width.
+def scaled(task: Task, half_width: float) -> Task:
+    """Task under one load whose lengths are over the half-width [m] of a contact."""
+    depths = task.body.solid.depths / half_width  # type: ignore[attr-defined]
+    return replace(
+        task,
+        body=replace(task.body, profile=Flat(half_width)),
+        response=replace(task.response, a=half_width),  # type: ignore[type-var]
+        places=replace(task.places, interfaces=depths),
+    )
 
-    Attributes:
-        task: the task, under one load.
-        half_width: half-width of the contact [m].
+
+def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
+    """Plan of a mesh drawn for a contact over layers.
+
+    Args:
+        task: the task of :func:`scaled`.
+        plan: plan of all contacts.
+        words: words of output.quantities that request stresses.
     """
-
-    task: Task
-    half_width: float
-
-    @cached_property
-    def scaled(self) -> Task:
-        """The task with lengths over the half-width."""
-        task, h = self.task, self.half_width
-        places, depths = task.places, task.body.solid.depths / h  # type: ignore[attr-defined]
-        return replace(
-            task,
-            body=replace(task.body, profile=Flat(h)),
-            response=replace(task.response, a=h),  # type: ignore[type-var]
-            places=replace(places, interfaces=depths),
-        )
-
-    def plan(self, plan: FemPlan, words: frozenset[str]) -> FemPlan:
-        """Plan of a mesh drawn for the contact.
-
-        Args:
-            plan: plan of all contacts.
-            words: words of output.quantities that request stresses.
-        """
-        scaled = self.scaled
-        places, interfaces = scaled.places, scaled.places.interfaces
-        kind = kind_of(interfaces, [scaled.response])
-        below = places.points if BELOW in words else np.empty((0, 2))
-        if AT_INTERFACES in words:
-            X, depth = np.meshgrid(places.along, interfaces)
-            below = np.concatenate([below, np.column_stack([X.ravel(), -depth.ravel()])])
-        X = places.X if ON_SURFACE in words else np.empty(0)
-        requested = Places(X, below, places.around)
-        target = requirements(plan.tolerance, requested, plan.sharp, scaled.response.spread)
-        # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
-        target = no_nearer(target, NEAR_FREE_END)
-        degree = kind.degree(target, scaled.response.margin)
-        return replace(
-            plan, kind=kind, wanted=target, drawn=kind.drawn(target),
-            degrees=(degree,) * len(plan.degrees),
-            tests=pressure_moments(scaled.body.solid, kind, target),
-        )  # fmt: skip
+    places, interfaces = task.places, task.places.interfaces
+    kind = kind_of(interfaces, [task.response])
+    below = places.points if BELOW in words else np.empty((0, 2))
+    if AT_INTERFACES in words:
+        X, depth = np.meshgrid(places.along, interfaces)
+        below = np.concatenate([below, np.column_stack([X.ravel(), -depth.ravel()])])
+    X = places.X if ON_SURFACE in words else np.empty(0)
+    requested = Places(X, below, places.around)
+    target = requirements(plan.tolerance, requested, plan.sharp, task.response.spread)
+    # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
+    target = no_nearer(target, NEAR_FREE_END)
+    degree = kind.degree(target, task.response.margin)
+    return replace(
+        plan, kind=kind, wanted=target, drawn=kind.drawn(target), degrees=(degree,) * len(plan.degrees),
+        tests=pressure_moments(task.body.solid, kind, target),
+    )  # fmt: skip
 
 
 #: Error of the half-width at a lower degree, and by how much that is lower; the error over the tolerance
@@ -440,12 +378,37 @@ class _Search:
         self._lean = 0.0
         self._tried: dict[float, float] = {}
 
-    def half_width(self, h: float) -> float:
-        """Half-width [m] of the contact that carries the load, from a half-width near by.
+    def solved(self, near: float) -> "OwnState":
+        """Contact solved to the tolerance.
+
+        Args:
+            near: half-width of a contact near by [m].
 
         Raises:
-            SolveError: no half-width carries the load.
+            SolveError: no contact was found, or the equations could not be solved.
         """
+        drawn, profile = self._half_width(near), self._task.body.profile
+        state, lean, h = self._solved_on(drawn)
+        if abs(h / drawn - 1.0) > _ERROR * self._work.plan.tolerance:
+            state.solved.close()
+            drawn = h
+            state, lean, h = self._solved_on(drawn)
+        check_reach(profile, h * (lean - 1.0), h * (lean + 1.0))
+        ends = replace(state.states.ends, half_width=np.array([h]), centre=np.array([h * lean]))
+        errors = {word: value + abs(h / drawn - 1.0) for word, value in state.states.errors.items()}
+        return replace(
+            state, states=replace(state.states, body=self._task.body, ends=ends, errors=errors)
+        )
+
+    def _solved_on(self, h: float) -> tuple["OwnState", float, float]:
+        """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
+        mesh, task = self._on(h, self._work.stresses)
+        state = own_state(mesh, task, self._g, self._ends(h), self._done)
+        off, lean = _balanced(state.solved.level, h)
+        return state, lean, self._moved(h, off)
+
+    def _half_width(self, h: float) -> float:
+        """Half-width [m] of the contact that carries the load, from a half-width near by."""
         body, settled = self._task.body, _SETTLED * self._work.plan.tolerance
         punch = Punch(body.profile, 1.0, float(body.compression))
         for lower, error in ((_LOWER, max(_ROUGH, settled)), (0, settled)):
@@ -470,79 +433,39 @@ class _Search:
             lower: difference of the degree from the usual one.
             error: relative error that is allowed.
         """
-        sized, none = Sized(self._task, h), frozenset[str]()
-        mesh = self._work.on(sized.plan(self._work.plan, none), none)
-        degree = max(mesh.plan.degrees[self._task.number] - lower, DEGREES[0])
+        mesh, task = self._on(h, frozenset())
+        degree = max(mesh.plan.degrees[task.number] - lower, DEGREES[0])
         moved = np.inf
         while moved**2 > error:  # the shift of the middle is accurate to its square
-            level = PunchLevel(mesh, sized.scaled, mesh.space(degree), self._g, ends=self._ends(h))
-            self._done.count(level)
-            level.destroy()
-            balanced: Any = level.only
-            moved, self._lean = balanced.lean - self._lean, balanced.lean
-        self._tried[h] = float(balanced.off)
-        return self._tried[h]
+            with closing(PunchLevel(mesh, task, mesh.space(degree), self._g, self._ends(h))) as level:
+                self._done.count(level.factor)
+                off, lean = _balanced(level, h)
+            moved, self._lean = lean - self._lean, lean
+        self._tried[h] = off
+        return off
+
+    def _on(self, h: float, words: frozenset[str]) -> tuple[Discretisation, Task]:
+        """Mesh drawn for a half-width [m], and the task with lengths over it."""
+        task = scaled(self._task, h)
+        return self._work.on(drawn_for(task, self._work.plan, words), words), task
 
     def _ends(self, h: float) -> BalancedEnds:
         return BalancedEnds(self._task.body.profile, h, h * self._lean)
 
-    def solved(self, h: float) -> tuple["OwnState", float]:
-        """Contact on a mesh drawn for a half-width [m], solved to the tolerance; its half-width [m]."""
-        sized, words, ends = Sized(self._task, h), self._work.stresses, self._ends(h)
-        mesh = self._work.on(sized.plan(self._work.plan, words), words)
-        state = own_state(mesh, sized.scaled, self._g, ends, self._done)
-        return state, self._moved(h, state.level.only.off)  # type: ignore[union-attr]
 
-
-def solved_over_layers(
-    work: Discretisation, task: Task, g: float, near: float, done: WorkDone
-) -> "OwnState":
-    """Solve a contact over layers.
-
-    Args:
-        work: gives meshes.
-        task: the speed, and the load.
-        g: σ_XY/σ_YY.
-        near: half-width of a contact near by [m].
-        done: takes the numbers of the work.
-
-    Raises:
-        SolveError: no contact was found, or the equations could not be solved.
-    """
-    search = _Search(work, task, g, done)
-    drawn = search.half_width(near)
-    state, h = search.solved(drawn)
-    if abs(h / drawn - 1.0) > _ERROR * work.plan.tolerance:
-        state.level.destroy()
-        drawn = h
-        state, h = search.solved(drawn)
-    balanced: Any = state.level.only
-    lean, off = balanced.lean, abs(h / drawn - 1.0)
-    check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
-    errors = {word: value + off for word, value in state.states.errors().items()}
-    states = replace(
-        state.states,
-        body=task.body,
-        half_width=np.array([h]),
-        centre=np.array([h * lean]),
-        errors=lambda: errors,
-    )
-    return replace(state, states=states)
+def _balanced(level: PunchLevel, h: float) -> tuple[float, float]:
+    """Logarithm of the load of a contact of half-width h [m], over the task's, and its middle over h."""
+    ends = level.only
+    assert ends
+    return -GROWTH * float(np.log(ends.half_width[0] / h)), float(ends.centre[0] / h)
 
 
 @dataclass(frozen=True)
 class OwnState:
-    """State solved on a mesh of its own.
-
-    Attributes:
-        states: the state.
-        level: the last level.
-        record: numbers of the work, as they are archived.
-    """
+    """State solved on a mesh of its own: the state, and how it was solved."""
 
     states: SolvedStates
-    level: PunchLevel
-    record: dict[str, Any]
+    solved: Solved
 
 
 def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: WorkDone) -> OwnState:
@@ -555,16 +478,9 @@ def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: Wo
         ends: ends of the contact.
         done: takes the numbers of the work.
     """
-
-    def level(space: Space, g: NDArray) -> PunchLevel:
-        contact = PunchLevel(mesh, task, space, g, ends=ends)
-        done.count(contact)
-        return contact
-
-    with solved_to_tolerance(mesh, task, g, level) as (ladder, error):
-        errors, last = error.of(g), ladder.levels.pop()
-    size = {"cells": last.space.cells, "unknowns": last.space.size, "degree": last.space.degree}
-    return OwnState(replace(last.states(g), errors=lambda: errors), last, size | error.record())
+    solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends), done)
+    (states,) = solved.on_mesh(g)
+    return OwnState(states, solved)
 
 
 class OwnMeshesAtSpeed:
@@ -596,11 +512,11 @@ class OwnMeshesAtSpeed:
         if state is None:
             task = replace(self._task, body=self._task.body.loaded(load), loads=(load,))
             state = self._solve(g, task, self._kept)
-            for name, value in state.record.items():
+            for name, value in state.solved.record().items():
                 self._record[name] = max(self._record.get(name, value), value)
         self._kept[g, load] = state
         while len(self._kept) > OWN_MESHES_KEPT:
-            self._kept.pop(next(iter(self._kept))).level.destroy()
+            self._kept.pop(next(iter(self._kept))).solved.close()
         return state
 
     def record(self) -> dict[str, Any]:
@@ -609,7 +525,7 @@ class OwnMeshesAtSpeed:
     def close(self) -> None:
         """Free the kept states."""
         for state in self._kept.values():
-            state.level.destroy()
+            state.solved.close()
 
 
 @contextmanager
@@ -618,15 +534,14 @@ def over_layers(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnMes
     done = WorkDone()
 
     def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
-        load = alone.body.load
         # Half-widths of solved states under the load by the difference of their frictions.
         near = [
-            (abs(other - g), float(state.states.half_width[0]))
-            for (other, N), state in kept.items()
-            if load == N
+            (abs(other - g), float(state.states.ends.half_width[0]))
+            for (other, load), state in kept.items()
+            if load == alone.body.load
         ]
         first = min(near)[1] if near else float(alone.body.half_width)
-        return solved_over_layers(work, alone, g, first, done)
+        return _Search(work, alone, g, done).solved(first)
 
     with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
         yield at
@@ -640,27 +555,17 @@ def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnM
     def level(space: Space, g: NDArray) -> EndsLevel:
         return EndsLevel(work.for_ends, task, space, g, near)
 
-    with climbed(work.for_ends, task, g, level) as (ladder, error):
-        done = WorkDone()
+    done = WorkDone()
+    with closing(climb(work.for_ends, task, g, level, done=done)) as solved:
 
         def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
-            lengths, off = _ends_of(ladder, error, g, alone.body.load)
-            ends = EndsBetweenKinks(alone.body, lengths, work.plan.tolerance)
+            of = np.array([g])
+            (lengths,), unseen = solved.level.lengths(of, np.array([alone.body.load]))
+            ends = EndsBetweenKinks(alone.body, tuple(lengths.tolist()), work.plan.tolerance)
             mesh = work.on(ends.drawn(work.plan), refine=lambda plan: ends.drawn(on_finer_cells(plan)))
-            state = own_state(mesh, alone, np.array([g]), ends, done)
-            errors = state.states.errors()
-            errors[INTENSITIES] = errors[INTENSITIES] + off
+            state = own_state(mesh, alone, of, ends, done)
+            state.states.errors[INTENSITIES] += solved.error.of(of)[INTENSITIES] + unseen
             return state
 
-        done.add(ladder.done)
         with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
             yield at
-
-
-def _ends_of(ladder: Ladder, error: MeasuredError, g: float, load: float) -> tuple[Lengths, float]:
-    """Middle and half-width of a contact [m], and the estimated error of both over the half-width."""
-    state, level = (np.array([g]), np.array([load])), ladder.levels[-1]
-    (condition,) = level.conditions(state[0])
-    (off,) = error.of(*state)[INTENSITIES]
-    (lengths,) = level.lengths(*state)
-    return lengths, float(off) + condition.unseen

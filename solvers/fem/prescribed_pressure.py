@@ -5,7 +5,6 @@ The pressure is the user's own, σ_XY = g σ_YY: over a uniform half-plane piece
 mode ``traction`` it is that of a flat punch by its closed form (:class:`FormulaLevel`).
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -14,17 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.closed_form import FlatPunch
-from ..contact.free_ends import turns_at_knots
 from ..contact.prescribed_pressure import LinearPressure
 from ..contact.pressure import Pressure
-from ..contact.solution import Places, Surface, Task, Turns
+from ..contact.solution import Task
+from ..contact.stresses import Places, Surface, Turns, turns_at_knots
 from ..rays import NEAR, rays
 from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import TOGETHER, Gradients, Slopes
 from .ladder import Level
 from .punch import ContactStates
-from .solution import SolvedStates
+from .solution import SolvedEnds, SolvedStates
 from .space import Space
 from .traction import LinearLoads, LoadedHalfPlane, Pieces
 
@@ -46,10 +45,19 @@ class LoadsLevel(Level):
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         super().__init__(work, task, space, g)
         self._solve()
-        self.stress_gauges  # noqa: B018 - cached
 
     def _solve(self) -> None:
         """Solve for the fields of all loads."""
+        self._loaded = loaded = LoadedHalfPlane(self.space, self.task.response)
+        self._load(loaded)
+        self.factor, self.fields, self.resultants = (
+            loaded.factor,
+            loaded.fields,
+            np.array(loaded.resultants),
+        )
+
+    def _load(self, loaded: LoadedHalfPlane) -> None:
+        """Add the loads."""
         raise NotImplementedError
 
     @property
@@ -62,86 +70,56 @@ class LoadsLevel(Level):
         """Pressure of states with values g of σ_XY/σ_YY, (states,), or one of all."""
         return self.prescribed
 
-    def load_of(self, g: NDArray) -> NDArray[np.int64]:
-        """Number of the load of each state, (states,)."""
-        return np.zeros(len(g), dtype=np.int64)
-
     def weights(self, g: NDArray) -> NDArray[np.float64]:
         """Weights of the fields, (states, fields): 1 of σ_YY alone, g of an equal σ_XY."""
-        weights = np.zeros((len(g), 2 * len(self.resultants)))
-        of_load, rows = self.load_of(g), np.arange(len(g))
-        weights[rows, 2 * of_load], weights[rows, 2 * of_load + 1] = 1.0, g
-        return weights
+        return np.tile(np.column_stack([np.ones_like(g), g]), len(self.resultants))
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        weights = self.weights(g)
         # The first field of a load has a normal resultant, the second an equal tangential one.
         units = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
         forces = np.asarray(np.kron(self.resultants[:, None, None], units), dtype=np.float64)
-        body = self.task.body.loaded(load)
-        return SolvedStates(
-            self.task, body, ContactStates(weights, forces, g, np.full(len(g), np.nan)),
-            self.pressure(g), self.displacement, np.full(len(g), float(body.half_width)),
-            np.zeros(len(g)), np.zeros((len(g), 2), dtype=bool), turns=self.turns(g, weights),
-        )  # fmt: skip
+        body, none = self.task.body.loaded(load), np.zeros(len(g))
+        contact = ContactStates(self.weights(g), forces, g, np.full(len(g), np.nan))
+        ends = SolvedEnds(contact, none + float(body.half_width), none, np.zeros((len(g), 2), dtype=bool))
+        return SolvedStates(self, body, ends, self.pressure(g))
 
-    def turns(self, g: NDArray, weights: NDArray) -> Callable[[Surface], Turns] | None:
-        """Function for limits of stresses at knots, and between these."""
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
+        """Limits of stresses at knots, and between these."""
+        g, weights = states.contact.g, states.contact.weights
 
         def σ_XX(X: NDArray) -> NDArray[np.float64]:
             at = self.displacement_at(replace(self.task, places=Places(X, np.empty((0, 2)))))
             return at.surface(g, weights, self.prescribed(X)).σ_XX
 
-        return lambda surface: turns_at_knots(self.prescribed, g, σ_XX)
+        return turns_at_knots(self.prescribed, g, σ_XX)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Zeros: the mirror image of a load is no load, so rounding is not measured."""
-        return [0.0] * len(self.measured(g[:1]))
+        return [0.0] * len(self.gauges(g[:1]))
+
+    def close(self) -> None:
+        self._loaded.destroy()
 
 
-class FieldsLevel(LoadsLevel):
-    """Loads each of which has two fields on the mesh."""
-
-    def _solve(self) -> None:
-        self.loaded = LoadedHalfPlane(self.space, self.task.response)
-        self._load()
-        self.factor, self.resultants = self.loaded.factor, np.array(self.loaded.resultants)
-
-    def _load(self) -> None:
-        """Add the loads."""
-        raise NotImplementedError
-
-    @property
-    def fields(self) -> list[Any]:
-        """Displacements over N/(2μ), two for each load."""
-        return self.loaded.fields
-
-    def displacement_at(self, task: Task) -> Displacement:
-        return Displacement(task, self.space, self.fields)
-
-    def release(self) -> None:
-        self.loaded.destroy()
-
-
-class FormulaLevel(FieldsLevel):
+class FormulaLevel(LoadsLevel):
     """Flat punch's closed-form pressures, a load for each friction."""
 
-    def _load(self) -> None:
-        self._numbers = {value: i for i, value in enumerate(dict.fromkeys(self.g.tolist()))}
-        for value in self._numbers:
-            self.loaded.load(FlatPunch(self.task.response, value).traction)
+    def _load(self, loaded: LoadedHalfPlane) -> None:
+        for value in np.unique(self.g).tolist():
+            loaded.load(FlatPunch(self.task.response, value).traction)
 
-    def load_of(self, g: NDArray) -> NDArray[np.int64]:
-        return np.array([self._numbers[value] for value in g.tolist()])
+    def weights(self, g: NDArray) -> NDArray[np.float64]:
+        own = g[:, None] == np.unique(self.g)
+        return np.stack([own, g[:, None] * own], axis=2).reshape(len(g), -1)
 
     def pressure(self, g: NDArray) -> Pressure:
         return FlatPunch(self.task.response, g[:, None])
 
-    def turns(self, g: NDArray, weights: NDArray) -> None:
+    def turns(self, states: SolvedStates, surface: Surface) -> None:
         return None
 
 
-class WholeLevel(FieldsLevel):
+class WholeLevel(LoadsLevel):
     """Pressure of the user's own as a whole, on cells that end at its knots or are cut there.
 
     The corrections of the two fields are two fields more, a load without a resultant. The mirror image of
@@ -150,16 +128,13 @@ class WholeLevel(FieldsLevel):
 
     mirrored = False
 
-    def _load(self) -> None:
+    def _load(self, loaded: LoadedHalfPlane) -> None:
         pressure = self.prescribed
-        self.loaded.load(
+        loaded.load(
             lambda left, right: pressure(np.where(left < right, left - 1.0, 1.0 - right)),
             pressure.knots[1:-1],
         )
-        self.loaded.correct()
-
-    def weights(self, g: NDArray) -> NDArray[np.float64]:
-        return np.tile(np.column_stack([np.ones_like(g), g]), 2)
+        loaded.correct()
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, continuation=self._continued)
@@ -176,7 +151,7 @@ class WholeLevel(FieldsLevel):
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding of the fields on each gauge of stresses, relative."""
-        return self.stress_gauges.rounding(*self.fields_of(self.states(g)))
+        return self.stress_gauges.rounding(self.fields_of(self.states(g)))
 
 
 class PiecesLevel(LoadsLevel):
@@ -184,16 +159,15 @@ class PiecesLevel(LoadsLevel):
 
     def _solve(self) -> None:
         self._pieces = Pieces(self.prescribed.knots, self.prescribed.values)
-        #: Linear loads of an interval; None once they are freed.
-        self._loads: Any = LinearLoads(self.space, self.task.response)
+        self._loads = LinearLoads(self.space, self.task.response)
         self.factor = self._loads.factor
         self.resultants = np.array([self._pieces.resultant(self._loads)])
 
     def displacement_at(self, task: Task) -> Displacement:
         return PiecesDisplacement(task, self.space, self._pieces, self._loads)
 
-    def release(self) -> None:
-        self._loads = None
+    def close(self) -> None:
+        """Free nothing: the fields of pieces are arrays."""
 
 
 class PiecesDisplacement(Displacement):

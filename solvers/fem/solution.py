@@ -6,22 +6,39 @@ loads are similar, a friction is solved once, and its states differ in their len
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.edges import Exponents
-from ..contact.free_ends import turns_at_ends
-from ..contact.recovery import ContactRecovery
 from ..contact.residual import of_contact
-from ..contact.solution import Contact, Places, Surface, Task, Turns, solved_once, together
-from ..contact.yielding import Strength
-from ..contact.yielding_of_layers import StrengthOfLayers
+from ..contact.solution import Contact, Task, solved_once
+from ..contact.stresses import Places, Surface, together
+from ..contact.yielding import Strength, StrengthOfLayers
 from .displacement import Displacement
 from .punch import ContactStates
+
+
+@dataclass(frozen=True)
+class SolvedEnds:
+    """Contacts with their ends, as sums of a punch's parts.
+
+    Attributes:
+        contact: nodal forces, and weights of the displacement fields; v₀ of the punch's lowest point.
+        half_width, centre: half-width and middle of each contact [m], (states,).
+        free: True where the left and the right end are free, (states, 2).
+        unresolved: part of the punch's slope that its shapes leave out, relative, (states,) or 0.
+    """
+
+    contact: ContactStates
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    free: NDArray[np.bool_]
+    unresolved: Any = 0.0
 
 
 @dataclass(frozen=True)
@@ -29,51 +46,50 @@ class SolvedStates:
     """States solved on one mesh; lengths over each contact's half-width, from its middle.
 
     Attributes:
-        task: the speed, and places of stresses; with lengths over the half-width of a mesh drawn for it.
+        level: the solved degree, a :class:`galinx.solvers.fem.ladder.Level`.
         body: the sliding contact, under the load of each state.
-        contact: nodal forces, and weights of the displacement fields.
+        ends: the contacts with their ends.
         pressure: contact pressure, a :class:`galinx.solvers.contact.pressure.Pressure`.
-        displacement: stresses by the fields.
-        half_width, centre: half-width and middle of each contact [m], (states,).
-        free: True where the left and the right end are free, (states, 2).
-        unresolved: relative error of the punch's slope by its shapes, (states,) or 0.
-        recovery: gives the maps from nodal forces to raw pressure and exponents, if there are any.
-        turns: limits of stresses on a surface, by that surface; None for limits at free ends alone.
-        nearest: least distance over a from free ends and kinks at which stresses are evaluated.
-        errors: gives estimated relative errors, (states,), by word of output.quantities.
+        errors: estimated relative errors, (states,), by word of output.quantities.
         fitted: True where the speed was fitted through others.
     """
 
-    task: Task
+    level: Any
     body: Contact
-    contact: ContactStates
+    ends: SolvedEnds
     pressure: Any
-    displacement: Displacement
-    half_width: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    free: NDArray[np.bool_]
-    unresolved: Any = 0.0
-    recovery: Callable[[], ContactRecovery] | None = None
-    turns: Callable[[Surface], Turns] | None = None
-    nearest: float = 1.0
-    errors: Callable[[], dict[str, NDArray[np.float64]]] = dict
+    errors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     fitted: bool = False
+
+    @property
+    def task(self) -> Task:
+        """The speed, and places of stresses; with lengths over the half-width of a mesh drawn for it."""
+        return self.level.task
+
+    @property
+    def displacement(self) -> Displacement:
+        """Stresses by the fields."""
+        return self.level.displacement
+
+    @property
+    def contact(self) -> ContactStates:
+        """Nodal forces, and weights of the displacement fields."""
+        return self.ends.contact
 
     @property
     def local(self) -> Exponents:
         """Exponents of the pressure at the right and the left end."""
         flat = self.body.edges(self.task.response, self.contact.g)
-        return Exponents(flat.α + self.free[:, 1], flat.β + self.free[:, 0])
+        return Exponents(flat.α + self.ends.free[:, 1], flat.β + self.ends.free[:, 0])
 
     @cached_property
     def on_surface(self) -> Surface:
         """Stresses on the surface, with limits at ends and kinks."""
-        contact, X = self.contact, self.task.places.X
-        raw = contact.tested(self.recovery().raw) if self.recovery else None
-        surface = self.displacement.surface(contact.g, contact.weights, self.pressure.σ_YY(X), raw)
-        if self.turns:
-            return replace(surface, turns=self.turns(surface))
-        return replace(surface, turns=turns_at_ends(surface, self.local)) if self.free.any() else surface
+        contact, recovery = self.contact, self.level.recovery
+        raw = contact.tested(recovery.raw) if recovery else None
+        σ_YY = self.pressure.σ_YY(self.task.places.X)
+        surface = self.displacement.surface(contact.g, contact.weights, σ_YY, raw)
+        return replace(surface, turns=self.level.turns(self, surface))
 
     @cached_property
     def below(self) -> NDArray[np.float64]:
@@ -81,9 +97,19 @@ class SolvedStates:
         return self.displacement.inside(self.contact.weights)
 
     @property
+    def raw_exponents(self) -> NDArray[np.float64]:
+        """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
+        return self.level.recovery.exponents(self.contact.normal)
+
+    @property
+    def of_fit(self) -> NDArray[np.float64]:
+        """1 where the speed was fitted through others, 0 where it was solved, (states,)."""
+        return np.full(len(self.contact.g), float(self.fitted))
+
+    @property
     def centre_of_pressure(self) -> NDArray[np.float64]:
         """Centre of pressure over the half-width, from the middle, (states,)."""
-        moments = self.contact.tested(self.recovery().moments[:, :2])  # type: ignore[misc]
+        moments = self.contact.tested(self.level.recovery.moments[:, :2])
         return np.asarray(moments[:, 1] / moments[:, 0])
 
     @property
@@ -91,8 +117,13 @@ class SolvedStates:
         """Residual of the integral equation under the pressure, relative, (states,)."""
         return of_contact(
             self.task.response, self.contact.g, self.local, self.body, self.pressure.σ_YY,
-            (self.centre, self.half_width), self.pressure.kinks, self.pressure.breaks,
+            (self.ends.centre, self.ends.half_width), self.pressure.kinks, self.pressure.breaks,
         )  # fmt: skip
+
+
+def _of_all(name: str, axis: int = 0) -> Any:
+    """Property of a solution that joins an attribute of its solved states along an axis of states."""
+    return cached_property(lambda solution: solution._joined(attrgetter(name), axis))
 
 
 @dataclass(frozen=True)
@@ -117,10 +148,24 @@ class Solution:
         """Values of all states by those of the solved states on each mesh, along an axis of states."""
         return np.concatenate([of(states) for states in self.solved], axis=axis).take(self.rows, axis)
 
-    @cached_property
-    def g(self) -> NDArray[np.float64]:
-        """σ_XY/σ_YY, (states,)."""
-        return self._joined(lambda states: states.contact.g)
+    #: σ_XY/σ_YY, (states,).
+    g = _of_all("contact.g")
+    #: Indentation of the punch's lowest point over N/(2μ), (states,).
+    v0 = _of_all("contact.v0")
+    #: K_I at the left and the right end, 0 at a free end, (states, 2).
+    K_I = _of_all("pressure.K_I")
+    #: Normal and tangential force over N/2, (states,).
+    normal_force, tangential_force = _of_all("contact.load"), _of_all("contact.friction")
+    #: Centre of pressure over a, from the middle, (states,).
+    pressure_centre = _of_all("centre_of_pressure")
+    #: Residual of the integral equation under the pressure, relative, (states,).
+    residual = _of_all("off_equation")
+    #: Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2).
+    exponents = _of_all("raw_exponents")
+    #: 1 where the state was fitted through other speeds, 0 where it was solved, (states,).
+    fitted = _of_all("of_fit")
+    #: σ_XX, σ_YY, σ_XY at points inside, (3, states, m).
+    inside = _of_all("below", 1)
 
     @cached_property
     def local(self) -> Exponents:
@@ -129,24 +174,14 @@ class Solution:
         return Exponents(α, β)
 
     @cached_property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        return self._joined(lambda states: states.pressure.K_I)
-
-    @cached_property
-    def exponents(self) -> NDArray[np.float64]:
-        """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
-        return self._joined(lambda states: states.recovery().exponents(states.contact.normal))  # type: ignore[misc]
-
-    @cached_property
     def half_width(self) -> NDArray[np.float64]:
         """Half-width of the contact [m], (states,)."""
-        return self.growth * self._joined(lambda states: states.half_width)
+        return self.growth * self._joined(lambda states: states.ends.half_width)
 
     @cached_property
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.growth * self._joined(lambda states: states.centre)
+        return self.growth * self._joined(lambda states: states.ends.centre)
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -154,46 +189,15 @@ class Solution:
         value, place = self._joined(lambda states: np.array(states.pressure.largest()), 1)
         return value, place
 
-    @cached_property
-    def residual(self) -> NDArray[np.float64]:
-        """Residual of the integral equation under the pressure, relative, (states,)."""
-        return self._joined(lambda states: states.off_equation)
-
-    @cached_property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force over N/2, (states,)."""
-        return self._joined(lambda states: states.contact.load)
-
-    @cached_property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Tangential force over N/2, (states,)."""
-        return self._joined(lambda states: states.contact.tangential.sum(axis=1))
-
     @property
     def resultant_ratio(self) -> NDArray[np.float64]:
         """Resultant of σ_XY over that of σ_YY, (states,)."""
-        return self.tangential_force / self.normal_force
-
-    @cached_property
-    def pressure_centre(self) -> NDArray[np.float64]:
-        """Centre of pressure over a, (states,)."""
-        return self._joined(lambda states: states.centre_of_pressure)
-
-    @cached_property
-    def v0(self) -> NDArray[np.float64]:
-        """Indentation of the punch's lowest point over N/(2μ), (states,)."""
-        return self._joined(lambda states: states.contact.v0)
-
-    @property
-    def fitted(self) -> NDArray[np.float64]:
-        """1 where the state was fitted through other speeds, 0 where it was solved, (states,)."""
-        return self._joined(lambda states: np.full(len(states.contact.g), float(states.fitted)))
+        return np.asarray(self.tangential_force / self.normal_force)
 
     @cached_property
     def estimates(self) -> dict[str, NDArray[np.float64]]:
         """Estimated relative errors, (states,), by word of output.quantities."""
-        each = [states.errors() for states in self.solved]
-        return {word: np.concatenate([errors[word] for errors in each])[self.rows] for word in each[0]}
+        return {word: self._joined(lambda of: of.errors[word]) for word in self.solved[0].errors}  # noqa: B023
 
     @cached_property
     def surface(self) -> Surface:
@@ -207,11 +211,6 @@ class Solution:
         )
         turns = together([surface.turns for surface in each if surface.turns])
         return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
-
-    @cached_property
-    def inside(self) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
-        return self._joined(lambda states: states.below, 1)
 
     @property
     def places(self) -> Places:
@@ -237,10 +236,10 @@ class Solution:
                 self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
                 self.body, self.half_width,
             )  # fmt: skip
-        turns = self.surface.turns if any(states.free.any() for states in self.solved) else None
+        turns = self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
         return Strength(
             self._stresses, self.body, self.task.response, self.g, self.local, self.half_width, turns,
-            max(states.nearest for states in self.solved),
+            max(states.level.nearest(states) for states in self.solved),
         )  # fmt: skip
 
     def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
@@ -258,11 +257,7 @@ class Solution:
             states = self.solved[0]
             return states.displacement.at(points, states.contact.weights[self.rows])
         each = np.broadcast_to(points, (len(self.rows), *points.shape[1:]))
-        stresses = [
-            states.displacement.at(own[None], states.contact.weights)
-            for states, own in zip([self.solved[row] for row in self.rows], each)
-        ]
-        return np.concatenate(stresses, axis=1)
+        return np.stack([self._inside(state, own) for state, own in enumerate(each)], axis=1)
 
 
 def solution_of(

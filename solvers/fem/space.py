@@ -37,8 +37,7 @@ def distribute(mesh: QuadMesh | None, comm: MPI.Comm) -> tuple[Any, Any]:
     """Share a mesh out over the ranks of ``comm``.
 
     Args:
-        mesh: this rank's part of it, None for nothing. Vertices are numbered over all ranks; ``points``
-            follow those of the ranks before.
+        mesh: the mesh on one rank, None on the others.
         comm: communicator.
 
     Returns:
@@ -200,7 +199,6 @@ class Space:
         form: name of the solid's weak form.
         terms: moments of the forces at the contact that the far boundary follows; 0 where it is held.
         clock: takes the time of what is done with the space.
-        say: called on rank 0 with messages of the compiler to the user.
 
     Raises:
         MeshError: a part of the boundary has no facet.
@@ -216,17 +214,16 @@ class Space:
         form: str = "isotropic",
         terms: int = 0,
         clock: Clock | None = None,
-        say: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.mesh, self.chart, self.degree, self.form = mesh, chart, degree, FORMS[form]
         self.terms = terms
         self.mixed = self.form.mixed
-        self.clock, self._say = Clock() if clock is None else clock, say
+        self.clock = Clock() if clock is None else clock
         self.comm: MPI.Comm = mesh.comm
         mesh.topology.create_connectivity(1, 2)
         mesh.topology.create_connectivity(2, 1)
         with self.clock("forms"):
-            self.V = versions.space(mesh, versions.vector_element(degree), say)
+            self.V = versions.space(mesh, versions.vector_element(degree))
         self.facet_tags, self.tags = facet_tags, tags
         self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
         for name, tag in tags.items():

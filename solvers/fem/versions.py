@@ -2,10 +2,9 @@
 
 Nothing else in the program depends on the version of dolfinx.
 
-FFCx compiles forms and elements into a folder of this run's own. When all is well the folder gets a
-digest and, by being renamed, the place where every run looks for the form. dolfinx's own cache would wait
-for what a killed run left, and load what was damaged since, which could end the program or change its
-numbers.
+FFCx compiles forms and elements into a folder of this run's own. When all is well the folder gets, by
+being renamed, the place where every run looks for the form. dolfinx's own cache would wait for what a
+killed run left.
 """
 
 import hashlib
@@ -13,7 +12,7 @@ import os
 import secrets
 import shutil
 import sysconfig
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -90,17 +89,11 @@ def quadrature_points(degree: int) -> NDArray[np.float64]:
     return basix.make_quadrature(basix.CellType.quadrilateral, degree)[0]
 
 
-def space(mesh: Any, element: Any, say: Callable[[str], None] = lambda _: None) -> Any:
-    """The functions of an element on a mesh; collective.
-
-    Args:
-        mesh: the mesh.
-        element: of a cell.
-        say: called on rank 0 with messages of the compiler to the user.
-    """
+def space(mesh: Any, element: Any) -> Any:
+    """The functions of an element on a mesh; collective."""
     if hasattr(fem, "functionspace"):  # nothing is compiled
         return fem.functionspace(mesh, element)
-    with compiling(mesh.comm, repr(element), say) as options:
+    with compiling(mesh.comm, repr(element)) as options:
         return fem.FunctionSpace(mesh, element, jit_params=options)
 
 
@@ -148,35 +141,29 @@ def _table(adjacency: Any, width: int) -> NDArray[np.int32]:
 
 
 @contextmanager
-def compiling(
-    comm: MPI.Comm, what: str, say: Callable[[str], None] = lambda _: None
-) -> Iterator[dict[str, Any]]:
+def compiling(comm: MPI.Comm, what: str) -> Iterator[dict[str, Any]]:
     """Options of dolfinx's form compiler, to be used inside this block by all ranks of ``comm``.
 
     Args:
         comm: the ranks; collective.
         what: everything that the compiled code depends on but compiler and processor.
-        say: called on rank 0 with messages to the user.
 
     Raises:
         CompilerError: the form could not be compiled; the message says why.
     """
     own = kept = _place(what)
     try:
-        if comm.rank == 0 and not _is_whole(kept):
-            if os.path.lexists(kept):
-                say(f"the compiled form in {kept} is damaged; it is compiled again")
+        if comm.rank == 0 and not kept.is_dir():
             own = kept.with_suffix(f".{secrets.token_hex(4)}")
             own.mkdir(parents=True)
         own = comm.bcast(own)
         yield {"cache_dir": str(own)}
         comm.barrier()  # the folder is renamed when all ranks have loaded what is in it
         if comm.rank == 0 and own != kept:
-            with suppress(OSError):  # a file system that refuses is no fault
-                files.write(own / "digest", _digest(own, kept.name))
-                if not _is_whole(kept):  # there may be another's by now
-                    shutil.rmtree(kept) if kept.is_dir() else kept.unlink(missing_ok=True)
-                    own.rename(kept)
+            with suppress(OSError):  # another's may be there by now
+                for path in own.iterdir():
+                    files.synchronise(path)
+                own.rename(kept)
     except Exception as error:
         raise CompilerError(_why(error, kept.parent)) from error
     finally:
@@ -190,23 +177,6 @@ def _place(what: str) -> Path:
     key = repr([what, ffcx.__version__, dolfinx.__version__, *python])
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "galinx" / "forms"
     return cache / hashlib.sha256(key.encode()).hexdigest()[:24]
-
-
-def _is_whole(kept: Path) -> bool:
-    """Return True if the folder of a form is there, unchanged since it was compiled."""
-    try:
-        return files.read(kept / "digest", 100) == _digest(kept, kept.name)
-    except OSError:
-        return False
-
-
-def _digest(folder: Path, name: str) -> bytes:
-    """Digest of all files in a folder but its own, and of the name that the folder has or will have."""
-    digest = hashlib.sha256(name.encode())
-    for path in sorted(path for path in folder.iterdir() if path.name != "digest"):
-        content = hashlib.sha256(files.read(path)).hexdigest()
-        digest.update(f"{path.name} {content} ".encode(errors="surrogateescape"))
-    return digest.hexdigest().encode()
 
 
 def _why(error: Exception, cache: Path) -> str:

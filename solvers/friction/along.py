@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
-from .integrate import closely, exactly, work
+from .integrate import closely, work
 from .law import FrictionLaw
 
 #: Points of a panel; last coefficients over the largest value up to which it resolves friction that is
@@ -74,7 +74,7 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
         z = closely(law, start, s, V, 2.0 * a, a * (1.0 - leading * X))
         return np.asarray(stress_ratio * law.friction(z, s, V))
 
-    mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a, exactly)) / (2.0 * a)
+    mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a)) / (2.0 * a)
     known = law.exact(start, s, V, np.zeros(1)) is not None
     return Along(mean, ratio, _kinks(ratio, _EXACT if known else _INTEGRATED))
 

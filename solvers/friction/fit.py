@@ -1,8 +1,9 @@
 """A law's parameters from measured friction: least squares with bounds."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from math import log
+from math import inf, isfinite, log
 from typing import Any
 
 import numpy as np
@@ -270,17 +271,13 @@ class _Fitted:
     def _friction(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
         samples = len(self.f)
         if self._at_once and len(θ) > 1:
-            try:
-                return friction(search.laws(θ), self.motion, samples, len(θ))
-            except ValueError:  # one of them is rejected
-                pass
-        rows = []
-        for row in θ:
-            try:
-                rows.append(friction(search.law(row), self.motion, samples))
-            except ValueError:  # rejected by the law
-                rows.append(np.full(samples, np.nan))
-        return np.array(rows)
+            with suppress(ValueError):  # one of them is rejected
+                return friction(search.law(θ), self.motion, samples, len(θ))
+        f = np.full((len(θ), samples), np.nan)
+        for n, row in enumerate(θ):
+            with suppress(ValueError):  # rejected by the law
+                f[n] = friction(search.law(row), self.motion, samples)
+        return f
 
 
 def _best_start(
@@ -337,71 +334,97 @@ def _inverse(J: NDArray) -> NDArray[np.float64]:
     return inverse / np.outer(np.where(blind, 1.0, size), np.where(blind, 1.0, size))
 
 
+@dataclass(frozen=True)
+class _Number:
+    """Fitted number p of a law; its unknown θ is ln p where it has to be positive, else p.
+
+    Attributes:
+        parameter: that it belongs to.
+        row, column: its place in a table, row -1 where the parameter is one number.
+        range: of p.
+        start: p with which the search begins.
+    """
+
+    parameter: Parameter
+    row: int
+    column: int
+    range: Range
+    start: float
+
+    @property
+    def name(self) -> str:
+        """Name as ``"mu_c"`` or ``"elements[2, 1]"``."""
+        key = self.parameter.key
+        return key if self.row < 0 else f"{key}[{self.row}, {self.column}]"
+
+    @property
+    def log(self) -> bool:
+        """True where θ = ln p."""
+        return self.range.above == 0.0 and self.range.below is None
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lowest and highest θ; a little inside of open bounds."""
+        if self.log:
+            return log(self.start) - log(_FARTHEST), log(self.start) + log(_FARTHEST)
+        of = self.range
+        low = of.at_least if of.at_least is not None else -inf
+        high = of.at_most if of.at_most is not None else inf
+        return (
+            low if of.above is None else of.above + _INSIDE,
+            high if of.below is None else of.below - _INSIDE,
+        )
+
+    def reach(self, look: MeasuredFriction) -> float:
+        """Largest distance in θ of other starts from the first."""
+        low, high = self.bounds
+        if self.log:
+            return log(_AWAY)
+        if isfinite(high - low):
+            return 0.5 * (high - low)
+        usual = 1.0 if self.parameter.unit == "" else look.level / max(look.speed, 1e-12)
+        return max(abs(self.start), usual)
+
+
 class _Search:
-    """Fitted numbers of a law as unknowns θ: θ = ln p of a positive number p, else θ = p.
+    """Fitted numbers of a law, and their unknowns θ.
 
     Attributes:
         names: names of the numbers, (m,).
         begin, low, high: start and bounds of θ, (m,).
         reach: largest distance of other starts from the first, (m,).
+
+    Raises:
+        ValueError: a parameter is unknown, or has no start.
     """
 
     def __init__(
-        self,
-        kind: type[FrictionLaw],
-        look: MeasuredFriction,
-        fixed: dict[str, Any],
+        self, kind: type[FrictionLaw], look: MeasuredFriction, fixed: dict[str, Any],
         start: dict[str, Any],
-    ) -> None:
-        self._kind = kind
-        described, defaults, guess = parameters(kind), fields(kind), kind.guess(look)
-        unexpected = [key for key in (*fixed, *start) if key not in described]
-        if unexpected:
+    ) -> None:  # fmt: skip
+        self._kind, self._values, self._numbers = kind, dict[str, Any](), list[_Number]()
+        described, defaults = parameters(kind), fields(kind)
+        if unexpected := [key for key in (*fixed, *start) if key not in described]:
             raise ValueError(f"found the parameter {unexpected[0]!r}, expected {', '.join(described)}")
-        self._values: dict[str, Any] = {}
-        self._places: list[tuple[str, int, int]] = []
-        ranges: list[Range] = []
+        given = kind.guess(look) | start | fixed
         for key, parameter in described.items():
-            default = None if parameter.columns else defaults[key].default
-            value = {key: default, **guess, **start, **fixed}[key]
+            value = given.get(key, None if parameter.columns else defaults[key].default)
             if parameter.optional and value is None:
                 continue
             if value is None or not isinstance(value, (int, float, str, tuple)):
                 raise ValueError(f"found no start for {key}, expected --start {key}=… or --fix {key}=…")
             self._values[key] = value
-            if key in fixed or parameter.options or (key in kind.conventions and key not in start):
-                continue
-            places = [
-                place for place in _places(key, parameter, value)
-                if _name(*place) not in kind.conventions
-            ]  # fmt: skip
-            self._places += places
-            positive = Range(above=0.0) if len(parameter.measured) > 1 else Range()
-            ranges += [parameter.range if parameter.single else positive] * len(places)
-        self.names = tuple(_name(*place) for place in self._places)
-        self._logs = np.array([r.above == 0.0 and r.below is None for r in ranges], dtype=bool)
-        p = self._numbers()
-        if (self._logs & (p <= 0.0)).any():
-            name = self.names[int(np.argmax(self._logs & (p <= 0.0)))]
-            raise ValueError(f"found a start of {name} that is not above 0")
-        self.begin = np.where(self._logs, np.log(np.where(self._logs, p, 1.0)), p)
-        self.low, self.high = np.array([_ends(r) for r in ranges]).reshape(-1, 2).T
-        self.low[self._logs] = self.begin[self._logs] - np.log(_FARTHEST)
-        self.high[self._logs] = self.begin[self._logs] + np.log(_FARTHEST)
-        signed = np.isinf(self.low)
-        whole = np.isfinite(self.high - self.low)
-        width = np.where(whole, np.where(whole, self.high, 0.0) - np.where(whole, self.low, 0.0), 1.0)
-        far = np.where(whole, 0.5 * width, np.maximum(np.abs(p), look.level / max(look.speed, 1e-12)))
-        dimensionless = np.array([described[place[0]].unit == "" for place in self._places], dtype=bool)
-        far = np.where(dimensionless & ~whole, np.maximum(np.abs(p), 1.0), far)
-        self.reach = np.where(self._logs, np.log(_AWAY), far)
-        self._signed = signed
-
-    def _numbers(self) -> NDArray[np.float64]:
-        return np.array([
-            self._values[key] if row < 0 else self._values[key][row][column]
-            for key, row, column in self._places
-        ], dtype=float)  # fmt: skip
+            chosen = key in kind.conventions and key not in start
+            if not (key in fixed or parameter.options or chosen):
+                numbers = _numbers(parameter, value)
+                self._numbers += [one for one in numbers if one.name not in kind.conventions]
+        self.names = tuple(one.name for one in self._numbers)
+        if below := [one.name for one in self._numbers if one.log and one.start <= 0.0]:
+            raise ValueError(f"found a start of {below[0]} that is not above 0")
+        self._logs = np.array([one.log for one in self._numbers], dtype=bool)
+        self.begin = np.array([log(one.start) if one.log else one.start for one in self._numbers])
+        self.low, self.high = np.array([one.bounds for one in self._numbers]).reshape(-1, 2).T
+        self.reach = np.array([one.reach(look) for one in self._numbers])
 
     def numbers(self, θ: NDArray) -> NDArray[np.float64]:
         """Fitted numbers p at θ, (m,)."""
@@ -411,76 +434,50 @@ class _Search:
         """Derivatives dp/dθ, (m,)."""
         return np.where(self._logs, self.numbers(θ), 1.0)
 
+    def sizes(self, θ: NDArray) -> NDArray[np.float64]:
+        """Sizes of the numbers at θ, (m,): of one without sign its own, else the largest of its key."""
+        size, keys = np.abs(self.numbers(θ)), np.array([one.parameter.key for one in self._numbers])
+        return np.where(np.isinf(self.low), [size[keys == key].max() for key in keys], size)
+
     def values(self, θ: NDArray) -> dict[str, Any]:
         """All parameters by key at θ."""
         values = {
-            key: [list(row) for row in value] if isinstance(value, tuple) else value
+            key: np.array(value).tolist() if isinstance(value, tuple) else value
             for key, value in self._values.items()
         }
-        for (key, row, column), number in zip(self._places, self.numbers(θ).tolist()):
-            if row < 0:
-                values[key] = number
+        for one, number in zip(self._numbers, self.numbers(θ).tolist()):
+            if one.row < 0:
+                values[one.parameter.key] = number
             else:
-                values[key][row][column] = number
+                values[one.parameter.key][one.row][one.column] = number
         return {
             key: tuple(map(tuple, value)) if isinstance(value, list) else value
             for key, value in values.items()
         }
 
-    def sizes(self, θ: NDArray) -> NDArray[np.float64]:
-        """Sizes of the numbers at θ, (m,): of one without sign its own, else the largest of its key."""
-        size, keys = np.abs(self.numbers(θ)), np.array([key for key, _, _ in self._places])
-        return np.where(self._signed, [size[keys == key].max() for key in keys], size)
-
-    def laws(self, θ: NDArray) -> FrictionLaw:
-        """A law that stands for those at θ (laws, m), as the protocol of laws describes it.
+    def law(self, θ: NDArray) -> FrictionLaw:
+        """Law at θ (m,), or a law that stands for those at θ (laws, m).
 
         Raises:
             ValueError: a law rejects its parameters.
         """
-        values = {
-            key: np.broadcast_to(value, (len(θ), 1, *np.shape(value))).copy()
-            if isinstance(value, tuple) else value
-            for key, value in self._values.items()
-        }  # fmt: skip
-        for (key, row, column), number in zip(self._places, self.numbers(θ).T):
-            if row < 0:
-                values[key] = number[:, None]
-            else:
-                values[key][:, 0, row, column] = number
-        return build_model(self._kind, values)
-
-    def law(self, θ: NDArray) -> FrictionLaw:
-        """Law at θ.
-
-        Raises:
-            ValueError: the law rejects its parameters.
-        """
-        return build_model(self._kind, self.values(θ))
+        if θ.ndim == 1:
+            return build_model(self._kind, self.values(θ))
+        each = [self.values(row) for row in θ]
+        return build_model(self._kind, {
+            key: value if isinstance(value, str)
+            else np.reshape([values[key] for values in each], (len(θ), 1, *np.shape(value)))
+            for key, value in each[0].items()
+        })  # fmt: skip
 
 
-def _places(key: str, parameter: Parameter, value: Any) -> list[tuple[str, int, int]]:
-    """Key, row and column of the numbers of a parameter; row -1 for a single one."""
+def _numbers(parameter: Parameter, value: Any) -> list[_Number]:
+    """Numbers of a parameter that a fit determines."""
     if parameter.single:
-        return [(key, -1, 0)]
-    if not parameter.columns:
-        return []
-    return [(key, row, column) for row in range(len(value)) for column in parameter.measured]
-
-
-def _name(key: str, row: int, column: int) -> str:
-    return key if row < 0 else f"{key}[{row}, {column}]"
-
-
-def _ends(bounds: Range) -> tuple[float, float]:
-    """Lowest and highest number of a range; a little inside of open bounds."""
-    low, high = -np.inf, np.inf
-    if bounds.at_least is not None:
-        low = bounds.at_least
-    if bounds.above is not None:
-        low = bounds.above + _INSIDE
-    if bounds.at_most is not None:
-        high = bounds.at_most
-    if bounds.below is not None:
-        high = bounds.below - _INSIDE
-    return low, high
+        return [_Number(parameter, -1, 0, parameter.range, float(value))]
+    positive = Range(above=0.0) if len(parameter.measured) > 1 else Range()
+    return [
+        _Number(parameter, row, column, positive, float(numbers[column]))
+        for row, numbers in enumerate(value if parameter.columns else ())
+        for column in parameter.measured
+    ]

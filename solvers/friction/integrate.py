@@ -18,10 +18,8 @@ STEPS = 20
 #: Relative and absolute tolerance of the integration of laws that are not exact.
 TOLERANCES = 1e-12, 1e-14
 
-#: Points of Gauss's rule in a piece of a stroke, and such pieces, for work without a formula.
-_POINTS, _PIECES = 10, 12
-#: Halvings of a piece at most, and accuracy over the whole work at which it is not halved further.
-_HALVINGS, _OF_WORK = 20, 1e-13
+#: Pieces of a stroke, each half the next, for work without a formula, and its relative accuracy.
+_PIECES, _OF_WORK = 12, 1e-12
 
 #: Value of a switch nearer to zero than which it has just been passed.
 _SWITCHED = 1e-10
@@ -95,27 +93,6 @@ def exactly(
     return adaptively(law, z, s, V, length, slip) if states is None else states
 
 
-def adaptively(
-    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
-) -> NDArray[np.float64]:
-    """States by the law's rate, integrated by an adaptive scheme of order 8 (SciPy's DOP853).
-
-    It begins anew where the law switches, and stops at every slip of ``slip``: between its own steps it
-    is of lower order. A stroke with a handful of states takes some milliseconds, with a hundred some 50.
-
-    Raises:
-        ValueError: the integration failed.
-    """
-    at, back = np.unique(np.clip(slip, 0.0, length), return_inverse=True)
-    states, d, switched = np.empty((len(at), len(z))), 0.0, set[int]()
-    z = np.asarray(z, dtype=float)
-    for i, end in enumerate(at):
-        while d < end:
-            d, z = _smooth_piece(law, z, s, V, (d, end), switched)
-        states[i] = z
-    return states[back]
-
-
 def closely(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
 ) -> NDArray[np.float64]:
@@ -123,88 +100,80 @@ def closely(
 
     Between these steps states are interpolated, to about 1e-9: for many places at once, as of a curve.
     """
-    if (exact := law.exact(z, s, V, slip)) is not None:
-        return exact
-    at, back = np.unique(np.clip(np.append(slip, length), 0.0, length), return_inverse=True)
-    states, d, switched = np.empty((len(at), len(z))), 0.0, set[int]()
-    states[:] = z
-    while d < length:
-        ahead = np.flatnonzero(at > d)
-        piece, switches = _solved(law, z, s, V, (d, length), switched, at[ahead])
-        # SciPy's y has no shape where a switch comes before the first place.
-        passed = np.reshape(piece.y, (len(z), -1)).T
-        states[ahead[: len(passed)]] = passed
-        if piece.status == 0:
-            break
-        d, z = _last_switch(piece)
-        switched.update(switches)
-    return states[back[:-1]]
+    states = law.exact(z, s, V, slip)
+    return _integrated(law, z, s, V, length, slip, False) if states is None else states
 
 
-def _smooth_piece(
-    law: FrictionLaw, z: NDArray, s: int, V: float, ends: tuple[float, float], switched: set[int]
-) -> tuple[float, NDArray[np.float64]]:
-    """Slip and state at the end or at the law's first switch, which is added to ``switched``.
+def adaptively(
+    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
+) -> NDArray[np.float64]:
+    """States by the law's rate, integrated by an adaptive scheme of order 8 (SciPy's DOP853), (slips, n).
+
+    It stops at every slip of ``slip``: between its own steps it is of lower order. A stroke with a
+    handful of states takes some milliseconds, with a hundred some 50.
 
     Raises:
         ValueError: the integration failed.
     """
-    piece, switches = _solved(law, z, s, V, ends, switched)
-    if piece.status == 0:
-        return ends[1], piece.y[:, -1]
-    # Located on the interpolant; from the last step before it, integration itself goes there.
-    at, _ = _last_switch(piece)
-    before = piece.t[piece.t < at][-1] if (piece.t < at).any() else ends[0]
-    start = piece.y[:, np.flatnonzero(piece.t == before)[0]]
-    switched.update(switches)
-    if at == before:
-        return at, start
-    return at, _solved(law, start, s, V, (before, at), None)[0].y[:, -1]
+    return _integrated(law, z, s, V, length, slip, True)
 
 
-def _last_switch(piece: Any) -> tuple[float, NDArray[np.float64]]:
-    """Slip and state at the switch at which SciPy has stopped."""
-    n = max((n for n, t in enumerate(piece.t_events) if len(t)), key=lambda n: piece.t_events[n][0])
-    return float(piece.t_events[n][0]), piece.y_events[n][0]
+def _integrated(
+    law: Any, z: NDArray, s: int, V: float, length: float, slip: NDArray, stops: bool
+) -> NDArray[np.float64]:
+    """States at slips, at each of which the scheme stops or between whose steps it interpolates."""
+    at, back = np.unique(np.clip(slip, 0.0, length), return_inverse=True)
+    states, d, passed = np.empty((len(at), len(z))), 0.0, set[int]()
+    states[:] = z = np.asarray(z, dtype=float)
+    for n in range(len(at)) if stops else [len(at) - 1]:
+        while d < at[n]:
+            begun, (d, z, between) = d, _smooth_piece(law, z, s, V, (d, at[n]), passed, not stops)
+            inside = (begun < at) & (at <= d)
+            if between and inside.any():
+                states[inside] = between(at[inside]).T
+        states[n] = z
+    return states[back]
 
 
-def _solved(
-    law: FrictionLaw,
-    z: NDArray,
-    s: int,
-    V: float,
-    ends: tuple[float, float],
-    switched: set[int] | None,
-    at: NDArray | None = None,
-) -> tuple[Any, set[int]]:
-    """SciPy's result between two slips, up to the next switch, and the numbers of the switches there.
+def _smooth_piece(
+    law: Any, z: NDArray, s: int, V: float, ends: tuple[float, float], passed: set[int], dense: bool
+) -> tuple[float, NDArray[np.float64], Callable[[NDArray], NDArray] | None]:
+    """Slip and state at the end or at the law's first switch, and if ``dense`` SciPy's interpolant.
 
     Args:
         law, z, s, V: as of :func:`adaptively`.
         ends: slips [m].
-        switched: numbers of the switches already passed in this stroke, each is passed once; None: no
-            switch stops the integration.
-        at: slips of the states; None: the scheme's own steps.
+        passed: numbers of the switches met in this stroke, each of which is met once; changed.
+        dense: True for the interpolant.
 
     Raises:
         ValueError: the integration failed.
     """
     from scipy.integrate import solve_ivp  # slow to import, and exact laws do without
 
-    ahead: list[int] = []
-    if switched is not None:
-        ahead = np.flatnonzero(law.switches(z, s, V) < -_SWITCHED).tolist()
-        ahead = [n for n in ahead if n not in switched]
-    result = solve_ivp(
-        lambda _, state: law.rate(state, s, V), ends, z, method="DOP853", t_eval=at,
-        events=[_event(law, s, V, n) for n in ahead] or None, rtol=TOLERANCES[0], atol=TOLERANCES[1],
-    )  # fmt: skip
-    if not result.success:
-        raise ValueError(f"{type(law).__name__} could not be integrated: {result.message}")
-    return result, {n for n, t in zip(ahead, result.t_events or ()) if len(t)}
+    ahead = set(np.flatnonzero(law.switches(z, s, V) < -_SWITCHED).tolist()) - passed
+
+    def solve(start: float, end: float, z: NDArray, events: Any = None) -> Any:
+        result = solve_ivp(
+            lambda _, state: law.rate(state, s, V), (start, end), z, method="DOP853", events=events,
+            rtol=TOLERANCES[0], atol=TOLERANCES[1], dense_output=dense,
+        )  # fmt: skip
+        if not result.success:
+            raise ValueError(f"{type(law).__name__} could not be integrated: {result.message}")
+        return result
+
+    piece = solve(*ends, z, [_event(law, s, V, n) for n in ahead] or None)
+    if piece.status == 0:
+        return ends[1], piece.y[:, -1], piece.sol
+    met = {n: float(t[0]) for n, t in zip(ahead, piece.t_events) if len(t)}
+    passed.update(met)
+    # Located on the interpolant; from the last step before it, integration itself goes there.
+    at, last = max(met.values()), int(np.flatnonzero(piece.t < max(met.values())).max(initial=0))
+    before, state = float(piece.t[last]), piece.y[:, last]
+    return at, solve(before, at, state).y[:, -1] if before < at else state, piece.sol
 
 
-def _event(law: FrictionLaw, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:
+def _event(law: Any, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:
     def passed(_: float, z: NDArray) -> float:
         return float(law.switches(z, s, V)[n])
 
@@ -212,42 +181,41 @@ def _event(law: FrictionLaw, s: int, V: float, n: int) -> Callable[[float, NDArr
     return passed
 
 
-def work(
-    law: FrictionLaw, z: NDArray, s: int, V: float, slip: float, advance: "Integrator"
-) -> NDArray[np.float64]:
-    """Work ∫ s f d(slip) [m] from a state over a slip [m]: by the law's formula, else by quadrature.
+@dataclass(frozen=True)
+class _WithWork:
+    """A law whose last state is the mean of s f over a length [m] so far."""
 
-    The quadrature is Gauss's rule on pieces that shrink towards the start, and are halved where that
-    changes their part.
+    law: FrictionLaw
+    length: float
+
+    def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        f = self.law.friction(z[:-1], s, V)
+        return np.append(self.law.rate(z[:-1], s, V), s * f / self.length)
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return self.law.switches(z[:-1], s, V)
+
+
+def work(law: FrictionLaw, z: NDArray, s: int, V: float, slip: float) -> NDArray[np.float64]:
+    """Work ∫ s f d(slip) [m] from a state over a slip [m]: by formula, by quadrature, or integrated.
+
+    Without a formula of the work the exact solution is summed by Gauss and Kronrod's adaptive rule; where
+    only the rate is known, the work is integrated beside the state.
     """
     if (exact := law.work(z, s, V, np.array([slip]))) is not None:
         return exact[..., 0]
     if slip == 0.0:
         return np.zeros(())
-    x, w = np.polynomial.legendre.leggauss(_POINTS)
+    if law.exact(z, s, V, np.zeros(1)) is None:
+        whole, start = _WithWork(law, slip), np.append(z, 0.0)
+        return slip * _integrated(whole, start, s, V, slip, np.array([slip]), True)[0, -1]
+    from scipy.integrate import quad_vec  # a slow import
 
-    def parts(start: NDArray, end: NDArray) -> NDArray[np.float64]:
-        half = 0.5 * (end - start)
-        at = (0.5 * (end + start))[:, None] + half[:, None] * x
-        states = advance(law, z, s, V, slip, at.ravel())
-        f = s * law.friction(states, s, V)
-        return (np.reshape(f, (*f.shape[:-1], *at.shape)) * half[:, None] * w).sum(axis=-1)
+    def power(d: float) -> Any:
+        return s * law.friction(law.exact(z, s, V, np.array([d])), s, V)[..., 0]  # type: ignore[arg-type]
 
-    ends = np.append(0.0, slip * 0.5 ** np.arange(_PIECES - 1, -1, -1.0))
-    start, end = ends[:-1], ends[1:]
-    whole = parts(start, end)
-    total, size = np.zeros(whole.shape[:-1]), np.abs(whole).sum(axis=-1, keepdims=True)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (start + end)
-        halves = parts(np.append(start, middle), np.append(middle, end))
-        both = halves[..., : len(start)] + halves[..., len(start) :]
-        far = (np.abs(both - whole) > _OF_WORK * size).reshape(-1, len(start)).any(axis=0)
-        total = total + both[..., ~far].sum(axis=-1)
-        start, end = np.append(start[far], middle[far]), np.append(middle[far], end[far])
-        whole = halves[..., np.tile(far, 2)]
-        if not far.any():
-            break
-    return total + whole.sum(axis=-1)
+    halves = slip * 0.5 ** np.arange(1.0, _PIECES)  # friction changes at first
+    return np.asarray(quad_vec(power, 0.0, slip, epsabs=0.0, epsrel=_OF_WORK, points=halves)[0])
 
 
 def by_runge_kutta(

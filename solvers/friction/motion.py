@@ -276,7 +276,7 @@ def works(
     for leg in all_legs:
         speed = V if leg.speed is None else leg.speed
         z, whole = law.pause(z, leg.rest), length * leg.length
-        dissipated = work(law, z, leg.s, speed, whole, advance)
+        dissipated = work(law, z, leg.s, speed, whole)
         largest, end = _largest(law, z, leg.s, speed, whole, advance)
         slope = law.slope(z, leg.s, speed)
         if slope is None:

@@ -55,12 +55,14 @@ class _Piece:
     Attributes:
         start, end: times [s].
         s: its direction.
+        t: steps and extremes of the velocity since its start, growing, (times,) [s].
         y: spring, velocity and state of the law at times since its start, (2 + n, times).
     """
 
     start: float
     end: float
     s: int
+    t: NDArray[np.float64]
     y: Callable[[NDArray], NDArray]
 
 
@@ -85,7 +87,7 @@ class Ride:
     crossings: NDArray[np.float64]
     x_crossings: NDArray[np.float64]
     _pieces: tuple[_Piece, ...]
-    _state_at: Callable[[float, int, NDArray], tuple[float, float, float]]
+    _rows: Callable[[_Piece, NDArray], NDArray]
     _repeats: bool
 
     def at(self, times: NDArray) -> NDArray[np.float64]:
@@ -102,10 +104,8 @@ class Ride:
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
         values = np.empty((3, len(t)))
         for n in np.unique(which):
-            piece, rows = self._pieces[n], np.flatnonzero(which == n)
-            since = np.clip(t[rows], piece.start, piece.end) - piece.start
-            for i, y in zip(rows, piece.y(since).T):
-                values[:, i] = self._state_at(float(t[i]), piece.s, y)
+            piece, here = self._pieces[n], which == n
+            values[:, here] = self._rows(piece, np.clip(t[here], piece.start, piece.end) - piece.start).T
         if self._repeats:
             values[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
         return values
@@ -198,52 +198,45 @@ class _Motion:
     def __init__(self, slider: Slider, law: FrictionLaw, load: float) -> None:
         self.slider, self.law, self.load = slider, law, load
         self.t, self.e, self.v, self.z, self.s = 0.0, 0.0, 0.0, law.rest(), 0
-        self._rows: list[tuple[float, float, float, float]] = []
-        self._crossings: list[tuple[float, float]] = []
         self._pieces: list[_Piece] = []
-        # Spring and state of the law at each crossing of the drive's speed.
-        self._came_back: list[NDArray[np.float64]] = []
+        # Times at which the drive's speed was crossed, with spring and state of the law.
+        self._crossings: list[tuple[float, NDArray[np.float64]]] = []
         self._longest = _PERIODS * 2.0 * np.pi * np.sqrt(slider.mass / slider.stiffness)
         self._slow = _AT_REST * slider.drive_speed
+        # Size of the spring's extension [m].
+        self._length = max(load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
         # Rates that are smooth enough need no stop.
         self._stops = type(law).settle is not FrictionLaw.settle
 
     def ride(self) -> Ride:
-        t, e, v, f = np.array(self._rows).T
-        at, e_at = np.reshape(self._crossings, (-1, 2)).T
-        drive = self.slider.drive_speed
-        return Ride(
-            t, drive * t - e, v, f, at, drive * at - e_at,
-            tuple(self._pieces), self._state_at, self.repeats,
-        )  # fmt: skip
-
-    @property
-    def _length(self) -> float:
-        """Size of the spring's extension [m]."""
-        slider = self.slider
-        return max(self.load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
+        """Motion so far."""
+        at = np.array([t for t, _ in self._crossings])
+        e = np.array([state[0] for _, state in self._crossings])
+        t = np.concatenate([piece.start + piece.t for piece in self._pieces])
+        x, v, f = np.vstack([self._rows(piece, piece.t) for piece in self._pieces]).T
+        x_at, pieces = self.slider.drive_speed * at - e, tuple(self._pieces)
+        return Ride(t, x, v, f, at, x_at, pieces, self._rows, self.repeats)
 
     @property
     def repeats(self) -> bool:
         """True if the last cycles are equal to rounding of the integration."""
-        if len(self._came_back) <= _CYCLES:
+        if len(self._crossings) <= _CYCLES:
             return False
-        been, times = (
-            np.array(self._came_back[-_CYCLES - 1 :]),
-            np.array(self._crossings)[-_CYCLES - 1 :, 0],
-        )
-        sizes = np.abs(been).max(axis=0)
+        times, states = (np.array(of) for of in zip(*self._crossings[-_CYCLES - 1 :]))
+        sizes, periods = np.abs(states).max(axis=0), np.diff(times)
         sizes[0] = max(sizes[0], self._length)
-        periods = np.diff(times)
-        unchanged = np.ptp(been, axis=0) <= _SAME * sizes
+        unchanged = np.ptp(states, axis=0) <= _SAME * sizes
         return bool(unchanged.all() and np.ptp(periods) <= _SAME * periods.max())
 
-    def _state_at(self, t: float, s: int, y: NDArray) -> tuple[float, float, float]:
-        """Position [m], velocity [m/s] and friction coefficient at t [s] from y in direction s."""
-        f = self._friction(y, s) if s else self.pull(y[0], 0.0) / self.load
-        return self.slider.drive_speed * t - y[0], y[1], f
+    def _rows(self, piece: _Piece, since: NDArray) -> NDArray[np.float64]:
+        """Position [m], velocity [m/s] and friction coefficient at times since a piece began, (n, 3)."""
+        drive, rows = self.slider.drive_speed, []
+        for t, y in zip(since, piece.y(since).T):
+            f = self._friction(y, piece.s) if piece.s else self._pull(y[0], 0.0) / self.load
+            rows.append((drive * (piece.start + t) - y[0], y[1], f))
+        return np.array(rows)
 
-    def pull(self, e: float, v: float) -> float:
+    def _pull(self, e: float, v: float) -> float:
         """Force of spring and dashpot [N/m] at the extension e [m] and the velocity v [m/s]."""
         return self.slider.stiffness * e + self.slider.damping * (self.slider.drive_speed - v)
 
@@ -256,45 +249,43 @@ class _Motion:
 
     def _start(self) -> None:
         """Start from rest, after a while, in the direction in which the pull exceeds friction."""
-        force, self.z = self.pull(self.e, 0.0), self.law.pause(self.z, 1e-300)  # an instant
-        bears = {s: self.load * self._at_once(s) for s in (1, -1)}
-        self.s = -1
-        if force > bears[1]:
-            self.s = 1
-        elif force >= bears[-1]:
+        force, self.z = self._pull(self.e, 0.0), self.law.pause(self.z, 1e-300)  # an instant
+        bears = {
+            s: self.load * float(self.law.friction(self.law.settle(self.z, s, self._slow), s, self._slow))
+            for s in (1, -1)
+        }
+        self.s = -1 if force < bears[-1] and force <= bears[1] else 1
+        if bears[-1] <= force <= bears[1]:
             # It sticks, if it does, until the spring pulls it forward.
             longer = (bears[1] - force) / (self.slider.stiffness * self.slider.drive_speed)
             self._stick(min(longer, self.slider.duration - self.t))
-            self.s = 1
         self.z, self.v = self.law.settle(self.z, self.s, self._slow), self.s * self._slow
-
-    def _at_once(self, s: int) -> float:
-        return float(self.law.friction(self.law.settle(self.z, s, self._slow), s, self._slow))
 
     def _stick(self, seconds: float) -> None:
         if seconds <= 0.0:
             return
         begun, drive, z = self.e, self.slider.drive_speed, self.z
         self._pieces.append(_Piece(
-            self.t, self.t + seconds, 0,
+            self.t, self.t + seconds, 0, np.linspace(0.0, seconds, 20),
             lambda t: np.vstack([begun + drive * t, 0.0 * t, np.outer(z, np.ones_like(t))]),
         ))  # fmt: skip
-        for t in np.linspace(0.0, seconds, 20):
-            e = self.e + self.slider.drive_speed * t
-            self._rows.append((self.t + t, e, 0.0, self.pull(e, 0.0) / self.load))
-        self.t, self.e = self.t + seconds, e
-        self.z = self.law.pause(self.z, seconds)
+        self.t, self.e = self.t + seconds, begun + drive * seconds
+        self.z = self.law.pause(z, seconds)
 
     def _slide(self) -> None:
         """Slide in one direction, as long as the law does not switch."""
-        s, piece = self.s, self._integrated()
-        self._keep(piece)
+        piece = self._integrated()
+        t = np.sort(np.append(piece.t, piece.t_events[2]))
+        self._pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, t, piece.sol))
+        self._crossings += [
+            (self.t + t, np.delete(y, 1)) for t, y in zip(piece.t_events[1], piece.y_events[1])
+        ]
         self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]
         self.z = np.array(z)
         if len(piece.t_events[0]):
             self.v = 0.0
         elif piece.status == 1:
-            self.z = self.law.settle(self.z, s, abs(self.v))
+            self.z = self.law.settle(self.z, self.s, abs(self.v))
 
     def _integrated(self) -> Any:
         """SciPy's result by the first scheme that succeeds, up to the next stop or switch.
@@ -302,6 +293,8 @@ class _Motion:
         Raises:
             ValueError: no scheme succeeds.
         """
+        from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
+
         s, drive = self.s, self.slider.drive_speed
         ahead = np.flatnonzero(self.law.switches(self.z, s, abs(self.v)) < 0.0) if self._stops else ()
         events = [
@@ -311,51 +304,35 @@ class _Motion:
             *(_event(lambda _, y, n=n: self._switch(y, int(n)), 1.0, True) for n in ahead),
         ]
         last, reason = min(self.slider.duration - self.t, self._longest), ""
+        start = np.array([self.e, self.v, *self.z])
         scales = np.array([self._length, drive, *np.ones_like(self.z)])
         remembers = self.law.flow(self.z, s, drive).any()
         for scheme, relative, absolute in _IMPLICIT if remembers else (_EXPLICIT, *_IMPLICIT):
-            solved = partial(self._solved, scheme, events, relative, absolute * scales)
-            try:
-                result = solved(last)
-                # Between two steps it may have stopped and been drawn on: a minimum of v shows that.
-                slow = s * np.reshape(result.y_events[2], (-1, len(scales)))[:, 1] < 0.5 * self._slow
-                if slow.any():
-                    result = solved(float(result.t_events[2][np.argmax(slow)]))
-            except ValueError as error:  # an event could not be located
-                reason = str(error)
-                continue
+            solve = partial(
+                solve_ivp, self._rates, y0=start, method=scheme, events=events, rtol=relative,
+                atol=absolute * scales, dense_output=True,
+            )  # fmt: skip
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of a scheme that gives up: the next is tried
+                try:
+                    result = solve((0.0, last))
+                    # Between two steps it may have stopped and been drawn on: a minimum of v shows that.
+                    slow = s * np.reshape(result.y_events[2], (-1, len(start)))[:, 1] < 0.5 * self._slow
+                    if slow.any():
+                        result = solve((0.0, float(result.t_events[2][np.argmax(slow)])))
+                except ValueError as error:  # an event could not be located
+                    reason = str(error)
+                    continue
             if result.success:
                 return result
             reason = result.message
         raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
 
-    def _solved(self, scheme: str, events: Any, relative: float, absolute: NDArray, last: float) -> Any:
-        """SciPy's result over the next ``last`` seconds."""
-        from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of a scheme that gives up: the next is tried
-            return solve_ivp(
-                self._rates, (0.0, last), np.array([self.e, self.v, *self.z]), method=scheme,
-                events=events, rtol=relative, atol=absolute, dense_output=True,
-            )  # fmt: skip
-
-    def _keep(self, piece: Any) -> None:
-        """Keep the steps of a piece, and its fastest and slowest moments."""
-        self._pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, piece.sol))
-        self._crossings += [(self.t + t, y[0]) for t, y in zip(piece.t_events[1], piece.y_events[1])]
-        self._came_back += [np.delete(y, 1) for y in piece.y_events[1]]
-        t = np.append(piece.t, piece.t_events[2])
-        extremes = np.reshape(piece.y_events[2], (-1, len(piece.y)))
-        y = np.concatenate([piece.y.T, extremes])
-        for n in np.argsort(t, kind="stable"):
-            self._rows.append((self.t + t[n], y[n, 0], y[n, 1], self._friction(y[n], self.s)))
-
     def _friction(self, y: NDArray, s: int) -> float:
         return float(self.law.friction(y[2:], s, max(s * y[1], 0.0)))
 
     def _acceleration(self, y: NDArray) -> float:
-        return (self.pull(y[0], y[1]) - self.load * self._friction(y, self.s)) / self.slider.mass
+        return (self._pull(y[0], y[1]) - self.load * self._friction(y, self.s)) / self.slider.mass
 
     def _switch(self, y: NDArray, n: int) -> float:
         return float(self.law.switches(y[2:], self.s, max(self.s * y[1], 0.0))[n])

@@ -364,10 +364,9 @@ class Layered(Solid):
     def c_s(self) -> float:
         return self.surface.c_s
 
-    @property
-    def flutter(self) -> tuple[float, float]:
-        """Flutter of the solid at the surface: the shortest waves reach no other."""
-        return self.surface.flutter
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
+        """Flutter thresholds of the solid at the surface: the shortest waves reach no other."""
+        return self.surface.flutter(c)
 
     @property
     def knows_σ_ZZ(self) -> bool:

@@ -31,18 +31,12 @@ from scipy.special import log1p
 class Potential(Protocol):
     """Φ(z) = (1/π) ∫ σ_YY(t)/(t - z) dt below the surface, Im z < 0, of a pressure under the punch.
 
-    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform.
+    On the surface -Im Φ is the pressure and Re Φ its Hilbert transform. Beside the contact Φ goes on
+    above the surface.
     """
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z)."""
-
-    def change(self, z: NDArray, step: NDArray, share: complex) -> NDArray[np.complex128]:
-        """(Φ(z + share·step) - Φ(z))/share without cancellation; its limit where ``share`` is 0.
-
-        The step is short, over the distances of both places from the contact:
-        :func:`galinx.solvers.solids.half_plane.value_and_change` takes others.
-        """
 
 
 @dataclass(frozen=True)
@@ -329,20 +323,22 @@ class UniformHalfPlane(HalfPlane):
         X, Y = np.broadcast_arrays(np.asarray(X, dtype=float), np.asarray(Y, dtype=float))
         if np.any(Y >= 0.0):
             raise ValueError(f"Y/a = {Y.max()!r}: expected Y < 0; use the formulas of the surface there")
-        p, other = self.roots.each
-        z = X + p * Y
-        # Φ of a matrix with two eigenvalues: Φ(z₁) + Φ[z₁, z₂] Y (G - p₁).
-        at, change = (1j * part for part in value_and_change(Φ, z, Y + 0j, other - p))
-        beyond = self.G - p * np.eye(2)
+        shape, (X, Y) = X.shape, np.atleast_1d(X, Y)
+        middle = self.roots.sum / 2.0
+        square = Y**2 * complex(middle**2 - self.roots.product)
+        # Φ of a matrix with two eigenvalues: the mean, and the divided difference times Y (G - middle).
+        mean, difference = 1j * mean_and_difference(Φ, X + middle * Y, square)
+        beyond = self.G - middle * np.eye(2)
         strain = self.Y[0], (beyond @ self.Y)[0]
         tractions = np.eye(2), self.L @ beyond @ self.Y
 
         def part(first: NDArray, second: NDArray) -> NDArray[np.float64]:
-            return ((first[0] * g + first[1]) * at + (second[0] * g + second[1]) * change).real
+            return ((first[0] * g + first[1]) * mean + (second[0] * g + second[1]) * Y * difference).real
 
         u_X = part(*strain)
         σ_XY, σ_YY = (part(tractions[0][i], tractions[1][i]) for i in (0, 1))
-        return np.array([self.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
+        σ = np.array([self.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
+        return σ if shape else σ[..., 0]
 
     def far(self, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM) -> NDArray[np.float64]:
         p, other = self.roots.each
@@ -363,36 +359,49 @@ class UniformHalfPlane(HalfPlane):
         return np.moveaxis(np.array(functions) @ of_loads, (0, 1, 2, 3), (0, 3, 2, 1)).imag / np.pi
 
 
-#: Share of a step below which it is below rounding: the potentials are those of roots that meet.
-_AT_REST = 1e-30
-#: Step over the distance from the contact above which a potential's two values differ by enough to be
-#: subtracted; a longer step may end where another form of the potential serves.
-_APART = 0.05
+#: Points on a circle, over its radius; the radius over the distance from the contact, which leaves
+#: 1e-14 of an interpolated potential; distance between two places over that from the contact above which
+#: potentials there are subtracted.
+_CIRCLE, _RADIUS, _APART = np.exp(2j * np.pi * np.arange(10) / 10), 0.04, 0.03
 
 
-def value_and_change(
-    Φ: Potential, z: NDArray, step: NDArray, share: complex
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Potential Φ(z) and its change (Φ(z + share·step) - Φ(z))/share, accurate for any step.
+def mean_and_difference(Φ: Potential, z: NDArray, square: NDArray) -> NDArray[np.complex128]:
+    """Mean of Φ(z + δ) and Φ(z - δ), and their difference over 2δ, accurate for any δ, (2, ..., n).
+
+    Both are even in δ, and need its square alone. Where δ is small they are those of the polynomial
+    through values on a circle about z.
 
     Args:
-        Φ: a pressure's potential.
-        z, step: positions below the surface over a, and steps from there, of one shape.
-        share: share of the step that is taken; 0 for the limit.
+        Φ: potential of a pressure.
+        z: positions below the surface over a, (..., n).
+        square: δ², (..., n).
     """
-    share = share if abs(share) >= _AT_REST else 0.0
-    at, moved = Φ.at(z), z + share * step
-    apart = np.abs(share * step) > _APART * np.minimum(_from_contact(z), _from_contact(moved))
-    if not apart.any():
-        return at, Φ.change(z, step, share)
-    # Where the difference is not used, the potential is evaluated at z, where it is defined.
-    difference = (Φ.at(np.where(apart, moved, z)) - at) / share
-    if apart.all():
-        return at, difference
-    near = Φ.change(z, np.where(apart, 0.0, step), share)
-    return at, np.where(apart, difference, near)
+    distance = np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
+    close = np.abs(square) <= (_APART / 2.0 * distance) ** 2
+    result = np.empty(0)
+    for evaluate, there in ((_around, close), (_apart, ~close)):
+        columns = there.any(axis=tuple(range(z.ndim - 1)))
+        if not columns.any():
+            continue
+        part = evaluate(Φ, z[..., columns], square[..., columns], distance[..., columns])
+        if not result.size:
+            result = np.empty((*part.shape[:-1], z.shape[-1]), dtype=complex)
+        result[..., columns] = np.where(there[..., columns], part, result[..., columns])
+    return result
 
 
-def _from_contact(z: NDArray) -> NDArray[np.float64]:
-    """Distance of z from the contact -1 <= z <= 1."""
-    return np.hypot(np.maximum(np.abs(z.real) - 1.0, 0.0), z.imag)
+def _around(Φ: Potential, z: NDArray, square: NDArray, distance: NDArray) -> NDArray[np.complex128]:
+    """Mean and difference by values on circles."""
+    from_z = _RADIUS * distance[..., None] * _CIRCLE
+    values = Φ.at((z[..., None] + from_z).reshape(*z.shape[:-1], -1))
+    u = square[..., None] / from_z**2
+    weighted = values.reshape(*values.shape[:-1], *from_z.shape[-2:]) * (1.0 + u * (1.0 + u * (1.0 + u)))
+    return np.array([weighted.mean(axis=-1), (weighted / from_z).mean(axis=-1)])
+
+
+def _apart(Φ: Potential, z: NDArray, square: NDArray, distance: NDArray) -> NDArray[np.complex128]:
+    """Mean and difference by both values."""
+    δ = np.sqrt(square)
+    one, other = Φ.at(z + δ), Φ.at(z - δ)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.array([(one + other) / 2.0, (one - other) / (2.0 * δ)])

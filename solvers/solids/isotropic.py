@@ -67,8 +67,7 @@ class Isotropic(Solid):
         """Rayleigh speed over the shear wave speed."""
         return rayleigh_speed(self.κ)
 
-    @property
-    def flutter(self) -> tuple[float, float]:
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
         """Least σ_XY/σ_YY of either sign from which on short waves grow: 1 for ν > 0, else infinite.
 
         By n and q the condition is β_d = ∓ i g (2w - 1), with w = (1 + k - k c²)/(1 + β_s β_d).

@@ -11,9 +11,8 @@ pressure and its ends are those of a rigid punch on a solid with these constants
 follow from the pressure and that body's own constants.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from math import nan
 from typing import Any, ClassVar
 
 import numpy as np
@@ -117,9 +116,17 @@ class Pair(Solid):
     def ρ(self) -> float:  # type: ignore[override]
         return self.plate.ρ
 
-    @property
-    def flutter(self) -> tuple[float, float]:
-        return nan, nan
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
+        from ..transient.flutter import thresholds  # loaded where it is needed
+
+        plate, punch = self._sides
+        return thresholds(replace(plate, speed=c * self.plate.c_s), punch)
+
+    @cached_property
+    def _sides(self) -> tuple[Any, Any]:
+        from ..transient.flutter import Side  # loaded where it is needed
+
+        return Side.of(self.plate), Side.of(self.punch, self.speed, below=False)
 
     def limit(self) -> float:
         return self.plate.limit()

@@ -197,14 +197,13 @@ class PlaneSolid(Solid):
         return self._limit
 
     @cached_property
-    def flutter(self) -> tuple[float, float]:
-        """Least σ_XY/σ_YY of either sign from which on short waves grow, infinite for none."""
-        from ..transient.admittance import (
-            Admittance,  # loaded where it is needed
-            thresholds,
-        )
+    def _flutter(self) -> tuple[float, float]:
+        from ..transient.flutter import Side, thresholds  # loaded where it is needed
 
-        return thresholds(Admittance.of(self._at_rest))
+        return thresholds(Side.of(self))
+
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
+        return self._flutter
 
     def response(self, c: float, a: float = 1.0) -> AnisotropicFrame:
         """The half-plane at a speed over ``c_s``; it has no length, whatever a is.

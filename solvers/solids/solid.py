@@ -59,12 +59,16 @@ class Solid(Protocol):
     def c_s(self) -> float:
         return sqrt(self.μ / self.ρ)
 
-    @property
     @abstractmethod
-    def flutter(self) -> tuple[float, float]:
-        """Least σ_XY/σ_YY > 0, and least -σ_XY/σ_YY > 0, from which on short waves along a surface that
-        slides on something rigid grow; infinite for none, see
-        :func:`galinx.solvers.transient.admittance.thresholds`."""
+    def flutter(self, c: float = 0.0) -> tuple[float, float]:
+        """Flutter thresholds: least σ_XY/σ_YY > 0, and least -σ_XY/σ_YY > 0, from which on short waves
+        along the sliding interface grow; infinite for none.
+
+        See :mod:`galinx.solvers.transient.flutter`.
+
+        Args:
+            c: speed of the surface over ``c_s``; it matters to two elastic bodies alone.
+        """
 
     @property
     def solids(self) -> Sequence["Solid"]:

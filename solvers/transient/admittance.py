@@ -1,4 +1,4 @@
-"""Admittance of the surface of a half-plane at complex speeds, and the friction from which waves grow.
+"""Admittance of the surface of a half-plane at complex speeds.
 
 Fields e^(ik(X - Ct)) below the surface have u,Y = G u,X, where G has the two roots p of
 
@@ -10,27 +10,11 @@ over √(μ/ρ), Q, R and T are those of steady motion at a real C. The surface 
 Away from the real axis no root is real (the solid is one of real speeds), so that 𝐘 is analytic in the
 whole plane but where |C| is real and at least the least speed at which a decaying root meets a growing
 one; there the value is that of Im C → -0. Its poles are the speeds of the wave along the surface.
-
-The flutter threshold is the friction from which on short waves along a sliding interface grow. A solid
-slides on something rigid and flat, under Coulomb friction: v = 0 and σ_XY = g σ_YY on an infinite
-surface. Waves e^(ik(X - ct)) along it obey the steady equations of the solid at the speed c, whatever the
-sliding speed is, so that with (u,X, v,X) = 𝐘 (σ_XY, σ_YY)
-
-    Y₂₂(c) + g Y₂₁(c) = 0,   which with L = 𝐘⁻¹ is   L₁₁(c) = g L₂₁(c).
-
-They grow if Im c > 0, and at any length: the shorter, the faster (Renardy, J. Elasticity 27 (1992) 281;
-Martins, Guimarães and Faria, J. Vib. Acoust. 117 (1995) 445). L₁₁/L₂₁ is analytic in the upper half of
-the c plane. Growing waves have the real values that it takes there, on curves along which it is
-monotonic, and these curves end on the real axis; the least of each sign is a value at such an end. The
-ends are the isolated speeds at which L₁₁/L₂₁ is real and, on stretches where it is real everywhere
-because all waves leave the surface, its extremes.
 """
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from math import inf, pi
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -233,68 +217,3 @@ def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, 
         small = np.abs(step).max(axis=0) < 0.1 * np.maximum(1.0, np.abs(d))
         s, d, e = (value - np.where(small, change, 0.0) for value, change in zip((s, d, e), step))
     return s, d
-
-
-#: Speeds sampled between two at which roots meet; samples between two of those, and how often again.
-_SPEEDS, _CLOSER, _TIMES = 400, 64, 8
-#: Imaginary part over the size above which a ratio is not real.
-_REAL_RATIO = 1e-8
-#: Share of the way to a stretch's end over which a slope is taken, and the least of the stretch.
-_STEP, _LEAST = 1e-5, 1e-13
-
-
-def thresholds(surface: Admittance) -> tuple[float, float]:
-    """Flutter thresholds: least g > 0 and least -g > 0 from which on waves grow; infinite for none.
-
-    Args:
-        surface: of the solid that slides.
-    """
-    ends = np.concatenate([[0.0], surface.meeting])
-    values: list[float] = []
-    mirrored = surface.c16 == 0.0 == surface.c26  # L₁₁/L₂₁ changes sign with c
-    for way in (1.0, -1.0)[: 1 if mirrored else 2]:
-        for low, high in pairwise(ends):
-            values += _values(surface, lambda x: x, way * low, way * high)
-    # Beyond the last speed, by 1/c: from one infinity to the other.
-    values += _values(surface, lambda x: 1.0 / x, -1.0 / ends[-1], 1.0 / ends[-1])
-    if mirrored:
-        values += [-g for g in values]
-    positive, negative = ([way * g for g in values if way * g > 0.0] for way in (1.0, -1.0))
-    return min(positive, default=inf), min(negative, default=inf)
-
-
-def _values(
-    surface: Admittance, speed: Callable[[NDArray], NDArray], start: float, end: float
-) -> Iterator[float]:
-    """L₁₁/L₂₁ at the ends of curves on a stretch of the real axis."""
-
-    def pair(x: NDArray) -> NDArray[np.complex128]:
-        """L₁₁ and L₂₁ over their size, (2, ...)."""
-        L = surface.waves(speed(x)).L[:, :, 0].T
-        return np.asarray(L / np.linalg.norm(L, axis=0))
-
-    def off(x: NDArray) -> NDArray[np.float64]:
-        """Im(L₁₁ L₂₁*): 0 where the ratio is real."""
-        L11, L21 = pair(x)
-        return np.asarray((L11 * L21.conj()).imag)
-
-    def turn(x: NDArray) -> NDArray[np.float64]:
-        """Slope of the angle of L₁₁/L₂₁, on a stretch where the ratio is real."""
-        step = np.maximum(
-            _STEP * np.minimum(np.abs(x - start), np.abs(end - x)), _LEAST * abs(end - start)
-        )
-        (L11_before, L21_before), (L11_after, L21_after) = pair(x - step), pair(x + step)
-        return np.asarray((L11_before.conj() * L21_after - L11_after * L21_before.conj()).real / step)
-
-    share = (1.0 - np.cos(np.pi * (np.arange(_SPEEDS) + 0.5) / _SPEEDS)) / 2.0
-    x = start + share * (end - start)
-    sign = off if np.abs(off(x)).max() > _REAL_RATIO else turn
-    at = sign(x)
-    for i in np.flatnonzero((at[:-1] > 0.0) != (at[1:] > 0.0)):
-        low, high = x[i], x[i + 1]
-        for _ in range(_TIMES):
-            closer = np.linspace(low, high, _CLOSER + 1)
-            first = max(int(np.argmax((sign(closer) > 0.0) != (at[i] > 0.0))), 1)
-            low, high = closer[first - 1], closer[first]
-        L11, L21 = pair(np.array([(low + high) / 2.0]))[:, 0].tolist()
-        yield (L11 * L21.conjugate()).real / abs(L21) ** 2 if L21 else inf

@@ -28,10 +28,11 @@ e^(-2sH/c_d) where plane waves go down and up. As Re s > 0 it is analytic along 
 that its transform back to X goes along it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, cos, log, log2, pi
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
@@ -84,9 +85,11 @@ class Kernel:
 
         Args:
             x: distances > 0, (n,).
-            s: over c_s/a, Im s >= 0 <= Re s.
+            s: over c_s/a, Re s >= 0.
             slopes: of these along X instead.
         """
+        if s.imag < 0.0:  # in time it is real
+            return np.conj(self(x, np.conj(s), slopes))
         values = np.zeros((4, len(x)), dtype=complex)
         group = np.floor(np.log(x / x.max()) / log(_RATIO) + 1e-9)
         for number in np.unique(group):
@@ -367,27 +370,8 @@ class Echoes:
         return float(_WAVENUMBERS[min(not_decayed[-1] + 1, len(k) - 1)]) if len(not_decayed) else 0.0
 
 
-class Side(Protocol):
-    """HalfPlane on one side of a line load; behind it that of the mirror image, see :class:`Kernel`."""
-
-    def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]: ...
-
-
-@dataclass(frozen=True)
-class OnLayers:
-    """HalfPlane of layers: that of a half-plane of the uppermost solid, and echoes.
-
-    Attributes:
-        uniform: response of a half-plane of the solid at the surface.
-        echoes: part of the layers.
-    """
-
-    uniform: Side
-    echoes: Echoes
-
-    def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
-        """v̂ of line loads σ_YY and σ_XY, and û of them, (4, n); arguments of :class:`Kernel`."""
-        return np.asarray(self.uniform(x, s, slopes) + self.echoes(x, s, slopes))
+#: Response on one side of a line load; behind it that of the mirror image, see :class:`Kernel`.
+Side = Callable[[NDArray, complex, bool], NDArray[np.complex128]]
 
 
 def fastest(half_plane: HalfPlane) -> float:
@@ -414,4 +398,8 @@ def both_sides(half_plane: HalfPlane, rayleigh: float, way: int) -> tuple[Side, 
     layers: Any = half_plane
     ahead, behind = both_sides(layers.surface, layers.solid.surface.limit(), way)
     sheets = UniformLayers.of(layers)
-    return OnLayers(ahead, Echoes(sheets, V)), OnLayers(behind, Echoes(sheets.mirrored, -V))
+    echo, echo_behind = Echoes(sheets, V), Echoes(sheets.mirrored, -V)
+    return (
+        lambda x, s, slopes: ahead(x, s, slopes) + echo(x, s, slopes),
+        lambda x, s, slopes: behind(x, s, slopes) + echo_behind(x, s, slopes),
+    )

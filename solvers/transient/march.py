@@ -18,7 +18,7 @@ cause then are tested with more polynomials than the pressure has. Against the i
 steps, polynomials or a wrong number of the solution leave.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, pi
 
@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..solids.half_plane import HalfPlane
+from .history import History
 from .transform import Basis, Transformed
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
@@ -184,7 +185,7 @@ class PressureHistory:
 
 def march(
     transformed: Transformed, scheme: Radau, between: FrictionInterpolation,
-    g: Callable[[NDArray], NDArray], load: Callable[[NDArray], NDArray], steady: bool,
+    g: History, load: History, steady: bool,
 ) -> PressureHistory:  # fmt: skip
     """Pressure and indentation from t = 0 on, step after step.
 

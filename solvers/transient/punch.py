@@ -12,7 +12,6 @@ The first two terms are exact for the polynomials that the pressure is made of. 
 each s once, whatever the friction, and is smooth in each panel of distances but the one at 0.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -22,12 +21,13 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from ..solids.half_plane import HalfPlane
+from .history import History
 from .line_load import both_sides, interpolation
 from .march import FrictionInterpolation, Radau, Residual, march
-from .transform import Basis, Transformed, Weighted, divided, double_exponential, response_at
+from .transform import Basis, Transformed, Weighted, divided, double_exponential
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
-_NEAR, _EVEN, _POINTS = 24, 0.125, 10
+_NEAR, _EVEN, _POINTS = 24, 0.25, 14
 #: Steps of the double exponential rule along the contact, or its part on one side.
 _STEPS = 161
 #: Points of the pressure in its effect beside the contact.
@@ -101,12 +101,13 @@ class AlongSurface:
 
     @cached_property
     def _edges(self) -> NDArray[np.float64]:
-        """Edges of panels of distances over a, growing from 0."""
+        """Edges of panels of distances over a, growing from 0, or from little less than the least."""
+        least, last = max(float(np.abs(self._X).min()) - 1.0, 0.0), 1.0 + float(np.abs(self._X).max())
         near = 2.0 ** -np.arange(_NEAR, 1, -1.0)
-        last = 1.0 + float(np.abs(self._X).max())
-        near = near[near < _EVEN]
         even = np.linspace(_EVEN, last, int(np.ceil((last - _EVEN) / _EVEN)) + 1)
-        return divided(np.concatenate([[0.0], near, even]), self._s, self._slowest)
+        edges = np.concatenate([[0.0], near[near < _EVEN], even])
+        edges = edges[np.searchsorted(edges, least, side="right") - 1 :]
+        return divided(edges, self._s, self._slowest)
 
     @cached_property
     def _x(self) -> NDArray[np.float64]:
@@ -118,8 +119,7 @@ class AlongSurface:
     def _tables(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each."""
         ahead, behind = (
-            np.array([response_at(kernel, self._x, s, True)[2:] for s in self._s])
-            for kernel in self._kernels
+            np.array([kernel(self._x, s, True)[2:] for s in self._s]) for kernel in self._kernels
         )
         return ahead, behind
 
@@ -152,15 +152,7 @@ PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
 _BEYOND = np.geomspace(0.01, 1.0, 24)
 ON_SURFACE = np.concatenate([-1.0 - _BEYOND[::-1], PLACES, 1.0 + _BEYOND])
 _UNDER = np.abs(ON_SURFACE) < 1.0
-
-#: Function of time: values at times over a/c_s of any shape.
-Law = Callable[[NDArray], NDArray]
-
-
-def smooth(t: NDArray, length: float) -> NDArray[np.float64]:
-    """Share of the load at times t: 10s³ - 15s⁴ + 6s⁵, s = t/length, up to 1."""
-    s = np.clip(np.asarray(t, dtype=float) / length, 0.0, 1.0)
-    return s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+_ENDS = np.array([-1.0 - BESIDE, 1.0 + BESIDE])
 
 
 @dataclass(frozen=True)
@@ -218,19 +210,15 @@ class StartingPunch:
         self, response: HalfPlane, rayleigh: float, end: float, steps: int, terms: int = 24,
         surface: bool = False, way: int = 1, checked: bool = False,
     ) -> None:  # fmt: skip
-        self._response, self._terms = response, terms
+        self._response, self._terms, self._surface = response, terms, surface
         self._scheme = Radau(end, steps)
         s, t = self._scheme.s, self._scheme.times[:, -1]
         self._transformed = Transformed(response, rayleigh, s, terms, way=way)
-        self._along = AlongSurface(response, rayleigh, s, ON_SURFACE, way) if surface else None
+        places = np.append(_ENDS, ON_SURFACE) if surface else _ENDS
+        self._along = AlongSurface(response, rayleigh, s, places, way)
         self._residual = Residual(response, rayleigh, t, terms, way) if checked else None
 
-    def _strains(self, basis: Basis) -> NDArray[np.complex128]:
-        """û,X of polynomials beyond both ends, then at ``ON_SURFACE`` if any, (s, places, terms)."""
-        beside = self._transformed.strains(basis, BESIDE)
-        return beside if self._along is None else np.hstack([beside, self._along.strains(basis)])
-
-    def course(self, g: Law | float, load: Law, steady: bool = False) -> Course:
+    def course(self, g: History | float, load: History, steady: bool = False) -> Course:
         """Motion where σ_XY = g(t) σ_YY, and N is present by the share ``load(t)``.
 
         Args:
@@ -246,7 +234,9 @@ class StartingPunch:
         between = FrictionInterpolation(self._response, occurring.min(), occurring.max(), self._terms)
         marched = march(transformed, scheme, between, ratio, load, steady)
         held, added, a = between.middle.pressure, marched.shares - marched.begun, marched.a
-        rows = [np.hstack([transformed.dragging(of, held), self._strains(of)]) for of in between.bases]
+        rows = [
+            np.hstack([transformed.dragging(of, held), self._along.strains(of)]) for of in between.bases
+        ]
         u, u_X = np.split(scheme.answered(np.concatenate(rows, axis=2), added), [self._terms], axis=1)
         shared = np.hstack([basis.pressure.tested(held) for basis in between.bases])
         forces = ratios[:, -1:] * (marched.shares[:, -1] @ shared.T)
@@ -266,7 +256,7 @@ class StartingPunch:
         )
         K_left, K_right = -(whole + (whole - half) / 3.0) / 2.0
         surface, residual = None, np.nan
-        if self._along is not None:
+        if self._surface:
             under = ON_SURFACE[_UNDER]
             begun = marched.begun @ np.vstack([basis.pressure(under).T for basis in between.bases])
             surface = self._on_surface(bases, a, along, begun, first)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..contact.edges import EdgeExponents
 from ..contact.equation import gauss, jacobi
 from ..solids.half_plane import HalfPlane
-from .line_load import Side, both_sides, interpolation
+from .line_load import both_sides, interpolation
 
 #: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
 #: shifted contacts.
@@ -158,8 +158,6 @@ _EVEN = 0.125
 #: Points at which the response is sampled in the last panel before distance 2; the overlap of tests and
 #: pressures has shorter panels there.
 _SAMPLES = 24
-#: Points of the pressure in its effect beside the contact.
-_FEW = 96
 
 
 class Transformed:
@@ -229,48 +227,6 @@ class Transformed:
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         return (ahead @ flat[0] + behind @ flat[1]).reshape(-1, tests.terms, self._terms)
 
-    def strains(self, basis: Basis, beyond: float) -> NDArray[np.complex128]:
-        """û,X of each polynomial of the pressure on the surface beyond both ends, (s, 2, terms).
-
-        Args:
-            basis: of the pressure.
-            beyond: distance over a from the ends.
-        """
-        X, w = self._few.rule(_FEW)
-        at, weights = basis.pressure.rule(_FEW)
-        trials = weights[:, None] * basis.pressure.polynomials(at)
-        pressure = w[:, None] * self._few.polynomials(X) @ (self._few.polynomials(at).T @ trials)
-        g = basis.g
-        ahead, behind = self._slopes(beyond)
-        return np.stack(
-            [(behind[:, 2] - g * behind[:, 3]) @ pressure, (ahead[:, 2] + g * ahead[:, 3]) @ pressure],
-            axis=1,
-        )  # fmt: skip
-
-    def _slopes(self, beyond: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Slopes at both points beside the contact by line loads under it, (s, 4, loads) each.
-
-        Ahead of the contact first, then behind it.
-        """
-        if beyond not in self._beside:
-            X, _ = self._few.rule(_FEW)
-            self._beside[beyond] = tuple(
-                np.array([response_at(kernel, 1.0 + beyond - sign * X, s, True) for s in self.s])
-                for kernel, sign in zip(self._kernels, (1.0, -1.0))
-            )
-        ahead, behind = self._beside[beyond]
-        return ahead, behind
-
-    @cached_property
-    def _few(self) -> Weighted:
-        """Polynomials that represent the pressure in its effect beside the contact."""
-        return Weighted(-0.5, -0.5, _FEW)
-
-    @cached_property
-    def _beside(self) -> dict[float, tuple[NDArray[np.complex128], ...]]:
-        """Slopes beside the contact by the distance from it; they do not depend on friction."""
-        return {}
-
     @cached_property
     def _grid(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
@@ -298,14 +254,9 @@ class Transformed:
         between = interpolation(_SAMPLES, (self._x[short] - middle) / half)
         x, values = np.append(self._x[~short], middle + half * t), []
         for kernel in self._kernels:
-            sampled = np.array([response_at(kernel, x, s) for s in self.s])
+            sampled = np.array([kernel(x, s, False) for s in self.s])
             whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
             whole[..., ~short] = sampled[..., :-_SAMPLES]
             whole[..., short] = sampled[..., -_SAMPLES:] @ between.T
             values.append(whole)
         return values[0], values[1]
-
-
-def response_at(kernel: Side, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
-    """HalfPlane at any s: for Im s < 0 the conjugate, as the response in time is real; (4, n)."""
-    return kernel(x, s, slopes) if s.imag >= 0.0 else np.conj(kernel(x, np.conj(s), slopes))

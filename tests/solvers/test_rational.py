@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from galinx.solvers.approximation import (
-    barycentric,
-    chebyshev_nodes,
-    fit_rational,
-    leja,
-    polynomial_weights,
-)
+from galinx.solvers.approximation import chebyshev_nodes, fit_rational, leja, polynomial_through
 
 
 def chosen(z, count, first=0):
@@ -29,13 +23,15 @@ def error(z, values, count, noise=0.0):
 
 def test_polynomials_through_chebyshevs_nodes_are_exact():
     rng = np.random.default_rng(1)
-    nodes, weights = chebyshev_nodes(9, -1.2, 0.7)
+    nodes = chebyshev_nodes(9, -1.2, 0.7)
     polynomial = np.polynomial.Polynomial(rng.normal(size=9))
     z = np.concatenate([rng.uniform(-1.2, 0.7, 50), nodes[:3]])
-    shares = barycentric(nodes, weights, z)
+    through = polynomial_through(nodes)
+    shares = through.shares(z)
     np.testing.assert_allclose(shares @ polynomial(nodes), polynomial(z), rtol=0.0, atol=1e-13)
     np.testing.assert_array_equal(shares[-3:], np.eye(9)[:3])
-    ratio = polynomial_weights(nodes) / weights
+    weights = (-1.0) ** np.arange(9) * np.sin(np.pi * (np.arange(9) + 0.5) / 9)
+    ratio = through.weights / weights
     np.testing.assert_allclose(ratio, ratio[0], rtol=1e-12)
 
 
@@ -57,7 +53,7 @@ def test_it_converges_faster_than_a_polynomial_beside_a_pole_and_a_branch_point(
     values /= np.abs(values).max()
     errors = np.array([error(z, values, count)[0] for count in (6, 8, 10, 12)])
     some = chosen(z, 12)
-    polynomial = barycentric(z[some], polynomial_weights(z[some]), z) @ values[some]
+    polynomial = polynomial_through(z[some]).shares(z) @ values[some]
     assert errors[-1] < 1e-6 < 1e-3 * np.abs(polynomial - values).max()
     assert np.all(errors[1:] < 0.3 * errors[:-1])
 

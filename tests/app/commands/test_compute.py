@@ -40,7 +40,7 @@ def test_an_archive_is_not_overwritten_unasked(archive):
 
 #: Libraries that take longer to import than a friction loop takes.
 SLOW = (
-    "dolfinx", "gmsh", "petsc4py", "mpi4py", "matplotlib", "pandas", "scipy.integrate",
+    "dolfinx", "petsc4py", "mpi4py", "matplotlib", "pandas", "scipy.integrate",
     "scipy.interpolate",
 )  # fmt: skip
 

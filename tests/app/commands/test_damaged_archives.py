@@ -12,6 +12,7 @@ from support import here
 from tampering import archived, gone, opened
 
 from galinx.app.cli import cli
+from galinx.postprocess import schema
 from galinx.postprocess.errors import UnreadableArchive
 from galinx.postprocess.hdf5 import archive
 from galinx.postprocess.schema import ATTRIBUTES, FIRST
@@ -58,7 +59,7 @@ def test_the_status_of_a_damaged_archive(content, path):
 
 
 def test_an_archive_of_an_earlier_layout_is_read(map_run, path, monkeypatch):
-    monkeypatch.setattr(archive, "VERSION", FIRST)
+    monkeypatch.setattr(schema, "VERSION", FIRST)
     map_run.save(path)
     came_later = {"states/speed", "states/wave_crossings"}
     with opened(path) as file:

@@ -14,6 +14,8 @@ from galinx.app.figures import files as written
 from galinx.app.figures.archive import of_archive, write
 from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
+from galinx.app.figures.render import Curve, Film, Panel
+from galinx.app.figures.style import Look
 from galinx.postprocess.errors import Occupied
 from galinx.postprocess.target import GIF, MP4
 
@@ -76,6 +78,22 @@ def test_numbers_are_drawn_over_what_is_swept_most(sweep):
     assert first.get_xdata().tolist() == data["states/mu_c"][some].tolist() == [0.2, 0.4, 0.6, 0.8]
     assert first.get_ydata().tolist() == data["states/closed_form/K_I"][some].tolist()
     assert "σ₀ l/N = 20\u202f000 m⁻¹, FM1, X/L = 0.8" in drawing.caption.replace("\u202fm", " m")
+
+
+def test_small_numbers_of_a_film_are_over_the_power_of_its_axis():
+    look = Look("black", "-", "")
+
+    def panels(frame):
+        y = 1e-3 * np.array([1.0, 2.0, 3.0]) * (1.0 + 0.1 * frame)
+        return [Panel("x", "length", "m", curves=[Curve(np.arange(3.0), y, look)], ylim=(0.0, 4e-3))]
+
+    film, drawn = Film(panels, 2), []
+    for n in range(2):
+        film.show(n)
+        (line,) = [line for line in film.figure.axes[0].lines if line.get_gid() == "curve"]
+        drawn.append(line.get_ydata())
+    np.testing.assert_allclose(drawn, [[1.0, 2.0, 3.0], [1.1, 2.2, 3.3]])
+    assert film.figure.axes[0].get_ylim() == (0.0, 4.0)
 
 
 def test_films_are_made_of_strokes(strokes, tmp_path):

@@ -5,7 +5,7 @@ import pytest
 
 from galinx import template
 from galinx.app.errors import BadInput
-from galinx.app.plan import task
+from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import enumerate_states
 from galinx.solvers.solids.isotropic import Isotropic
@@ -92,7 +92,7 @@ def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
 @pytest.mark.parametrize("numbers, count", [(1, 6), (4000, 2), (10**9, 1)])
 def test_states_are_taken_in_chunks_of_one_speed(numbers, count, monkeypatch):
     """Two speeds with six states each; a state has 5 x 217 numbers on the surface and 13 besides."""
-    monkeypatch.setattr(task, "CHUNK_NUMBERS", numbers)
+    monkeypatch.setattr(planning, "CHUNK_NUMBERS", numbers)
     plan = make_plan(template("tables4_5"))
     found = [rows for one in plan.tasks for rows in plan.chunks(one)]
     assert len(found) == 2 * count

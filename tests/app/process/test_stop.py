@@ -36,17 +36,12 @@ def ended(function, *words):
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize("function", ["process._report", "process.complain"])
-def test_a_failure_is_said_to_its_end(function):
-    assert ended(function, "plan", "no.toml") == (2, NOT_THERE)
-
-
-def test_what_has_ended_well_has_ended_well():
-    assert ended("process._report", "plan", str(SCENE)) == (0, "")
+def test_a_failure_is_said_to_its_end():
+    assert ended("ranks.from_environment", "plan", "no.toml") == (2, NOT_THERE)
 
 
 @pytest.mark.parametrize(
-    "function", ["job._check_machine", "cli._run", "scene.read.read", "process.too_late"]
+    "function", ["process._check_machine", "cli._run", "scene.read.read", "process.too_late"]
 )
 @pytest.mark.parametrize("scene", [str(SCENE), "no.toml"])
 def test_before_that_it_is_interrupted_wherever_it_is(function, scene):

@@ -14,7 +14,8 @@ from galinx import PROFILES, parameter
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
-from galinx.meshes.kind import Refinement, check_cells, with_kinks
+from galinx.meshes.kind import check_cells
+from galinx.meshes.rings import Refinement, with_kinks
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 

@@ -11,7 +11,7 @@ from test_layers import COAT, GRADED, scene
 import galinx
 from galinx.app.scene.scene import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
-from galinx.meshes.layered import OnLayers, on_layers
+from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.solvers.contact import residual
 from galinx.solvers.layers.layered import Layer, Layered
@@ -130,7 +130,7 @@ def test_layers_of_the_substrates_solid_move_as_it_does(V):
 
 @pytest.mark.parametrize("depths", [(0.01,), (1.0,), (100.0,), (0.05, 0.1, 7.0)])
 def test_meshes_follow_interfaces(depths):
-    kind = on_layers(depths)
+    kind = OnLayers(depths=depths)
     for wanted in (Requirements(1e-6), Requirements(1e-6, nearest=1e-6)):
         mesh = kind.drawn(wanted)
         check_cells(mesh)

@@ -11,7 +11,7 @@ from galinx.meshes.kind import DEGREES
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.recovery import MOMENTS, Polynomials
 from galinx.solvers.fem import ladder as error
-from galinx.solvers.fem.ladder import Gauge, Ladder, MeasuredError, climb, solved_to_tolerance
+from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
 
 G = np.array([-0.5])
 FIRST = 6
@@ -23,12 +23,12 @@ def level(value, left=0.0, rounding=0.0, mirrored=True):
         space=SimpleNamespace(cells=1, size=1, degree=FIRST),
         factor=SimpleNamespace(solves=1, iterations=0, largest_residual=rounding, condition=0.0),
         mirrored=mirrored,
-        measured=lambda g, load=None: [
+        task=TASK,
+        gauges=lambda g, load=None: [
             Gauge("sif", np.full((len(g), 1), value), np.ones((len(g), 1)), left)
         ],
         rounding=lambda g, load: [rounding],
-        release=lambda: None,
-        destroy=lambda: None,
+        close=lambda: None,
     )
 
 
@@ -57,7 +57,7 @@ def solved(space, g):
 
 TASK = SimpleNamespace(
     number=0,
-    body=SimpleNamespace(alike=True, layered=False, ratio=lambda g, X: g[:, None]),
+    body=SimpleNamespace(alike=True, layered=False, modes=(), ratio=lambda g, X: g[:, None]),
     probes=lambda g: (g, None),
     response=SimpleNamespace(c=0.3, margin=1.0, n=0.75, m=0.75, n12=0.0, contraction=1j),
 )
@@ -65,9 +65,13 @@ TASK = SimpleNamespace(
 
 def estimated(left=0.0, rounding=0.0, tolerance=1e-3):
     """The estimate of three levels, the last as given."""
-    ladder = Ladder(Work(tolerance, None), TASK, solved)
-    ladder.levels = [level(0.0), level(0.0), level(0.0, left, rounding)]
-    return MeasuredError(ladder, G).of(G)["sif"][0]
+    return measured_error(level(0.0), level(0.0), level(0.0, left, rounding), tolerance).of(G)["sif"][0]
+
+
+def measured_error(first, second, last, tolerance=1e-3):
+    """Error of the last of three levels."""
+    measured = [(FIRST - 2 + i, one.gauges(G)) for i, one in enumerate((first, second, last))]
+    return MeasuredError(Work(tolerance, None), last, G, measured, 1.0)
 
 
 def test_an_estimate_holds_rounding_and_what_a_level_knows_of_itself():
@@ -84,44 +88,49 @@ def test_an_estimate_holds_what_the_far_boundary_leaves_of_the_edges():
 
 
 def climbed(work):
-    ladder = Ladder(work, TASK, solved)
-    return ladder, climb(ladder, G)
+    found = climb(work, TASK, G, solved)
+    return degree_of(work), found.error
+
+
+def degree_of(work):
+    """Degree of the last level."""
+    return work.solved[-1]
 
 
 def test_degrees_rise_until_the_tolerance_is_met_and_no_further():
     work = Work(1e-6, lambda p: 10.0 ** (2.0 - 1.2 * p))
-    ladder, error = climbed(work)
-    assert not error.excessive and ladder.degree == work.solved[-1] < DEGREES[1]
-    assert work.solved == list(range(FIRST - 2, ladder.degree + 1))
-    assert ladder.degree == 8 and work.errors(8) < error.worst < 10.0 * work.errors(8)
+    degree, error = climbed(work)
+    assert not error.excessive and degree < DEGREES[1]
+    assert work.solved == list(range(FIRST - 2, degree + 1))
+    assert degree == 8 and work.errors(8) < error.worst < 10.0 * work.errors(8)
 
 
 @pytest.mark.parametrize("ratio", [0.8, 0.95, 1.1])
 def test_a_ladder_that_does_not_converge_ends_before_the_highest_degree(ratio):
     work = Work(1e-6, lambda p: 1e-3 * ratio**p * (-1.0) ** p)
-    ladder, error = climbed(work)
+    degree, error = climbed(work)
     assert error.excessive and error.of_cells
-    assert ladder.degree <= FIRST + 1
+    assert degree <= FIRST + 1
 
 
 def test_a_ladder_that_gets_there_is_not_given_up():
     """Slowly, and by steps of different size, of which two together tell how fast."""
     work = Work(1e-5, lambda p: 10.0 ** (-0.6 * p + (0.2 if p % 2 else 0.0)))
-    ladder, error = climbed(work)
-    assert not error.excessive and 9 <= ladder.degree <= DEGREES[1]
-    assert work.errors(ladder.degree) <= error.worst
+    degree, error = climbed(work)
+    assert not error.excessive and 9 <= degree <= DEGREES[1]
+    assert work.errors(degree) <= error.worst
 
 
 def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_said():
     slow, good = (lambda p: 1e-3 * 0.8**p), (lambda p: 10.0 ** (-1.0 - 1.2 * p))
     finer = Work(1e-8, good)
     work = Work(1e-6, slow, finer)
-    with solved_to_tolerance(work, TASK, G, solved) as (ladder, error):
-        assert ladder.work is finer and not error.excessive and error.worst <= 1e-6
+    found = to_tolerance(work, TASK, G, solved)
+    assert not found.error.excessive and found.error.worst <= 1e-6
     assert work.solved and finer.solved and not work.said + finer.said
     finer = Work(1e-8, slow)
-    with solved_to_tolerance(Work(1e-6, slow, finer), TASK, G, solved) as (ladder, error):
-        assert error.excessive and ladder.degree < DEGREES[1]
+    assert to_tolerance(Work(1e-6, slow, finer), TASK, G, solved).error.excessive
+    assert degree_of(finer) < DEGREES[1]
     (said,) = finer.said
     assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
 
@@ -132,8 +141,8 @@ def test_cells_are_no_finer_where_rounding_is_at_fault(monkeypatch):
     def rounded(space, g):
         return level(1e-8 * (-1.0) ** space[1], rounding=1e-7)
 
-    with solved_to_tolerance(work, TASK, G, rounded) as (ladder, error):
-        assert error.excessive and not error.of_cells and ladder.work is work
+    found = to_tolerance(work, TASK, G, rounded)
+    assert found.error.excessive and not found.error.of_cells
     assert work.said
 
 
@@ -145,9 +154,9 @@ def test_a_ladder_ends_where_only_what_every_level_shows_is_left():
     def unresolved(space, g):
         return level(10.0 ** (2.0 - 1.2 * space[1]), left=1e-5)
 
-    with solved_to_tolerance(work, TASK, G, unresolved) as (ladder, error):
-        assert error.excessive and ladder.work is work and not finer.solved
-        assert 1e-5 <= error.worst <= 3e-5
+    found = to_tolerance(work, TASK, G, unresolved)
+    assert found.error.excessive and not finer.solved
+    assert 1e-5 <= found.error.worst <= 3e-5
     assert max(work.solved) <= FIRST + 1 and work.said
 
 
@@ -160,9 +169,9 @@ def test_what_falls_with_the_degree_in_a_solid_without_mirror_is_no_rounding():
         made.factor.largest_residual = 1e-14
         return made
 
-    ladder = Ladder(Work(1e-3, None), TASK, solved)
-    error = climb(ladder, G)
-    assert ladder.degree > FIRST + 2 and (not error.excessive or error.of_cells)
+    work = Work(1e-3, None)
+    error = climb(work, TASK, G, solved).error
+    assert degree_of(work) > FIRST + 2 and (not error.excessive or error.of_cells)
 
 
 @pytest.mark.parametrize("mirrored", [True, False])
@@ -173,18 +182,20 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
         return level(1e-3 * 0.8 ** space[1] * (-1.0) ** space[1], rounding=1e-6, mirrored=mirrored)
 
     finer = Work(1e-9, None)
-    with solved_to_tolerance(Work(1e-7, None, finer), TASK, G, slow) as (ladder, error):
-        assert error.excessive and ladder.work is not finer and error.floor > 1e-7
-    (text,) = ladder.work.said
-    assert text.endswith(f"of which {error.floor:.1e} would remain on any cells")
+    work = Work(1e-7, None, finer)
+    found = to_tolerance(work, TASK, G, slow)
+    floor = found.error.floor
+    assert found.error.excessive and not finer.solved and floor > 1e-7
+    (text,) = work.said
+    assert text.endswith(f"of which {floor:.1e} would remain on any cells")
 
 
 def test_a_level_that_shows_less_at_every_degree_is_not_given_up():
     def resolved(space, g):
         return level(10.0 ** (2.0 - 1.2 * space[1]), left=10.0 ** (2.0 - space[1]))
 
-    ladder = Ladder(Work(1e-6, None), TASK, resolved)
-    assert not climb(ladder, G).excessive and ladder.degree == 9
+    work = Work(1e-6, None)
+    assert not climb(work, TASK, G, resolved).error.excessive and degree_of(work) == 9
 
 
 @pytest.mark.parametrize("ratio, ends", [(1.0, True), (0.4, False)])
@@ -195,8 +206,8 @@ def test_changes_that_a_bound_on_rounding_explains_are_rounding_unless_they_fall
     def noisy(space, g):
         return level(1e-7 * ratio ** space[1] * (-1.0) ** space[1], rounding=1e-7, mirrored=False)
 
-    with solved_to_tolerance(work, TASK, G, noisy) as (ladder, error):
-        assert ladder.work is work and error.excessive == ends
+    found = to_tolerance(work, TASK, G, noisy)
+    assert not work.finer.solved and found.error.excessive == ends
     assert (work.solved == [FIRST - 2, FIRST - 1, FIRST, FIRST + 1]) == ends
 
 
@@ -225,14 +236,13 @@ def test_every_stress_inside_is_gauged(component):
 def test_stresses_are_no_better_than_the_last_digits_of_displacements():
     """All that is known of their rounding without mirror images: 100 over the root of the margin."""
     displacement = SimpleNamespace(
-        prepare=lambda words: None,
         surface=lambda g, weights, σ_YY: SimpleNamespace(σ_XX=np.array([[2.0, -4.0]])),
         rounding=lambda weights: np.array([[4e-13, 8e-13]]),
     )
     places = SimpleNamespace(X=np.array([-2.0, 2.0]), points=np.empty((0, 2)), around=np.empty((0, 2)))
     task = SimpleNamespace(places=places, response=SimpleNamespace(margin=0.04))
     gauges = error.StressGauges(SimpleNamespace(stresses={"surface"}), task, lambda _: displacement)
-    (found,) = gauges.rounding(G, np.ones((1, 1)), np.zeros((1, 2)))
+    (found,) = gauges.rounding((G, np.ones((1, 1)), np.zeros((1, 2))))
     assert found == pytest.approx(100.0 / 0.2 * 2e-13)
 
 
@@ -244,23 +254,18 @@ def test_rounding_inside_is_that_of_no_place_on_the_surface_nearer_to_an_edge():
     def surface(g, weights, σ_YY):
         return SimpleNamespace(σ_XX=4.0 + np.sign(g) * noise[None])
 
-    displacement = SimpleNamespace(
-        prepare=lambda words: None, surface=surface, rounding=lambda weights: noise[None]
-    )
+    displacement = SimpleNamespace(surface=surface, rounding=lambda weights: noise[None])
     places = SimpleNamespace(X=X, points=np.array([[1.0, -0.5], [0.0, -3.0]]), around=np.empty((0, 2)))
     task = SimpleNamespace(places=places, response=SimpleNamespace(margin=1.0))
     gauges = error.StressGauges(
         SimpleNamespace(stresses={"interior", "surface"}), task, lambda _: displacement
     )
-    states = np.ones((1, 1)), np.zeros((1, 4))
-    assert gauges.rounding(G, *states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
-    one, other = (gauges.mirrored(sign, sign * G, *states, gauges.size(G, *states)) for sign in (1, -1))
-    changes = [float(gauge.change(mirror).max()) for gauge, mirror in zip(one, other)]
-    assert changes == pytest.approx([2e-9 / 4.0, 3e-12 / 4.0], rel=1e-3)
+    states = G, np.ones((1, 1)), np.zeros((1, 4))
+    assert gauges.rounding(states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
+    of_mirrors = gauges.rounding(states, 2.0 * noise[None])
+    assert of_mirrors == pytest.approx([2e-9 / 4.0, 4e-12 / 4.0], rel=1e-3)
 
 
 def test_errors_of_stresses_count_on_slower_convergence_than_those_of_moments():
-    ladder = Ladder(Work(1e-3, None), TASK, solved)
-    ladder.levels = [level(0.0), level(0.0), level(0.0)]
-    error = MeasuredError(ladder, G)
+    error = measured_error(level(0.0), level(0.0), level(0.0))
     assert (error._rate("sif").usual, error._rate("surface").usual) == (0.16, 0.5)

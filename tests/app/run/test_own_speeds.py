@@ -6,7 +6,7 @@ from support import computed
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.plan import task
+from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import Memory, compute
 from galinx.postprocess.journal import Journal
@@ -51,7 +51,7 @@ def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, m
     scene = galinx.template("tables4_5", SCENE | CLOSED)
     expected = Memory()
     compute(scene, expected)
-    monkeypatch.setattr(task, "CHUNK_NUMBERS", 3 * make_plan(scene).numbers)
+    monkeypatch.setattr(planning, "CHUNK_NUMBERS", 3 * make_plan(scene).numbers)
 
     def stop(self, part, keep=Journal.keep):
         keep(self, part)

@@ -123,8 +123,8 @@ def work_done(monkeypatch):
 
     degrees, init = [], PunchLevel.__init__
 
-    def counted(self, work, task, space, g, fitted=None, recovery=None):
-        init(self, work, task, space, g, fitted, recovery)
+    def counted(self, work, task, space, g, ends=None, fitted=None, recovery=None):
+        init(self, work, task, space, g, ends, fitted, recovery)
         degrees.extend([space.degree] * (fitted is None))
 
     monkeypatch.setattr(PunchLevel, "__init__", counted)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.results.result import compute
 from galinx.app.scene.read import parse
@@ -42,7 +43,7 @@ def test_a_scene_without_strokes_is_one_state_at_each_speed_and_asks_for_what_th
 
 
 def test_two_names_of_a_number_are_one_too_many():
-    with pytest.raises(BadInput, match="mu and mu_c are the same number; keep one"):
+    with pytest.raises(BadInput, match=r"1 fault:\s+friction: mu and mu_c exclude each other"):
         parse(CYLINDER.replace("mu = 0.15", "mu = 0.15\nmu_c = 0.15"))
 
 
@@ -66,3 +67,12 @@ def test_a_steep_punch_is_warned_about():
     steep = 'profile = "table"\nshape = [[-1, 1], [0, 0], [1, 1]]'
     scene = parse(CYLINDER.replace('profile = "parabolic"\nradius = "5 mm"', steep))
     assert any("slopes are up to 1," in text for text in oddities(scene))
+
+
+def test_a_contact_as_wide_as_its_cylinder_is_warned_about():
+    """Slopes under the contact are half-width over radius."""
+    changes = {"punch.radius": "5 mm", "solid.E": "2 MPa", "solid.nu": 0.4}
+    narrow, wide = (template("cylinder", changes | {"punch.load": load}) for load in ("1 N/m", "1e4 N/m"))
+    a = wide.body.half_width
+    assert a > 1e-3 and any(f"slopes of {a / 5e-3:.2g}, " in text for text in oddities(wide))
+    assert not any("slopes of" in text for text in oddities(narrow))

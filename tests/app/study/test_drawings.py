@@ -181,8 +181,8 @@ def test_loops_are_those_of_the_studys_panels(drawings):
 
 def test_the_block_has_the_studys_proportions(drawings):
     panel = drawings["fig4"].figure.axes[0]
-    edges = np.concatenate([path.vertices for path in panel.collections[0].get_paths()])
-    (left, low), (right, high) = edges.min(axis=0), edges.max(axis=0)
+    edges = panel.lines[0].get_xydata()
+    (left, low), (right, high) = np.nanmin(edges, axis=0), np.nanmax(edges, axis=0)
     assert 2.0 / (right - left) == pytest.approx(0.01) and 2.0 / (high - low) == pytest.approx(0.02)
     assert "2a/W = 0.01 and 2a/H = 0.02" in drawings["fig4"].caption
 

@@ -15,6 +15,7 @@ from galinx.solvers.contact.closed_form import FlatPunch, Weighted
 from galinx.solvers.contact.uniform import contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
+from galinx.solvers.solids.half_plane import mean_and_difference
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 flat, parabolic, wedge, power, rounded, table = (
@@ -283,16 +284,19 @@ def test_a_contact_little_wider_than_the_flat_part_is_found(b, share):
 
 
 @pytest.mark.parametrize("order", (-1, 0, 1))
-def test_the_change_of_a_potential_is_a_difference(order):
+def test_the_mean_and_the_difference_of_potentials_are_those_of_two_values(order):
     """Of a punch with both edges in contact, with one, and of a parabola; near and far."""
     rng = np.random.default_rng(order + 5)
     α = float(rng.uniform(-0.9, -0.1)) + (order == 1)
     A, B = rng.normal(size=2) * [1.0, order == -1]
     pressure = Weighted(α, order - α, A, B, order)
-    z = rng.uniform(-6.0, 6.0, 40) + 1j * rng.uniform(0.05, 6.0, 40)
-    step, share = 0.1 * rng.normal(size=40), 0.3 + 0.2j
-    exact = (pressure.at(z + share * step) - pressure.at(z)) / share
-    np.testing.assert_allclose(pressure.change(z, step, share), exact, rtol=0.0, atol=1e-13)
+    z = rng.uniform(-6.0, 6.0, 40) - 1j * rng.uniform(0.05, 6.0, 40)
+    for size, within in ((1e-2, 1e-12), (0.3, 1e-13)):
+        δ = size * z.imag * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 40))
+        mean, difference = mean_and_difference(pressure, z, δ**2)
+        one, other = pressure.at(z + δ), pressure.at(z - δ)
+        np.testing.assert_allclose(mean, (one + other) / 2.0, rtol=0.0, atol=within)
+        np.testing.assert_allclose(difference, (one - other) / (2.0 * δ), rtol=0.0, atol=within)
     ε = 1e-6
-    slope = step * (pressure.at(z + ε) - pressure.at(z - ε)) / (2.0 * ε)
-    np.testing.assert_allclose(pressure.change(z, step, 0.0), slope, rtol=0.0, atol=1e-9)
+    slope = (pressure.at(z + ε) - pressure.at(z - ε)) / (2.0 * ε)
+    np.testing.assert_allclose(mean_and_difference(pressure, z, 0.0 * z)[1], slope, rtol=0.0, atol=1e-9)

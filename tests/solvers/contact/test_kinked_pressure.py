@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.approximation import lagrange
-from galinx.solvers.contact.free_ends import KinkedPressure
+from galinx.solvers.contact.recovery import KinkedPressure
 
 #: A chart in which surface coordinates are positions.
 AS_DRAWN = SimpleNamespace(
@@ -77,6 +77,14 @@ def test_at_the_kink_of_a_smoother_punch_rounding_of_small_cells_does_not_show(p
     errors = [abs(each.at_kink(0) - exact) for each in (cells, pressure)]
     assert errors[1] <= min(1e-9, 0.2 * errors[0]) and pressure.left_at_kinks <= 1e-8
     np.testing.assert_allclose(pressure.σ_YY(np.array([kink])), exact, rtol=1e-9)
+
+
+def test_the_largest_pressure_of_a_punch_whose_kinks_are_beside_the_contact():
+    s, forces = nodes_and_forces(np.linspace(-1.0, 1.0, 9), 8, lambda r: (r**2 - 1.0) * (1.0 + 0.1 * r))
+    pressure = KinkedPressure(s, 8, AS_DRAWN, forces, np.empty(0), (1.0, 1.0), exponent=1.0)
+    place = (np.sqrt(103.0) - 10.0) / 3.0
+    highest = (1.0 - place**2) * (1.0 + 0.1 * place)
+    np.testing.assert_allclose(np.ravel(pressure.largest()), [highest, place], rtol=1e-8)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -3,14 +3,13 @@
 import numpy as np
 
 from galinx.solvers.contact import stresses
-from galinx.solvers.contact.solution import Places, Surface
 from galinx.solvers.solids.isotropic import Isotropic
 
 
 def test_flatness_compares_slopes_under_the_punch_with_those_beside_it():
     X = np.array([-1.5, -1.05, -0.95, -0.5, 0.9, 1.1])
     v_X = np.array([[4.0, 99.0, 99.0, -1.0, 0.5, -2.0], [2.0, 0.0, 0.0, 0.0, -1.0, 0.0]])
-    surface = Surface(Places(X, np.empty((0, 2))), v_X, v_X, v_X=v_X)
+    surface = stresses.Surface(stresses.Places(X, np.empty((0, 2))), v_X, v_X, v_X=v_X)
     np.testing.assert_array_equal(stresses.flatness(surface), [0.25, 0.5])
 
 

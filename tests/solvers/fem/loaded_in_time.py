@@ -41,7 +41,7 @@ class Even:
         X0, Y0 = (grid.ravel() for grid in np.meshgrid(X[:-1], Y[:-1]))
         X1, Y1 = (grid.ravel() for grid in np.meshgrid(X[1:], Y[1:]))
         quads = np.array([[X0, Y0], [X1, Y0], [X1, Y1], [X0, Y1]])
-        return tagged(np.moveaxis(quads, 2, 0), float(X[-1]))
+        return tagged(np.moveaxis(quads, 2, 0))
 
 
 def _even(first: float, last: float, size: float) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from galinx.meshes.waves import Reached
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import Isotropic, rayleigh_speed
-from galinx.solvers.transient.punch import smooth
+from galinx.solvers.transient.history import smooth
 
 SOLID, FAST = Isotropic(1.0, 0.25, 1.0), 3.0**0.5
 

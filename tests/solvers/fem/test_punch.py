@@ -7,7 +7,6 @@ from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem import punch as punches
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -68,22 +67,18 @@ def test_solutions_are_refined_where_that_changes_forces(c, refines):
 
 
 @pytest.mark.parametrize("c", [0.0, 0.6, 0.91])
-@pytest.mark.parametrize("frictions", [3, 60])
-def test_loads_at_every_node_find_what_steps_from_load_to_load_find(c, frictions, monkeypatch):
-    g = np.linspace(-0.9, 0.8, frictions)
-    by_steps, by_nodes = small_punch(c), small_punch(c)
-    wanted = by_steps.states(g)
-    monkeypatch.setattr(punches, "_MANY", 0)
-    monkeypatch.setattr(punches, "_AS_LONG", np.inf)
-    found = by_nodes.states(g)
-    assert by_nodes.factor.solves > len(by_nodes.space.contact.s) > by_steps.factor.solves
-    # Dense algebra gives the contact forces of the frictions, no more are needed.
-    assert len(by_nodes.fields) <= min(len(by_steps.fields), frictions + 4)
-    scale = np.abs(wanted.normal).max()
-    np.testing.assert_allclose(found.normal, wanted.normal, rtol=0.0, atol=1e-10 * scale)
-    np.testing.assert_allclose(found.v0, wanted.v0, rtol=1e-9)
+def test_friction_along_the_contact_that_does_not_vary_is_a_number(c):
+    g = np.linspace(-0.9, 0.8, 7)
+    number = small_punch(c)
+    unit = np.eye(len(number.space.contact.s))
+    matrix = small_punch(c, along=lambda g: g * unit)
+    expected, states = (punch.states(g) for punch in (number, matrix))
+    scale = np.abs(expected.normal).max()
+    np.testing.assert_allclose(states.normal, expected.normal, rtol=0.0, atol=1e-10 * scale)
+    np.testing.assert_allclose(states.tangential, g[:, None] * states.normal, rtol=0.0, atol=1e-9 * scale)
+    np.testing.assert_allclose(states.v0, expected.v0, rtol=1e-9)
     fields = [
         sum(w * field.array for w, field in zip(state.weights[0], punch.fields))
-        for state, punch in ((wanted, by_steps), (found, by_nodes))
+        for state, punch in ((expected, number), (states, matrix))
     ]
     assert np.linalg.norm(fields[1] - fields[0]) <= 1e-9 * np.linalg.norm(fields[0])

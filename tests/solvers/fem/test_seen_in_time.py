@@ -11,12 +11,13 @@ from galinx.meshes.waves import Reached
 from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import BOX, Energies, Motion, Products, of_both
-from galinx.solvers.fem.in_time import Phase, SlidingInTime, SurfaceInTime
+from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.admittance import Admittance
-from galinx.solvers.transient.punch import ON_SURFACE, smooth
+from galinx.solvers.transient.history import Way, smooth
+from galinx.solvers.transient.punch import ON_SURFACE
 
 SOLID = Isotropic(1.0, 0.25, 1.0)
 
@@ -90,7 +91,7 @@ def test_work_of_a_random_motion_is_its_energy():
     of = motion(c, 7, mesh, solid)
     solver = SlidingInTime(of)
     run = solver.run(
-        [Phase(1, T, 15)], lambda t: -f - more * np.sin(t) ** 2, lambda t: float(smooth(t, 2.5)),
+        [Way(1, T, 15)], lambda t: -f - more * np.sin(t) ** 2, lambda t: float(smooth(t, 2.5)),
         watching=[Energies(of)],
     )  # fmt: skip
     solver.destroy()
@@ -104,7 +105,7 @@ def test_work_of_a_random_motion_is_its_energy():
 def test_energy_is_kept_where_the_punch_turns_round():
     """The solid goes on as it did, only the velocities seen from the punch jump; waves are sharp then."""
     c, of = 0.5, motion(0.5, 6, Reached(4.6, 2.6, 0.5, 0.3, 1e-3, 0.0, 0.5), sharp=True)
-    ways = [Phase(1, 1.0, 8), Phase(-1, 0.25, 8), Phase(-1, 0.25, 2)]
+    ways = [Way(1, 1.0, 8), Way(-1, 0.25, 8), Way(-1, 0.25, 2)]
     solver = SlidingInTime(of)
     run = solver.run(
         ways, lambda t: -0.4 if t < 1.0 + 1e-9 else 0.4, lambda t: float(smooth(t, 1.0)),
@@ -153,7 +154,7 @@ def test_surface_of_steady_motion():
     of = motion(c, 7, Reached(3.0, 2.0, 1.0, 0.5, 1e-3, 1000.0))
     solver, along = SlidingInTime(of), SurfaceInTime(of, ON_SURFACE)
     run = solver.run(
-        [Phase(1, 0.2, 2)], lambda t: g, lambda t: 1.0, True, [lambda u, w, way: along.strain(u)]
+        [Way(1, 0.2, 2)], lambda t: g, lambda t: 1.0, True, [lambda u, w, way: along.strain(u)]
     )
     solver.destroy()
     exact = FlatPunch(of.response, g)

@@ -1,4 +1,4 @@
-"""The same numbers on one stored mesh whatever version of dolfinx, PETSc and gmsh is installed."""
+"""The same numbers on one stored mesh whatever version of dolfinx and PETSc is installed."""
 
 import inspect
 from pathlib import Path
@@ -19,7 +19,7 @@ from galinx.solvers.solids.isotropic import MovingFrame
 
 STORED = HOME / "tests" / "reference" / "stored_mesh.npz"
 
-#: K_I left and right by speed, at g = -0.66, degree 7: computed with dolfinx 0.5.2, PETSc 3.18, gmsh 4.8.
+#: K_I left and right by speed, at g = -0.66, degree 7: computed with dolfinx 0.5.2, PETSc 3.18.
 K_I = {
     0.0: (0.310875642856849, 0.31087564941324647),
     0.6: (0.3071673365145585, 0.30716732795350055),

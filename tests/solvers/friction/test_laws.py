@@ -21,7 +21,7 @@ def follow(law, strokes, places=PLACES):
     z, f, done = law.rest(), [], []
     for s, V, length, rest in strokes:
         z = law.pause(z, rest)
-        done.append(float(work(law, z, s, V, length, exactly)))
+        done.append(float(work(law, z, s, V, length)))
         states = exactly(law, z, s, V, length, np.linspace(0.0, length, places))
         f.append(law.friction(states, s, V))
         z = states[-1]

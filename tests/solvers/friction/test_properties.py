@@ -88,7 +88,7 @@ def test_work_in_a_closed_loop_is_never_negative(name, seed):
     for n in range(60):
         s = 1 if n % 2 == 0 else -1
         if n >= 56:
-            done.append(float(work(law, z, s, V, length, exactly)))
+            done.append(float(work(law, z, s, V, length)))
         z = exactly(law, z, s, V, length, np.array([length]))[-1]
     assert done[0] + done[1] >= -1e-15 * length
     assert done[0] + done[1] == pytest.approx(done[2] + done[3], rel=1e-2, abs=1e-3 * length)
@@ -104,7 +104,7 @@ def test_a_mirrored_motion_has_mirrored_friction(name, seed):
     for s, V, length, _ in random.strokes(rng, 3):
         slip, f, done = np.linspace(0.0, length, 4), [], []
         for i, sign in enumerate((s, -s)):
-            done.append(float(work(law, z[i], sign, V, length, exactly)))
+            done.append(float(work(law, z[i], sign, V, length)))
             states = exactly(law, z[i], sign, V, length, slip)
             f.append(law.friction(states, sign, V))
             z[i] = states[-1]
@@ -125,7 +125,7 @@ def test_work_and_slope_are_those_of_the_friction(name, seed):
     places = (0.5 * (pieces[1:] + pieces[:-1]))[:, None] + half[:, None] * at
     f = law.friction(exactly(law, z, 1, V, length, places.ravel()), 1, V).reshape(places.shape)
     wanted = (f * half[:, None] * weight).sum()
-    found = float(work(law, z, 1, V, length, exactly))
+    found = float(work(law, z, 1, V, length))
     # A kink within one of the 60 pieces costs up to 1/8 of its slope times the piece squared.
     assert found == pytest.approx(wanted, rel=2e-4, abs=1e-6 * length)
     h = 1e-6 * length
@@ -146,13 +146,13 @@ def test_many_laws_at_once_are_each_of_them(name):
     for s, V, length, rest in random.strokes(rng):
         slip = np.linspace(0.0, length, 4)
         z = many.pause(z, rest)
-        done = work(many, z, s, V, length, exactly)
+        done = work(many, z, s, V, length)
         slopes = many.slope(z, s, V)
         z = many.exact(z, s, V, slip)
         f = many.friction(z, s, V)
         for i, law in enumerate(laws):
             single[i] = law.pause(single[i], rest)
-            alone = float(work(law, single[i], s, V, length, exactly))
+            alone = float(work(law, single[i], s, V, length))
             assert float(done[i]) == pytest.approx(alone, rel=1e-13)
             if slopes is not None:
                 assert float(slopes[i, 0]) == pytest.approx(law.slope(single[i], s, V), rel=1e-13)

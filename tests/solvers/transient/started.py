@@ -10,10 +10,11 @@ from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.fem.dynamic import Motion
-from galinx.solvers.fem.in_time import Phase, SlidingInTime
+from galinx.solvers.fem.in_time import SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.transient.admittance import Admittance
-from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.history import Way, smooth
+from galinx.solvers.transient.punch import StartingPunch
 
 #: Of what takes longer than the ordinary tests may.
 THOROUGH = pytest.mark.skipif("GALINX_THOROUGH" not in os.environ, reason="takes long: GALINX_THOROUGH=1")
@@ -37,7 +38,7 @@ class ByFiniteElements:
         self.solver = SlidingInTime(self.motion)
 
     def run(self, g, load):
-        way = Phase(1, self.end, self.steps)
+        way = Way(1, self.end, self.steps)
         law = g if callable(g) else lambda t: g
         return self.solver.run([way], law, lambda t: float(load(t)))
 

@@ -7,7 +7,7 @@ from started import THOROUGH, ByFiniteElements, by_integral_equation
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.punch import smooth
+from galinx.solvers.transient.history import smooth
 
 
 def test_isotropic_solid_may_be_given_as_any_other():

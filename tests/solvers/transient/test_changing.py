@@ -9,8 +9,9 @@ from started import THOROUGH, ByFiniteElements
 from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.history import smooth
 from galinx.solvers.transient.march import FrictionInterpolation, Radau
-from galinx.solvers.transient.punch import PLACES, StartingPunch, smooth
+from galinx.solvers.transient.punch import PLACES, StartingPunch
 from galinx.solvers.transient.transform import Basis, Transformed
 
 SOLID = Isotropic(1.0, 0.25, 1.0)

@@ -7,7 +7,7 @@ from started import ByFiniteElements
 
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.harmonic import OscillatingPunch, highest
-from galinx.solvers.transient.punch import smooth
+from galinx.solvers.transient.history import smooth
 from galinx.solvers.transient.transform import Transformed
 
 SOLIDS = [Isotropic(1.0, 0.25, 1.0), random_solid(0), random_solid(2)]

@@ -12,12 +12,13 @@ from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Motion
-from galinx.solvers.fem.in_time import Phase, SlidingInTime
+from galinx.solvers.fem.in_time import SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.history import Way, smooth
 from galinx.solvers.transient.line_load import Echoes, UniformLayers
-from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.punch import StartingPunch
 
 ONE, COAT, SOFT = Isotropic(2.5, 0.25, 1.0), Isotropic(7.5, 0.3, 1.2), Isotropic(1.5, 0.1, 0.7)
 STACK = Layered((Layer(0.7, COAT), Layer(0.4, SOFT)), ONE)
@@ -93,7 +94,7 @@ def test_finite_elements_agree_over_layers():
     space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, STACK.form)
     motion = Motion(space, response)
     solver = SlidingInTime(motion)
-    run = solver.run([Phase(1, end, steps)], lambda t: g, lambda t: float(smooth(t, 2.0)))
+    run = solver.run([Way(1, end, steps)], lambda t: g, lambda t: float(smooth(t, 2.0)))
     by_sie = StartingPunch(response, STACK.limit(), end, steps, 16).course(g, lambda t: smooth(t, 2.0))
     steady = FlatPunch(response, g)  # its exponents alone
     found = contact_numbers(motion.X, run.forces, steady.α, steady.β, degree)
@@ -119,7 +120,7 @@ def test_waves_pass_where_the_mesh_has_an_interface_of_equal_solids():
         space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
         solver = SlidingInTime(Motion(space, response))
         runs.append(
-            solver.run([Phase(1, end, steps)], lambda t: -0.4, lambda t: float(smooth(t, 2.0))).forces
+            solver.run([Way(1, end, steps)], lambda t: -0.4, lambda t: float(smooth(t, 2.0))).forces
         )
         solver.destroy()
     np.testing.assert_allclose(runs[1], runs[0], atol=1e-10 * np.abs(runs[0]).max())

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.history import smooth
 from galinx.solvers.transient.march import Radau, Residual
-from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.punch import StartingPunch
 from galinx.solvers.transient.transform import Transformed
 
 SOLID, END, TERMS = Isotropic(1.0, 0.25, 1.0), 4.0, 16

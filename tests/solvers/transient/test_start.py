@@ -10,10 +10,11 @@ from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Motion, damping, of_both
-from galinx.solvers.fem.in_time import Phase, SlidingInTime
+from galinx.solvers.fem.in_time import SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.punch import StartingPunch, smooth
+from galinx.solvers.transient.history import Way, smooth
+from galinx.solvers.transient.punch import StartingPunch
 
 
 def solid(ν=0.25):
@@ -43,7 +44,7 @@ class Started:
     def run(self, g, ramp=3.0, steps=None, directions=(1,), load=None, steady=False):
         law = g if callable(g) else lambda t: g
         many = (steps or self.steps) // len(directions)
-        phases = [Phase(way, self.end / len(directions), many) for way in directions]
+        phases = [Way(way, self.end / len(directions), many) for way in directions]
         return self.solver.run(phases, law, load or (lambda t: float(smooth(t, ramp))), steady)
 
     def told(self, run, g):

@@ -7,7 +7,8 @@ from started import THOROUGH, ByFiniteElements, by_integral_equation
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.punch import BESIDE, smooth
+from galinx.solvers.transient.history import smooth
+from galinx.solvers.transient.punch import BESIDE
 
 ISOTROPIC = Isotropic(1.0, 0.25, 1.0)
 

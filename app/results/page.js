@@ -79,3 +79,53 @@ byId("copy").addEventListener("click", () => {
   getSelection().selectAllChildren(byId("text"));
   navigator.clipboard?.writeText(byId("text").textContent).catch(() => {});
 });
+
+// Charts of plotly, which the page holds compressed: curves of figures, and stresses behind a slider.
+addEventListener("load", async () => {
+  const script = document.createElement("script");
+  const packed = Uint8Array.from(atob(byId("plotly").textContent), (letter) => letter.charCodeAt(0));
+  script.textContent = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+  document.head.append(script);
+  const style = getComputedStyle(document.body), COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"];
+  const axis = { gridcolor: "rgba(128,128,128,0.25)", zerolinecolor: "rgba(128,128,128,0.6)", automargin: true };
+  const common = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: style.color, size: 13 },
+    margin: { l: 60, r: 16, t: 36, b: 46 }, legend: { orientation: "h", x: 0, y: 1, yanchor: "bottom" }, modebar: { bgcolor: "rgba(0,0,0,0)" }, hovermode: "closest", dragmode: innerWidth < 600 ? false : "zoom" };
+  const draw = (box, data, layout) => Plotly.react(box, data, { ...common, ...layout,
+    xaxis: { ...axis, ...layout.xaxis }, yaxis: { ...axis, ...layout.yaxis } }, { responsive: true, displaylogo: false, displayModeBar: "hover" });
+
+  for (const script of document.querySelectorAll(".chart > script")) {
+    const box = script.parentElement, { data, layout } = JSON.parse(script.textContent);
+    box.replaceChildren();
+    draw(box, data, layout);
+  }
+
+  const large = JSON.parse(byId("explorer-data").textContent);
+  if (large) {
+    const slider = byId("state"), chosen = byId("stress"), held = new Set();
+    // Curves of a state that is held beside others have its name and a colour of their own.
+    const beside = (state, k) => (trace) => ({ ...trace, name: `${large.states[state]}, ${trace.name}`,
+      line: { ...trace.line, color: COLOURS[k % 5] }, marker: { ...trace.marker, color: COLOURS[k % 5] } });
+    const show = () => {
+      const now = Number(slider.value), states = [...new Set([now, ...held])];
+      byId("which").textContent = large.states[now];
+      large.surface.forEach((charts, n) => draw(byId(`surface-${n}`), states.length > 1 ?
+        states.flatMap((state, k) => charts[state].data.map(beside(state, k))) : charts[now].data, charts[now].layout));
+      if (chosen) {
+        const { data, layout } = large.maps[chosen.value].charts[now];
+        draw(byId("map"), data, layout);
+      }
+    };
+    slider.addEventListener("input", show);
+    byId("before").addEventListener("click", () => { slider.value = Number(slider.value) - 1; show(); });
+    byId("next").addEventListener("click", () => { slider.value = Number(slider.value) + 1; show(); });
+    byId("hold").addEventListener("click", () => { held.add(Number(slider.value)); show(); });
+    byId("clear").addEventListener("click", () => { held.clear(); show(); });
+    chosen?.addEventListener("change", show);
+    show();
+  }
+  // On paper a chart is as wide as the page, whatever the window was.
+  const every = (layout) => document.querySelectorAll(".chart.js-plotly-plot").forEach((box) => Plotly.relayout(box, layout));
+  addEventListener("beforeprint", () => every({ width: 640 }));
+  addEventListener("afterprint", () => every({ width: null, autosize: true }));
+  document.body.dataset.ready = "yes";
+});

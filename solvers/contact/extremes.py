@@ -1,0 +1,142 @@
+"""Largest values of functions and of sampled curves that are smooth in pieces.
+
+A curve is sampled at places that lie close together next to its turns, as free ends and kinks, where it
+changes with a power or the logarithm of the distance. Between the neighbours of each of its highest
+samples the polynomial through a few more gives the largest value. At a turn itself, which no polynomial
+follows, the limit of the curve is a candidate of its own.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
+from numpy.typing import NDArray
+
+#: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
+#: places at which the polynomial is compared first; most tops of a curve that are refined.
+_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
+#: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
+GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
+#: Relative difference of heights, and distance over a of places, up to which they are the same.
+_SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
+
+
+def summit(u: NDArray, values: NDArray, low: NDArray, high: NDArray) -> tuple[NDArray, NDArray]:
+    """Largest values of polynomials between ``low`` and ``high``, and their places, (m,) each.
+
+    Args:
+        u, values: places, and values there, through which the polynomials go, (m, n).
+        low, high: bounds, (m,).
+    """
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1])
+    c = np.linalg.solve(powers, values[..., None])[..., 0].T
+    grid = np.linspace(-1.0, 1.0, _COMPARED)
+    t = grid[polyval(grid, c).argmax(axis=1)]
+    first, second = polyder(c), polyder(c, 2)
+    for _ in range(3):
+        slope, bend = (polyval(t, of, tensor=False) for of in (first, second))
+        step = np.divide(slope, bend, out=np.zeros_like(t), where=bend < 0.0)
+        t = np.clip(t - step, -1.0, 1.0)
+    return polyval(t, c, tensor=False), middle + half * t
+
+
+def between(turns: NDArray, x: NDArray = GRADED) -> NDArray[np.float64]:
+    """Places between turns, from x = log(d/d') of their distances from both, (turns - 1, n)."""
+    return np.asarray(turns[:-1, None] + np.diff(turns)[:, None] / (1.0 + np.exp(-x)))
+
+
+def largest(
+    function: Callable[[NDArray], NDArray], pieces: Sequence[NDArray], ends: bool = True, refined: int = 5
+) -> tuple[float, float]:
+    """Largest value of a function of one variable, and its place.
+
+    Args:
+        function: of places, (n,).
+        pieces: rising places at which each smooth piece is sampled, close enough for a polynomial
+            between the neighbours of any.
+        ends: False where the first and the last sample of a piece are next to a turn, and are no top.
+        refined: most tops between the neighbours of which a polynomial is taken.
+    """
+    values = np.split(function(np.concatenate(pieces)), np.cumsum([len(x) for x in pieces])[:-1])
+    tops: list[tuple[float, ...]] = []
+    for x, y in zip(pieces, values):
+        padded = np.pad(y, 1, constant_values=-np.inf if ends else np.inf)
+        i = np.flatnonzero((y >= padded[:-2]) & (y >= padded[2:]))
+        tops += zip(y[i], x[i], x[np.maximum(i - 1, 0)], x[np.minimum(i + 1, len(x) - 1)])
+    best = max([(value, place) for value, place, *_ in tops], default=(-np.inf, np.nan))
+    for _, _, low, high in sorted(tops, reverse=True)[:refined]:
+        u = (low + high) / 2.0 + (high - low) / 2.0 * _NODES
+        height, place = summit(u[None], function(u)[None], np.array([low]), np.array([high]))
+        best = max(best, (height[0], place[0]))
+    return float(best[0]), float(best[1])
+
+
+def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Highest tops of curves by their samples, and their places in u, (curves, tops) each.
+
+    Tops that a curve has not are -inf; its first and its last sample are none.
+
+    Args:
+        u: rising coordinate in which the curves are smooth, (n,).
+        curves: their values, -inf where they do not count, (curves, n).
+        pieces: rising number of the smooth piece of its curve to which a sample belongs, (curves, n); 0
+            where all are one.
+    """
+    finite = np.isfinite(curves)
+    pieces = 2 * np.broadcast_to(pieces, curves.shape) + np.diff(finite, axis=1, prepend=False).cumsum(1)
+    rows = np.arange(len(curves))
+    padded = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.inf)
+    top = finite & (curves >= padded[:, :-2]) & (curves >= padded[:, 2:])
+    heights, places = [], []
+    for i in np.argsort(np.where(top, -curves, np.inf), axis=1, kind="stable")[:, :_TOPS].T:
+        own = pieces == pieces[rows, i][:, None]
+        first, count = own.argmax(axis=1), own.sum(axis=1)
+        height, place = np.full(len(curves), -np.inf), u[i]
+        usable = top[rows, i] & (count >= _THROUGH)
+        if usable.any():
+            k, start = i[usable], np.clip(i - _THROUGH // 2, first, first + count - _THROUGH)[usable]
+            window = start[:, None] + np.arange(_THROUGH)
+            nodes = u[window]
+            low, high = (
+                np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-1, 1)
+            )
+            height[usable], place[usable] = summit(
+                nodes, curves[usable][np.arange(len(k))[:, None], window], low, high
+            )
+        heights.append(height)
+        places.append(place)
+    return np.column_stack(heights), np.column_stack(places)
+
+
+def highest(heights: NDArray, places: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Highest of several tops and its place, of those as high the one on the left, (curves,) each.
+
+    Args:
+        heights, places: (curves, tops); -inf, and any place, for none.
+    """
+    top = heights.max(axis=1, keepdims=True)
+    as_high = heights >= top - _SAME_HEIGHT * np.abs(top)
+    left = np.where(as_high, places, np.inf).min(axis=1, keepdims=True)
+    best = np.where(places <= left + _SAME_TOP, heights, -np.inf).argmax(axis=1)[:, None]
+    height, place = (np.take_along_axis(of, best, 1)[:, 0] for of in (heights, places))
+    return height, place
+
+
+def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest (sign 1) or smallest (-1) value of smooth curves along X, and its place, (...) each.
+
+    Args:
+        values: (..., n).
+        X: rising positions, (n,).
+    """
+    curves = sign * values.reshape(-1, len(X))
+    heights, places = tops(X, curves)
+    heights = np.column_stack([curves.max(axis=1), heights])
+    places = np.column_stack([X[curves.argmax(axis=1)], places])
+    best = heights.argmax(axis=1)[:, None]
+    height, place = (
+        np.take_along_axis(of, best, 1).reshape(values.shape[:-1]) for of in (heights, places)
+    )
+    return sign * height, place

@@ -1,0 +1,53 @@
+"""Largest values of functions and sampled curves of which the largest is known."""
+
+import numpy as np
+import pytest
+
+from galinx.solvers.contact.extremes import FINER, between, extreme, highest, largest, tops
+
+
+@pytest.mark.parametrize("place", [-0.9, 0.0, 0.37, 0.999])
+def test_the_largest_between_two_roots_of_the_distance(place):
+    """(1 - r)^a (1 + r)^b is largest at (b - a)/(a + b)."""
+    a, b = 1.0 - place, 1.0 + place
+    function = lambda r: (1.0 - r) ** a * (1.0 + r) ** b  # noqa: E731
+    value, at = largest(function, [*between(np.array([-1.0, 1.0]), FINER)], ends=False)
+    assert value == pytest.approx(function(place), rel=1e-11) and at == pytest.approx(place, abs=1e-9)
+
+
+@pytest.mark.parametrize("slope", [-9.0, -3.0, 0.0, 0.5])
+def test_the_largest_beside_a_kink_where_the_slope_is_infinite(slope):
+    """s d - d log d is largest at the distance d = exp(s - 1), however near that is."""
+    kink, d = 0.2, np.exp(slope - 1.0)
+    function = lambda r: (r - kink) * (slope - np.log(np.abs(r - kink)))  # noqa: E731
+    value, at = largest(function, [*between(np.array([-1.0, kink, 1.0]), FINER)], ends=False)
+    assert value == pytest.approx(d, rel=1e-9) and at == pytest.approx(kink + d, abs=1e-8)
+
+
+def test_pieces_that_jump_have_their_own_tops():
+    pieces = [np.linspace(-1.0, 0.0, 9), np.linspace(0.0, 1.0, 9)]
+    value, at = largest(lambda x: np.sin(3.0 * x) + 0.5 * (x > 0.0), pieces)
+    assert value == pytest.approx(1.5, rel=1e-8) and at == pytest.approx(np.pi / 6.0, abs=1e-5)
+
+
+def test_a_sampled_curve_is_highest_between_its_samples():
+    X = np.linspace(-2.0, 2.0, 81)
+    places = np.array([[-0.513], [0.004], [1.2345]])
+    curves = np.exp(-((X - places) ** 2))
+    for sign in (1.0, -1.0):
+        value, at = extreme(sign * curves[None], X, sign)
+        np.testing.assert_allclose(value, [sign * np.ones(3)], rtol=1e-9)
+        np.testing.assert_allclose(at, places.T, atol=1e-6)
+
+
+def test_no_polynomial_goes_through_samples_of_two_pieces():
+    u = np.linspace(-1.0, 1.0, 41)
+    curve = np.where(u < 0.0, 1.0 - (u + 0.12) ** 2, -5.0 + u)[None]
+    heights, places = tops(u, curve, (u >= 0.0)[None].astype(int))
+    height, place = highest(heights, places)
+    assert height[0] == pytest.approx(1.0, abs=1e-12) and place[0] == pytest.approx(-0.12, abs=1e-9)
+
+
+def test_of_equal_heights_the_left_one_is_taken():
+    height, place = highest(np.array([[1.0, 1.0 + 1e-13, 0.9]]), np.array([[-0.5, 0.5, -0.9]]))
+    assert (height[0], place[0]) == (1.0, -0.5)

@@ -9,12 +9,13 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from support import HOME, SCENE, command, computed
+from support import HOME, SCENE, command, kept
 
 #: Where tests compute no finite elements and start no process.
 FAST = (
@@ -38,6 +39,18 @@ FEM = (
 )  # fmt: skip
 #: The longest file comes first, so that no worker has it left when the others are done.
 FIRST = "docs/test_pages.py"
+
+
+def pytest_configure(config):
+    """Make the folder of results that all workers read."""
+    if not hasattr(config, "workerinput"):
+        config.kept = tempfile.TemporaryDirectory(prefix="galinx-tests-")
+        os.environ["GALINX_KEPT"] = config.kept.name
+
+
+def pytest_unconfigure(config):
+    if hasattr(config, "kept"):
+        config.kept.cleanup()
 
 
 def pytest_collection_modifyitems(items):
@@ -115,29 +128,25 @@ def references():
 @pytest.fixture(scope="session")
 def tables_run():
     """The result of scenes/tables4_5.toml."""
-    return computed()
+    return kept("tables")
 
 
 @pytest.fixture(scope="session")
 def inside_run():
     """The result of scenes/inside.toml to a tolerance that is met at once."""
-    return computed("inside", {"solve.tolerance": 1e-3})
+    return kept("inside")
 
 
 @pytest.fixture(scope="session")
 def exact_run():
     """The result of scenes/tables4_5.toml by the closed form alone; takes a moment."""
-    return computed(changes={"solve.methods": ["closed_form"]})
+    return kept("flat")
 
 
 @pytest.fixture(scope="session")
 def map_run():
-    """The same with a map of stresses inside, so that it has every figure."""
-    changes = {
-        "output.quantities": ["friction", "sif", "surface", "interior"],
-        "output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]},
-    }
-    return computed("tables4_5", changes)
+    """The same by both methods with a map of stresses inside, so that it has every figure."""
+    return kept("map")
 
 
 class Archived(NamedTuple):
@@ -148,12 +157,9 @@ class Archived(NamedTuple):
 
 
 @pytest.fixture(scope="session")
-def archives(tmp_path_factory):
+def archives():
     """What the command makes of scenes/tables4_5.toml on one and on two ranks, and what it says."""
-    root = tmp_path_factory.getbasetemp()
-    root = root.parent if "PYTEST_XDIST_WORKER" in os.environ else root
-    (folder := root / "archives").mkdir(exist_ok=True)
-    made = []
+    folder, made = Path(os.environ["GALINX_KEPT"]), []
     with open(folder / "lock", "w") as lock:
         # One worker makes them, the others wait for it.
         fcntl.flock(lock, fcntl.LOCK_EX)

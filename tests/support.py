@@ -1,5 +1,6 @@
 """What tests of several rooms need: commands, processes, scenes computed in memory, spaces and areas."""
 
+import fcntl
 import io
 import os
 import resource
@@ -7,6 +8,7 @@ import signal
 import subprocess
 import sys
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from functools import cache
 from pathlib import Path
 from unittest.mock import patch
 
@@ -51,6 +53,48 @@ def computed(name="tables4_5", changes=None):
     import galinx
 
     return galinx.compute(galinx.template(name, changes))
+
+
+CLOSED_FORM = {"solve.methods": ["closed_form"]}
+SIE = {"solve.methods": ["sie"]}
+#: Results that many tests read, by name: a scene, and what is other in it; by the quickest methods but
+#: for the first three.
+KEPT = {
+    "tables": ("tables4_5", {}),
+    "map": ("tables4_5", {
+        "output.quantities": ["friction", "sif", "surface", "interior"],
+        "output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]},
+    }),
+    "inside": ("inside", {"solve.tolerance": 1e-3}),
+    "flat": ("tables4_5", CLOSED_FORM),
+    "yield": ("tables4_5", CLOSED_FORM | {
+        "output.quantities": ["sif", "surface", "yield"], "solid.yield_strength": 6e8,
+    }),
+    "cylinder": ("cylinder", CLOSED_FORM | {"output.quantities": ["sif", "surface", "interior"]}),
+    "coating": ("coating", SIE),
+    "from rest": ("start_from_rest", SIE),
+} | {
+    name: (name, changes)
+    for name, changes in {
+        "slider": {}, "fibres": CLOSED_FORM, "shoulders": CLOSED_FORM, "minor_loops": {},
+        "velocity_steps": {}, "fig6": {}, "sinusoidal": {}, "own_material": CLOSED_FORM,
+        "cylinder_on_steel": {}, "parameter_study": CLOSED_FORM, "traction": CLOSED_FORM,
+        "high_speed": CLOSED_FORM, "study": CLOSED_FORM, "table1": {},
+    }.items()
+}  # fmt: skip
+
+
+@cache
+def kept(name):
+    """One of these results, computed by the first of all processes of tests that reads it."""
+    import galinx
+
+    path = Path(os.environ["GALINX_KEPT"], f"{name}.h5")
+    with open(path.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not path.exists():
+            computed(*KEPT[name]).save(path)
+    return galinx.load(path)
 
 
 def command(*arguments, cwd=HOME, **variables):

@@ -3,6 +3,7 @@ import pytest
 
 from galinx.meshes import MESHES
 from galinx.meshes.charts import Confocal
+from galinx.solvers.fem.cells import Contracted
 
 
 @pytest.mark.parametrize("chart", [kind.chart for kind in MESHES.values()], ids=list(MESHES))
@@ -10,6 +11,10 @@ def test_charts_invert_themselves(chart):
     X = np.array([[-3.0, -0.5], [0.2, -1e-6], [0.999, -0.1], [50.0, -70.0], [0.3, 0.0], [-2.0, 0.0]])
     np.testing.assert_allclose(chart.to_physical(chart.from_physical(X)), X, rtol=1e-12, atol=1e-15)
     surface = np.array([-5.0, -1.001, -0.99, 0.0, 0.5, 1.5])
+    for p in (1j, 0.4 + 0.7j):
+        of_plane = Contracted(chart, p)
+        found = of_plane.to_physical(of_plane.from_physical(X))
+        np.testing.assert_allclose(found, X, rtol=1e-12, atol=1e-13)
     s = chart.surface_coordinate(surface)
     np.testing.assert_allclose(chart.surface_position(s), surface, rtol=1e-13)
     step = 1e-6

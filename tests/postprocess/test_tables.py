@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-from support import computed
+from support import computed, kept
 
 from galinx.postprocess.tables import loops_sheet, sliders_sheet, states_sheet
-
-CLOSED_FORM = {"solve.methods": ["closed_form"]}
 
 
 def cells(sheet, head):
@@ -15,14 +13,14 @@ def cells(sheet, head):
 
 
 def test_contacts_whose_ends_are_found_have_their_half_width_and_no_intensity():
-    result = computed("cylinder", CLOSED_FORM | {"motion.c": [0.0, 0.6]})
+    result = kept("cylinder")
     data, sheet = result.data, states_sheet(result.data, result.units())
     assert not any(head.startswith("K") for head in sheet.columns)
     for head, name in (("half-width [µm]", "half_width"), ("centre [µm]", "centre")):
         expected = 1e6 * data[f"states/closed_form/{name}"]
         found = np.array(cells(sheet, head), dtype=float)
         np.testing.assert_allclose(found, expected, rtol=1e-3, atol=0.01)
-    result = computed("tables4_5", CLOSED_FORM)
+    result = kept("flat")
     flat = states_sheet(result.data, result.units())
     assert "K_I, left [MPa·m^(-β)]" in flat.columns
     assert not any(head.startswith(("half-width", "peak")) for head in flat.columns)
@@ -44,7 +42,7 @@ def test_loops_tell_what_they_take_by_what_tells_them_apart():
 
 
 def test_sliders_tell_their_stick_slip():
-    result = computed("slider", {"slider.duration": 15.0})
+    result = kept("slider")
     data = result.data
     (row,) = sliders_sheet(data, result.units()).rows
     assert row[1] == "stick-slip"

@@ -52,16 +52,6 @@ def test_sections_of_every_kind_are_read_by_scenes(here, law, more):
     assert parse(section + REST).friction.count == 1
 
 
-def test_all_laws_are_compared_and_the_first_sample_is_told(here, capsys):
-    assert called("fit", "slip.csv", "motion.csv", "--fix", "delta=1") == 0
-    said = capsys.readouterr().out
-    assert "RMS of f [1]" in said and "AIC" in said and "lugre: depends on the speed" in said
-    assert "2 of 161 samples are not fitted" in said
-    assert (here / "fit" / "fit_2.pdf").exists()
-    assert called("fit", "dahl", "slip.csv", "-q") == 0
-    assert not capsys.readouterr().out
-
-
 SCENE = """# my scene
 [friction]   # of the rig
 model = "bouc_wen"  # guessed

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from support import computed, here
+from support import here
 from tampering import opened
 
 from galinx.app.commands import options
@@ -65,30 +65,3 @@ def test_check_tells_damage_from_contradictions(archive, tmp_path):
     done = here("check", whole)
     assert done.returncode == 1 and "fault: verdict says FAIL" in done.stdout
     assert "faults: 1" in done.stdout
-
-
-OWN = {
-    "solid.material": "T302", "solve.methods": ["closed_form"], "solve.mode": "traction", "motion.c": 0.3,
-    "solve.pressure": [[-1, 0], [0, -2], [1, 0]], "output.quantities": ["surface", "yield"],
-}  # fmt: skip
-
-
-def test_in_si_show_tells_yield_speeds_and_lengths(tmp_path):
-    result = computed("tables4_5", OWN)
-    result.save(tmp_path / "a.h5")
-    unit, a = 55.3e3 / 2e-3, 1e-3
-    plain, si = (
-        here("show", tmp_path / "a.h5", *options).stdout for options in (("--dimensionless",), ())
-    )
-    largest = result.data["states/closed_form/von_mises"]
-    assert re.search(rf"largest von Mises \[N/\(2a\)\] +{largest[0]:.4g} ", plain)
-    assert re.search(rf"largest von Mises \[MPa\] +{re.escape(f'{1e-6 * unit * largest[0]:.4g}')} ", si)
-    depth = result.data["states/closed_form/von_mises_Y_over_a"]
-    assert re.search(rf"at Y \[mm\] +{re.escape(f'{1e3 * a * depth[0]:.4g}')} ", si)
-    assert "speed = 940.197 m/s" in si and "waves that cross the contact in a stroke" in si
-    shown = json.loads(here("show", tmp_path / "a.h5", "--json").stdout)
-    first, units = shown["states"][0], shown["units"]
-    assert units["closed_form"]["von_mises"] == "MPa" and units["closed_form"]["von_mises_Y"] == "mm"
-    assert first["closed_form"]["von_mises"] == pytest.approx(1e-6 * unit * largest[0], rel=1e-14)
-    assert first["speed"] == pytest.approx(result.data["states/speed"][0]) and "c" not in first
-    assert units["speed"] == "m/s"

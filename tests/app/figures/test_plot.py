@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from support import computed, here
+from support import CLOSED_FORM, computed, here, kept
 
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
@@ -19,13 +19,11 @@ from galinx.app.figures.style import Look
 from galinx.postprocess.errors import Occupied
 from galinx.postprocess.target import GIF, MP4
 
-CLOSED_FORM = {"solve.methods": ["closed_form"]}
-
 
 @pytest.fixture(scope="module")
 def fast():
     """Five speeds, six states each."""
-    return computed("high_speed", CLOSED_FORM)
+    return kept("high_speed")
 
 
 @pytest.fixture(scope="module")

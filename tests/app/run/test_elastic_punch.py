@@ -75,27 +75,6 @@ def test_both_methods_on_random_pairs_at_speed(seed):
     assert np.all(result.data["states/fem/true_error"] <= result.data["states/fem/estimate"])
 
 
-def test_the_mirror_image():
-    """Axes of both solids and the friction turned."""
-    fibres = (
-        'kind = "orthotropic"\nE1 = 140e9\nE2 = 10e9\nE3 = 10e9\nnu12 = 0.3\nnu13 = 0.3\nnu23 = 0.4\n'
-        "G12 = 5e9\nrho = 1600\nangle = {}"
-    )
-    one, other = (
-        galinx.compute(parse(SCENE.format(**SIMPLE | {
-            "plate": fibres.format(way * 30.0), "solid": fibres.format(way * -70.0), "sign": sign,
-        }))).data
-        for way, sign in ((1.0, "physical"), (-1.0, "eq25"))
-    )  # fmt: skip
-    assert abs(one["states/closed_form/centre"][0]) > 1e-3 * one["states/closed_form/half_width"][0]
-    np.testing.assert_allclose(
-        one["states/closed_form/centre"], -other["states/closed_form/centre"], rtol=1e-9
-    )
-    np.testing.assert_allclose(
-        one["surface/closed_form/sigma_XX"], other["surface/closed_form/sigma_XX"][:, ::-1], atol=1e-9
-    )
-
-
 @pytest.mark.parametrize(
     "changes, says",
     [

@@ -7,7 +7,7 @@ from math import log, pi
 import numpy as np
 import pytest
 from study_reference import exponent, f_of, stresses
-from support import computed
+from support import kept
 
 from galinx.app.study.published import FAST, SLOW, state_of
 from galinx.app.study.statements import statements
@@ -23,7 +23,7 @@ NUMBERS = [*"1234", "5a", "5b", "6a", "6b", *"789", "10", "11", "12a", "12b", *m
 @pytest.fixture(scope="module")
 def study():
     """scenes/study.toml by the closed form."""
-    return computed("study", {"solve.methods": ["closed_form"]}).data
+    return kept("study").data
 
 
 @pytest.fixture

@@ -5,13 +5,11 @@ and of the motion, strokes (direction, speed, length, rest before it); it gives 
 each, evenly spaced from its start to its end, (strokes, places), and ∫ f v dt over each, (strokes,).
 """
 
-import warnings
 from itertools import pairwise
 from math import asinh, exp, log, pi, sin
 
 import numpy as np
-from scipy.integrate import IntegrationWarning, quad, solve_ivp
-from scipy.optimize import brentq
+from scipy.integrate import solve_ivp
 
 _PRECISE = {"method": "DOP853", "rtol": 3e-14, "atol": 1e-19}
 
@@ -149,37 +147,6 @@ def gms(strokes, places, elements, attraction_rate, **curve):
 
         parts.append(_element(strokes, places, k, limit, attraction))
     return sum(f for f, _ in parts), sum(work for _, work in parts)
-
-
-def _inverted(slope, w, slip, breaks):
-    """Where w' = slope(w) > 0 has come to after so much slip: slip = ∫ dw/slope, inverted."""
-
-    def passed(end):
-        ends = [w, *(at for at in breaks if w < at < end), end]
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", IntegrationWarning)  # of the last digits
-            return sum(
-                quad(lambda x: 1.0 / slope(x), *piece, epsabs=0.0, epsrel=2e-14, limit=200)[0]
-                for piece in pairwise(ends)
-            )
-
-    top = 1.0 - 1e-12
-    if slope(w) <= 0.0 or passed(top) < slip:
-        return None
-    return brentq(lambda end: passed(end) - slip, w, top, xtol=1e-15, rtol=1e-15)
-
-
-def _by_quadrature(strokes, places, slope, breaks):
-    """w = s z over its steady value along strokes; None of it may come to full slip."""
-    z, found = 0.0, []
-    for s, V, length, _ in strokes:
-        values = [s * z]
-        for slip in np.linspace(0.0, length, places)[1:]:
-            values.append(_inverted(lambda w, V=V: slope(w, V), s * z, slip, breaks))
-            assert values[-1] is not None, "full slip"
-        z = s * values[-1]
-        found.append(s * np.array(values))
-    return np.array(found), None
 
 
 def bouc_wen(strokes, places, mu_c, yield_displacement, exponent, gamma):

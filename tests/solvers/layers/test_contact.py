@@ -111,15 +111,6 @@ def test_graded_solid_that_does_not_change_is_uniform():
     assert np.abs(-0.5 * one.pressure.series(ENDS) - exact.K_I).max() <= 1e-8
 
 
-def test_mirror_image():
-    """X to -X changes g in sign and swaps the ends."""
-    solid = Layered((Layer(0.4, SUBSTRATE, COAT), Layer(0.3, COAT)), COAT)
-    left, right = (
-        converged_pressure(equation(solid, 0.2, g, tolerance=1e-9), 1e-6).pressure for g in (0.5, -0.5)
-    )
-    assert np.abs(left.series(ENDS) - right.series(-ENDS)).max() <= 1e-7
-
-
 def test_sharp_punch_with_a_profile():
     """On layers of one solid as without layers."""
     solid = Layered((Layer(0.5, COAT),), COAT)

@@ -96,20 +96,6 @@ def test_a_pressure_put_in_has_the_stresses_of_an_isotropic_solid():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_the_mirror_image_swaps_the_ends(seed):
-    solid = random_solid(4 * seed + 2)
-    c11, c12, c16, c22, c26, c66 = solid.constants
-    other = Anisotropic((c11, c12, -c16, c22, -c26, c66), solid.ρ)
-    assert other.limit() == pytest.approx(solid.limit(), rel=1e-13)
-    c, X, Y = 0.7 * solid.limit(), np.array([-1.3, 0.2, 0.7]), np.array([-0.1, -0.02, -3.0])
-    one, image = FlatPunch(solid.response(c), 0.4), FlatPunch(other.response(c), -0.4)
-    assert image.α == pytest.approx(one.β, rel=1e-12)
-    np.testing.assert_allclose(image.σ_XX(-X), one.σ_XX(X), rtol=1e-12, atol=1e-13)
-    σ = under(one).inside(X, Y) * [[1.0], [1.0], [-1.0]]
-    assert off(under(image).inside(-X, Y), σ, X, Y) <= 1e-12
-
-
-@pytest.mark.parametrize("seed", range(4))
 def test_below_the_limit_the_surface_stands_and_beyond_it_does_not(seed):
     solid = random_solid(seed)
     assert solid.response(0.0).margin == 1.0

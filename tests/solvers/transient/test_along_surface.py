@@ -54,10 +54,3 @@ def test_at_late_times_it_is_steady(solid, c, g):
         off.append(np.abs((σ_XX - expected) * weight).max())
     assert off[1] < 3e-4
     assert off[1] < 0.05 * off[0]
-
-
-def test_of_the_mirror_image_it_changes_sign_and_sides():
-    s = [0.5, 1.0 + 2.0j]
-    one, other = (strains(SOLID, 0.0, g, s, SOME)[0] for g in (0.4, -0.4))
-    np.testing.assert_allclose(one, other[:, ::-1], rtol=1e-7, atol=1e-7)
-    assert np.abs(one - other).max() > 0.1

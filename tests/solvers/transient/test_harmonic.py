@@ -5,7 +5,6 @@ import pytest
 from random_solids import random_solid
 from started import ByFiniteElements
 
-from galinx.solvers.solids.half_plane import UniformHalfPlane
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.harmonic import OscillatingPunch, highest
 from galinx.solvers.transient.history import smooth
@@ -51,22 +50,6 @@ def test_at_high_frequencies_plane_waves_go_down(solid):
     np.testing.assert_allclose(damping.mean(), punch.plane_waves(g), rtol=0.04)
     isotropic = OscillatingPunch(SOLIDS[0].response(0.0), SOLIDS[0].limit(), np.array([1.0]))
     assert abs(isotropic.plane_waves(0.3) - 3.0**0.5) < 1e-12  # c_d/c_s at ν = 1/4
-
-
-@pytest.mark.parametrize("solid", SOLIDS)
-def test_mirror_image_answers_alike(solid):
-    """The mirror image that moves the other way, with friction reversed, from the other side."""
-    c, g, ω = 0.4 * solid.limit(), -0.5, np.array([0.3, 3.0])
-    known = solid.response(c)
-
-    class Mirrored(UniformHalfPlane):
-        c, n, q, n12 = known.c, known.n, known.q, -known.n12
-        C = known.C * [[1.0, 1.0, -1.0], [1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]
-
-    found = OscillatingPunch(Mirrored(), solid.limit(), ω, -1).oscillation(-g)
-    expected = oscillation(solid, c, g, ω)
-    np.testing.assert_allclose(found.flexibility, expected.flexibility, rtol=1e-9)
-    np.testing.assert_allclose(found.centre, -expected.centre, atol=1e-9)
 
 
 def test_polynomials_tell_their_error():

@@ -153,7 +153,7 @@ LIMITS = {
     "residual": (1e-8, 1e-8), "residual inside": (1e-8, 1e-8),
     "residual of finite elements": (1e-5, 1e-2), "slope under the punch": (1e-5, 1e-2),
     "sigma_YY of found ends": (1e-5, 1e-2), "sigma_YY of found ends over layers": (1e-5, 1e-2),
-    "exponents": (None, None),
+    "exponents": (None, None), "ends over time": (None, None),
 }  # fmt: skip
 
 

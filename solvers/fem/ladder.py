@@ -302,20 +302,36 @@ _CERTAIN = 0.2
 
 @dataclass(frozen=True)
 class Estimate:
-    """Estimated relative errors of the states of a speed, by those of some frictions.
+    """Estimated relative errors of the states of a speed, by those of some frictions and loads.
 
     Attributes:
         g: the frictions, rising, (frictions,).
-        errors: largest error of all loads, (frictions,), by word of output.quantities.
+        loads: the loads [N/m], rising, (loads,); a single one where contacts under all are similar.
+        errors: errors of these states, (loads, frictions), by word of output.quantities.
     """
 
     g: NDArray[np.float64]
+    loads: NDArray[np.float64]
     errors: dict[str, NDArray[np.float64]]
 
-    def of(self, g: NDArray) -> dict[str, NDArray[np.float64]]:
-        """Errors of states with frictions g, (states,): the larger one of the frictions on both sides."""
-        both = around(self.g, g)
-        return {word: errors[both].max(axis=1) for word, errors in self.errors.items()}
+    def of(self, g: NDArray, load: Any = None) -> dict[str, NDArray[np.float64]]:
+        """Errors of states with frictions g, (states,), and loads [N/m], all loads if None.
+
+        They are the largest ones of the frictions and the loads on both sides.
+        """
+        both = around(self.g, g)[:, None]
+        of_load = np.arange(len(self.loads))[None, :, None]
+        if load is not None:
+            of_load = around(self.loads, np.broadcast_to(load, g.shape))[..., None]
+        return {word: errors[of_load, both].max(axis=(1, 2)) for word, errors in self.errors.items()}
+
+
+def stand_ins(task: Task, g: NDArray) -> tuple[NDArray[np.float64], NDArray | None, NDArray]:
+    """States with frictions g that stand for all: frictions, loads, None if similar, and each load."""
+    if task.body.alike:
+        return g, None, np.zeros(1)
+    loads = spread(np.unique(task.loads), PROBES)
+    return np.tile(g, len(loads)), np.repeat(loads, len(g)), loads
 
 
 def around(places: NDArray, x: NDArray) -> NDArray[np.int64]:
@@ -348,7 +364,8 @@ class Solved:
     def on_mesh(self, g: NDArray, load: Any = None) -> list[SolvedStates]:
         """States with their estimated errors, on the one mesh."""
         states = self.level.states(g, load)
-        errors = {word: values + states.ends.unresolved for word, values in self.error.of(g).items()}
+        of = self.error.of(g, None if len(self.error.loads) == 1 else states.body.load)
+        errors = {word: values + states.ends.unresolved for word, values in of.items()}
         return [replace(states, errors=errors, fitted=self.fitted)]
 
     def record(self) -> dict[str, Any]:
@@ -408,7 +425,7 @@ def climb(
                     level.close()
                 level = solve(work.space(p, cuts), g)
                 done.count(level.factor)
-                measured.append((p, level.gauges(*task.probes(probes))))
+                measured.append((p, level.gauges(*stand_ins(task, probes)[:2])))
             error = MeasuredError(work, level, probes, measured, share)
             if plan.fixed or p == DEGREES[1] or not error.of_degree or error.stalls:
                 return Solved(level, error, size_of(level.space) | vars(done) | error.record())
@@ -458,7 +475,7 @@ class MeasuredError(Estimate):
                 degree: {new.word: float(new.change(old).max()) for old, new in zip(before, gauges)}
                 for (_, before), (degree, gauges) in pairwise(measured)
             }
-        probes, loads = level.task.probes(g)
+        probes, loads, each_load = stand_ins(level.task, g)
         each, errors = zip(*(gauges for _, gauges in measured[-3:])), {}
         self.floor, self.excessive, enough, mended = 0.0, False, False, False
         for gauges, rounding in zip(each, level.rounding(probes, loads)):
@@ -485,8 +502,8 @@ class MeasuredError(Estimate):
         self.of_cells = not work.plan.fixed and mended and self.floor <= tolerance
         self.of_degree = mended or enough
         self.worst = max((float(error.max()) for error in errors.values()), default=0.0)
-        of_loads = {word: error.reshape(-1, len(g)).max(axis=0) for word, error in errors.items()}
-        super().__init__(g, of_loads)
+        by_load = {word: error.reshape(-1, len(g)) for word, error in errors.items()}
+        super().__init__(g, each_load, by_load)
 
     @property
     def stalls(self) -> bool:

@@ -560,11 +560,12 @@ def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnM
 
         def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
             of = np.array([g])
-            (lengths,), unseen = solved.level.lengths(of, np.array([alone.body.load]))
+            load = alone.body.load
+            (lengths,), unseen = solved.level.lengths(of, np.array([load]))
             ends = EndsBetweenKinks(alone.body, tuple(lengths.tolist()), work.plan.tolerance)
             mesh = work.on(ends.drawn(work.plan), refine=lambda plan: ends.drawn(on_finer_cells(plan)))
             state = own_state(mesh, alone, of, ends, done)
-            state.states.errors[INTENSITIES] += solved.error.of(of)[INTENSITIES] + unseen
+            state.states.errors[INTENSITIES] += solved.error.of(of, load)[INTENSITIES] + unseen
             return state
 
         with closing(OwnMeshesAtSpeed(task, solve, done)) as at:

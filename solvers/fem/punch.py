@@ -50,6 +50,8 @@ _BROUGHT_BACK = 1e-12
 LIMIT = 120
 #: Frictions at which a space of loads is completed at most; states whose equations are held in memory.
 _SPREAD, _TOGETHER = 33, 33
+#: Share of the largest residual from which on one is about as large.
+_ABOUT = 0.9
 #: Loads of single nodes that are solved for at once.
 _AT_ONCE = 64
 
@@ -217,7 +219,7 @@ class SlidingPunch(Punch):
         Frictions that vary along the contact are no such family: each counts.
         """
         sample = spread(g, _SPREAD)
-        self._grow(g if self._along else np.concatenate([sample, -sample]), last=True)
+        self._grow(g if self._along else np.concatenate([sample, -sample]))
         self._complete = True
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -255,12 +257,8 @@ class SlidingPunch(Punch):
             every.append(np.moveaxis((t - self._loads @ y) / size, 0, 1).reshape(len(R0), -1))
         return np.concatenate(every, axis=1)
 
-    def _grow(self, g: NDArray, last: bool = False) -> None:
+    def _grow(self, g: NDArray) -> None:
         """Add loads until the equations of every friction are solved, and fields of these loads.
-
-        Args:
-            g: the frictions.
-            last: no other frictions follow.
 
         Raises:
             SolveError: there are as many loads as there may be.
@@ -272,8 +270,6 @@ class SlidingPunch(Punch):
             if left <= self._left:
                 if not self._rough:
                     return
-                if last and len(self._rough) == self._loads.shape[1]:
-                    self._reduce(g)
                 self._settle()
                 continue
             if self._loads.shape[1] >= limit:
@@ -283,7 +279,9 @@ class SlidingPunch(Punch):
                 )
             more = self._loads[:, :0]
             while (sizes := np.linalg.norm(rest, axis=0)).max() > self._left:
-                along = rest[:, sizes.argmax()] / sizes.max()
+                # The first of those that are about as large: rounding chooses among equal ones.
+                worst = int(np.argmax(sizes > _ABOUT * sizes.max()))
+                along = rest[:, worst] / sizes[worst]
                 rest = rest - np.outer(along, along @ rest)
                 more = np.column_stack([more, along])
             for _ in range(2):  # twice is enough
@@ -293,18 +291,6 @@ class SlidingPunch(Punch):
             self._rough += list(x.T)
             forces = [self._boundary.follow(force) for force in self._reactions(x)]
             self.forces = np.concatenate([self.forces, forces])
-
-    def _reduce(self, g: NDArray) -> None:
-        """Keep of all loads what frictions g need: fewer fields are refined and differentiated."""
-        y = np.concatenate(
-            [np.moveaxis(y, 1, 0).reshape(y.shape[1], -1) for _, y in self._amplitudes(g)], 1
-        )
-        size = np.linalg.norm(y, axis=0)
-        directions, left, _ = np.linalg.svd(y[:, size > 0.0] / size[size > 0.0], full_matrices=False)
-        Q = directions[:, left > LEAST]
-        self._loads, self._rough = self._loads @ Q, list(Q.T @ np.array(self._rough))
-        forces = np.tensordot(Q.T, self.forces[self._parts :], 1)
-        self.forces = np.concatenate([self.forces[: self._parts], forces])
 
     def _frictionless(self, shaped: NDArray, negligible: float) -> tuple[list[PETSc.Vec], NDArray]:
         """Fields and forces of the flat punch at v = -1 and of each shape, without friction.

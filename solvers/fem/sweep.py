@@ -224,10 +224,12 @@ class Trained:
         places, each = np.array([*self.estimates]), list(self.estimates.values())
         low, high = (each[i] for i in around(places, np.array([z]))[0])
         of_fit = self.error if fitted and self.error else {}
-        error = Estimate(
-            low.g, {w: np.maximum(low.errors[w], high.errors[w]) + of_fit.get(w, 0.0) for w in low.errors}
-        )
-        worst = max((errors.max() for errors in error.of(g).values()), default=0.0)
+        errors = {
+            word: np.maximum(values, high.errors[word]) + of_fit.get(word, 0.0)
+            for word, values in low.errors.items()
+        }
+        error = Estimate(low.g, low.loads, errors)
+        worst = max((values.max() for values in error.of(g).values()), default=0.0)
         if known and worst <= fit.work.plan.tolerance:
             with fit.level(task) as level:
                 yield Solved(level, error, fit.record(number), fitted)
@@ -433,7 +435,8 @@ class _Training:
                 self._degree = degree
             fits = degree <= fit.space.degree
             off = largest_changes(level.gauges(*self._probes), expected) if fits and expected else {}
-            estimate = Estimate(solved.error.g, solved.error.errors) if solved.error else None
+            error = solved.error
+            estimate = Estimate(error.g, error.loads, error.errors) if error else None
             sample = fit.sampled(task, level) if fits else None
             return Speed(number, degree, sample, solved.record(), estimate, off)
 

@@ -27,7 +27,7 @@ from .march import FrictionInterpolation, Radau, Residual, march
 from .transform import Basis, Transformed, Weighted, divided, double_exponential
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
-_NEAR, _EVEN, _POINTS = 24, 0.25, 14
+_NEAR, _EVEN, _POINTS = 24, 0.5, 14
 #: Steps of the double exponential rule along the contact, or its part on one side.
 _STEPS = 241
 #: Points of the pressure in its effect beside the contact.

@@ -9,7 +9,6 @@ import galinx
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 from galinx.solvers.solids.pair import Pair
-from galinx.solvers.solids.plane import Orthotropic
 from galinx.solvers.transient.flutter import Side, thresholds
 
 #: Solid, angle, smaller of both thresholds, and a speed near that at which waves neither grow nor decay.

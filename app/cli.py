@@ -10,6 +10,7 @@ import sys
 import traceback
 from contextlib import suppress
 from pathlib import Path
+from time import sleep
 from traceback import extract_tb
 from typing import Any, NoReturn
 
@@ -48,6 +49,8 @@ def extend(path: Path) -> None:
         raise BadInput(f"{path} fails: {type(error).__name__}{said}{line}") from error
 
 
+#: Seconds after which another rank than the first one refuses bad input.
+_GRACE = 3.0
 #: Failures whose message says all; others show where they happened.
 _FAILURES = (
     MachineFailure, UnwritableArchive, SolveError, MeshError, CompilerError, OSError, MemoryError,
@@ -152,6 +155,8 @@ def _stop(message: str, status: int = errors.FAILURE) -> NoReturn:
 
     HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
     """
+    if status == errors.BAD_INPUT and ranks.rank() > 0:
+        sleep(_GRACE)  # all ranks refuse it: rank 0 says so, and ends this one
     process.complain(message)
     with suppress(OSError):
         sys.stdout.flush()

@@ -2,4 +2,7 @@
 
 from .kind import MESHES, MeshKind, Requirements
 
-__all__ = ["MESHES", "MeshKind", "Requirements"]
+#: The mesh of scenes that name none.
+CONFOCAL = MESHES["confocal"]
+
+__all__ = ["CONFOCAL", "MESHES", "MeshKind", "Requirements"]

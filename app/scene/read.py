@@ -7,6 +7,7 @@ refuse only when results are archived. Then each section checks its keys.
 
 import re
 import tomllib
+from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -59,21 +60,22 @@ def explained(text: str, said: str) -> str:
     return said
 
 
-def control_characters(value: Any, place: str = "") -> Iterator[str]:
+def control_characters(tree: dict[str, Any]) -> Iterator[str]:
     """Faults of texts and keys of a scene with a control character, each with its place."""
-    if isinstance(value, str):
-        if fault := unseen(value):
-            yield f"{place}: {fault}"
-    elif isinstance(value, list):
-        for i, entry in enumerate(value):
-            if isinstance(entry, str | list | dict):
-                yield from control_characters(entry, f"{place}[{i}]")
-    elif isinstance(value, dict):
-        for key, entry in value.items():
-            inside = f"{place}.{repr(key)[1:-1]}".removeprefix(".")
-            if fault := unseen(key):
-                yield f"the key {inside}: {fault}"
-            yield from control_characters(entry, inside)
+    waiting: deque[tuple[str, Any]] = deque([("", tree)])  # deeper than Python's calls may be
+    while waiting:
+        place, value = waiting.popleft()
+        if isinstance(value, str):
+            if fault := unseen(value):
+                yield f"{place}: {fault}"
+        elif isinstance(value, list):
+            waiting += ((f"{place}[{i}]", entry) for i, entry in enumerate(value))
+        elif isinstance(value, dict):
+            for key, entry in value.items():
+                inside = f"{place}.{repr(key)[1:-1]}".removeprefix(".")
+                if fault := unseen(key):
+                    yield f"the key {inside}: {fault}"
+                waiting.append((inside, entry))
 
 
 #: Most rows of a file of them.

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 #: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
 #: places at which the polynomial is compared first; most tops of a curve that are refined.
 _NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
+#: Samples that a polynomial goes through along an interface, where they are an eighth of its depth apart.
+_ALONG = 14
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
 GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
 #: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
@@ -76,7 +78,9 @@ def largest(
     return float(best[0]), float(best[1])
 
 
-def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def tops(
+    u: NDArray, curves: NDArray, pieces: Any = 0, through: int = _THROUGH
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Highest tops of curves by their samples, and their places in u, (curves, tops) each.
 
     Tops that a curve has not are -inf; its first and its last sample are none.
@@ -86,6 +90,7 @@ def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float
         curves: their values, -inf where they do not count, (curves, n).
         pieces: rising number of the smooth piece of its curve to which a sample belongs, (curves, n); 0
             where all are one.
+        through: number of samples that a polynomial goes through.
     """
     finite = np.isfinite(curves)
     pieces = 2 * np.broadcast_to(pieces, curves.shape) + np.diff(finite, axis=1, prepend=False).cumsum(1)
@@ -97,10 +102,10 @@ def tops(u: NDArray, curves: NDArray, pieces: Any = 0) -> tuple[NDArray[np.float
         own = pieces == pieces[rows, i][:, None]
         first, count = own.argmax(axis=1), own.sum(axis=1)
         height, place = np.full(len(curves), -np.inf), u[i]
-        usable = top[rows, i] & (count >= _THROUGH)
+        usable = top[rows, i] & (count >= through)
         if usable.any():
-            k, start = i[usable], np.clip(i - _THROUGH // 2, first, first + count - _THROUGH)[usable]
-            window = start[:, None] + np.arange(_THROUGH)
+            k, start = i[usable], np.clip(i - through // 2, first, first + count - through)[usable]
+            window = start[:, None] + np.arange(through)
             nodes = u[window]
             low, high = (
                 np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-1, 1)
@@ -137,7 +142,7 @@ def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float6
     curves, gaps = sign * values.reshape(-1, len(X)), np.diff(X)
     # Of two samples that all but coincide one is left out: no polynomial goes through both.
     apart = np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
-    heights, places = tops(X[apart], curves[:, apart])
+    heights, places = tops(X[apart], curves[:, apart], through=_ALONG)
     heights = np.column_stack([curves.max(axis=1), heights])
     places = np.column_stack([X[curves.argmax(axis=1)], places])
     best = heights.argmax(axis=1)[:, None]

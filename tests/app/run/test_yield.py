@@ -108,5 +108,5 @@ def test_incompressible_solids_have_it_in_closed_form_only():
     with pytest.raises(BadInput, match=r"output\.quantities: found .* expected ν <= 0\.49"):
         computed("tables4_5", CHANGES | {"solid.nu": 0.5, "solve.methods": ["fem"]})
     data = computed("tables4_5", CHANGES | {"solid.nu": 0.5, "motion.c": 0.0}).data
-    assert "states/closed_form/first_yield_load" in data
-    assert "states/fem/first_yield_load" not in data
+    assert "states/closed_form/yield_depth" in data
+    assert "states/fem/yield_depth" not in data

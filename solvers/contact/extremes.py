@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval
+from numpy.polynomial.polynomial import polyder, polyval, polyvander
 from numpy.typing import NDArray
 
 #: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
@@ -35,7 +35,7 @@ def summit(u: NDArray, values: NDArray, low: NDArray, high: NDArray) -> tuple[ND
         low, high: bounds, (m,).
     """
     middle, half = (low + high) / 2.0, (high - low) / 2.0
-    powers = ((u - middle[:, None]) / half[:, None])[..., None] ** np.arange(u.shape[1])
+    powers = polyvander((u - middle[:, None]) / half[:, None], u.shape[1] - 1)
     c = np.linalg.solve(powers, values[..., None])[..., 0].T
     grid = np.linspace(-1.0, 1.0, _COMPARED)
     t = grid[polyval(grid, c).argmax(axis=1)]

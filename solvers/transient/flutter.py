@@ -31,7 +31,7 @@ from ..solids.solid import Solid
 from .admittance import Admittance
 
 #: Speeds sampled between two at which roots meet; samples between two of those, and how often again.
-_SPEEDS, _CLOSER, _TIMES = 600, 64, 8
+_SPEEDS, _CLOSER, _TIMES = 500, 64, 8
 #: Logarithm of the stretch over the distance of the first and the last sample from its ends.
 _NEXT = 25.0
 #: Imaginary part over the size above which a ratio is not real.
@@ -129,10 +129,12 @@ def _values(
         (A_before, B_before), (A_after, B_after) = pair(x - step), pair(x + step)
         return np.asarray((A_before.conj() * B_after - A_after * B_before.conj()).real / step)
 
-    # Curves may end next to a speed at which roots meet.
+    # Curves may end next to a speed at which roots meet; slopes have no digits there.
     x = start + expit(np.linspace(-_NEXT, _NEXT, _SPEEDS)) * (end - start)
-    sign = off if np.abs(off(x)).max() > _REAL_RATIO else turn
-    at = sign(x)
+    sign, at = off, off(x)
+    if np.abs(at).max() <= _REAL_RATIO:
+        x = start + (1.0 - np.cos(np.pi * (np.arange(_SPEEDS) + 0.5) / _SPEEDS)) / 2.0 * (end - start)
+        sign, at = turn, turn(x)
     for i in np.flatnonzero((at[:-1] > 0.0) != (at[1:] > 0.0)):
         low, high = x[i], x[i + 1]
         for _ in range(_TIMES):

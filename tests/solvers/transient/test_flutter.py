@@ -106,6 +106,14 @@ def test_below_the_threshold_no_wave_grows_and_above_it_some_do(seed):
             assert growing(C, 1.03 * sign * g) > 0
 
 
+def test_where_slopes_have_no_digits_there_is_no_threshold():
+    """Next to the speeds at which roots meet rounding turns the slope of a ratio that is real."""
+    solid = material("carbon-epoxy", 30.0)
+    C = stiffness(solid.response(0.0))
+    for sign, g in zip((1.0, -1.0), solid.flutter()):
+        assert growing(C, 0.97 * sign * g) == 0 and growing(C, 1.03 * sign * g) > 0
+
+
 @pytest.mark.parametrize("ν", [-0.9, -0.2, 0.0, 0.01, 0.25, 0.4999])
 @pytest.mark.parametrize("plane", ["strain", "stress"])
 def test_isotropic_solids_have_1_where_they_grow_narrow_when_pulled(ν, plane):

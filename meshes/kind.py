@@ -152,7 +152,7 @@ class Requirements:
 
 
 class _Needs(NamedTuple):
-    """What requirements ask of rings and sectors.
+    """Numbers that requirements set for rings and sectors.
 
     Attributes:
         apart: spread of the planes of the solid's fields, scaled by the digits to reach, 1 at six digits.

@@ -130,7 +130,7 @@ def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity
 
 
 class _Spec(NamedTuple):
-    """What a column has: its head, which begins with "at" for a place of what stands before, and a
+    """Properties of a column: its head, which begins with "at" for a place of what stands before, and a
     quantity, or one of each method; digits that are shown; and what is taken of an archive's values."""
 
     head: str

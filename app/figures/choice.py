@@ -136,7 +136,7 @@ class Drawing:
 
 
 class Archive:
-    """What figures are drawn from: an archive, its scene, and a choice of what is drawn.
+    """Source of figures: an archive, its scene, and a choice of what is drawn.
 
     Args:
         data: datasets by path.

@@ -112,7 +112,7 @@ def surface_curves(
 
 
 def place_of(of: Archive, state: int) -> tuple[float, float]:
-    """What positions over a of a state are multiplied by, and what is added, in the figure's units."""
+    """Factor and offset that turn positions over a of a state into the figure's units."""
     scale = of.units.position
     a, b = (float(z[state] if np.ndim(z) else z) for z in (scale.factor, scale.offset))
     return a, b
@@ -442,7 +442,7 @@ def _depths(of: Archive) -> tuple[NDArray, NDArray, str]:
 
 
 def _length(of: Archive) -> tuple[float, str]:
-    """What lengths in m are multiplied by in a figure, and their unit."""
+    """Factor of lengths in m in a figure, and their unit."""
     scale = of.units.scale(CONTACT)
     return (1e3, "mm") if of.units.dimensionless else (float(np.max(scale.factor)), scale.unit)
 

@@ -197,7 +197,7 @@ def _maps(
 
 
 def sweep_of(of: Archive) -> Sweep:
-    """What is drawn of an archive's states over which parameter."""
+    """Numbers of an archive's states to draw, and the parameter they are drawn over."""
     choice, data, labels = of.choice, of.data, of.labels
     columns, selected = columns_of(of), of.selected()
     name, label, beside, x = _over(of, choice.x, selected)

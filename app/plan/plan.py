@@ -23,14 +23,12 @@ from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
     ALONE,
     ALONG,
-    CLOSED_FORM,
     FEM,
     INSIDE,
     INTERFACE,
     LAYER,
     LOCAL,
     POINT,
-    SIE,
     SWEPT,
 )
 from galinx.postprocess.quantities.runs import SLIDER
@@ -312,7 +310,7 @@ def _faults(scene: Scene, body: Contact, methods: Collection[str], places: Place
                 "matrices of their own"
             )
     if FEM in methods:
-        yield from _faults_of_meshes(scene, body, places)
+        yield from _faults_of_meshes(scene, body, places, alone={*methods} == {FEM})
 
 
 def _beyond_numbers(body: Contact) -> Iterator[str]:
@@ -355,8 +353,13 @@ def _faults_of_layers(scene: Scene, body: Contact, methods: Collection[str]) -> 
         )
 
 
-def _faults_of_meshes(scene: Scene, body: Contact, places: Places) -> Iterator[str]:
-    """Faults of what finite elements cannot compute, one sentence each."""
+def _faults_of_meshes(scene: Scene, body: Contact, places: Places, alone: bool) -> Iterator[str]:
+    """Faults of what finite elements cannot compute, one sentence each.
+
+    Args:
+        scene, body, places: the scene, its contact, and the points where stresses are output.
+        alone: no other method solves the contact.
+    """
     solve, mixed, words = scene.solve, scene.solid.nearly_incompressible, scene.solid.words
     if solve.mode == "traction" and not solve.own_pressure and FLAT in body.lacks:
         yield (
@@ -372,7 +375,7 @@ def _faults_of_meshes(scene: Scene, body: Contact, places: Places) -> Iterator[s
             f"output.points: found a coordinate of {far:g} a, expected at most {limit:g} a with the "
             f"{solve.mesh} mesh at the tolerance {solve.tolerance:g}"
         )
-    if len(points) and mixed and not {CLOSED_FORM, SIE} & {*solve.methods}:
+    if len(points) and mixed and alone:
         yield (
             f"output.{'points' if len(places.points) else 'quantities'}: found {words()}, expected "
             'ν <= 0.49 for stresses inside from finite elements; use methods = ["closed_form"]'

@@ -97,7 +97,7 @@ class FlatPunch(EdgeExponents, Pressure):
         """
         by_pressure = self.response.strain(self.g, 1.0, self._cot)
         size = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
-        log_ratio = np.log(strain / size)
+        log_ratio = np.log(strain) - np.log(size)  # their ratio may overflow
         return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
 
     @staticmethod

@@ -247,7 +247,7 @@ class SlidingPunch(Punch):
             yield G, np.linalg.solve(np.eye(count) - TV, R0)
 
     def _rest(self, g: NDArray) -> NDArray[np.float64]:
-        """What the loads leave of the equations, over the tangential forces, (n, states × parts)."""
+        """Residuals of the equations under the loads, over the tangential forces, (n, states × parts)."""
         R0, TV = np.split(self.forces[:, 1].T, [self._parts], axis=1)
         every = []
         for G, y in self._amplitudes(g):

@@ -40,7 +40,7 @@ _REAL_RATIO = 1e-8
 _STEP, _LEAST = 1e-5, 1e-13
 #: Size of A or B over that of both below which it vanishes.
 _ZERO = 1e-10
-#: Distance from the real axis over the largest speed at which the sign of -A/B is taken where A vanishes.
+#: Distance from the real axis over the speed at which the sign of -A/B is taken where A vanishes.
 _OFF_AXIS = 1e-6
 
 
@@ -77,7 +77,7 @@ class Side:
         return np.concatenate([-speeds, speeds]) - self.speed
 
     def stiffness(self, C: NDArray) -> NDArray[np.complex128]:
-        """L₁₁, ±L₂₁ and det L times μ, over their size, at speeds in the interface's frame, (3, ...)."""
+        """L₁₁ and ±L₂₁ over μ, and det L/μ² times μ, at speeds in the interface's frame, (3, ...)."""
         L = self.admittance.waves((C + self.speed) / self.c_s).L
         det = L[:, 0, 0] * L[:, 1, 1] - L[:, 0, 1] * L[:, 1, 0]
         return np.array([L[:, 0, 0], self.side * L[:, 1, 0], det / self.compliance])

@@ -110,3 +110,10 @@ def test_incompressible_solids_have_it_in_closed_form_only():
     data = computed("tables4_5", CHANGES | {"solid.nu": 0.5, "motion.c": 0.0}).data
     assert "states/closed_form/yield_depth" in data
     assert "states/fem/yield_depth" not in data
+
+
+@pytest.mark.filterwarnings("error")
+def test_at_rest_an_incompressible_surface_is_not_strained_and_nothing_overflows():
+    changes = {"solid.nu": 0.5, "motion.c": 0.0, "solve.methods": ["closed_form"]}
+    data = computed("tables4_5", CHANGES | changes).data
+    assert not data["states/closed_form/slip_reversed_left"].any()

@@ -10,7 +10,6 @@ import sys
 import traceback
 from contextlib import suppress
 from pathlib import Path
-from time import sleep
 from traceback import extract_tb
 from typing import Any, NoReturn
 
@@ -49,8 +48,6 @@ def extend(path: Path) -> None:
         raise BadInput(f"{path} fails: {type(error).__name__}{said}{line}") from error
 
 
-#: Seconds after which another rank than the first one refuses bad input.
-_GRACE = 3.0
 #: Failures whose message says all; others show where they happened.
 _FAILURES = (
     MachineFailure, UnwritableArchive, SolveError, MeshError, CompilerError, OSError, MemoryError,
@@ -155,12 +152,11 @@ def _stop(message: str, status: int = errors.FAILURE) -> NoReturn:
 
     HDF5 crashes when it closes, at exit, a file that a full disk has kept it from closing.
     """
-    if status == errors.BAD_INPUT and ranks.rank() > 0:
-        sleep(_GRACE)  # all ranks refuse it: rank 0 says so, and ends this one
+    several = ranks.size() > 1  # MPI starts on all ranks together: before any of them waits
     process.complain(message)
     with suppress(OSError):
         sys.stdout.flush()
     sys.stderr.flush()
-    if ranks.size() > 1:
+    if several:
         ranks.abort(status)
     os._exit(status)

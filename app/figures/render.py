@@ -392,10 +392,21 @@ def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
     style = {"arrowstyle": "-|>", "color": line.get_color(), "shrinkA": 0, "shrinkB": 0}
     points = line.get_xydata()
     for share in shares:
-        steps = np.hypot(*np.diff(axis.transData.transform(points), axis=0).T)
-        way = np.append(0.0, np.cumsum(steps))
-        at = min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
+        at = point_along(axis.transData.transform(points).T, share)
         axis.annotate("", points[at + 1], points[at], arrowprops=style | {"mutation_scale": 9})
+
+
+def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> int:
+    """Number of the point of a polyline, (2, n), from which its next side is at a share of its length.
+
+    Args:
+        points: x and y.
+        share: 0 to 1.
+        scale: lengths along both axes that are drawn alike, (2,).
+    """
+    steps = np.diff(points) if scale is None else np.diff(points) / scale[:, None]
+    way = np.append(0.0, np.cumsum(np.hypot(*steps)))
+    return min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
 
 
 def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:

@@ -14,8 +14,8 @@ from galinx.solvers.fem.dynamic import BOX, Energies, Motion, Products, of_both
 from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.history import Way, smooth
 from galinx.solvers.transient.punch import ON_SURFACE
 

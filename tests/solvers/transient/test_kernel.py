@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from random_solids import isotropic_as, random_solid, stiffness
 
+from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
-from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.line_load import Kernel
 
 

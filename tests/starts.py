@@ -11,8 +11,8 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import SlidingInTime
 from galinx.solvers.fem.space import Space, distribute
+from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.history import Way, smooth
 from galinx.solvers.transient.punch import StartingPunch
 

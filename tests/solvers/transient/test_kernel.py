@@ -7,8 +7,8 @@ from layers_reference import admittance, plane_strain
 from random_solids import isotropic_as, random_solid, stiffness
 
 from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
-from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.line_load import Echoes, Kernel, UniformLayers
 
 

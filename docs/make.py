@@ -78,13 +78,14 @@ c = 0.3                          # over the shear wave speed
 ```
 
 - A number is in the unit of its row; a row without a unit is dimensionless. A text carries its own unit:
-  `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, with `*`, `/` and whole powers `^`. `"5 %"` is 0.05. A unit of
-  another dimension is an error.
+  `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, with `*`, `/` and whole powers `^`. `"5 %"` is 0.05. A unit
+  of another dimension is an error.
 - `c` or `speed`, `load`, `X_over_L` and the parameters of a friction law may be lists or ranges. Each
   combination is a state, numbered from 0, on all `strokes`. `c` changes most slowly, then the load, the
   law's parameters in the order of their rows, stroke, position.
 - Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
-  too: `radius = ["2 mm", "5 mm"]`. All combinations come into one archive; the last number changes fastest.
+  too: `radius = ["2 mm", "5 mm"]`. All combinations come into one archive; the last number
+  changes fastest.
 - A range includes both ends, which may carry units: `{from = 0, to = 0.9, number = 10}` is 0, 0.1, … 0.9.
   With `spacing = "log"` the ratios are equal: `{from = 0.01, to = 1, number = 3, spacing = "log"}` is
   0.01, 0.1, 1.
@@ -103,8 +104,8 @@ sigma0_over_load = ["12500 1/m", "25000 1/m"]
 
 - `kind`, `profile` and `model` name a solid, a punch and a friction law, each with keys of its own.
   [Extend galinx](howto_extend.md) adds others.
-- Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a CSV file
-  of them, `"rows.csv"`.
+- Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a CSV
+  file of them, `"rows.csv"`.
 - A key may be left out unless its row says "required"; its default is in brackets. An unknown key is an
   error.
 - Results call strokes FM1, … (forward) and BM1, … (backward).
@@ -132,8 +133,8 @@ with h5py.File("out.h5") as file:
 ```
 
 - METHOD is `closed_form`, `sie` (integral equation) or `fem` (finite elements).
-- Brackets hold the shape, if it is not that of the section; the unit, if there is one; NaN, if there may be
-  no answer; after "with" the methods, if not all give the dataset, words of `solve.mode` and
+- Brackets hold the shape, if it is not that of the section; the unit, if there is one; NaN, if there may
+  be no answer; after "with" the methods, if not all give the dataset, words of `solve.mode` and
   `output.quantities`, and what else it needs: sharp edges (punch) or free ends, a pressure of your own,
   friction along the contact, finite stresses, one method, fitted speeds.
 - Words with a slash between them follow the order of the names in their row.
@@ -163,7 +164,8 @@ again, and compares finite elements with closed forms to 1 %:
 - indentations, sizes of linear systems, warnings.
 
 It does not check `run/seconds`, `run/fem`, `sigma_YY_raw`, places of largest stresses by finite elements,
-stresses over layers by these alone, motions in time and of sliders. A contradiction ends it with status 1.
+stresses over layers by these alone, motions in time and of sliders. A contradiction ends it with
+status 1.
 
 [Versions](howto_read_archive.md#from-another-version) of the layout: archives of version 1 are not read.
 """
@@ -231,7 +233,7 @@ def scene_page() -> str:
     parts = [_SCENE]
     for name, section in SECTIONS.items():
         parts += [f"## {section.heading.format(name)}\n", *_section(section)]
-    parts.append("## Materials\n\n`./run.sh materials` prints their constants and the sources of these.\n")
+    parts.append("## Materials\n\n`./run.sh materials` prints their constants and sources.\n")
     parts.append("".join(f"- `{n}`: {m.about.partition(';')[0]}\n" for n, m in LIBRARY.items()))
     return "\n".join(parts)
 
@@ -322,7 +324,7 @@ def _section(section: Any) -> list[str]:
     if section is SECTIONS["layer"] or section is SECTIONS["punch.solid"]:
         same = common.keys() & next(iter(SECTIONS["solid"].alternatives.values())).keys()
         words = ", ".join(f"`{key}`" for key in common if key in same)
-        constants = f"{words} and the constants are those of [[solid]](#solid); required{section.or_else}.\n"
+        constants = f"{words} and constants are those of [[solid]](#solid); required{section.or_else}.\n"
         return [constants, _table(heads, rows({k: v for k, v in common.items() if k not in same}))]
     parts = [_table(heads, rows(common))]
     merged: dict[tuple[str, ...], list[str]] = {}

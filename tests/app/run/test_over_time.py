@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from support import command, computed, here
+from support import command, computed, here, scene_of
 
 import galinx
 from galinx.app.results.check import faults

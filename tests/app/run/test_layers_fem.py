@@ -9,7 +9,7 @@ from support import THOROUGH
 from test_layers import COAT, GRADED, scene
 
 import galinx
-from galinx.app.scene.scene import HalfPlane
+from galinx.app.scene.sections import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import CONTACT, FAR, FREE
@@ -24,7 +24,7 @@ def scene_of(solid, c, f, quantities=("sif",), tolerance=1e-6):
     base = scene(tolerance=tolerance, quantities=quantities, methods=("sie", "fem"))
     return replace(
         base,
-        half_plane=HalfPlane(solid.substrate, None, None),
+        half_plane=HalfPlane(solid=solid.substrate),
         layers=solid.layers,
         punch=replace(base.punch, profile=replace(base.punch.profile, half_width=1.0), loads=(1e-3,)),
         motion=replace(base.motion, c=(c,), speed=None),

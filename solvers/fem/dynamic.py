@@ -22,6 +22,7 @@ momentum in the field Π = -∫(u̇ - C u,X)·u,X, by which energies seen from b
     strain + kinetic = (energy of the motion seen from the punch) + C Π
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -34,7 +35,6 @@ from ..approximation import lagrange
 from ..solids.half_plane import HalfPlane
 from . import cells, versions
 from .element import Element
-from .forms import carried_density, momentum_density
 from .space import Space
 
 #: Rate at which the highest polynomial is damped, over c_s and the cell's shorter side; the share of
@@ -46,96 +46,101 @@ _SHARP_RATE, _SHARP_KEPT = 20.0, 0.4
 _FROM = 1.0
 
 
-def damping(space: Space, sharp: bool = False) -> NDArray[np.float64]:
-    """Damping matrices D of all cells for scalar fields, (cells, nodes, nodes).
+class Quadrature:
+    """Gauss's rule in cells, exact for products of shape functions on parallelograms.
+
+    Fields in cells are values at their nodes along both directions, (cells, components, n, n); at points
+    they are (cells, components, q, q).
+
+    Args:
+        nodes: places of a cell's nodes along one direction, (n,).
+        corners: of the cells, (cells, 4, 2).
+
+    Attributes:
+        value, slope: of the shape functions along one direction at points, (q, n).
+        weights: of the points, (cells, 1, q, q).
+        inverse: inverse Jacobians, [direction, axis, cell, 0, point, point].
+    """
+
+    def __init__(self, nodes: NDArray, corners: NDArray) -> None:
+        x, w = leggauss(len(nodes) + 1)
+        x, w = (x + 1.0) / 2.0, w / 2.0
+        self.value, self.slope = lagrange(nodes, x)
+        J = cells.jacobian(corners[:, None, None], np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1))
+        self.weights = (np.outer(w, w) * np.abs(np.linalg.det(J)))[:, None]
+        inverse = np.moveaxis(np.linalg.inv(J), (3, 4), (0, 1))
+        self.inverse = np.ascontiguousarray(inverse)[:, :, :, None]
+        self._both = np.concatenate([self.value, self.slope])
+
+    def values(self, U: NDArray) -> NDArray[np.float64]:
+        """Values of fields at points, (cells, components, q, q)."""
+        return np.asarray(self.value @ (U @ self.value.T))
+
+    def gradients(self, U: NDArray) -> NDArray[np.float64]:
+        """Derivatives of two components along both axes at points, (cells, components, axes, q, q)."""
+        (m, _, n, _), q = U.shape, len(self.value)
+        along = (U.reshape(-1, n) @ self._both.T).reshape(m, 2, n, 2 * q)
+        slopes = self.slope @ along[..., :q], self.value @ along[..., q:]
+        gradients = np.empty((m, 2, 2, q, q))
+        for axis in (0, 1):
+            first, second = self.inverse[:, axis]
+            gradients[:, :, axis] = first * slopes[0] + second * slopes[1]
+        return gradients
+
+    def tested(self, fluxes: NDArray) -> NDArray[np.float64]:
+        """Sums over points of weighted fluxes times derivatives of shapes: the adjoint of gradients."""
+        (m, _, _, q, _), n = fluxes.shape, self.value.shape[1]
+        result = np.empty((m, 2, n, 2 * q))
+        for direction, factor, part in ((0, self.slope, slice(q)), (1, self.value, slice(q, None))):
+            of_X, of_Y = self.inverse[direction]
+            result[..., part] = factor.T @ (of_X * fluxes[:, :, 0] + of_Y * fluxes[:, :, 1])
+        return np.asarray(result.reshape(-1, 2 * q) @ self._both)
+
+
+class Damping:
+    """Damping of waves that no cell resolves, for scalar fields.
 
     Args:
         space: the finite element space.
-        sharp: True where there are waves that no cell resolves.
-    """
-    grid, nodes = cells.tensor_order(space.reference_nodes)
-    along, place = _to_legendre(nodes), np.argsort(grid.ravel())
-    both = np.einsum("ia,jb->ijab", along, along).reshape(len(place), len(place))[:, place]
-    of_unit = both.T @ (_damped(len(nodes), sharp).reshape(-1, 1) * both)
-    return of_unit * _weights(space.vertices[:, :, :2], sharp)[:, None, None]
-
-
-def _to_legendre(nodes: NDArray) -> NDArray[np.float64]:
-    """Coefficients of orthonormal Legendre polynomials from values at the nodes, (p+1, p+1)."""
-    points, weights = leggauss(len(nodes) + 1)
-    values, _ = lagrange(nodes, (points + 1.0) / 2.0)
-    normed = legvander(points, len(nodes) - 1) * np.sqrt(2.0 * np.arange(len(nodes)) + 1.0)
-    return np.asarray(normed.T @ (weights[:, None] / 2.0 * values))
-
-
-def _damped(count: int, sharp: bool) -> NDArray[np.float64]:
-    """d_i + d_j of pairs of polynomials, (count, count)."""
-    orders, p = np.arange(count), count - 1
-    high = np.maximum(orders - round((_SHARP_KEPT if sharp else _KEPT) * p), 1e-9)
-    d = np.exp(-(((p - orders) / high) ** 2))
-    return np.asarray(np.add.outer(d, d))
-
-
-def _weights(corners: NDArray, sharp: bool) -> NDArray[np.float64]:
-    """Area times rate of each cell."""
-    middle = corners.mean(axis=1)
-    J = cells.jacobian(corners, np.full((len(corners), 2), 0.5))
-    shorter = np.linalg.norm(J, axis=1).min(axis=1)
-    far = np.maximum(np.abs(middle[:, 0]) - 1.0, -middle[:, 1]) > _FROM
-    rates = _SHARP_RATE if sharp else np.where(far, _RATE, 0.0)
-    return np.asarray(np.abs(np.linalg.det(J)) * rates / shorter)
-
-
-@dataclass(frozen=True)
-class Shapes:
-    """Shape functions of the unit square at points of Gauss's rule, exact for products on parallelograms.
+        sharp: True where there are such waves in all cells.
 
     Attributes:
-        t: points, (points, 2).
-        weights: of the points, (points,).
-        values: of the shape functions, (points, nodes).
-        slopes: their derivatives along both directions of the square, (2, points, nodes).
+        legendre: coefficients of orthonormal Legendre polynomials from values at the nodes, (n, n).
+        pairs: d_i + d_j of pairs of polynomials, (n, n).
+        rates: area times rate of each cell, (cells,).
     """
 
-    t: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    values: NDArray[np.float64]
-    slopes: NDArray[np.float64]
+    def __init__(self, space: Space, sharp: bool = False) -> None:
+        _, nodes = cells.tensor_order(space.reference_nodes)
+        points, weights = leggauss(len(nodes) + 1)
+        values, _ = lagrange(nodes, (points + 1.0) / 2.0)
+        normed = legvander(points, len(nodes) - 1) * np.sqrt(2.0 * np.arange(len(nodes)) + 1.0)
+        self.legendre = normed.T @ (weights[:, None] / 2.0 * values)
+        orders, p = np.arange(len(nodes)), len(nodes) - 1
+        high = np.maximum(orders - round((_SHARP_KEPT if sharp else _KEPT) * p), 1e-9)
+        d = np.exp(-(((p - orders) / high) ** 2))
+        self.pairs = np.add.outer(d, d)
+        corners = space.vertices[:, :, :2]
+        J = cells.jacobian(corners, np.full((len(corners), 2), 0.5))
+        middle = corners.mean(axis=1)
+        far = np.maximum(np.abs(middle[:, 0]) - 1.0, -middle[:, 1]) > _FROM
+        rates = _SHARP_RATE if sharp else np.where(far, _RATE, 0.0)
+        self.rates = np.abs(np.linalg.det(J)) * rates / np.linalg.norm(J, axis=1).min(axis=1)
 
-    @classmethod
-    def of(cls, reference: NDArray) -> "Shapes":
-        """Shape functions of nodes at places in the unit square, (nodes, 2)."""
-        grid, nodes = cells.tensor_order(reference)
-        x, w = leggauss(len(nodes) + 1)
-        x, w = (x + 1.0) / 2.0, w / 2.0
-        value, slope = lagrange(nodes, x)
-        t = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-        place = np.argsort(grid.ravel())
-        φ, along, across = (
-            np.einsum("qi,rj->qrij", a, b).reshape(len(t), -1)[:, place]
-            for a, b in ((value, value), (slope, value), (value, slope))
-        )
-        return cls(t, np.outer(w, w).ravel(), φ, np.array([along, across]))
-
-    def on(self, corners: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Weights of the points in cells, and inverse Jacobians there.
-
-        Args:
-            corners: of the cells, (cells, 4, 2).
-
-        Returns:
-            Arrays (cells, points) and [cell, point, direction, axis].
-        """
-        J = cells.jacobian(corners[:, None], self.t)
-        weights = np.asarray(self.weights * np.abs(np.linalg.det(J)), dtype=np.float64)
-        return weights, np.asarray(np.linalg.inv(J), dtype=np.float64)
+    @property
+    def matrices(self) -> NDArray[np.float64]:
+        """Matrices D of all cells, nodes along both directions, (cells, n², n²)."""
+        both = np.kron(self.legendre, self.legendre)
+        return np.asarray(both.T @ (self.pairs.reshape(-1, 1) * both) * self.rates[:, None, None])
 
 
 @dataclass(frozen=True)
 class Motion:
     """Equations M ü + (D - 2c B) u̇ + K u = forces of a space on one rank, in the physical chart.
 
-    Node i has the unknowns 2i and 2i + 1.
+    Node i has the unknowns 2i and 2i + 1. Products with fields are by quadrature in each direction of
+    each cell: a product with an assembled matrix waits for its entries. At degree 10 a cell's stiffness
+    matrix has 58 564, while its 144 points have a weight and an inverse Jacobian each.
 
     Args:
         space: the space.
@@ -152,34 +157,42 @@ class Motion:
         """Matrix of the steady form, (unknowns, unknowns)."""
         space, element = self.space, Element(self.space.reference_nodes)
         dofs = np.arange(element.size)
-        H = space.densities(self.response, space.vertices)
         chart = space.contracted(self.response)
-        return self._sum(element.matrices(H, chart, space.vertices, [(dofs, dofs)])[0])
+        matrices = element.matrices(self.H, chart, space.vertices, [(dofs, dofs)])[0]
+        return self._sum(matrices, versions.cell_nodes(space.V))
 
     @cached_property
     def M(self) -> csr_matrix:
-        """Matrix of momentum, for one component: the other has an equal one."""
-        return self._sum(self._weighted(_of_component(self._products[0], momentum_density())))
+        """Matrix of momentum ∫ ρ u·w, for one component: the other has an equal one."""
+        return self._weighted(lambda _: np.kron(self.quadrature.value, self.quadrature.value))
 
     @cached_property
     def B(self) -> csr_matrix:
-        """Matrix of what the frame carries along, u,X·w, for one component."""
-        return self._sum(self._weighted(_of_component(self._products[1], carried_density())))
+        """Matrix of what the frame carries along, ∫ ρ u,X·w, for one component."""
+        rule = self.quadrature
+        slopes = np.array([np.kron(rule.slope, rule.value), np.kron(rule.value, rule.slope)])
+        by_X = rule.inverse[:, 0].reshape(2, len(rule.weights), -1, 1)
+        return self._weighted(lambda cell: (by_X[:, cell] * slopes).sum(axis=0))
 
     @cached_property
     def D(self) -> csr_matrix:
         """Damping of waves that far cells are too large for, for one component."""
-        return self._sum(self.impedance[:, None, None] * damping(self.space, self.sharp))
+        return self._sum(self.impedance[:, None, None] * self._damping.matrices, self._nodes)
 
     @property
     def impedance(self) -> NDArray[np.float64]:
         """Impedance of each cell to shear waves over that of the solid at the surface, (cells,)."""
         return np.sqrt(self.ρ * self._of_cells("c66"))
 
-    @property
+    @cached_property
     def ρ(self) -> NDArray[np.float64]:
         """Density of each cell over that of the solid at the surface, (cells,)."""
         return self._of_cells("ρ")
+
+    @cached_property
+    def H(self) -> NDArray[np.float64]:
+        """The steady form at unit gradients, (4, 4) or (cells, 4, 4)."""
+        return self.space.densities(self.response, self.space.vertices)
 
     def _of_cells(self, name: str) -> NDArray[np.float64]:
         """A constant of each cell over that of the solid at the surface, (cells,)."""
@@ -187,8 +200,32 @@ class Motion:
         by_solid = np.array([float(rows[0, 0]) for rows in response.constants([name])])
         return by_solid[response.solids(Y)]
 
-    def _weighted(self, matrices: NDArray) -> NDArray[np.float64]:
-        return np.asarray(self.ρ[:, None, None] * matrices)
+    @cached_property
+    def quadrature(self) -> Quadrature:
+        """Rule of all cells."""
+        _, nodes = cells.tensor_order(self.space.reference_nodes)
+        return Quadrature(nodes, self.space.vertices[:, :, :2])
+
+    @cached_property
+    def dofs(self) -> NDArray[np.int64]:
+        """Unknowns of the cells by component and nodes along both directions, (cells, 2, n, n)."""
+        n = len(self.quadrature.value.T)
+        return 2 * self._nodes.reshape(-1, 1, n, n) + np.arange(2)[:, None, None]
+
+    @cached_property
+    def _nodes(self) -> NDArray[np.int64]:
+        grid, _ = cells.tensor_order(self.space.reference_nodes)
+        return versions.cell_nodes(self.space.V)[:, grid.ravel()].astype(np.int64)
+
+    @cached_property
+    def _damping(self) -> Damping:
+        return Damping(self.space, self.sharp)
+
+    @cached_property
+    def _damped(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Unknowns of damped cells, (k, 2, n, n), and rates of pairs of polynomials, (k, 1, n, n)."""
+        rates = self._damping.rates * self.impedance
+        return self.dofs[rates > 0.0], rates[rates > 0.0, None, None, None] * self._damping.pairs
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:
@@ -214,21 +251,16 @@ class Motion:
     def _on(self, part: str) -> NDArray[np.int64]:
         return np.asarray(self.space.nodes_on(part), dtype=np.int64)
 
-    @cached_property
-    def _products(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """∫ φ_a φ_b, (cells, 1, a, b), and ∫ φ_a ∂φ_b, by the two axes, (cells, 2, a, b)."""
-        shapes, mass, gradient = Shapes.of(self.space.reference_nodes), [], []
-        for weights, inverse in zip(*shapes.on(self.space.vertices[:, :, :2])):
-            weighted = shapes.values * weights[:, None]
-            slopes = np.einsum("dqn,qdx->xqn", shapes.slopes, inverse)
-            mass.append([weighted.T @ shapes.values])
-            gradient.append([weighted.T @ slope for slope in slopes])
-        return np.array(mass), np.array(gradient)
+    def _weighted(self, trials: Callable[[int], NDArray]) -> csr_matrix:
+        """Matrix of ρ times shapes and trials, which are given at the points of a cell, (q², n²)."""
+        shapes = np.kron(self.quadrature.value, self.quadrature.value)
+        weights = self.ρ[:, None, None] * self.quadrature.weights.reshape(len(self.ρ), -1, 1)
+        matrices = [(weight * shapes).T @ trials(cell) for cell, weight in enumerate(weights)]
+        return self._sum(np.array(matrices), self._nodes)
 
-    def _sum(self, matrices: NDArray) -> csr_matrix:
-        dofs = versions.cell_nodes(self.space.V)
-        components = matrices.shape[1] // dofs.shape[1]
-        dofs = components * dofs[:, :, None] + np.arange(components, dtype=np.int32)
+    def _sum(self, matrices: NDArray, nodes: NDArray) -> csr_matrix:
+        components = matrices.shape[1] // nodes.shape[1]
+        dofs = components * nodes[:, :, None] + np.arange(components, dtype=nodes.dtype)
         dofs = dofs.reshape(len(dofs), -1)
         rows = np.broadcast_to(dofs[:, :, None], matrices.shape)
         columns = np.broadcast_to(dofs[:, None, :], matrices.shape)
@@ -236,83 +268,31 @@ class Motion:
         entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))
         return coo_matrix(entries, shape=(size, size)).tocsr()
 
-
-def _of_component(products: NDArray, density: NDArray) -> NDArray[np.float64]:
-    """Element matrices of one component from products of shapes; components are uncoupled and equal.
-
-    Args:
-        products: (cells, axes, a, b).
-        density: by components of the test, and of the trial with its axes, (2, 2·axes).
-    """
-    return np.einsum("mxab,x->mab", products, density[0, : products.shape[1]])
-
-
-class Products:
-    """Products of the matrices of motion with fields, by quadrature in each direction of each cell.
-
-    A product with an assembled matrix waits for its entries: at degree 10 a cell's stiffness matrix has
-    58 564, while its 144 points of quadrature have a weight and an inverse Jacobian each. Points and
-    weights are those of the matrices, so that results differ by rounding.
-
-    Args:
-        motion: the equations.
-    """
-
-    def __init__(self, motion: Motion) -> None:
-        space, corners = motion.space, motion.space.vertices[:, :, :2]
-        shapes = Shapes.of(space.reference_nodes)
-        grid, nodes = cells.tensor_order(space.reference_nodes)
-        x, _ = leggauss(len(nodes) + 1)
-        self._value, self._slope = lagrange(nodes, (x + 1.0) / 2.0)
-        self._both = np.concatenate([self._value, self._slope])
-        dofs = versions.cell_nodes(space.V)[:, grid]
-        self._dofs = 2 * dofs[:, None].astype(np.int64) + np.arange(2)[:, None, None]
-        m, q, self._size = len(corners), len(x), motion.size
-        weights, inverse = shapes.on(corners)
-        weights, inverse = weights.reshape(m, q, q), inverse.reshape(m, q, q, 2, 2)
-        # By direction of the cell and axis, (direction, axis, cells, 1, first, second).
-        self._to_axes = np.ascontiguousarray(np.moveaxis(inverse, (3, 4), (0, 1)))[:, :, :, None]
-        self._weights = weights[:, None]
-        self._weighted_ρ = (motion.ρ[:, None, None] * weights)[:, None]
-        H = space.densities(motion.response, space.vertices)
-        self._H = np.broadcast_to(H, (m, 4, 4))
-        rates = motion.impedance * _weights(corners, motion.sharp)
-        self._legendre, self._rates = _to_legendre(nodes), _damped(len(nodes), motion.sharp)
-        self._damped = np.flatnonzero(rates)
-        self._rates = rates[self._damped, None, None, None] * self._rates
-
     def stiffness(self, u: NDArray) -> NDArray[np.float64]:
         """K u of displacements (unknowns,)."""
-        m, _, n, _ = (U := u[self._dofs]).shape
-        q = len(self._value)
-        along = (U.reshape(-1, n) @ self._both.T).reshape(m, 2, n, 2 * q)
-        slopes = self._slope @ along[..., :q], self._value @ along[..., q:]
-        gradients = np.empty((m, 2, 2, q, q))
-        for axis in (0, 1):
-            first, second = self._to_axes[:, axis]
-            gradients[:, :, axis] = first * slopes[0] + second * slopes[1]
-        gradients *= self._weights[:, :, None]
-        fluxes = (self._H @ gradients.reshape(m, 4, -1)).reshape(gradients.shape)
-        by_X, by_Y = fluxes[:, :, 0], fluxes[:, :, 1]
-        result = np.empty((m, 2, n, 2 * q))
-        for direction, factor, part in ((0, self._slope, slice(q)), (1, self._value, slice(q, None))):
-            of_X, of_Y = self._to_axes[direction]
-            result[..., part] = factor.T @ (of_X * by_X + of_Y * by_Y)
-        return self._summed(result.reshape(-1, 2 * q) @ self._both)
+        fluxes = self.quadrature.gradients(u[self.dofs])
+        fluxes *= self.quadrature.weights[:, :, None]
+        flat = fluxes.reshape(len(fluxes), 4, -1)
+        return self._summed(self.quadrature.tested((self.H @ flat).reshape(fluxes.shape)))
 
     def momentum(self, w: NDArray) -> NDArray[np.float64]:
         """M w of both components of velocities (unknowns,)."""
-        values = self._value @ (w[self._dofs] @ self._value.T)
+        values, value = self.quadrature.values(w[self.dofs]), self.quadrature.value
         values *= self._weighted_ρ
-        return self._summed(self._value.T @ values @ self._value)
+        return self._summed(value.T @ values @ value)
+
+    @cached_property
+    def _weighted_ρ(self) -> NDArray[np.float64]:
+        return np.asarray(self.ρ[:, None, None, None] * self.quadrature.weights)
 
     def dissipation(self, w: NDArray) -> float:
         """w·D w of velocities (unknowns,)."""
-        coefficients = self._legendre @ (w[self._dofs[self._damped]] @ self._legendre.T)
-        return float(np.vdot(coefficients, self._rates * coefficients))
+        (dofs, rates), legendre = self._damped, self._damping.legendre
+        coefficients = legendre @ (w[dofs] @ legendre.T)
+        return float(np.vdot(coefficients, rates * coefficients))
 
     def _summed(self, by_cell: NDArray) -> NDArray[np.float64]:
-        return np.asarray(np.bincount(self._dofs.ravel(), by_cell.ravel(), self._size), dtype=np.float64)
+        return np.asarray(np.bincount(self.dofs.ravel(), by_cell.ravel(), self.size), dtype=np.float64)
 
 
 def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:
@@ -324,8 +304,6 @@ def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:
 
 #: Half-width and depth over a of the box.
 BOX = 3.0, 2.0
-#: Cells that are treated together, so that they stay near the processor.
-_TOGETHER = 64
 
 
 class Energies:
@@ -336,23 +314,25 @@ class Energies:
     """
 
     def __init__(self, motion: Motion) -> None:
-        space, self._c = motion.space, motion.response.c
-        self._H, self._ρ = space.densities(motion.response, space.vertices), motion.ρ[:, None]
-        self._nodes = versions.cell_nodes(space.V)
-        self._shapes = Shapes.of(space.reference_nodes)
-        vertices = space.vertices[:, :, :2]
-        self._all = self._shapes.on(vertices)
-        low, high = vertices.min(axis=1), vertices.max(axis=1)
+        self._motion = motion
+        corners = motion.space.vertices[:, :, :2]
+        low, high = corners.min(axis=1), corners.max(axis=1)
         lowest, highest = np.array([-BOX[0], -BOX[1]]), np.array([BOX[0], 0.0])
-        inside = np.all((low >= lowest - 1e-12) & (high <= highest + 1e-12), axis=1)
+        self._inside = np.all((low >= lowest - 1e-12) & (high <= highest + 1e-12), axis=1)
         touched = np.all((np.minimum(high, highest) - np.maximum(low, lowest)) > 1e-12, axis=1)
-        self._inside, self._cut = np.flatnonzero(inside), np.flatnonzero(touched & ~inside)
-        parts = [np.array([np.maximum(low[i], lowest), np.minimum(high[i], highest)]) for i in self._cut]
-        self._parts = self._shapes.on(_rectangles(parts))
-        self._onto = np.array([
-            self._restricted(space.reference_nodes, vertices[i], part)
-            for i, part in zip(self._cut, parts)
-        ]).reshape(len(parts), *2 * (len(space.reference_nodes),))  # fmt: skip
+        self._cut = np.flatnonzero(touched & ~self._inside)
+        # Cells that are cut are rectangles; so are their parts, with the nodes of cells of their own.
+        low, high = np.maximum(low[self._cut], lowest), np.minimum(high[self._cut], highest)
+        _, nodes = cells.tensor_order(motion.space.reference_nodes)
+        grid = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
+        self._onto = np.empty((len(low), len(grid), len(grid)))
+        for i, own in enumerate(corners[self._cut]):
+            points = low[i] + grid * (high[i] - low[i])
+            places = cells.pull_back(np.broadcast_to(own, (len(grid), 4, 2)), points)
+            first, second = (lagrange(nodes, along)[0] for along in places.T)
+            self._onto[i] = (first[:, :, None] * second[:, None, :]).reshape(len(grid), -1)
+        unit = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+        self._parts = Quadrature(nodes, low[:, None] + unit * (high - low)[:, None])
 
     def __call__(self, u: NDArray, w: NDArray, way: int) -> NDArray[np.float64]:
         """Strain and kinetic energy in the box, then of all, over N²/(4μ), and Π, over N²/(4μ c_s): (5,).
@@ -362,62 +342,35 @@ class Energies:
             w: velocities seen from the punch.
             way: direction of the punch, ±1.
         """
-        fields = np.stack([u.reshape(-1, 2), w.reshape(-1, 2)], axis=-1)[self._nodes]
-        whole = self._of(self._all, fields, way, np.arange(len(fields)))
-        cut = np.einsum("mkn,mncf->mkcf", self._onto, fields[self._cut])
-        near = whole[self._inside].sum(axis=0) + self._of(self._parts, cut, way, self._cut).sum(axis=0)
-        total = whole.sum(axis=0)
-        return np.array([near[0], near[1], total[0], total[1], total[2]])
+        motion = self._motion
+        U, W = u[motion.dofs], w[motion.dofs]
+        whole = self._of(motion.quadrature, U, W, way, slice(None))
+        cut = [
+            (self._onto @ field[self._cut].reshape(len(self._cut), 2, -1).swapaxes(1, 2))
+            .swapaxes(1, 2)
+            .reshape(-1, *field.shape[1:])
+            for field in (U, W)
+        ]
+        near = whole[:2, self._inside].sum(axis=1)
+        near = near + self._of(self._parts, *cut, way, self._cut)[:2].sum(axis=1)
+        return np.concatenate([near, whole.sum(axis=1)])
 
     def _of(
-        self, rule: tuple[NDArray, NDArray], fields: NDArray, way: int, which: NDArray
+        self, rule: Quadrature, U: NDArray, W: NDArray, way: int, which: NDArray | slice
     ) -> NDArray[np.float64]:
-        """Strain and kinetic energy and momentum of each cell, (cells, 3).
+        """Strain and kinetic energy and momentum of each cell, (3, cells).
 
         Args:
-            rule: weights of the points of the cells, and inverse Jacobians, see :meth:`Shapes.on`.
-            fields: displacements and velocities at their nodes, (cells, nodes, component, 2).
+            rule: of the cells.
+            U, W: displacements and velocities at their nodes, (cells, 2, n, n).
             way: direction of the punch, ±1.
-            which: numbers of these cells in the mesh, or of those whose parts they are, (cells,).
+            which: numbers of these cells in the mesh, or of those whose parts they are.
         """
-        weights, inverse = rule
-        energies = np.empty((len(fields), 3))
-        for start in range(0, len(fields), _TOGETHER):
-            batch = slice(start, start + _TOGETHER)
-            u, w = fields[batch, ..., 0], fields[batch, ..., 1]
-            by_cell = np.einsum("dqn,mnc->mqcd", self._shapes.slopes, u, optimize=True)
-            slopes = np.einsum("mqcd,mqdx->mqcx", by_cell, inverse[batch])
-            u_X = slopes[..., 0]
-            moving = self._shapes.values @ w - way * self._c * u_X
-            gradients = slopes.reshape(*slopes.shape[:2], 4)
-            H, ρ = self._H if self._H.ndim == 2 else self._H[which[batch]], self._ρ[which[batch]]
-            strain = ((gradients @ H) * gradients).sum(axis=-1) + ρ * self._c**2 * (u_X**2).sum(axis=-1)
-            momentum, kinetic = -ρ * (moving * u_X).sum(axis=-1), ρ * (moving**2).sum(axis=-1)
-            densities = strain / 2.0, kinetic / 2.0, momentum
-            energies[batch] = np.stack(
-                [(density * weights[batch]).sum(axis=1) for density in densities], axis=-1
-            )
-        return energies
-
-    def _restricted(self, reference: NDArray, corners: NDArray, part: NDArray) -> NDArray[np.float64]:
-        """Values at the nodes of a part of a cell from those at its own, (nodes, nodes).
-
-        Args:
-            reference: places of nodes in the unit square.
-            corners: of the cell, a rectangle along the axes.
-            part: lowest and highest corner of the part.
-        """
-        grid, nodes = cells.tensor_order(reference)
-        places = cells.pull_back(
-            np.broadcast_to(corners, (len(reference), 4, 2)), part[0] + reference * (part[1] - part[0])
-        )
-        first, second = (lagrange(nodes, places[:, axis])[0] for axis in (0, 1))
-        product = (first[:, :, None] * second[:, None, :]).reshape(len(reference), -1)
-        return np.asarray(product[:, np.argsort(grid.ravel())])
-
-
-def _rectangles(parts: list[NDArray]) -> NDArray[np.float64]:
-    """Vertices of rectangles from their lowest and highest corners, in dolfinx's order, (n, 4, 2)."""
-    return np.array([
-        [low, [high[0], low[1]], [low[0], high[1]], high] for low, high in parts
-    ]).reshape(-1, 4, 2)  # fmt: skip
+        motion, c = self._motion, self._motion.response.c
+        gradients = rule.gradients(U)
+        u_X, flat = gradients[:, :, 0], gradients.reshape(len(gradients), 4, -1)
+        H, ρ = motion.H if motion.H.ndim == 2 else motion.H[which], motion.ρ[which][:, None, None, None]
+        moving = rule.values(W) - way * c * u_X
+        of_strain = (flat * (H @ flat)).reshape(gradients.shape).sum(axis=2) + ρ * (c * u_X) ** 2
+        densities = of_strain / 2.0, ρ * moving**2 / 2.0, -ρ * moving * u_X
+        return np.array([(density * rule.weights).sum(axis=(1, 2, 3)) for density in densities])

@@ -18,8 +18,6 @@ from galinx.registry import Registry
 
 #: Gradients with one entry 1, component by component, the others 0.
 _UNITS = np.eye(4).reshape(4, 2, 2).tolist()
-#: Displacements with one entry 1.
-_VECTORS = [ufl.as_vector(unit) for unit in np.eye(2).tolist()]
 
 
 @dataclass(frozen=True)
@@ -160,30 +158,6 @@ def traction_form(
     w, x = ufl.TestFunction(space), ufl.SpatialCoordinate(space.mesh)
     from_left, from_right, stretch = chart.under_punch(*chart.from_edges(x), ufl)
     return traction(from_left, from_right) * w[1] * stretch * ds(tag)
-
-
-def momentum(u: Any, w: Any) -> Any:
-    """u·w, the form of ∂²u/∂t², lengths over a and times over a/c_s."""
-    return ufl.inner(u, w)
-
-
-def carried(Gu: Any, w: Any) -> Any:
-    """u,X·w, the form of convection: -2c times that of ∂u/∂t comes from the frame's motion."""
-    return ufl.inner(Gu[:, 0], w)
-
-
-def momentum_density() -> NDArray[np.float64]:
-    """:func:`momentum` of unit displacements along X and Y, (2, 2)."""
-    return _of_units(momentum, _VECTORS)
-
-
-def carried_density() -> NDArray[np.float64]:
-    """:func:`carried` of unit tests along X and Y with u,X u,Y v,X v,Y, (2, 4)."""
-    return _of_units(carried, [ufl.as_matrix(unit) for unit in _UNITS])
-
-
-def _of_units(energy: Callable[..., Any], trials: list[Any]) -> NDArray[np.float64]:
-    return np.array([[ufl.as_ufl(energy(u, w))(()) for u in trials] for w in _VECTORS])
 
 
 def _inertia(Gu: Any, Gw: Any, c: Any) -> Any:

@@ -36,7 +36,7 @@ from galinx.clock import Clock
 
 from ..approximation import lagrange
 from ..transient.history import History, Way
-from .dynamic import Motion, Products, of_both
+from .dynamic import Motion, of_both
 from .fields import SurfaceTrace
 from .linear import ArraySolver
 
@@ -273,7 +273,6 @@ class SlidingInTime:
         self._motion, self._clock = motion, clock or Clock()
         with self._clock("assembly"):
             self._K, self._M, self._D, self._B = motion.K, motion.M, motion.D, motion.B
-            self._products = Products(motion)
         self._Y = 2 * motion.contact + 1
         self._punches: dict[tuple[float, int], PunchConstraint] = {}
 
@@ -351,7 +350,7 @@ class SlidingInTime:
         powers, reactions = [state.powers], []
 
         def stage(u: NDArray, w: NDArray, at: float) -> NDArray[np.float64]:
-            b = self._products.momentum(w) - γ * h * self._products.stiffness(u)
+            b = self._motion.momentum(w) - γ * h * self._motion.stiffness(u)
             now, r = stages.solve(b, g(at), -2.0 * load(at) * γ * h)
             reactions.append(r / (γ * h))
             powers.append(self._powers(reactions[-1], now, g(at)))
@@ -362,10 +361,10 @@ class SlidingInTime:
         return reactions[-1], h * np.array([*A[-1], γ]) @ np.array(powers)
 
     def _powers(self, r: NDArray, w: NDArray, g: float) -> NDArray[np.float64]:
-        return np.array([r @ w[self._Y], g * (r @ w[self._Y - 1]), self._products.dissipation(w)])
+        return np.array([r @ w[self._Y], g * (r @ w[self._Y - 1]), self._motion.dissipation(w)])
 
     def _energy(self, state: _State) -> float:
-        of_both = self._products.momentum(state.w), self._products.stiffness(state.u)
+        of_both = self._motion.momentum(state.w), self._motion.stiffness(state.u)
         return float(state.w @ of_both[0] + state.u @ of_both[1]) / 2.0
 
     def destroy(self) -> None:

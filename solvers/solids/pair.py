@@ -18,6 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .flutter import Side, thresholds
 from .half_plane import DATUM, HalfPlane, Potential, UniformHalfPlane
 from .solid import Solid
 
@@ -117,15 +118,11 @@ class Pair(Solid):
         return self.plate.ρ
 
     def flutter(self, c: float = 0.0) -> tuple[float, float]:
-        from ..transient.flutter import thresholds  # loaded where it is needed
-
         plate, punch = self._sides
         return thresholds(replace(plate, speed=c * self.plate.c_s), punch)
 
     @cached_property
-    def _sides(self) -> tuple[Any, Any]:
-        from ..transient.flutter import Side  # loaded where it is needed
-
+    def _sides(self) -> tuple[Side, Side]:
         return Side.of(self.plate), Side.of(self.punch, self.speed, below=False)
 
     def limit(self) -> float:

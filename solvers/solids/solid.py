@@ -64,7 +64,7 @@ class Solid(Protocol):
         """Flutter thresholds: least σ_XY/σ_YY > 0, and least -σ_XY/σ_YY > 0, from which on short waves
         along the sliding interface grow; infinite for none.
 
-        See :mod:`galinx.solvers.transient.flutter`.
+        See :mod:`galinx.solvers.solids.flutter`.
 
         Args:
             c: speed of the surface over ``c_s``; it matters to two elastic bodies alone.

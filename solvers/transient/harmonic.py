@@ -11,8 +11,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from ..solids.admittance import Admittance
 from ..solids.half_plane import HalfPlane
-from .admittance import Admittance
 from .transform import Transformed
 
 #: Polynomials of the pressure without waves, and for each radian of the shortest wave along the

@@ -40,8 +40,8 @@ from numpy.typing import NDArray
 
 from ..layers.layered import LayeredHalfPlane, LayersAtSpeed
 from ..layers.stiffness import Medium, Uniform
+from ..solids.admittance import Admittance
 from ..solids.half_plane import HalfPlane
-from .admittance import Admittance
 
 #: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
 _POINTS, _WIDTH = 12, 0.8

@@ -13,7 +13,7 @@ from scipy.sparse import identity, kron
 
 from galinx.clock import Clock
 from galinx.meshes.rings import QuadMesh, tagged
-from galinx.solvers.fem.dynamic import Motion, Products
+from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import after_step, γ
 from galinx.solvers.fem.linear import ArraySolver
 from galinx.solvers.fem.space import Traction, consistent_forces
@@ -105,10 +105,10 @@ class LoadedInTime:
             load: share of the pressure at a time, smooth from t = 0 on, where it may jump.
             knots: positions X over a between which the pressure is smooth.
         """
-        h, f, products = self._h, self._forces(σ_YY, g, knots), Products(self._motion)
+        h, f, motion = self._h, self._forces(σ_YY, g, knots), self._motion
 
         def stage(u: NDArray, w: NDArray, at: float) -> NDArray[np.float64]:
-            b = products.momentum(w) + γ * h * (load(at) * f - products.stiffness(u))
+            b = motion.momentum(w) + γ * h * (load(at) * f - motion.stiffness(u))
             return self._solved(self.factor, b)
 
         state = np.zeros(len(f)), np.zeros(len(f)), self._at_once(f * load(0.0))

@@ -10,12 +10,12 @@ from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
 from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.dynamic import BOX, Energies, Motion, Products, of_both
+from galinx.solvers.fem.dynamic import BOX, Energies, Motion, of_both
 from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.admittance import Admittance
 from galinx.solvers.transient.history import Way, smooth
 from galinx.solvers.transient.punch import ON_SURFACE
 
@@ -40,11 +40,11 @@ def moving():
 def test_products_by_quadrature_are_those_of_the_matrices(solid, sharp):
     mesh = Reached(4.3, 3.1, 1.0, 0.3, 1e-2, depths=(0.7,), seen=0.5, around=(2.0, 1.0))
     of = motion(0.5, 5, mesh, solid, sharp)
-    products, u = Products(of), np.random.default_rng(0).normal(size=of.size)
+    u = np.random.default_rng(0).normal(size=of.size)
     for product, expected in (
-        (products.stiffness(u), of.K @ u),
-        (products.momentum(u), of_both(of.M, u)),
-        (products.dissipation(u), u @ of_both(of.D, u)),
+        (of.stiffness(u), of.K @ u),
+        (of.momentum(u), of_both(of.M, u)),
+        (of.dissipation(u), u @ of_both(of.D, u)),
     ):
         np.testing.assert_allclose(product, expected, atol=1e-13 * np.abs(expected).max())
 

@@ -8,8 +8,8 @@ from random_solids import random_solid, stiffness
 import galinx
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
+from galinx.solvers.solids.flutter import Side, thresholds
 from galinx.solvers.solids.pair import Pair
-from galinx.solvers.transient.flutter import Side, thresholds
 
 #: Solid, angle, smaller of both thresholds, and a speed near that at which waves neither grow nor decay.
 TABLE = [

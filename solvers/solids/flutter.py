@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import expit
 
-from ..solids.solid import Solid
 from .admittance import Admittance
+from .solid import Solid
 
 #: Speeds sampled between two at which roots meet; samples between two of those, and how often again.
 _SPEEDS, _CLOSER, _TIMES = 500, 64, 8

@@ -1,11 +1,17 @@
-"""Admittance of the surface of a half-plane at complex speeds.
+"""Waves below the surface of a uniform solid at real and complex speeds, and its half-plane.
 
-Fields e^(ik(X - Ct)) below the surface have u,Y = G u,X, where G has the two roots p of
+Fields e^(ik(X - Ct)) below the surface have u,Y = G u,X. With the stiffness c_ij over c₆₆, the speed C
+over √(c₆₆/ρ) and
 
-    det(Q(C) + p (R + Rᵀ) + p² T) = 0
+    Q = [[c₁₁, c₁₆], [c₁₆, c₆₆]],  R = [[c₁₆, c₁₂], [c₆₆, c₂₆]],  T = [[c₆₆, c₂₆], [c₂₆, c₂₂]]
 
-as eigenvalues of which e^(ik p Y) decays: Im p > 0 where k < 0. With the stiffness c_ij over μ, and C
-over √(μ/ρ), Q, R and T are those of steady motion at a real C. The surface has u,X = 𝐘(C) (σ_XY, σ_YY)/μ.
+the equations of motion are T G² + (R + Rᵀ) G + Q - C² = 0. Eigenvalues of G are the two roots p of
+
+    det(Q - C² + p (R + Rᵀ) + p² T) = 0
+
+of which e^(ik p Y) decays: Im p > 0 where k < 0. Only their sum and product are computed, which keep
+their digits where the roots meet. The tractions over c₆₆ are (σ_XY, σ_YY) = L u,X, L = Rᵀ + T G, and the
+admittance is 𝐘 = L⁻¹.
 
 Away from the real axis no root is real (the solid is one of real speeds), so that 𝐘 is analytic in the
 whole plane but where |C| is real and at least the least speed at which a decaying root meets a growing
@@ -20,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solids.half_plane import HalfPlane, Roots, Waves
+from .half_plane import HalfPlane, Roots, UniformHalfPlane, Waves
 
 #: Imaginary part over the size of a root below which the root is real, where C is real.
 _REAL = 1e-9
@@ -47,13 +53,29 @@ class Admittance:
     @classmethod
     def of(cls, half_plane: HalfPlane) -> "Admittance":
         """Admittance of a uniform half-plane's solid."""
-        (c11, c12, c16), (_, c22, c26), _ = half_plane.surface.C.tolist()
+        return cls.of_stiffness(half_plane.surface.C)
+
+    @classmethod
+    def of_stiffness(cls, C: NDArray) -> "Admittance":
+        """Admittance of a solid by its stiffness of σ_XX, σ_YY, σ_XY by ε_XX, ε_YY, 2ε_XY, (3, 3)."""
+        (c11, c12, c16), (_, c22, c26), _ = (C / C[2, 2]).tolist()
         return cls(c11, c12, c16, c22, c26)
+
+    @property
+    def stiffness(self) -> NDArray[np.float64]:
+        """Stiffness over c₆₆, (3, 3)."""
+        upper = [[self.c11, self.c12, self.c16], [0.0, self.c22, self.c26], [0.0, 0.0, 1.0]]
+        return np.triu(upper) + np.triu(upper, 1).T
 
     @property
     def mirrored(self) -> "Admittance":
         """Admittance of the solid's mirror image in X = 0."""
         return Admittance(self.c11, self.c12, -self.c16, self.c22, -self.c26)
+
+    @property
+    def symmetric(self) -> bool:
+        """True if the solid is its own mirror image in X = 0."""
+        return self.c16 == 0.0 == self.c26
 
     def __call__(self, C: NDArray) -> NDArray[np.complex128]:
         """𝐘 of the roots with Im p > 0 at speeds (n,): (n, 2, 2)."""
@@ -63,23 +85,25 @@ class Admittance:
         """Two waves with Im p > 0 at speeds C, (n,)."""
         C = np.asarray(C, dtype=complex)
         s, d = self._sum_and_product(C)
-        C2 = C * C
-        mixed, T = 2.0 * self.c16 + s, self.c12 + 1.0 + s * self.c26
-        # (R + Rᵀ + sT) G = dT - Q, and L = Rᵀ + T G, all of two rows.
-        M = np.array([[mixed, T], [T, 2.0 * self.c26 + s * self.c22]])
-        F = np.array(
-            [
-                [d - self.c11 + C2, d * self.c26 - self.c16],
-                [d * self.c26 - self.c16, d * self.c22 - 1.0 + C2],
-            ]
+        return Waves(
+            Roots(s, d), *self.fields(s[:, None, None], d[:, None, None], (C * C)[:, None, None])
         )
-        G = np.linalg.solve(np.moveaxis(M, 2, 0), np.moveaxis(F, 2, 0))
-        across = np.array([[1.0, self.c26], [self.c26, self.c22]])
-        L = np.array([[self.c16, 1.0], [self.c12, self.c26]]) + across @ G
-        return Waves(Roots(s, d), G, L)
+
+    def fields(self, s: Any, d: Any, C2: Any) -> tuple[NDArray, NDArray]:
+        """G and L, (..., 2, 2), of roots with the sum s and the product d at C², (..., 1, 1) each."""
+        Q, mixed, T = self._parts
+        G = np.linalg.solve(mixed + s * T, d * T - Q + C2 * np.eye(2))
+        return G, np.array([[self.c16, 1.0], [self.c12, self.c26]]) + T @ G
+
+    @cached_property
+    def _parts(self) -> NDArray[np.float64]:
+        """Q, R + Rᵀ and T, (3, 2, 2)."""
+        mixed = [[2.0 * self.c16, self.c12 + 1.0], [self.c12 + 1.0, 2.0 * self.c26]]
+        across = [[1.0, self.c26], [self.c26, self.c22]]
+        return np.array([[[self.c11, self.c16], [self.c16, 1.0]], mixed, across])
 
     def _quartic(self, C2: Any) -> list[Any]:
-        """Coefficients of p⁰ to p⁴ at C²."""
+        """Coefficients of p⁰ to p⁴ of the determinant at C²."""
         c11, c12, c16, c22, c26 = self.c11, self.c12, self.c16, self.c22, self.c26
         return [
             (c11 - C2) * (1.0 - C2) - c16 * c16,
@@ -138,17 +162,8 @@ class Admittance:
 
     def _acoustic(self, p: NDArray) -> NDArray[np.float64]:
         """Q(0) + p (R + Rᵀ) + p² T at real p (n,), (n, 2, 2)."""
-        return (
-            self._parts[0]
-            + np.multiply.outer(p, self._parts[1])
-            + np.multiply.outer(p * p, self._parts[2])
-        )
-
-    @property
-    def _parts(self) -> NDArray[np.float64]:
-        across = [[1.0, self.c26], [self.c26, self.c22]]
-        mixed = [[2.0 * self.c16, self.c12 + 1.0], [self.c12 + 1.0, 2.0 * self.c26]]
-        return np.array([[[self.c11, self.c16], [self.c16, 1.0]], mixed, across])
+        Q, mixed, T = self._parts
+        return np.asarray(Q + np.multiply.outer(p, mixed) + np.multiply.outer(p * p, T))
 
     def _slope(self, p: NDArray, sheet: int) -> NDArray[np.float64]:
         """Derivative by p of the squared speed of the slower or the faster wave, (n,)."""
@@ -217,3 +232,74 @@ def _polished(s: NDArray, d: NDArray, e: NDArray, b: NDArray) -> tuple[NDArray, 
         small = np.abs(step).max(axis=0) < 0.1 * np.maximum(1.0, np.abs(d))
         s, d, e = (value - np.where(small, change, 0.0) for value, change in zip((s, d, e), step))
     return s, d
+
+
+@dataclass(frozen=True)
+class AnisotropicFrame(UniformHalfPlane):
+    """Half-plane of an anisotropic solid at a speed.
+
+    Args:
+        solid: its waves at all speeds.
+        c: speed over √(c₆₆/ρ), 0 <= c < 1.
+
+    Raises:
+        ValueError: a wave in the solid is not faster.
+    """
+
+    solid: Admittance
+    c: float
+
+    def __post_init__(self) -> None:
+        if (
+            not 0.0 <= self.c < 1.0
+            or (np.roots(self.solid._quartic(self.c**2)[::-1]).imag > 0.0).sum() != 2
+        ):
+            raise ValueError(f"c = {self.c!r}: expected a speed below that of all waves in the solid")
+
+    @cached_property
+    def roots(self) -> Roots:
+        waves = self.solid.waves(np.array([self.c]))
+        s, d = complex(waves.roots.sum[0]), complex(waves.roots.product[0])
+        return Roots(1j * s.imag, complex(d.real)) if self.mirrored else Roots(s, d)
+
+    @cached_property
+    def _fields(self) -> tuple[NDArray[Any], NDArray[Any]]:
+        return self.solid.fields(self.roots.sum, self.roots.product, self.c**2)
+
+    @property
+    def G(self) -> NDArray[Any]:
+        return self._fields[0]
+
+    @property
+    def L(self) -> NDArray[Any]:
+        return self._fields[1]
+
+    @cached_property
+    def least_stiffness(self) -> float:
+        """Smallest eigenvalue of the surface's Hermitian stiffness -iL; it falls with speed."""
+        Z = -1j * self.L
+        return float(np.linalg.eigvalsh((Z + Z.conj().T) / 2.0)[0])
+
+    @cached_property
+    def margin(self) -> float:
+        """Least stiffness over its value at rest; 0 at the speed of a wave along the surface."""
+        return self.least_stiffness / AnisotropicFrame(self.solid, 0.0).least_stiffness
+
+    @property
+    def mirrored(self) -> bool:
+        return self.solid.symmetric
+
+    @property
+    def mirror_image(self) -> "AnisotropicFrame":
+        return AnisotropicFrame(self.solid.mirrored, self.c)
+
+    @cached_property
+    def C(self) -> NDArray[np.float64]:
+        return self.solid.stiffness
+
+    def is_stiff_at(self, c: float) -> bool:
+        """Return True if the stiffness of the surface is positive at another speed."""
+        try:
+            return AnisotropicFrame(self.solid, c).least_stiffness > 0.0
+        except ValueError:
+            return False

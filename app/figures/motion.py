@@ -19,7 +19,7 @@ from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.texts import number, plain
 
-from ..scene.scene import Time
+from ..scene.sections import Time
 from .choice import Archive, Drawing, both, explained, named
 from .render import Curve, Film, Panel, Size, handle, render
 from .states import drive_label, spread

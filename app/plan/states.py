@@ -21,7 +21,8 @@ from galinx.solvers.friction.motion import follow, last_cycle, works
 from galinx.solvers.solids.solid import Solid
 
 from ..errors import BadInput, listed
-from ..scene.scene import ADVECTED, Scene, oddities
+from ..scene.scene import Scene, oddities
+from ..scene.sections import ADVECTED
 
 
 @dataclass(frozen=True)

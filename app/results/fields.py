@@ -35,7 +35,8 @@ from ..methods import METHODS
 from ..plan.plan import Plan, farthest_inside, make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.variants import of_state
-from ..scene.scene import FRICTIONS, Output, Scene
+from ..scene.scene import FRICTIONS, Scene
+from ..scene.sections import Output
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ refuse only when results are archived. Then each section checks its keys.
 import re
 import tomllib
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from math import prod
@@ -20,15 +19,14 @@ import numpy as np
 
 from galinx import files
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.along import tabulated
 from galinx.texts import unseen
 
 from ..console import program
 from ..errors import BadInput, excerpt, listed, nearest, short
 from ..text_table import read_table
 from .library import LIBRARY
-from .scene import ADVECTED, Scene, contradictions, in_words, usual_quantities
-from .sections import SECTIONS, SWEPT, Key
+from .scene import Scene, contradictions, in_words, usual_quantities
+from .sections import ADVECTED, SECTIONS, SWEPT, Key
 from .values import Number, Numbers, Or, Rows, Wrapped
 
 #: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm.
@@ -309,7 +307,6 @@ def _checked(
 ) -> Scene | None:
     """Scene of single numbers, or None after its faults are added."""
     before = len(faults)
-    faults += _fill_in_friction(tree)
     steady = _fill_in_motion(tree)
     named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
     title = tree.pop("title", "")
@@ -322,6 +319,11 @@ def _checked(
     ]
     read = {key: section.read(key, tree.get(key, {}), faults) for key, section in SECTIONS.items()}
     if len(faults) > before:
+        return None
+    try:
+        read["friction"] = read["friction"].under(read["punch"].loads)
+    except ValueError as error:
+        faults.append(str(error))
         return None
     scene = Scene(
         title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
@@ -351,70 +353,15 @@ def _with_constants(table: Any) -> Any:
     return (LIBRARY.get(table["material"]) or next(iter(LIBRARY.values()))).constants | table
 
 
-#: Keys of friction along the contact.
-_BESIDE_ALONG = {"along", "sign", "pre_sliding"}
-
-
-def _fill_in_friction(tree: dict[str, Any]) -> list[str]:
-    """Make parameters of a law of other keys that say the same; returns the faults of both together.
-
-    These are σ₀, which over the load is σ₀ l/N; friction along the contact, whose mean Coulomb's law has;
-    and ``mu``, Coulomb's coefficient and his law by default.
-    """
-    friction = tree.get("friction")
-    if not isinstance(friction, dict):
-        return []
-    faults: list[str] = []
-    if "along" in friction and (others := sorted(friction.keys() - _BESIDE_ALONG)):
-        faults.append(f"friction: along gives f itself; take {', '.join(others)} away")
-        tree["friction"] = {key: friction[key] for key in friction.keys() & _BESIDE_ALONG}
-
-    def over_load(stiffness: tuple[float, ...]) -> list[float]:
-        punch = tree["punch"] if isinstance(tree.get("punch"), dict) else {}
-        load = SECTIONS["punch"].keys(punch)["load"]
-        loads = load.kind(punch["load"]) if "load" in punch else load.default
-        if len(loads) > 1:
-            faults.append(
-                f"friction.sigma0: found {len(loads)} loads, expected one punch.load to divide it by; "
-                "sigma0_over_load is the same under all"
-            )
-        return [value / loads[0] for value in stiffness]
-
-    others_of: tuple[tuple[str, str, dict[str, str], Callable[[Any], Any]], ...] = (
-        ("sigma0", "sigma0_over_load", {}, over_load),
-        ("along", "mu_c", {"model": "coulomb"}, lambda rows: tabulated(rows, 1.0).mean),
-        ("mu", "mu_c", {"model": "coulomb"}, list),
-    )
-    for key, parameter, default, made in others_of:
-        if key not in tree["friction"]:
-            continue
-        friction = default | tree["friction"]
-        kinds = SECTIONS["friction"].keys(friction)
-        if key not in kinds:
-            continue  # the section says that there is no such key
-        if parameter in friction:
-            tree["friction"] = friction
-            faults.append(f"friction: {key} and {parameter} exclude each other; keep one")
-            continue
-        # What cannot be read is a fault of its own key, and the parameter is not missing besides.
-        tree["friction"] = friction | {parameter: 1.0}
-        with suppress(ValueError):
-            tree["friction"][parameter] = made(kinds[key].kind(friction[key]))
-    return faults
-
-
 def _fill_in_motion(tree: dict[str, Any]) -> bool:
     """True for steady sliding, a law without memory or advected, and no strokes; these are filled in."""
     friction, motion = tree.get("friction", {}), tree.get("motion", {})
     if not isinstance(friction, dict) or not isinstance(motion, dict):
         return False
-    name = friction.get("model")
-    law = LAWS.get(name) if isinstance(name, str) else None
-    if (law is None or law.has_memory) and friction.get("state") != ADVECTED:
+    memory = LAWS[SECTIONS["friction"].model(friction)].has_memory
+    if memory and friction.get("state") != ADVECTED:
         return False
-    if motion.keys() & {"strokes", "X_over_L", "path", "rest"}:
-        return False
-    if "time" in tree or "slider" in tree:
+    if motion.keys() & {"strokes", "X_over_L", "path", "rest"} or tree.keys() & {"time", "slider"}:
         return False
     tree["motion"] = motion | {"strokes": ["forward"], "X_over_L": [1.0]}
     return True

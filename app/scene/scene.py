@@ -5,11 +5,10 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, pairwise, product
-from math import prod
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -22,251 +21,29 @@ from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, ON_SURFACE, YIELD
 from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
-from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.along import Along, advected, tabulated
-from galinx.solvers.friction.motion import Leg, Partial, legs, legs_of_path, positions
+from galinx.solvers.friction.motion import Leg, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.parameters import Parameter, build_model, parameters
+from galinx.solvers.parameters import Parameter, parameters
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles import Profile, half_width
+from galinx.solvers.profiles import half_width
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
 from ..errors import listed
-
-
-@dataclass(frozen=True)
-class HalfPlane:
-    """[solid]: an elastic solid, and its material.
-
-    Attributes:
-        solid: elastic constants and density.
-        material: name in the library, None where the scene gives all constants itself.
-        yield_strength: uniaxial yield strength [Pa], None where it is not given.
-    """
-
-    solid: Solid
-    material: str | None
-    yield_strength: float | None
-
-
-@dataclass(frozen=True)
-class ElasticPunch:
-    """[punch.solid]: the solid of an elastic punch, and its speed over the contact [m/s].
-
-    Raises:
-        ValueError: the speed is not below that of the wave along the solid's surface.
-    """
-
-    solid: Solid
-    speed: float
-
-    def __post_init__(self) -> None:
-        limit = self.solid.limit() * self.solid.c_s
-        if self.speed >= limit:
-            raise ValueError(
-                f"found speed = {self.speed:g} m/s, expected less than {limit:.6g} m/s, that of the wave "
-                "along the surface of this solid"
-            )
-
-
-@dataclass(frozen=True)
-class Punch:
-    """[punch]: a profile, pressed on by each of ``loads`` [N/m]."""
-
-    profile: Profile
-    loads: tuple[float, ...]
-
-    @property
-    def load(self) -> float:
-        """The load [N/m], the first where there are several."""
-        return self.loads[0]
-
-
-#: Most laws that the tables of a friction section may list: each is held by itself.
-_MOST_LISTED = 100_000
-
-
-#: State of bristles: the same all along the contact, or advected with the surface from the leading end.
-STATES_ALONG = UNIFORM_STATE, ADVECTED = "uniform", "advected"
-
-
-@dataclass(frozen=True)
-class Friction:
-    """[friction]: laws, how they are integrated over strokes of ``pre_sliding`` [m], the sign of σ_XY.
-
-    Attributes:
-        law: the class of the laws.
-        parameters: values of each of its parameters by key; their product is computed.
-        vary: [[friction.vary]], values of some of these parameters in place of those above; the laws
-            are then the products of all tables, each law once.
-        along: X/a and f, point by point along the contact; None for none.
-        state: of bristles, one along the contact or ``ADVECTED`` with the surface from its leading end.
-
-    Raises:
-        ValueError: there are too many laws in ``vary``.
-    """
-
-    law: type[FrictionLaw]
-    parameters: dict[str, tuple[Any, ...]]
-    pre_sliding: float
-    integrator: str
-    sign: str
-    vary: tuple[dict[str, tuple[Any, ...]], ...] = ()
-    along: tuple[tuple[float, float], ...] | None = None
-    state: str = UNIFORM_STATE
-
-    def __post_init__(self) -> None:
-        count = sum(prod(map(len, lists.values())) for lists in self._products)
-        if self.vary and count > _MOST_LISTED:
-            raise ValueError(f"vary: found {count} laws, expected at most {_MOST_LISTED} in all tables")
-
-    @property
-    def _products(self) -> list[dict[str, tuple[Any, ...]]]:
-        """Values of each parameter by key, for every product that is computed."""
-        return [self.parameters | table for table in self.vary] or [self.parameters]
-
-    @cached_property
-    def _listed(self) -> list[tuple[Any, ...]]:
-        """Parameters of every law of the tables, each law once."""
-        every = (product(*lists.values()) for lists in self._products)
-        return list(dict.fromkeys(chain.from_iterable(every)))
-
-    @property
-    def values(self) -> dict[str, tuple[Any, ...]]:
-        """All values that a parameter takes, by key."""
-        return {
-            key: tuple(dict.fromkeys(chain.from_iterable(lists[key] for lists in self._products)))
-            for key in self.parameters
-        }
-
-    @property
-    def count(self) -> int:
-        """Number of laws."""
-        return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
-
-    @property
-    def _every(self) -> Iterable[tuple[Any, ...]]:
-        """Parameters of every law; the last changes fastest."""
-        return self._listed if self.vary else product(*self.parameters.values())
-
-    def laws(self) -> Iterator[FrictionLaw]:
-        """Every law by itself, in the order of :meth:`columns`.
-
-        Raises:
-            ValueError: a law refuses its parameters.
-        """
-        for values in self._every:
-            yield build_model(self.law, dict(zip(self.parameters, values)))
-
-    def columns(self) -> dict[str, NDArray]:
-        """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
-        of_law = parameters(self.law)
-        columns = zip(self.parameters, zip(*self._every))
-        return {key: np.array(values) for key, values in columns if of_law[key].single}
-
-    def together(self, columns: dict[str, NDArray], rows: slice) -> FrictionLaw:
-        """A law whose parameters are arrays, which stands for many laws at once.
-
-        Args:
-            columns: parameters of every law, from :meth:`columns`.
-            rows: the laws that it stands for.
-
-        Raises:
-            ValueError: a law refuses its parameters.
-        """
-        return build_model(self.law, {key: values[rows, None] for key, values in columns.items()})
-
-    @property
-    def stress_ratio(self) -> float:
-        """σ_XY/σ_YY under the punch over f."""
-        return -1.0 if self.sign == "physical" else 1.0
-
-
-@dataclass(frozen=True)
-class Motion:
-    """[motion]: ``c`` over the wave speed or ``speed`` [m/s], the other None; strokes and positions.
-
-    Attributes:
-        strokes: by name or partial.
-        X_over_L: positions on them.
-        rest: time at rest between strokes [s].
-        path: time [s] and position [m], point by point, instead of all of these; None for none.
-    """
-
-    c: tuple[float, ...] | None
-    speed: tuple[float, ...] | None
-    strokes: tuple[str | Partial, ...]
-    X_over_L: tuple[float, ...]
-    rest: float = 0.0
-    path: tuple[tuple[float, float], ...] | None = None
-
-
-@dataclass(frozen=True)
-class Solve:
-    """[solve]: methods and their options, as the section's keys describe them."""
-
-    methods: tuple[str, ...]
-    tolerance: float
-    mesh: str
-    mode: str
-    degree: int | None
-    cuts: int
-    sweep: str
-    solver: str
-    assembler: str
-    pressure: Any
-
-    @property
-    def own_pressure(self) -> bool:
-        """True where the scene prescribes a pressure of its own, not that of a closed form."""
-        return self.mode == "traction" and self.pressure != "closed_form"
-
-
-@dataclass(frozen=True)
-class Output:
-    """[output]: names of groups of quantities, and points of stresses inside the solid, over a.
-
-    The map has first and last position and number of positions, along X and along Y.
-    """
-
-    quantities: tuple[str, ...]
-    points: tuple[tuple[float, float], ...] = ()
-    map: tuple[tuple[float, float, int], ...] | None = None
-
-    @property
-    def inside(self) -> NDArray[np.float64]:
-        """All points inside the solid over a, (n, 2): the map's by rows of Y, then the single ones."""
-        single = np.reshape(np.array(self.points, dtype=float), (-1, 2))
-        if self.map is None:
-            return single
-        X, Y = np.meshgrid(*(np.linspace(*axis) for axis in self.map))
-        return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
-
-
-@dataclass(frozen=True)
-class Time:
-    """[time]: a motion in time; times over a/c_s.
-
-    Attributes:
-        end: last time.
-        step: time step of the finite elements, None where the tolerance sets it.
-        load_ramp: time within which the load rises from 0 to N.
-        load: times and shares of N in place of the ramp, from t = 0 on; empty for the ramp.
-        steady: True where the motion begins in steady motion, not at rest.
-        by_law: True where friction changes by its law along the strokes, False where it is constant.
-        every: time from one output of stresses along the surface to the next, None for none.
-    """
-
-    end: float
-    step: float | None
-    load_ramp: float
-    load: tuple[tuple[float, float], ...] = ()
-    steady: bool = False
-    by_law: bool = False
-    every: float | None = None
+from .sections import (
+    ADVECTED,
+    ElasticPunch,
+    Friction,
+    HalfPlane,
+    Motion,
+    Output,
+    Punch,
+    Solve,
+    Time,
+)
 
 
 @dataclass(frozen=True)
@@ -443,7 +220,7 @@ def contradictions(scene: Scene) -> list[str]:
         ),
         'solve.degree needs solve.mode = "contact"': fixed and solve.mode == "traction",
         'solve.pressure needs solve.mode = "traction"': (
-            solve.pressure != "closed_form" and solve.mode != "traction"
+            solve.pressure is not None and solve.mode != "traction"
         ),
     }
     of_keys = (text for text, holds in faults.items() if holds)

@@ -1,23 +1,31 @@
-"""Sections of a scene: every key with its kind, default and meaning.
+"""Sections of a scene: every key with its kind, default and meaning, and what a section becomes.
 
-A :class:`Section` checks the keys of a table of the scene, the parameters of a registered model among
-them, and builds the section's object from their values. :class:`LayerSections` reads the tables
-[[layer]], from the top down. The same keys make the JSON schema of scenes, by which editors complete and
-check TOML.
+A section is a dataclass whose fields are its keys, made by :func:`key`; the parameters of a registered
+model stand among the keys of its section. A :class:`Section` checks a table of TOML and builds that
+dataclass, and :class:`LayerSections` reads the tables [[layer]]. The same keys make the JSON schema of
+scenes, by which editors complete and check TOML.
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from itertools import chain, pairwise
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain, pairwise, product
+from math import prod
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
+from galinx.postprocess.quantities.swept import MOST_LAYERS
 from galinx.registry import Registry
 from galinx.solvers.contact.fem_plan import ASSEMBLERS
 from galinx.solvers.friction import LAWS, FrictionLaw
+from galinx.solvers.friction.along import tabulated
 from galinx.solvers.friction.integrate import INTEGRATORS
+from galinx.solvers.friction.motion import Partial
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import GRADINGS, Layer
 from galinx.solvers.parameters import Parameter, Range, build_model, fields, parameters
@@ -28,18 +36,6 @@ from ..console import program
 from ..errors import excerpt, nearest, short
 from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
-from .scene import (
-    STATES_ALONG,
-    UNIFORM_STATE,
-    ElasticPunch,
-    Friction,
-    HalfPlane,
-    Motion,
-    Output,
-    Punch,
-    Solve,
-    Time,
-)
 from .values import (
     ALONG,
     DEPTHS,
@@ -64,6 +60,7 @@ from .values import (
 
 #: Stands for a default where a key has to be given.
 REQUIRED: Any = dataclasses.MISSING
+_METADATA = "galinx key"
 
 
 @dataclass(frozen=True)
@@ -73,27 +70,495 @@ class Key:
     Attributes:
         kind: kind of the value, which checks it.
         about: meaning of the key.
-        default: value where the key is absent.
+        default: value where the key is absent; a text is one of TOML.
         note: addition to ``about`` in the documentation.
+        name: of the key in TOML where the field of the dataclass has another.
         without: text of the documentation in place of a default of None.
         stands_for: a model's parameter that follows from this key; models without it do not have the key.
+        parameter: values of that parameter, from the key's.
+        model: the model of a section that has this key and names none.
+        beside: the only keys that may stand beside this one; None for any.
     """
 
     kind: Kind
     about: str
     default: Any = REQUIRED
     note: str = ""
+    name: str = ""
     without: str = "none"
     stands_for: str = ""
+    parameter: Callable[[Any], list[float]] = list
+    model: str = ""
+    beside: tuple[str, ...] | None = None
+
+
+def key(
+    kind: Kind, about: str, default: Any = REQUIRED, note: str = "", compare: bool = True, **options: Any
+) -> Any:
+    """Field of a section's dataclass that is a key, see :class:`Key`.
+
+    Sections that differ in it alone are equal unless it is to ``compare``: it is another name.
+    """
+    entry = Key(kind, about, default, note, **options)
+    return dataclasses.field(default=default, compare=compare, metadata={_METADATA: entry})
+
+
+_POSITIVE, _NOT_NEGATIVE = Range(above=0.0), Range(at_least=0.0)
+
+
+def _yield_strength() -> Any:
+    return key(
+        Number("Pa", _POSITIVE), "uniaxial yield strength", None,
+        'for the quantity `"yield"`; stresses alone need none',
+    )  # fmt: skip
+
+
+def _material() -> Any:
+    return key(
+        Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
+        "what is written beside it replaces the material's",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class HalfPlane:
+    """[solid]: an elastic solid, its material, and its yield strength [Pa], None if not given."""
+
+    solid: Solid
+    material: str | None = key(
+        Choice(LIBRARY),
+        "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
+        "what is written beside it replaces the material's",
+    )  # fmt: skip
+    yield_strength: float | None = _yield_strength()
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticPunch:
+    """[punch.solid]: the solid of an elastic punch, and its speed over the contact [m/s].
+
+    Raises:
+        ValueError: the speed is not below that of the wave along the solid's surface.
+    """
+
+    solid: Solid
+    material: str | None = _material()
+    speed: float = key(
+        Number("m/s", _NOT_NEGATIVE), "speed of the punch's solid over the contact", 0.0,
+        "at rest in the frame of the contact it slides; with a speed of its own it rolls",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        limit = self.solid.limit() * self.solid.c_s
+        if self.speed >= limit:
+            raise ValueError(
+                f"found speed = {self.speed:g} m/s, expected less than {limit:.6g} m/s, that of the wave "
+                "along the surface of this solid"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayerTable:
+    """[[layer]]: a layer, whose constants at its lower face, ``to``, are still as TOML gives them.
+
+    Raises:
+        ValueError: a key is missing, or stands without the one that it belongs to.
+    """
+
+    solid: Solid
+    yield_strength: float | None = _yield_strength()
+    thickness: float | None = key(
+        Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"
+    )
+    material: str | None = _material()
+    to: dict[str, Any] | None = key(
+        Constants(), "constants at the lower face", None,
+        "the layer is graded; those at its upper face stand beside it", without="as at the upper face",
+    )  # fmt: skip
+    grading: str = key(
+        Choice(GRADINGS), "how constants change with depth", "linear",
+        '`"exponential"`: their logarithms are linear; `"power"`: (depth/thickness)^exponent',
+    )  # fmt: skip
+    exponent: float = key(Number("", Range(at_least=1.0, at_most=10.0)), 'of `grading = "power"`', 1.0)
+    properties: Any = key(
+        DEPTHS, "constants by depth, `[[depth, E, nu, rho], …]`", None,
+        "from the upper face, depth 0, downwards, instead of `thickness`, constants and `to`; isotropic, "
+        "linear between the rows",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        if self.thickness is None:
+            raise ValueError('missing thickness, as in thickness = "2 µm"')
+        if self.to is None and (self.grading != "linear" or self.exponent != 1.0):
+            raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
+        if self.grading != "power" and self.exponent != 1.0:
+            raise ValueError(
+                f'found exponent with grading = "{self.grading}", expected grading = "power"'
+            )
+
+    def layer(self, bottom: Solid | None) -> Layer:
+        """The layer with a solid at its lower face, None for a uniform one.
+
+        Raises:
+            ValueError: constants cannot change so.
+        """
+        assert self.thickness is not None
+        return Layer(self.thickness, self.solid, bottom, self.grading, self.exponent, self.yield_strength)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Punch:
+    """[punch]: a profile, pressed on by each of ``loads`` [N/m]."""
+
+    profile: Profile
+    loads: tuple[float, ...] = key(
+        Numbers("N/m", _POSITIVE), "normal load N per depth", (55.3e3,),
+        "dimensionless results do not depend on it where the contact is that of a flat punch",
+        name="load",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "loads", tuple(dict.fromkeys(self.loads)))
+
+    @property
+    def load(self) -> float:
+        """The load [N/m], the first where there are several."""
+        return self.loads[0]
+
+
+#: Most laws that the tables of a friction section may list: each is held by itself.
+_MOST_LISTED = 100_000
+
+#: State of bristles: the same all along the contact, or advected with the surface from the leading end.
+STATES_ALONG = UNIFORM_STATE, ADVECTED = "uniform", "advected"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """[friction]: laws, how they are integrated over strokes of ``pre_sliding`` [m], the sign of σ_XY.
+
+    Attributes:
+        law: the class of the laws.
+        parameters: values of each of its parameters by key; their product is computed.
+        vary: [[friction.vary]], values of some of these parameters in place of those above; the laws
+            are then the products of all tables, each law once.
+
+    Raises:
+        ValueError: there are too many laws in ``vary``.
+    """
+
+    law: type[FrictionLaw]
+    parameters: dict[str, tuple[Any, ...]]
+    vary: tuple[dict[str, tuple[Any, ...]], ...] = ()
+    mu: tuple[float, ...] | None = key(
+        Numbers("", _NOT_NEGATIVE), "coefficient of friction", None,
+        "another name of `mu_c`; without `model` it is Coulomb's law, and 0 is no friction",
+        stands_for="mu_c", model="coulomb", compare=False,
+    )  # fmt: skip
+    sigma0: tuple[float, ...] | None = key(
+        Numbers("N/m^2", _POSITIVE), "stiffness σ₀ per depth, instead of σ₀ l/N", None,
+        "divided by punch.load it is `sigma0_over_load`. The study's σ₀ = 1.5922 N/µm and N = 55.3 N, "
+        'both read per mm of depth, are `"1.5922 N/µm/mm"` and `"55.3 N/mm"`: 28 792 1/m for any depth',
+        stands_for="sigma0_over_load", compare=False,
+    )  # fmt: skip
+    along: tuple[tuple[float, float], ...] | None = key(
+        ALONG, "f along the contact, pairs [X/a, f]", None,
+        "linear between the pairs, from X/a = -1 to 1, instead of a law; see "
+        "[Friction along the contact](howto_friction.md#friction-along-the-contact)",
+        stands_for="mu_c", model="coulomb", beside=("pre_sliding", "sign"),
+        parameter=lambda rows: [tabulated(rows, 1.0).mean],
+    )  # fmt: skip
+    state: str = key(
+        Choice(STATES_ALONG), "state of the law along the contact", UNIFORM_STATE,
+        '`"uniform"`: that of the stroke all along; `"advected"`: in steady sliding, from rest at the '
+        "leading end on, f of the law over the distance from there",
+    )  # fmt: skip
+    pre_sliding: float = key(
+        Number("m", _POSITIVE), "pre-sliding displacement L", 1e-4, "the length of a stroke"
+    )
+    integrator: str = key(
+        Choice(INTEGRATORS), "integrator", "exact",
+        '`"exact"`: to the last digits; `"rk4"`: Runge-Kutta with 20 steps a stroke, refused where it is '
+        "unstable",
+    )  # fmt: skip
+    sign: str = key(
+        Choice(("physical", "eq25")), "sign of σ_XY", "physical",
+        '`"physical"`: σ_XY = -f σ_YY; `"eq25"`: σ_XY = f σ_YY, the mirror image',
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        count = sum(prod(map(len, lists.values())) for lists in self._products)
+        if self.vary and count > _MOST_LISTED:
+            raise ValueError(f"vary: found {count} laws, expected at most {_MOST_LISTED} in all tables")
+
+    @property
+    def _products(self) -> list[dict[str, tuple[Any, ...]]]:
+        """Values of each parameter by key, for every product that is computed."""
+        return [self.parameters | table for table in self.vary] or [self.parameters]
+
+    @cached_property
+    def _listed(self) -> list[tuple[Any, ...]]:
+        """Parameters of every law of the tables, each law once."""
+        every = (product(*lists.values()) for lists in self._products)
+        return list(dict.fromkeys(chain.from_iterable(every)))
+
+    @property
+    def values(self) -> dict[str, tuple[Any, ...]]:
+        """All values that a parameter takes, by key."""
+        return {
+            key: tuple(dict.fromkeys(chain.from_iterable(lists[key] for lists in self._products)))
+            for key in self.parameters
+        }
+
+    @property
+    def count(self) -> int:
+        """Number of laws."""
+        return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
+
+    @property
+    def _every(self) -> Iterable[tuple[Any, ...]]:
+        """Parameters of every law; the last changes fastest."""
+        return self._listed if self.vary else product(*self.parameters.values())
+
+    def laws(self) -> Iterator[FrictionLaw]:
+        """Every law by itself, in the order of :meth:`columns`.
+
+        Raises:
+            ValueError: a law refuses its parameters.
+        """
+        for values in self._every:
+            yield build_model(self.law, dict(zip(self.parameters, values)))
+
+    def columns(self) -> dict[str, NDArray]:
+        """Parameters of every law by key, each (count,), but those that are tables, the same for all."""
+        of_law = parameters(self.law)
+        columns = zip(self.parameters, zip(*self._every))
+        return {key: np.array(values) for key, values in columns if of_law[key].single}
+
+    def together(self, columns: dict[str, NDArray], rows: slice) -> FrictionLaw:
+        """A law whose parameters are arrays, which stands for many laws at once.
+
+        Args:
+            columns: parameters of every law, from :meth:`columns`.
+            rows: the laws that it stands for.
+
+        Raises:
+            ValueError: a law refuses its parameters.
+        """
+        return build_model(self.law, {key: values[rows, None] for key, values in columns.items()})
+
+    def under(self, loads: tuple[float, ...]) -> "Friction":
+        """The section with σ₀ l/N of its laws where it has σ₀.
+
+        Raises:
+            ValueError: there are several loads.
+        """
+        if self.sigma0 is None:
+            return self
+        if len(loads) > 1:
+            raise ValueError(
+                f"friction.sigma0: found {len(loads)} loads, expected one punch.load to divide it by; "
+                "sigma0_over_load is the same under all"
+            )
+        over_load = tuple(value / loads[0] for value in self.sigma0)
+        return replace(self, parameters=self.parameters | {"sigma0_over_load": over_load})
+
+    @property
+    def stress_ratio(self) -> float:
+        """σ_XY/σ_YY under the punch over f."""
+        return -1.0 if self.sign == "physical" else 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """[motion]: ``c`` over the wave speed or ``speed`` [m/s], strokes and positions; or a path."""
+
+    c: tuple[float, ...] | None = key(
+        Numbers("", Range(at_least=0.0, below=1.0)), "speed over c_s", None,
+        "finite elements want it below the Rayleigh speed", without="one of `c` and `speed`",
+    )  # fmt: skip
+    speed: tuple[float, ...] | None = key(
+        Numbers("m/s", _NOT_NEGATIVE), "speed V", None,
+        "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
+    )  # fmt: skip
+    strokes: tuple[str | Partial, ...] = key(
+        Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
+        "of a law without memory, Coulomb's or Stribeck's, there is a single steady state forward if "
+        "neither `strokes` nor `X_over_L` is given; a stroke `{to = 0.8}` goes on from where the one "
+        "before ended; it may have a `speed` of its own, `rest` is the time at rest before it",
+    )  # fmt: skip
+    rest: float = key(
+        Number("s", _NOT_NEGATIVE), "time at rest between strokes", 0.0, "some laws age there"
+    )
+    path: tuple[tuple[float, float], ...] | None = key(
+        Rows(("s", "m"), 2), "motion point by point, time and position", None,
+        "instead of `c` or `speed`, `strokes` and `X_over_L`; positions from 0 to "
+        "`friction.pre_sliding`, each piece at its own speed, with a state where it ends",
+    )  # fmt: skip
+    X_over_L: tuple[float, ...] = key(
+        Numbers("", Range(at_least=0.0, at_most=1.0)), "positions on the stroke", (0.2, 0.8),
+        "on the same axis in both directions",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solve:
+    """[solve]: methods and their options; ``pressure`` is None for that of the closed form."""
+
+    methods: tuple[str, ...] = key(
+        Choices(METHODS, at_least=0), "methods that solve the contact", OWN_METHODS,
+        "an empty list for friction alone",
+    )  # fmt: skip
+    tolerance: float = key(
+        Number("", Range(at_least=1e-10, at_most=0.1)),
+        "wanted relative accuracy of K_I and pressure moments", 1e-6,
+        "the polynomial degree rises until the measured error is below it",
+    )  # fmt: skip
+    mesh: str = key(
+        Choice(MESHES), "mesh", "confocal", '`"box"` is the block of the study, with walls at 100 a'
+    )
+    mode: str = key(
+        Choice(MODES), "pressure unknown or prescribed", "contact",
+        '`"traction"`: prescribed pressure, see [Theory](theory.md)',
+    )  # fmt: skip
+    degree: int | None = key(
+        Whole(Range(at_least=1, at_most=12)), "polynomial degree, if not set by tolerance", None,
+        without="set by tolerance",
+    )  # fmt: skip
+    cuts: int = key(Whole(Range(at_least=1, at_most=256)), "cuts of every cell's sides", 1)
+    sweep: str = key(
+        Choice(("auto", "every")), "which of many speeds finite elements solve", "auto",
+        '`"auto"`: from 16 speeds on as many as a fit through them needs to give the others, see '
+        '[Sweeps](howto_sweep.md); `"every"`: each',
+    )  # fmt: skip
+    solver: str = key(Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto")
+    assembler: str = key(
+        Choice(ASSEMBLERS), "assembler of matrices", "tensor",
+        '`"tensor"`: element matrices by tensor products, condensed; `"dolfinx"`: the same weak form by '
+        "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
+    )  # fmt: skip
+    pressure: tuple[tuple[float, float], ...] | None = key(
+        Or("closed_form", PRESSURE), "σ_YY of the traction mode", "closed_form",
+        "for the mode traction; rows are pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1, linear between "
+        "them, of any resultant",
+    )  # fmt: skip
+
+    @property
+    def own_pressure(self) -> bool:
+        """True where the scene prescribes a pressure of its own, not that of a closed form."""
+        return self.mode == "traction" and self.pressure is not None
+
+
+#: Most times of a motion at which stresses along the surface are output.
+MOST_OUTPUTS = 400
+
+
+@dataclass(frozen=True, kw_only=True)
+class Time:
+    """[time]: a motion in time; times over a/c_s. ``step`` is None where the tolerance sets it.
+
+    Raises:
+        ValueError: times do not grow, the punch is lifted off, or outputs are too many.
+    """
+
+    end: float = key(
+        Number("", Range(at_least=0.1, at_most=200.0)), "last time over a/c_s",
+        note="what a flat punch does until then, of every state, or of every law",
+    )  # fmt: skip
+    step: float | None = key(
+        Or("auto", Number("", Range(at_least=1e-3, at_most=1.0))),
+        "step of the finite elements over a/c_s", "auto", '`"auto"`: by solve.tolerance and load_ramp',
+    )  # fmt: skip
+    load_ramp: float = key(
+        Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
+        3.0,
+        "N times 10s³ - 15s⁴ + 6s⁵, s = t/load_ramp",
+    )  # fmt: skip
+    load: tuple[tuple[float, float], ...] | None = key(
+        Rows(("", ""), 1), "times over a/c_s and load over N there, instead of load_ramp", None,
+        "from t = 0 on; between two points it changes like that, too",
+    )  # fmt: skip
+    start: str = key(
+        Choice(("rest", "steady")), "state at t = 0", "rest",
+        '`"steady"`: the steady motion of friction and load at t = 0',
+    )  # fmt: skip
+    friction: str = key(
+        Choice(("constant", "law")), "friction over time", "constant",
+        '`"law"`: by the law along motion.strokes, one after the other; `"constant"`: that of each state',
+    )  # fmt: skip
+    every: float | None = key(
+        Number("", _POSITIVE), "time over a/c_s from one output of the surface to the next", None,
+        "stresses along it then, and over time the energy near the punch and beyond",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        if self.load:
+            times = [t for t, _ in self.load]
+            if times[0] != 0.0 or any(later <= t for t, later in pairwise(times)):
+                raise ValueError(f"load: found times {times}, expected 0 first, then ever later ones")
+            if not self.steady and self.load[0][1] != 0.0:
+                raise ValueError(
+                    f"load: found {self.load[0][1]:g} of N at t = 0, expected 0 where it starts at rest"
+                )
+            lifted = [f"{share:g}" for _, share in self.load[not self.steady :] if share <= 0.0]
+            if lifted:
+                raise ValueError(
+                    f"load: found {lifted[0]} of N, expected more than 0: the punch stays down"
+                )
+        if self.every and not self.end / MOST_OUTPUTS <= self.every <= self.end:
+            raise ValueError(
+                f"every: found {self.every:g}, expected at least {self.end / MOST_OUTPUTS:g} and at most "
+                f"end = {self.end:g}"
+            )
+
+    @property
+    def steady(self) -> bool:
+        """True where the motion begins in steady motion, not at rest."""
+        return self.start == "steady"
+
+    @property
+    def by_law(self) -> bool:
+        """True where friction changes by its law along the strokes, False where it is constant."""
+        return self.friction == "law"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """[output]: names of groups of quantities, and points of stresses inside the solid, over a.
+
+    The map has first and last position and number of positions, along X and along Y.
+    """
+
+    quantities: tuple[str, ...] = key(
+        Choices(WORDS), "quantities to compute", ("friction", "sif", "surface"),
+        "of a scene without strokes also `interfaces` and `yield`, where there are any; "
+        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
+        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
+        "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
+    )  # fmt: skip
+    points: tuple[tuple[float, float], ...] = key(
+        POINTS, "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
+    )
+    map: tuple[tuple[float, float, int], ...] | None = key(
+        Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'
+    )
+
+    @property
+    def inside(self) -> NDArray[np.float64]:
+        """All points inside the solid over a, (n, 2): the map's by rows of Y, then the single ones."""
+        single = np.reshape(np.array(self.points, dtype=float), (-1, 2))
+        if self.map is None:
+            return single
+        X, Y = np.meshgrid(*(np.linspace(*axis) for axis in self.map))
+        return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
 class Section:
-    """A section of a scene; that of a registered model has the model's parameters among its keys.
+    """A section of a scene, and how its table is read.
 
     Args:
-        build: makes the section from its values by key, after the model where there is one; where there
-            may be several models, after their class and lists of their values by key.
-        keys: keys by name, beside a model's parameters.
+        made: dataclass whose fields are keys or parameters; with models, its first field is the model, or
+            the class of several models and lists of their parameters by key.
         models: classes by name, None for a section without a model.
         chosen: key that names the model.
         default: name of the model where that key is absent.
@@ -108,8 +573,7 @@ class Section:
 
     def __init__(
         self,
-        build: Callable[..., Any],
-        keys: Mapping[str, Key],
+        made: type,
         models: Registry[Any] | None = None,
         chosen: str = "",
         default: str = "",
@@ -119,20 +583,34 @@ class Section:
         or_else: str = "",
         optional: bool = False,
     ) -> None:
-        self.build, self._keys, self._models, self._chosen = build, dict(keys), models, chosen
-        self._default, self._several, self._defaults = default, several, defaults or {}
+        self._made, self._models, self._chosen, self._default = made, models, chosen, default
+        self._several, self._defaults = several, defaults or {}
         self.or_else, self._optional = or_else, optional
+        self._model = dataclasses.fields(made)[0].name
+        every = {field.name: field.metadata.get(_METADATA) for field in dataclasses.fields(made)}
+        own = {name: entry for name, entry in every.items() if entry}
+        self._fields = {entry.name or name: name for name, entry in own.items()}
+        self._keys = {entry.name or name: entry for name, entry in own.items()}
+        if not models:
+            self._keys |= {name: self._key(p, made) for name, p in parameters(made).items()}
+            self._fields |= {name: field.name for name, field in fields(made).items()}
 
     @property
     def alternatives(self) -> dict[str, dict[str, Key]]:
         """Sets of keys that a section can have, by name of the model; a single set, named "", without."""
         return {name: self._of(name) for name in self._models or ("",)}
 
+    def model(self, given: Mapping[str, Any]) -> str:
+        """Name of the model of a section with these values, "" without models."""
+        named = given.get(self._chosen)
+        if isinstance(named, str) and named in (self._models or ()):
+            return named
+        of_keys = (self._keys[name].model for name in given if name in self._keys)
+        return next(filter(None, of_keys), self._default) if named is None else self._default
+
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
         """Keys that a section with these values can have."""
-        name = given.get(self._chosen)
-        registered = isinstance(name, str) and name in (self._models or ())
-        return self._of(str(name) if registered else self._default)
+        return self._of(self.model(given))
 
     def read(self, name: str, given: Any, faults: list[str]) -> Any:
         """The section's object, or None after its faults are added.
@@ -155,46 +633,63 @@ class Section:
                 own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
                 faults.append(f"{name}.{self._chosen} ({keys[self._chosen].about}): {error}{own}")
                 return None
-        own_faults = [
+        own_faults: list[str] = []
+        for alone in (key for key in given if key in keys and keys[key].beside is not None):
+            beside = {alone, *(keys[alone].beside or ())}
+            if others := sorted(given.keys() - beside):
+                own_faults.append(f"{name}: {alone} gives f itself; take {', '.join(others)} away")
+                given = {key: value for key, value in given.items() if key in beside}
+                keys = self.keys(given)
+        own_faults += [
             f"{name}.{short(key)}: no such key{self._other_owner(key, given) or nearest(key, [*keys])}"
             for key in given
             if key not in keys
         ]
-        values = {}
-        for key, entry in keys.items():
+        values: dict[str, Any] = {}
+        for key, entry in sorted(keys.items(), key=lambda pair: not pair[1].stands_for):
+            parameter = entry.stands_for
             if key not in given:
+                if key in values:  # another key gives it
+                    continue
                 if entry.default is REQUIRED:
                     own_faults.append(f"{name}.{key}: missing; expected the {entry.about}{self.or_else}")
                 else:
-                    values[key] = entry.default
+                    text = isinstance(entry.default, str)
+                    values[key] = entry.kind(entry.default) if text else entry.default
                 continue
+            if parameter and parameter in given:
+                own_faults.append(f"{name}: {key} and {parameter} exclude each other; keep one")
+            if parameter:  # where it cannot be read, the parameter is not missing besides
+                values[parameter] = None
             try:
                 values[key] = entry.kind(given[key])
+                if parameter:
+                    values[parameter] = keys[parameter].kind(entry.parameter(values[key]))
             except ValueError as error:
                 own_faults.append(f"{name}.{key} ({entry.about}): {error}")
         if not own_faults:
             try:
-                return self._made(values)
+                return self._build(self.model(given), values)
             except ValueError as error:  # values that a model refuses together
                 own_faults.append(f"{name}: {error}")
         faults += own_faults
         return None
 
-    def _made(self, values: dict[str, Any]) -> Any:
-        if self._models is None:
-            return self.build(**values)
-        model = self._models[values.pop(self._chosen)]
-        own = {key: values.pop(key) for key in parameters(model)}
+    def _build(self, name: str, values: dict[str, Any]) -> Any:
+        given = {field: values[key] for key, field in self._fields.items() if key in values}
+        if not self._models:
+            return self._made(**given)
+        model = self._models[name]
+        own = {key: values[key] for key in parameters(model)}
         if self._several:
-            return self.build(model, own, **values)
-        return self.build(build_model(model, own), **values)
+            return self._made(law=model, parameters=own, vary=values["vary"], **given)
+        return self._made(**{self._model: build_model(model, own)}, **given)
 
     def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
         """End of a message on a key that only other models have, which names them; "" for any other."""
         models = self._models.items() if self._models else ()
         others = [name for name, model in models if key in parameters(model)]
-        own = given.get(self._chosen, self._default)
-        return f' of {self._chosen} = "{own}"; {", ".join(others)} has it' if others else ""
+        return f' of {self._chosen} = "{self.model(given)}"; {", ".join(others)} has it' if others else ""
 
     def _of(self, model: str) -> dict[str, Key]:
         """Keys of a section with a model of that name."""
@@ -241,51 +736,13 @@ class Section:
         return Key(value, parameter.about, default, parameter.note)
 
 
-#: Most layers of a scene.
-MOST = 10
-_POSITIVE = Range(above=0.0)
-
-
-_YIELD_STRENGTH = Key(
-    Number("Pa", _POSITIVE), "uniaxial yield strength", None,
-    'for the quantity `"yield"`; stresses alone need none',
-)  # fmt: skip
-
-_KEYS = {
-    "yield_strength": _YIELD_STRENGTH,
-    "thickness": Key(Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"),
-    "material": Key(
-        Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
-        "what is written beside it replaces the material's",
-    ),
-    "to": Key(
-        Constants(), "constants at the lower face", None,
-        "the layer is graded; those at its upper face stand beside it", without="as at the upper face",
-    ),
-    "grading": Key(
-        Choice(GRADINGS), "how constants change with depth", "linear",
-        '`"exponential"`: their logarithms are linear; `"power"`: (depth/thickness)^exponent',
-    ),
-    "exponent": Key(
-        Number("", Range(at_least=1.0, at_most=10.0)), 'of `grading = "power"`', 1.0,
-    ),
-    "properties": Key(
-        DEPTHS, "constants by depth, `[[depth, E, nu, rho], …]`", None,
-        "from the upper face, depth 0, downwards, instead of `thickness`, constants and `to`; isotropic, "
-        "linear between the rows",
-    ),
-}  # fmt: skip
-
-
 class LayerSections(Section):
     """Any number of tables [[layer]]."""
 
     heading = "[[{}]]"
 
     def __init__(self) -> None:
-        super().__init__(
-            _layer, _KEYS, SOLIDS, "kind", "isotropic", or_else=", or material, or properties"
-        )
+        super().__init__(LayerTable, SOLIDS, "kind", "isotropic", or_else=", or material, or properties")
 
     def read(self, name: str, given: Any, faults: list[str]) -> tuple[Layer, ...]:
         """The layers from the top down; their faults are added to ``faults``."""
@@ -296,8 +753,8 @@ class LayerSections(Section):
                 f"{name}: found {excerpt(given)}, expected tables [[{name}]], from the top down"
             )
             return ()
-        if len(given) > MOST:
-            faults.append(f"{name}: found {len(given)} layers, expected at most {MOST}")
+        if len(given) > MOST_LAYERS:
+            faults.append(f"{name}: found {len(given)} layers, expected at most {MOST_LAYERS}")
             return ()
         layers: list[Layer] = []
         for number, table in enumerate(given, 1):
@@ -307,13 +764,13 @@ class LayerSections(Section):
     def _read(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
         if isinstance(given.get("properties"), list):
             return self._tabulated(name, given, faults)
-        layer = super().read(name, given, faults)
-        if layer and layer["bottom"] is not None:
-            own = {key: value for key, value in given.items() if key not in _KEYS or key == "thickness"}
-            bottom = super().read(f"{name}.to", own | layer["bottom"], faults)
-            layer = bottom and layer | {"bottom": bottom["solid"]}
+        table, bottom = super().read(name, given, faults), None
+        if table and table.to is not None:
+            own = {key: v for key, v in given.items() if key not in self._keys or key == "thickness"}
+            lower = super().read(f"{name}.to", own | table.to, faults)
+            table, bottom = lower and table, lower and lower.solid
         try:
-            return [Layer(**layer)] if layer else []
+            return [table.layer(bottom)] if table else []
         except ValueError as error:
             faults.append(f"{name}: {error}")
             return []
@@ -327,11 +784,11 @@ class LayerSections(Section):
                 f"{name}.kind: found {excerpt(given['kind'])}, expected isotropic with properties"
             )
             return []
+        plane = {key: value for key, value in given.items() if key == "plane"}
         try:
-            rows = _KEYS["properties"].kind(given["properties"])
+            rows = DEPTHS(given["properties"])
             solids = [
-                build_model(Isotropic, dict(zip(("E", "nu", "rho"), row[1:])) | _plane(given))
-                for row in rows
+                build_model(Isotropic, dict(zip(("E", "nu", "rho"), row[1:])) | plane) for row in rows
             ]
         except ValueError as error:
             faults.append(f"{name}.properties: {error}")
@@ -342,299 +799,23 @@ class LayerSections(Section):
         ]
 
 
-def _plane(given: Mapping[str, Any]) -> dict[str, Any]:
-    return {"plane": given["plane"]} if "plane" in given else {}
-
-
-def _layer(
-    solid: Solid, thickness: float | None, material: str | None,
-    to: Any, grading: str, exponent: float, properties: Any, yield_strength: float | None,
-) -> dict[str, Any]:  # fmt: skip
-    """Values of a layer by attribute; its constants at the lower face are still as TOML gives them."""
-    if thickness is None:
-        raise ValueError('missing thickness, as in thickness = "2 µm"')
-    if to is None and (grading != "linear" or exponent != 1.0):
-        raise ValueError("grading and exponent need to = {…}, the constants at the lower face")
-    if grading != "power" and exponent != 1.0:
-        raise ValueError(f'found exponent with grading = "{grading}", expected grading = "power"')
-    return {
-        "thickness": thickness, "solid": solid, "bottom": to, "grading": grading,
-        "exponent": exponent, "yield_strength": yield_strength,
-    }  # fmt: skip
-
-
-#: Most times of a motion at which stresses along the surface are output.
-MOST_OUTPUTS = 400
-
-
-def _elastic_punch(solid: Solid, material: str | None, speed: float) -> ElasticPunch:
-    return ElasticPunch(solid, speed)
-
-
-def _punch(profile: Profile, load: tuple[float, ...]) -> Punch:
-    return Punch(profile, tuple(dict.fromkeys(load)))
-
-
-def _friction(
-    law: type[FrictionLaw], values: dict[str, Any], sigma0: Any = None, mu: Any = None, **rest: Any
-) -> Friction:
-    """Section [friction]; ``sigma0`` and ``mu`` are unused: the reader has made parameters of them."""
-    return Friction(law, values, **rest)
-
-
-def _slider(damping: float, **given: float | None) -> Slider | None:
-    if all(value is None for value in given.values()):
-        return None
-    if missing := [key for key, value in given.items() if value is None]:
-        raise ValueError(f"missing {', '.join(missing)}, which a slider needs")
-    return Slider(damping=damping, **given)  # type: ignore[arg-type]
-
-
-def _time(
-    end: float | None, step: float | str, load_ramp: float,
-    load: tuple[tuple[float, float], ...] | None, start: str, friction: str,
-    every: float | None,
-) -> Time | None:  # fmt: skip
-    if end is None:
-        return None
-    steady = start == "steady"
-    if load:
-        times = [t for t, _ in load]
-        if times[0] != 0.0 or any(later <= t for t, later in pairwise(times)):
-            raise ValueError(f"load: found times {times}, expected 0 first, then ever later ones")
-        if not steady and load[0][1] != 0.0:
-            raise ValueError(
-                f"load: found {load[0][1]:g} of N at t = 0, expected 0 where it starts at rest"
-            )
-        if faults := [f"{share:g}" for _, share in load[not steady :] if share <= 0.0]:
-            raise ValueError(f"load: found {faults[0]} of N, expected more than 0: the punch stays down")
-    if every and not end / MOST_OUTPUTS <= every <= end:
-        raise ValueError(
-            f"every: found {every:g}, expected at least {end / MOST_OUTPUTS:g} and at most end = {end:g}"
-        )
-    return Time(
-        end, None if isinstance(step, str) else step, load_ramp, load or (), steady, friction == "law",
-        every,
-    )  # fmt: skip
-
-
-_SOLID_KEYS = {
-    "material": Key(
-        Choice(LIBRARY),
-        "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
-        "what is written beside it replaces the material's",
-    ),
-    "yield_strength": _YIELD_STRENGTH,
-}  # fmt: skip
-
-_PUNCH_SOLID_KEYS = {
-    "material": _KEYS["material"],
-    "speed": Key(
-        Number("m/s", Range(at_least=0.0)), "speed of the punch's solid over the contact", 0.0,
-        "at rest in the frame of the contact it slides; with a speed of its own it rolls",
-    ),
-}  # fmt: skip
-
-_PUNCH_KEYS = {
-    "load": Key(
-        Numbers("N/m", _POSITIVE), "normal load N per depth", (55.3e3,),
-        "dimensionless results do not depend on it where the contact is that of a flat punch",
-    ),
-}  # fmt: skip
-
-_FRICTION_KEYS = {
-    "mu": Key(
-        Numbers("", Range(at_least=0.0)), "coefficient of friction", None,
-        "another name of `mu_c`; without `model` it is Coulomb's law, and 0 is no friction",
-        stands_for="mu_c",
-    ),
-    "sigma0": Key(
-        Numbers("N/m^2", _POSITIVE), "stiffness σ₀ per depth, instead of σ₀ l/N", None,
-        "divided by punch.load it is `sigma0_over_load`. The study's σ₀ = 1.5922 N/µm and N = 55.3 N, "
-        'both read per mm of depth, are `"1.5922 N/µm/mm"` and `"55.3 N/mm"`: 28 792 1/m for any depth',
-        stands_for="sigma0_over_load",
-    ),
-    "along": Key(
-        ALONG, "f along the contact, pairs [X/a, f]", None,
-        "linear between the pairs, from X/a = -1 to 1, instead of a law; see "
-        "[Friction along the contact](howto_friction.md#friction-along-the-contact)",
-        stands_for="mu_c",
-    ),
-    "state": Key(
-        Choice(STATES_ALONG), "state of the law along the contact", UNIFORM_STATE,
-        '`"uniform"`: that of the stroke all along; `"advected"`: in steady sliding, from rest at the '
-        "leading end on, f of the law over the distance from there",
-    ),
-    "pre_sliding": Key(
-        Number("m", _POSITIVE), "pre-sliding displacement L", 1e-4, "the length of a stroke",
-    ),
-    "integrator": Key(
-        Choice(INTEGRATORS), "integrator", "exact",
-        '`"exact"`: to the last digits; `"rk4"`: Runge-Kutta with 20 steps a stroke, refused where it is '
-        "unstable",
-    ),
-    "sign": Key(
-        Choice(("physical", "eq25")), "sign of σ_XY", "physical",
-        '`"physical"`: σ_XY = -f σ_YY; `"eq25"`: σ_XY = f σ_YY, the mirror image',
-    ),
-}  # fmt: skip
-
-_MOTION_KEYS = {
-    "c": Key(
-        Numbers("", Range(at_least=0.0, below=1.0)), "speed over c_s", None,
-        "finite elements want it below the Rayleigh speed", without="one of `c` and `speed`",
-    ),
-    "speed": Key(
-        Numbers("m/s", Range(at_least=0.0)), "speed V", None,
-        "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
-    ),
-    "strokes": Key(
-        Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
-        "of a law without memory, Coulomb's or Stribeck's, there is a single steady state forward if "
-        "neither `strokes` nor `X_over_L` is given; a stroke `{to = 0.8}` goes on from where the one "
-        "before ended; it may have a `speed` of its own, `rest` is the time at rest before it",
-    ),
-    "rest": Key(
-        Number("s", Range(at_least=0.0)), "time at rest between strokes", 0.0, "some laws age there",
-    ),
-    "path": Key(
-        Rows(("s", "m"), 2), "motion point by point, time and position", None,
-        "instead of `c` or `speed`, `strokes` and `X_over_L`; positions from 0 to "
-        "`friction.pre_sliding`, each piece at its own speed, with a state where it ends",
-        without="none",
-    ),
-    "X_over_L": Key(
-        Numbers("", Range(at_least=0.0, at_most=1.0)), "positions on the stroke", (0.2, 0.8),
-        "on the same axis in both directions",
-    ),
-}  # fmt: skip
-
-_SOLVE_KEYS = {
-    "methods": Key(
-        Choices(METHODS, at_least=0), "methods that solve the contact", OWN_METHODS,
-        "an empty list for friction alone",
-    ),
-    "tolerance": Key(
-        Number("", Range(at_least=1e-10, at_most=0.1)),
-        "wanted relative accuracy of K_I and pressure moments", 1e-6,
-        "the polynomial degree rises until the measured error is below it",
-    ),
-    "mesh": Key(
-        Choice(MESHES), "mesh", "confocal", '`"box"` is the block of the study, with walls at 100 a'
-    ),
-    "mode": Key(
-        Choice(MODES), "pressure unknown or prescribed", "contact",
-        '`"traction"`: prescribed pressure, see [Theory](theory.md)',
-    ),
-    "degree": Key(
-        Whole(Range(at_least=1, at_most=12)), "polynomial degree, if not set by tolerance", None,
-        without="set by tolerance",
-    ),
-    "cuts": Key(Whole(Range(at_least=1, at_most=256)), "cuts of every cell's sides", 1),
-    "sweep": Key(
-        Choice(("auto", "every")), "which of many speeds finite elements solve", "auto",
-        '`"auto"`: from 16 speeds on as many as a fit through them needs to give the others, see '
-        '[Sweeps](howto_sweep.md); `"every"`: each',
-    ),
-    "solver": Key(
-        Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto"
-    ),
-    "assembler": Key(
-        Choice(ASSEMBLERS), "assembler of matrices", "tensor",
-        '`"tensor"`: element matrices by tensor products, condensed; `"dolfinx"`: the same weak form by '
-        "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
-    ),
-    "pressure": Key(
-        Or("closed_form", PRESSURE), "σ_YY of the traction mode", "closed_form",
-        "for the mode traction; rows are pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1, linear between "
-        "them, of any resultant",
-    ),
-}  # fmt: skip
-
-_SLIDER_KEYS = {
-    "mass": Key(Number("kg/m", _POSITIVE), "mass of the slider, per depth", None),
-    "stiffness": Key(Number("N/m^2", _POSITIVE), "stiffness of the spring, per depth", None),
-    "damping": Key(
-        Number("N*s/m^2", Range(at_least=0.0)), "dashpot beside the spring, per depth", 0.0
-    ),
-    "drive_speed": Key(
-        Number("m/s", _POSITIVE), "speed at which the spring's other end is pulled", None
-    ),
-    "duration": Key(Number("s", _POSITIVE), "duration of the motion", None),
-}  # fmt: skip
-
-_TIME_KEYS = {
-    "end": Key(
-        Number("", Range(at_least=0.1, at_most=200.0)), "last time over a/c_s", None,
-        "what a flat punch does until then, of every state, or of every law",
-    ),
-    "step": Key(
-        Or("auto", Number("", Range(at_least=1e-3, at_most=1.0))),
-        "step of the finite elements over a/c_s", "auto", '`"auto"`: by solve.tolerance and load_ramp',
-    ),
-    "load_ramp": Key(
-        Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",
-        3.0,
-        "N times 10s³ - 15s⁴ + 6s⁵, s = t/load_ramp",
-    ),
-    "load": Key(
-        Rows(("", ""), 1), "times over a/c_s and load over N there, instead of load_ramp", None,
-        "from t = 0 on; between two points it changes like that, too",
-    ),
-    "start": Key(
-        Choice(("rest", "steady")), "state at t = 0", "rest",
-        '`"steady"`: the steady motion of friction and load at t = 0',
-    ),
-    "friction": Key(
-        Choice(("constant", "law")), "friction over time", "constant",
-        '`"law"`: by the law along motion.strokes, one after the other; `"constant"`: that of each state',
-    ),
-    "every": Key(
-        Number("", _POSITIVE), "time over a/c_s from one output of the surface to the next",
-        None, "stresses along it then, and over time the energy near the punch and beyond",
-        without="none",
-    ),
-}  # fmt: skip
-
-_OUTPUT_KEYS = {
-    "quantities": Key(
-        Choices(WORDS), "quantities to compute", ("friction", "sif", "surface"),
-        "of a scene without strokes also `interfaces` and `yield`, where there are any; "
-        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
-        "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
-        "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
-    ),
-    "points": Key(
-        POINTS, "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
-    ),
-    "map": Key(
-        Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'
-    ),
-}  # fmt: skip
-
 #: Sections whose numbers may be swept.
 SWEPT = ("solid", "layer", "punch", "punch.solid", "friction")
 
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Section] = {
-    "solid": Section(HalfPlane, _SOLID_KEYS, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
+    "solid": Section(HalfPlane, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
     "layer": LayerSections(),
-    "punch": Section(_punch, _PUNCH_KEYS, PROFILES, "profile", "flat", defaults={"half_width": 1e-3}),
+    "punch": Section(Punch, PROFILES, "profile", "flat", defaults={"half_width": 1e-3}),
     "punch.solid": Section(
-        _elastic_punch,
-        _PUNCH_SOLID_KEYS,
-        SOLIDS,
-        "kind",
-        "isotropic",
-        or_else=", or punch.solid.material",
-        optional=True,
+        ElasticPunch, SOLIDS, "kind", "isotropic", or_else=", or punch.solid.material", optional=True
     ),
-    "friction": Section(_friction, _FRICTION_KEYS, LAWS, "model", "dahl", several=True),
-    "motion": Section(Motion, _MOTION_KEYS),
-    "slider": Section(_slider, _SLIDER_KEYS),
-    "time": Section(_time, _TIME_KEYS),
-    "solve": Section(Solve, _SOLVE_KEYS),
-    "output": Section(Output, _OUTPUT_KEYS),
+    "friction": Section(Friction, LAWS, "model", "dahl", several=True),
+    "motion": Section(Motion),
+    "slider": Section(Slider, optional=True, defaults={"damping": 0.0}),
+    "time": Section(Time, optional=True),
+    "solve": Section(Solve),
+    "output": Section(Output),
 }
 
 
@@ -643,7 +824,11 @@ def schema() -> dict[str, Any]:
     properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
     properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
     properties["punch"]["properties"]["solid"] = properties.pop("punch.solid")
-    properties["layer"] = {"type": "array", "items": _layer_schema(properties["layer"]), "maxItems": MOST}
+    properties["layer"] = {
+        "type": "array",
+        "items": _layer_schema(properties["layer"]),
+        "maxItems": MOST_LAYERS,
+    }
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "galinx scene",

@@ -68,13 +68,13 @@ class Number:
 
 @dataclass(frozen=True)
 class Or:
-    """A word, or a value of another kind."""
+    """A word, or a value of another kind; the word stands for None."""
 
     word: str
     kind: Kind
 
     def __call__(self, value: Any) -> Any:
-        return value if value == self.word else self.kind(value)
+        return None if value == self.word else self.kind(value)
 
     def schema(self) -> dict[str, Any]:
         return {"anyOf": [{"const": self.word}, self.kind.schema()]}

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..parameters import parameter
 from .law import FrictionLaw
 
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
@@ -31,21 +32,15 @@ _CYCLES, _SAME = 8, 1e-8
 
 @dataclass(frozen=True)
 class Slider:
-    """A mass on a driven spring: m dv/dt = k e + d (V - v) - N f, de/dt = V - v, from rest, e = 0.
+    """A mass on a driven spring: m dv/dt = k e + d (V - v) - N f, de/dt = V - v, from rest, e = 0."""
 
-    Attributes:
-        mass: m per depth [kg/m].
-        stiffness: k per depth [N/m²].
-        damping: d of a dashpot beside the spring, per depth [N s/m²].
-        drive_speed: V at which the spring's other end is pulled [m/s].
-        duration: of the motion [s].
-    """
-
-    mass: float
-    stiffness: float
-    damping: float
-    drive_speed: float
-    duration: float
+    mass: float = parameter("mass", "mass of the slider, per depth", "kg/m", above=0.0)
+    stiffness: float = parameter("stiffness", "stiffness of the spring, per depth", "N/m^2", above=0.0)
+    damping: float = parameter("damping", "dashpot beside the spring, per depth", "N*s/m^2", at_least=0.0)
+    drive_speed: float = parameter(
+        "drive_speed", "speed at which the spring's other end is pulled", "m/s", above=0.0
+    )
+    duration: float = parameter("duration", "duration of the motion", "s", above=0.0)
 
 
 @dataclass(frozen=True)

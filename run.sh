@@ -116,7 +116,7 @@ fi
 
 if [ "${1:-}" = stress ]; then
   set_up "${packages[@]}"
-  exec "$python" "$home/benchmarks/stress" stress "$@"
+  exec "$python" "$home/benchmarks/stress" "$@"
 fi
 
 if [ "${1:-}" = docs ]; then

@@ -3,6 +3,7 @@
 ./run.sh bench assemblers                    prints a Markdown table
 """
 
+import argparse
 import logging
 from statistics import median
 from time import process_time
@@ -47,6 +48,7 @@ def intensities(space: Space) -> np.ndarray:
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
     logging.disable(logging.WARNING)
     kind = MESHES["confocal"]
     mesh = distribute(kind.build(CELLS), MPI.COMM_SELF)

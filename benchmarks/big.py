@@ -3,8 +3,8 @@
 ./run.sh bench big [UNKNOWNS]                prints a Markdown table, up to so many unknowns
 """
 
+import argparse
 import resource
-import sys
 import time
 
 import numpy as np
@@ -52,7 +52,9 @@ def measure(space: Space, c: float, kind: str) -> tuple[int, float, float]:
 
 
 def main() -> None:
-    comm, most = MPI.COMM_WORLD, float(sys.argv[1]) if len(sys.argv) > 1 else 3.5e6
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("unknowns", nargs="?", type=float, default=3.5e6, help="of the largest mesh")
+    comm, most = MPI.COMM_WORLD, parser.parse_args().unknowns
     if comm.rank == 0:
         print(HEAD)
     for name, degree, all_cuts in CASES:

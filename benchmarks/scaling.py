@@ -3,6 +3,7 @@
 ./run.sh bench scaling                       prints Markdown tables
 """
 
+import argparse
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from pathlib import Path
 from statistics import median
 
 import h5py
-from measure import HOME, wall_cpu_memory
+from measure import HOME, consumption
 
 PAIRS = 5
 #: Cuts of a cell's sides on the mesh that both have, and on one and two ranks those that give a rank the
@@ -33,13 +34,14 @@ def run(cuts: int, ranks: int, archive: Path) -> Run:
     command = [str(HOME / "run.sh"), "-n", str(ranks), "run", str(HOME / "scenes" / "tables4_5.toml")]
     for change in (*SCENE, f"solve.cuts={cuts}"):
         command += ["--set", change]
-    wall, _, memory = wall_cpu_memory([*command, "-o", str(archive), "--overwrite"])
+    used = consumption([*command, "-o", str(archive), "--overwrite"])
+    wall = used["wall"]
     with h5py.File(archive) as file:
         seconds = dict(zip(file["run/steps"].asstr()[()], file["run/seconds"][()]))
         unknowns = int(file["run/fem/unknowns"][0])
     seconds["start, imports, all else"] = wall - sum(seconds.values())
     print(f"{cuts} cuts, {ranks} ranks: {wall:.1f} s", file=sys.stderr, flush=True)
-    return Run(unknowns, seconds | {"whole process": wall}, memory)
+    return Run(unknowns, seconds | {"whole process": wall}, used["memory"])
 
 
 def table(cuts: tuple[int, int], folder: Path) -> str:
@@ -70,6 +72,7 @@ def _line(name: str, pairs: list[list[float]], digits: int) -> str:
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__).parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         print("Strong scaling: a ratio of 2 would be perfect.\n")

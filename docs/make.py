@@ -33,13 +33,13 @@ the folder you are in. Exit status:
 | 3 | failure of program or machine, or interrupted |
 
 SIGINT (Ctrl-C), SIGTERM, SIGHUP and a killed rank end a command at once, with status 3 and one message.
-What a run has finished is kept for `--resume`.
+`--resume` goes on with what a run has finished.
 
-A file appears under its name when it is whole. What is made from an archive is replaced unasked. Scenes,
-archives and what galinx did not make are replaced with `--overwrite` only, files that a command reads
-never. `--log` adds to logs only.
+A file gets its name when it is whole. Figures, pages and tables of an archive are replaced unasked.
+Scenes, archives and files that galinx did not make are replaced with `--overwrite` only. A file that the
+command reads is never replaced; `--log` only appends.
 
-Words that `run.sh` knows besides the commands:
+`run.sh` knows more words than the commands:
 
 | word | what it does |
 |---|---|
@@ -60,13 +60,6 @@ With the folder `bin` on `PATH` the same command is called `galinx`. An installe
 commands and these options, not the words above; `mpirun -n RANKS galinx COMMAND …` runs it on ranks.
 """
 
-_SHARED = """\
-## Shared options
-
-Options of several commands:
-
-"""
-
 _SCENE = """\
 # Scenes
 
@@ -84,16 +77,19 @@ sigma0_over_load = "25000 1/m"
 c = 0.3                          # over the shear wave speed
 ```
 
-- A number is in the unit of its row, dimensionless where there is none. A text carries its own unit:
-  `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, `"25000 1/m"`, with `*`, `/` and whole powers `^`. `"5 %"`
-  is 0.05. A unit of another dimension is an error; so are degrees, counts and bits for numbers.
+- A number is in the unit of its row; a row without a unit is dimensionless. A text carries its own unit:
+  `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, with `*`, `/` and whole powers `^`. `"5 %"` is 0.05. A unit
+  of another dimension is an error.
 - `c` or `speed`, `load`, `X_over_L` and the parameters of a friction law may be lists or ranges. Each
   combination is a state, numbered from 0, on all `strokes`. `c` changes most slowly, then the load, the
   law's parameters in the order of their rows, stroke, position.
 - Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
-  too: `radius = ["2 mm", "5 mm"]`. All combinations follow each other in one archive; the last number
+  too: `radius = ["2 mm", "5 mm"]`. All combinations come into one archive; the last number
   changes fastest.
-- Each table `[[friction.vary]]` is a product of its own; it takes what it leaves out from [friction].
+- A range includes both ends, which may carry units: `{from = 0, to = 0.9, number = 10}` is 0, 0.1, … 0.9.
+  With `spacing = "log"` the ratios are equal: `{from = 0.01, to = 1, number = 3, spacing = "log"}` is
+  0.01, 0.1, 1.
+- Each table `[[friction.vary]]` is a product of its own and takes what it leaves out from [friction].
   Here 4 laws result, since 0.5 with 25 000 /m is in both tables:
 
 ```toml
@@ -106,19 +102,16 @@ mu_c = [0.1, 0.5, 0.7]
 sigma0_over_load = ["12500 1/m", "25000 1/m"]
 ```
 
-- A range includes both ends, which may carry units: `c = {from = 0, to = 0.9, number = 10}` is 0, 0.1,
-  … 0.9. With `spacing = "log"` the ratios are equal: `{from = 0.01, to = 1, number = 3, spacing =
-  "log"}` is 0.01, 0.1, 1.
 - `kind`, `profile` and `model` name a solid, a punch and a friction law, each with keys of its own.
   [Extend galinx](howto_extend.md) adds others.
-- Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a file
-  of them, `"rows.csv"`.
-- Without a default a key may be left out. An unknown key is an error.
+- Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a CSV
+  file of them, `"rows.csv"`.
+- A key may be left out unless its row says "required"; its default is in brackets. An unknown key is an
+  error.
 - Results call strokes FM1, … (forward) and BM1, … (backward).
+- `title`, before the sections, is shown above tables and figures.
 
 Editors complete and check scenes by `scenes/scene.schema.json`, which `./run.sh schema` prints.
-
-`title`, free text before the sections, is shown above tables and figures.
 """
 
 _ARCHIVE = """\
@@ -126,8 +119,8 @@ _ARCHIVE = """\
 
 Written by `docs/make.py` from the table of quantities, `postprocess/quantities/`.
 
-A run writes one HDF5 file, which appears under its name only when it is whole. Every numerical dataset
-carries a checksum, every dataset `units` ("1" for dimensionless) and `long_name`:
+A run writes one HDF5 file. Every numerical dataset carries a checksum, every dataset `units` ("1" for
+dimensionless) and `long_name`. [Read archives](howto_read_archive.md) shows how to read them:
 
     ./run.sh run scenes/tables4_5.toml -o out.h5
 
@@ -139,15 +132,12 @@ with h5py.File("out.h5") as file:
     motion = file["states/motion"].asstr()[()]
 ```
 
-[Read archives](howto_read_archive.md) shows other ways.
-
-- METHOD in a path is `closed_form`, `sie` (integral equation) or `fem` (finite elements); the column
-  "with" names the methods where not all give the dataset.
-- The column also has words of `solve.mode` and `output.quantities`, and what else a dataset needs: sharp
-  edges (punch) or free ends, a pressure of your own, friction along the contact, finite stresses, one
-  method, fitted speeds.
+- METHOD is `closed_form`, `sie` (integral equation) or `fem` (finite elements).
+- Brackets hold the shape, if it is not that of the section; the unit, if there is one; NaN, if there may
+  be no answer; after "with" the methods, if not all give the dataset, words of `solve.mode` and
+  `output.quantities`, and what else it needs: sharp edges (punch) or free ends, a pressure of your own,
+  friction along the contact, finite stresses, one method, fitted speeds.
 - Words with a slash between them follow the order of the names in their row.
-- Values without a unit are dimensionless. NaN: there may be no answer.
 - The place of the largest or smallest value NAME is `NAME_X_over_a` along the surface and, where it may
   lie inside, `NAME_Y_over_a` outwards, over the half-width. The tables leave these out.
 - A parameter of a friction law is `/states/KEY`. A swept number of another section is
@@ -160,25 +150,24 @@ _WHOLE = """\
 
 A fault of an archive ends every command with one message and status 2.
 
-1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow. It is
-   verified before HDF5 opens the file. `head -n 3 out.h5` shows it, `tail -c +513 out.h5 | sha256sum`
-   computes it.
+1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow. It is verified
+   before HDF5 opens the file. `head -n 3 out.h5` shows it, `tail -c +513 out.h5 | sha256sum` computes it.
 2. Names, types, shapes, units and attributes must be those of this page, and values in their range.
    Numbers are finite unless this page, `run/failures` or `comparisons` says otherwise.
 
-`check` also repeats the friction, the comparisons and the verdict. For archives of its own version it
-computes some results again:
+`check` repeats the friction, the comparisons and the verdict. For archives of its own version it computes
+again, and compares finite elements with closed forms to 1 %:
 
 - closed forms of all states under flat punches, of 24 under other smooth ones, of 6 under those with
   kinks (of 3 where stresses are largest),
 - integral equations of 4 states over layers,
 - indentations, sizes of linear systems, warnings.
 
-It compares finite elements with closed forms to 1 %. It does not check `run/seconds`, `run/fem`,
-`sigma_YY_raw`, places of largest stresses by finite elements, stresses over layers by these alone,
-motions in time and of sliders. A contradiction ends it with status 1.
+It does not check `run/seconds`, `run/fem`, `sigma_YY_raw`, places of largest stresses by finite elements,
+stresses over layers by these alone, motions in time and of sliders. A contradiction ends it with
+status 1.
 
-Archives of schema version 1 are not read. Those of version 2 lack attributes of solid and speeds.
+[Versions](howto_read_archive.md#from-another-version) of the layout: archives of version 1 are not read.
 """
 
 _ATTRIBUTES = """\
@@ -189,8 +178,9 @@ _ATTRIBUTES = """\
 _COMPARISONS = """\
 ## Comparisons
 
-The attribute `comparisons` has the largest value over all states by these texts. The verdict is FAIL
-where one exceeds its limit. T is `solve.tolerance`. Texts with [brackets] stand for two comparisons.
+The attribute `comparisons` has the largest value over all states by these texts, which go on with what a
+difference is relative to. The verdict is FAIL where one exceeds its limit. T is `solve.tolerance`. Texts
+with [brackets] stand for two comparisons. `show -v` prints values and limits.
 
 """
 
@@ -217,13 +207,12 @@ def commands_page() -> str:
     counts = Counter(record for records in options.values() for record in records)
     shared = {names: text for (names, text), count in counts.items() if count > 1 and names[:2] != "-o"}
     rows = [(f"`{names}`", text) for names, text in shared.items()]
-    parts = [_COMMANDS, _SHARED + _table(("option", "meaning"), rows)]
+    parts = [_COMMANDS, "## Shared options\n", _table(("option", "meaning"), rows)]
     for name, command in cli.commands.items():
         context = contexts[name]
         about, _, example = (command.help or "").partition("Example:")
-        usage = " ".join([context.info_name or "", *command.collect_usage_pieces(context)])
-        usage = f"Usage: `{usage}`" + ", as in" * bool(example)
-        parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\n{usage}\n")
+        usage = " ".join([name, *command.collect_usage_pieces(context)])
+        parts.append(f"## {name}\n\n{fill(_plain(about), 106)}\n\n`{usage}`" + ":" * bool(example) + "\n")
         if example:
             parts.append(f"    {_plain(example).replace(program(), './run.sh', 1)}\n")
         of_several = [names for names, text in options[name] if shared.get(names) == text]
@@ -244,19 +233,8 @@ def scene_page() -> str:
     parts = [_SCENE]
     for name, section in SECTIONS.items():
         parts += [f"## {section.heading.format(name)}\n", *_section(section)]
-    parts.append("## Materials\n\n`./run.sh materials` prints the same, with the kind of each.\n")
-    rows = [
-        (
-            f"`{n}`",
-            m.about,
-            m.told.replace(" (dimensionless)", ""),
-            m.source,
-            f"{m.yield_strength}, {m.yield_source}" if m.yield_strength else "–",
-        )
-        for n, m in LIBRARY.items()
-    ]
-    heads = ("name", "solid", "constants", "source", "yield strength")
-    parts.append(_table(heads, rows))
+    parts.append("## Materials\n\n`./run.sh materials` prints their constants and sources.\n")
+    parts.append("".join(f"- `{n}`: {m.about.partition(';')[0]}\n" for n, m in LIBRARY.items()))
     return "\n".join(parts)
 
 
@@ -281,15 +259,15 @@ def archive_page() -> str:
         (word, *others) = {row.asked_by for row in rows}
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
         told = [f"With `{word}` among `output.quantities`."] * bool(word and not others)
-        told += [f"Shape, if no other is given: {over}."] * (count > 1)
-        table = _table(("dataset", "what", "values", "with"), _datasets(rows, bool(others), over))
+        told += [f"Shape: {over}."] * (count > 1)
+        table = _table(("dataset", "what"), _datasets(rows, bool(others), over))
         parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
     rules: dict[str, list[str]] = {}
     for rule in RULES.values():
         rules.setdefault(_limit(rule), []).append(rule.text)
     parts.append(_COMPARISONS.rstrip("\n") + "\n")
     for limit, texts in rules.items():
-        listed = "".join(f"- {text}\n" for text in _both(texts))
+        listed = "".join(f"- {text}\n" for text in dict.fromkeys(t.split(", ")[0] for t in _both(texts)))
         parts.append(f"{limit[0].upper()}{limit[1:]}:\n\n{listed}")
     return "\n".join(parts)
 
@@ -326,7 +304,7 @@ def _section(section: Any) -> list[str]:
     from galinx.registry import Registry
     from galinx.solvers.parameters import parameters
 
-    heads = ("key", "value", "default", "meaning")
+    heads = ("key", "value", "meaning")
 
     def rows(keys: dict[str, Any]) -> list[tuple[str, ...]]:
         return [_row(key, known) for key, known in keys.items()]
@@ -343,10 +321,12 @@ def _section(section: Any) -> list[str]:
     own = {model: parameters(models[model]).keys() for model in alternatives}
     first = own[next(iter(own))]
     common = {k: known for k, known in keys.items() if k not in first and not known.stands_for}
-    parts = [_table(heads, rows(common))]
     if section is SECTIONS["layer"] or section is SECTIONS["punch.solid"]:
-        constants = f"The constants are those of [[solid]](#solid): required{section.or_else}.\n"
-        return [*parts, constants]
+        same = common.keys() & next(iter(SECTIONS["solid"].alternatives.values())).keys()
+        words = ", ".join(f"`{key}`" for key in common if key in same)
+        constants = f"{words} and constants are those of [[solid]](#solid); required{section.or_else}.\n"
+        return [constants, _table(heads, rows({k: v for k, v in common.items() if k not in same}))]
+    parts = [_table(heads, rows(common))]
     merged: dict[tuple[str, ...], list[str]] = {}
     for model, keys in alternatives.items():
         for row in rows({k: v for k, v in keys.items() if k in own[model] or v.stands_for}):
@@ -373,7 +353,7 @@ def _section(section: Any) -> list[str]:
 
 
 def _row(key: str, known: Any) -> tuple[str, ...]:
-    """A key's row."""
+    """A key's row: name; kind of value, limits and default; meaning."""
     from galinx.app.scene.library import LIBRARY
     from galinx.app.scene.sections import REQUIRED, entry
 
@@ -385,13 +365,13 @@ def _row(key: str, known: Any) -> tuple[str, ...]:
         default = known.without if empty else f"`{json.dumps(described['default'], ensure_ascii=False)}`"
     else:
         default = known.without
-    default = "" if default == "none" else default
+    default = f" ({default})" if default not in ("", "none") else ""
     of_library = getattr(known.kind, "options", None) is LIBRARY
     allowed = "[materials](#materials)" if of_library else _allowed(described)
     meaning = "; ".join(filter(None, (known.about, known.note)))
     value = _value(known.kind)
     values = ", ".join(filter(None, ("" if value == "a text" else value, allowed)))
-    return f"`{key}`", values, default, meaning
+    return f"`{key}`", values + default, meaning
 
 
 def _laws(row: Any) -> list[str]:
@@ -458,13 +438,15 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
         # Modes of the scene are code; others are words, of which one is an older name.
         words += [f"`{row.mode}`" if row.mode in MODES else row.mode.replace("found", "free")]
         words += [f"`{row.asked_by}`"] * bool(row.asked_by and asked)
-        rest = ", ".join(filter(None, values)), ", ".join(filter(None, words))
+        needs = ", ".join(filter(None, words))
+        rest = (", ".join(filter(None, (*values, f"with {needs}" * bool(needs)))),)
         abouts = [r.about for r in same]
         for said in METHODS.values():
             abouts = [about.removesuffix(f", {said}") for about in abouts]
         table.append(([f"/{path}"], _common(abouts), rest))
     return [
-        (", ".join(f"`{name}`" for name in _names(p)), about, *rest) for p, about, rest in _merged(table)
+        (", ".join(f"`{name}`" for name in _names(p)), about + f" [{rest}]" * bool(rest))
+        for p, about, (rest,) in _merged(table)
     ]
 
 

@@ -14,6 +14,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
+import tomlkit
 
 HOME = Path(__file__).parent.parent
 #: As many kills, random scenes and fine tolerances as before a release?
@@ -48,11 +49,31 @@ def at_most(seconds=10.0):
         signal.signal(signal.SIGALRM, before)
 
 
+def scene_of(name="tables4_5", changes=None):
+    """A scene of scenes/, or of a text, with other values by ``"section.key"``, None for none.
+
+    A key without a dot stands for a whole section.
+    """
+    from galinx.app.scene.changes import changed
+    from galinx.app.scene.library import templates
+    from galinx.app.scene.read import parse
+
+    text = name if "\n" in name else templates()[name].text
+    sections = {key: value for key, value in (changes or {}).items() if "." not in key}
+    document = tomlkit.parse(text)
+    for key, value in sections.items():
+        document.pop(key, None)
+        if value is not None:
+            document[key] = value
+    keys = {key: value for key, value in (changes or {}).items() if "." in key}
+    return parse(changed(tomlkit.dumps(document) if sections else text, keys))
+
+
 def computed(name="tables4_5", changes=None):
-    """The result of a scene of scenes/, with other values by ``"section.key"``, None for none."""
+    """The result of such a scene."""
     import galinx
 
-    return galinx.compute(galinx.template(name, changes))
+    return galinx.compute(scene_of(name, changes))
 
 
 CLOSED_FORM = {"solve.methods": ["closed_form"]}

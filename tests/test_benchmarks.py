@@ -2,10 +2,11 @@
 
 import importlib
 import re
+import subprocess
 import sys
 
 import pytest
-from support import HOME
+from support import HOME, clean_environment
 
 from galinx import template
 from galinx.app.plan.plan import make_plan
@@ -72,3 +73,14 @@ def test_the_page_has_the_accuracy_of_tables_4_and_5(accuracy, tables_run, monke
     assert printed[:2] == computed[:2] and len(printed) == len(computed) == 9
     for old, new in zip(map(float, printed[2:]), map(float, computed[2:])):
         assert max(old, new) < max(1e-11, 3.0 * min(old, new))
+
+
+@pytest.mark.parametrize(
+    "words", ["bench", "bench accuracy", "bench assemblers", "bench big", "bench scaling", "stress"]
+)
+def test_every_benchmark_starts_by_its_command(words):
+    done = subprocess.run(
+        [str(HOME / "run.sh"), *words.split(), "--help"],
+        env=clean_environment(), capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0 and "usage" in done.stdout.lower(), done.stderr

@@ -5,7 +5,6 @@ are printed, and panels take the room that is left: nothing is cut, nothing over
 taller than a page.
 """
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
@@ -26,14 +25,16 @@ from galinx.texts import folded, plain
 
 from .style import GREY, PAGE, SMALL, TALLEST, Look, styled
 
-#: Least side of a legible panel, free space around a figure and between panels [in].
-_LEAST, _EDGE, _BETWEEN = 0.35, 0.04, 0.14
+#: Least side of a legible panel, and free space around a figure, between columns and between rows [in].
+_LEAST, _EDGE, _ASIDE, _BELOW = 0.35, 0.04, 0.1, 0.05
 #: Height that panels have at least where a page has room [in], and markers along a curve.
 _LOW, _MARKERS = 0.95, 16
+#: Distance of names of axes from their numbers, and of a title from its panel [in].
+_PAD = 2.5 / 72.0
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
-#: Times that a layout is measured: texts that are folded need other room.
-_ROUNDS = 3
+#: Times that panels are measured: texts are folded, and ticks chosen, by the room that they leave.
+_ROUNDS = 2
 
 #: Forms of curves: solutions are lines, finite elements markers; both joined where they are alone.
 LINE, MARKERS, JOINED, DOTS = "line", "markers", "joined", "dots"
@@ -186,20 +187,15 @@ def render(
     size = size or Size(PAGE)
     columns = min(columns or across(size.width, len(panels)), len(panels))
     rows = ceil(len(panels) / columns)
-    figure = Figure((size.width, size.height or TALLEST / 2.0))
+    figure = Figure((size.width, size.height or TALLEST))
     FigureCanvasAgg(figure)
-    tall = [max(panel.tall for panel in panels[n : n + columns]) for n in range(0, len(panels), columns)]
-    grid = figure.add_gridspec(rows, columns, height_ratios=tall)
     made = []
     for n, panel in enumerate(panels):
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
-        made.append(_Drawn(figure.add_subplot(grid[n // columns, n % columns]), panel, letter))
+        made.append(_Drawn(figure.add_axes((0.0, 0.0, 1.0, 1.0), label=str(n)), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
     handles = [_entry(curve) for curve in named.values()] + list(notes)
     _arrange(figure, made, size, (rows, columns), high, _legend(figure, handles))
-    for drawn in made:
-        for curve, line in zip(drawn.panel.curves, drawn.lines):
-            _draw_arrows(drawn.axis, line, curve.arrows)
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
 
@@ -244,7 +240,12 @@ class _Drawn:
     """A panel on its axes: what is drawn does not change with its place; texts are folded to fit."""
 
     def __init__(self, axis: Axes, panel: Panel, letter: str) -> None:
-        self.axis, self.panel, self.letter, self.legend = axis, panel, letter, None
+        self.axis, self.panel, self.letter = axis, panel, letter
+        self.legend = self.bar = self.other = None
+        # Nothing is to be placed by matplotlib, which measures everything for it at every drawing.
+        self.title = axis.set_title("", loc="left", y=1.0)
+        axis.xaxis.set_label_coords(0.5, 0.0)
+        axis.yaxis.set_label_coords(0.0, 0.5)
         self.power = _power(panel)
         for low, high in panel.bands:
             axis.axvspan(low, high, color="#F2F2F2", linewidth=0.0, zorder=-1)
@@ -253,7 +254,6 @@ class _Drawn:
         for y in panel.at_y:
             axis.axhline(y / 10.0**self.power, color=GREY, linewidth=0.4, zorder=0)
         self.lines = [self._curve(curve) for curve in panel.curves]
-        self.bar = None
         if panel.map:
             _draw_map(axis, panel.map)
         if panel.map and panel.map.label:
@@ -261,6 +261,7 @@ class _Drawn:
             beside.set_axes_locator(self._beside)
             self.bar = axis.figure.colorbar(axis.images[0], cax=beside, extend=panel.map.extend)
             self.bar.ax.tick_params(labelsize=SMALL)
+            self.bar.set_label(panel.map.label, fontsize=SMALL)
         for y in panel.dashes:
             axis.axhline(y, color="black", linewidth=0.6, linestyle=(0, (5.0, 2.5)))
         if panel.bar:
@@ -274,12 +275,10 @@ class _Drawn:
         if panel.beside and panel.beside[1]:
             label, factor = panel.beside
             axis.tick_params(top=False)
-            other = axis.secondary_xaxis(
-                "top", functions=(lambda x, by=factor: by * x, lambda x, by=factor: x / by)
+            self.other = axis.secondary_xaxis(
+                "top", functions=(lambda x: factor * x, lambda x: x / factor)
             )
-            other.set_xlabel(label)
-        if panel.whole:
-            axis.xaxis.get_major_locator().set_params(integer=True)
+            self.other.set_xlabel(label)
         if panel.x is None:
             axis.tick_params(labelbottom=False)
         if panel.y is None:
@@ -329,44 +328,63 @@ class _Drawn:
             0
         ]
 
-    def fit(self, wide: float, tall: float, beside: float) -> None:
-        """Fold texts, and thin out ticks, to a panel so wide and so tall, with so much beside it [in]."""
-        axis, panel = self.axis, self.panel
-        dpi = axis.figure.dpi
-        unit = panel.unit
-        if self.power:
-            unit = f"$10^{{{self.power}}}${' ' + unit if unit else ''}"
-        label = panel.y if panel.y is None or not unit else f"{panel.y} ({unit})"
-        for text, words, room in (
-            (axis._left_title, self.letter + panel.title, wide + (0.3 if not self.letter else 0.0)),
-            (axis.xaxis.label, panel.x or "", wide + beside),
-            (axis.yaxis.label, label or "", tall + 0.25),
-        ):
-            if words.strip():
-                fit_text(text, words, room * dpi)
+    def measure(self, wide: float, tall: float, beside: float) -> "_Room":
+        """Choose ticks, and fold texts, for a panel so wide and so tall, with so much beside it [in]."""
+        axis, panel, figure = self.axis, self.panel, self.axis.figure
+        renderer, dpi = figure.canvas.get_renderer(), figure.dpi
+        axis.set_position((0.0, 0.0, wide / figure.get_figwidth(), tall / figure.get_figheight()))
         for one, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
+            one.label.set_text("")
             if one.get_scale() == "linear":
-                one.set_major_locator(
-                    MaxNLocator(
-                        max(2, min(8, int(side / apart))),
-                        integer=panel.whole and one is axis.xaxis,
-                        steps=[1, 2, 2.5, 5, 10],
-                    )
-                )
-        for other in axis.child_axes:
-            if hasattr(other, "_functions") and panel.beside:
-                other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
+                whole = panel.whole and one is axis.xaxis
+                count = max(2, min(8, int(side / apart)))
+                one.set_major_locator(MaxNLocator(count, integer=whole, steps=[1, 2, 2.5, 5, 10]))
         if self.bar is not None:
             assert panel.map
-            self.bar.set_label(panel.map.label, fontsize=SMALL)
-            fit_text(self.bar.ax.yaxis.label, panel.map.label, (tall + 0.25) * dpi)
+            fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + 0.25)
             if not panel.map.least:
                 self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
                 self.bar.update_ticks()
-        if self.legend is not None:  # under what is below the panel
-            box = axis.xaxis.get_tightbbox(axis.figure.canvas.get_renderer())
-            below = (axis.bbox.y0 - box.y0) / dpi
-            self.legend.set_bbox_to_anchor((0.5, -(below + 0.03) / tall), axis.transAxes)
+        if self.other is not None:
+            self.other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
+        boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
+        box = Bbox.union([axis.bbox, *filter(None, boxes)])
+        left, below, right, above = np.abs(np.subtract(box.extents, axis.bbox.extents)) / dpi
+        unit = panel.unit
+        if self.power:
+            unit = f"$10^{{{self.power}}}${' ' + unit if unit else ''}"
+        y = panel.y and (f"{panel.y} ({unit})" if unit else panel.y)
+        over = fit_text(self.title, self.letter + panel.title, wide + (_ASIDE if self.letter else 0.3))
+        name = fit_text(axis.xaxis.label, panel.x or "", wide + beside)
+        upright = fit_text(axis.yaxis.label, y or "", tall + 0.25)
+        legend = (0.0, 0.0)
+        if self.legend is not None:
+            legend = self.legend.get_window_extent(renderer).size / dpi + (0.0, 0.03)
+        aside = (max(name[0], legend[0]) - wide) / 2.0
+        return _Room(
+            left, right, above, below, upright[0], over[1], name[1] + legend[1],
+            (upright[1] - tall) / 2.0, aside, max(aside, over[0] - wide),
+        )  # fmt: skip
+
+    def place(self, box: tuple[float, float, float, float], room: "_Room") -> None:
+        """Put a panel and its texts into their places.
+
+        Args:
+            box: its left and lower end, width and height [in].
+            room: around it; numbers of axes as wide as in its row and column.
+        """
+        axis, (x, y, wide, tall) = self.axis, box
+        width, height = axis.figure.get_size_inches()
+        axis.set_position((x / width, y / height, wide / width, tall / height))
+        self.title.set_y(1.0 + room.above / tall)
+        axis.xaxis.set_label_coords(0.5, -(room.below + _PAD) / tall)
+        axis.yaxis.set_label_coords(-(room.left + _PAD) / wide, 0.5)
+        if self.legend is not None:
+            high = self.legend.get_window_extent(axis.figure.canvas.get_renderer()).height
+            below = room.below + room.name - high / axis.figure.dpi
+            self.legend.set_bbox_to_anchor((0.5, -below / tall), axis.transAxes)
+        for curve, line in zip(self.panel.curves, self.lines):
+            _draw_arrows(axis, line, curve.arrows)
 
 
 def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
@@ -374,24 +392,45 @@ def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
     style = {"arrowstyle": "-|>", "color": line.get_color(), "shrinkA": 0, "shrinkB": 0}
     points = line.get_xydata()
     for share in shares:
-        steps = np.hypot(*np.diff(axis.transData.transform(points), axis=0).T)
-        way = np.append(0.0, np.cumsum(steps))
-        at = min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
+        at = point_along(axis.transData.transform(points).T, share)
         axis.annotate("", points[at + 1], points[at], arrowprops=style | {"mutation_scale": 9})
 
 
-def fit_text(text: Text, words: str, room: float) -> None:
-    """Set a text, in as many lines as it needs where it has so much room [pixels]."""
-    text.set_text(words)
-    box = text.get_window_extent(text.figure.canvas.get_renderer())
-    long = max(box.height, box.width) if text.get_rotation() else box.width
-    if long > room:
-        lines = ceil(long / room)
-        for count in range(lines, lines + 3):
-            text.set_text(folded(words, max(6, ceil(len(plain(words)) / count * 1.12))))
-            box = text.get_window_extent(text.figure.canvas.get_renderer())
-            if (max(box.height, box.width) if text.get_rotation() else box.width) <= room:
-                return
+def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> int:
+    """Number of the point of a polyline, (2, n), from which its next side is at a share of its length.
+
+    Args:
+        points: x and y.
+        share: 0 to 1.
+        scale: lengths along both axes that are drawn alike, (2,).
+    """
+    steps = np.diff(points) if scale is None else np.diff(points) / scale[:, None]
+    way = np.append(0.0, np.cumsum(np.hypot(*steps)))
+    return min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
+
+
+def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:
+    """Set a text, in as many lines as it needs where it has so much room [in].
+
+    Returns:
+        Its width and height [in], across lines with its distance from what is beside it; 0 for no words.
+    """
+    along, renderer = int(text.get_rotation() > 0.0), text.figure.canvas.get_renderer()
+
+    def measured(words: str) -> NDArray[np.float64]:
+        text.set_text(words)
+        return text.get_window_extent(renderer).size / text.figure.dpi
+
+    if not words.strip():
+        return np.zeros(2)
+    size = measured(words)
+    lines = ceil(size[along] / room)
+    for count in range(lines, lines + 3) if lines > 1 else ():
+        size = measured(folded(words, max(6, ceil(len(plain(words)) / count * 1.12))))
+        if size[along] <= room:
+            break
+    size[1 - along] += _PAD
+    return size
 
 
 def _draw_map(axis: Axes, shown: Map) -> None:
@@ -427,15 +466,37 @@ def _legend(figure: Figure, handles: Sequence[Line2D]) -> float:
             handles=handles, ncols=ceil(len(handles) / rows), loc="lower center", borderaxespad=0.15,
             columnspacing=1.2, labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
         )  # fmt: skip
-        legend.set_in_layout(False)
         box = legend.get_window_extent(figure.canvas.get_renderer())
         if box.width <= room or rows >= len(handles):
             break
         legend.remove()
         rows += 1
     for text in legend.get_texts() if box.width > room else ():
-        fit_text(text, text.get_text(), room - 0.4 * dpi)
+        fit_text(text, text.get_text(), width - 0.5)
     return legend.get_window_extent(figure.canvas.get_renderer()).height / dpi + 0.05
+
+
+class _Room(NamedTuple):
+    """Room around a panel [in].
+
+    Attributes:
+        left, right, above, below: of numbers of axes, and colour bars.
+        upright, title, name: of the name of the axis of y, of the title, and of the name of the axis of x
+            with the panel's legend.
+        taller, aside, beyond: over the panel's ends, of texts along y, and of those along x on the left
+            and on the right.
+    """
+
+    left: Any
+    right: Any
+    above: Any
+    below: Any
+    upright: Any
+    title: Any
+    name: Any
+    taller: Any
+    aside: Any
+    beyond: Any
 
 
 def _arrange(
@@ -443,67 +504,52 @@ def _arrange(
 ) -> None:
     """Give panels the room that texts and the legend leave, and a figure the height that panels need.
 
+    All panels are equally wide, and as tall as their rows; names of axes of y are aligned in a column.
+
     Raises:
         TooSmall: panels would not be legible.
     """
     rows, columns = shape
-    figure.align_ylabels([one.axis for one in drawn])
-    share = sum(one.panel.tall for one in drawn[::columns])
+    talls = np.array([one.panel.tall for one in drawn[::columns]])
     maps = [one.axis for one in drawn if one.panel.map and one.panel.map.equal]
     ratio = float(np.ptp(maps[0].get_ylim()) / np.ptp(maps[0].get_xlim())) if maps else high
-    height = size.height or min(foot + share * (0.7 * ratio * size.width / columns + 0.6), TALLEST)
-    edge = 0.0
+    beside = 0.35 if all(one.panel.y for one in drawn) else 0.1
+    wide = size.width / columns - 0.8
+    tall = max(wide * ratio, _LOW)
+    if size.height:
+        tall = min(tall, (size.height - foot) / talls.sum() - 0.5)
+    room = np.zeros((rows * columns, len(_Room._fields)))
     for _ in range(_ROUNDS):
-        wide, tall = _sides(figure, drawn[0], (size.width, height), (foot, edge))
-        for one in drawn:
-            high_ = max(tall, _LEAST) / drawn[0].panel.tall * one.panel.tall
-            one.fit(max(wide, _LEAST), high_, 0.35 if all(one.panel.y for one in drawn) else 0.1)
-        # Names of axes may be wider than panels, for which the layout leaves no room at the edge.
-        names = [one.axis.xaxis.label for one in drawn[columns - 1 :: columns]]
-        widths = [name.get_window_extent(figure.canvas.get_renderer()).width for name in names]
-        edge = max(0.0, (max(widths, default=0.0) / figure.dpi - wide) / 2.0)
-        if size.height is None:
-            missing = max(wide * ratio, 0.0 if maps else _LOW) - tall / drawn[0].panel.tall
-            height = min(height + share * missing, TALLEST)
-    for axis in maps:
-        axis.set_aspect("equal", anchor="N")
-    wide, tall = _sides(figure, drawn[0], (size.width, height), (foot, edge))
-    if min(wide, tall / drawn[0].panel.tall) < _LEAST:
-        more = size.width + 2.0 * columns, height + 2.0 * rows
-        wide, tall = _sides(figure, drawn[0], more, (foot, edge))
-        beside, between = more[0] - columns * wide, more[1] - share * tall / drawn[0].panel.tall
-        needed = f"{beside + columns * _LEAST / min(ratio, 1.0):.1f} in"
+        wide, tall = max(wide, _LEAST), max(tall, _LEAST)
+        room[: len(drawn)] = [one.measure(wide, tall * one.panel.tall, beside) for one in drawn]
+        of_columns, of_rows = (_Room(*room.reshape(rows, columns, -1).max(axis=n).T) for n in (0, 1))
+        left, right = of_columns.left + of_columns.upright, of_columns.right.copy()
+        left[0], right[-1] = max(left[0], of_columns.aside[0]), max(right[-1], of_columns.beyond[-1])
+        top = np.maximum(of_rows.above + of_rows.title, of_rows.taller)
+        bottom = np.maximum(of_rows.below + of_rows.name, of_rows.taller)
+        across_ = left.sum() + right.sum() + 2.0 * _EDGE + (columns - 1) * _ASIDE
+        along = top.sum() + bottom.sum() + 2.0 * _EDGE + (rows - 1) * _BELOW + foot
+        wide = (size.width - across_) / columns
+        wanted = along + talls.sum() * max(wide * ratio, 0.0 if maps else _LOW)
+        height = size.height or min(wanted, TALLEST)
+        tall = (height - along) / talls.sum()
+        if maps:
+            wide, tall = min(wide, tall / ratio), min(tall, wide * ratio)
+    if min(wide, tall) < _LEAST:
+        needed = f"{across_ + columns * _LEAST / min(ratio, 1.0):.1f} in"
         if size.height is not None:
-            needed = f"{beside + columns * _LEAST:.1f} in x {between + share * _LEAST:.1f} in"
+            needed = f"{across_ + columns * _LEAST:.1f} in x {along + talls.sum() * _LEAST:.1f} in"
         raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
-    figure.set_layout_engine("none")
-
-
-def _sides(
-    figure: Figure, one: _Drawn, size: tuple[float, float], free: tuple[float, float]
-) -> tuple[float, float]:
-    """Width and height of a panel in a figure of a size [in]; 0 where there is no room at all.
-
-    Args:
-        figure, one: the figure, and one of its panels.
-        size: of the figure.
-        free: space below, and at the right, where there are no panels.
-    """
-    figure.set_size_inches(size)
-    kind = "compressed" if one.axis.get_aspect() == 1.0 else "constrained"
-    foot, edge = free[0] / size[1], free[1] / size[0]
-    figure.set_layout_engine(
-        kind, rect=(0.0, foot, 1.0 - edge, 1.0 - foot), w_pad=_EDGE, h_pad=_EDGE, wspace=0.02,
-        hspace=0.02,
-    )  # fmt: skip
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        figure.get_layout_engine().execute(figure)
-    if said:
-        return 0.0, 0.0
-    one.axis.apply_aspect()
-    box = one.axis.get_position()
-    return box.width * size[0], box.height * size[1]
+    figure.set_size_inches(size.width, height)
+    spare = (size.width - across_ - columns * wide) / 2.0  # maps may be narrower than their room
+    x = _EDGE + spare + np.cumsum(left + np.append(0.0, right[:-1] + _ASIDE + wide))
+    y = height - _EDGE - np.cumsum(top + talls * tall + np.append(0.0, bottom[:-1] + _BELOW))
+    for n, one in enumerate(drawn):
+        i, j = divmod(n, columns)
+        around = _Room(*room[n])._replace(
+            left=of_columns.left[j], above=of_rows.above[i], below=of_rows.below[i]
+        )
+        one.place((x[j], y[i], wide, tall * one.panel.tall), around)
 
 
 class Film:

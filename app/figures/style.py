@@ -38,7 +38,7 @@ _STYLE = {
     "axes.linewidth": 0.6,
     "axes.axisbelow": True,
     "axes.titlelocation": "left",
-    "axes.titlepad": 3.5,
+    "axes.titlepad": 2.5,
     "axes.labelpad": 2.5,
     "xtick.direction": "in",
     "ytick.direction": "in",

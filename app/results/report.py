@@ -39,7 +39,7 @@ from galinx.texts import counted, folded, plain
 from ..console import program
 from ..figures.choice import Archive, Choice, Drawing
 from ..figures.files import embedded, in_a_page
-from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel
+from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_along
 from ..figures.states import spread
 from ..figures.stresses import (
     SHOWN,
@@ -96,7 +96,7 @@ def _plotly() -> str:
     spec = find_spec("plotly")
     folder = Path(spec.origin).parent if spec and spec.origin else Path()
     path = next(path for path in (folder / name for name in _SCRIPTS) if path.is_file())
-    return b64encode(compress(path.read_bytes(), 9, mtime=0)).decode()
+    return b64encode(compress(path.read_bytes(), 6, mtime=0)).decode()
 
 
 _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "markers"}
@@ -119,6 +119,8 @@ def chart(panel: Panel) -> dict[str, Any]:
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],
     }
+    if arrows := [_arrow(panel, curve, share) for curve in panel.curves for share in curve.arrows]:
+        layout["annotations"] = arrows
     if panel.whole:
         layout["xaxis"]["dtick"] = 1
     if shown:
@@ -145,6 +147,19 @@ def _trace(curve: Curve) -> dict[str, Any]:
         "line": {"color": colour, "width": 1.6 * curve.width, "dash": _DASHES.get(dash, dash)},
         "marker": {"color": colour, "size": 3 if curve.form == DOTS else 6,
                    "symbol": _SYMBOLS.get(curve.look.marker, "circle-open")},
+    }  # fmt: skip
+
+
+def _arrow(panel: Panel, curve: Curve, share: float) -> dict[str, Any]:
+    """Arrow along a curve, at a share of its length on the panel's axes."""
+    points = np.array([curve.x, curve.y])
+    at = point_along(
+        points, share, np.array([*map(np.ptp, (panel.xlim or curve.x, panel.ylim or curve.y))])
+    )
+    (ax, x), (ay, y) = points[:, [max(at - 2, 0), at + 1]].tolist()  # one step may be too short to see
+    return {
+        "x": x, "y": y, "ax": ax, "ay": ay, "axref": "x", "ayref": "y", "text": "", "arrowhead": 2,
+        "arrowcolor": as_hex(curve.look.colour), "arrowsize": 1.5,
     }  # fmt: skip
 
 

@@ -47,7 +47,6 @@ class Group:
         g: σ_XY/σ_YY, (rows,).
         pressure: pressure of all these states or of the only one.
         half_width, centre: half-width and centre of the contact [m], (rows,).
-        before: pressure with fewer unknowns, over layers.
     """
 
     rows: NDArray[np.int64]
@@ -55,7 +54,6 @@ class Group:
     pressure: Any
     half_width: NDArray[np.float64]
     centre: NDArray[np.float64]
-    before: Any = None
 
     @property
     def K_I(self) -> NDArray[np.float64]:

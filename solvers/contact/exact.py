@@ -289,29 +289,31 @@ class _OverLayers:
     @cached_property
     def _nodes(self) -> tuple[Nodes, Nodes]:
         """Contacts that were solved, and those with fewer unknowns."""
-        groups = [
-            self._group(contact, np.array([contact.g]), np.zeros(1, int)) for contact in self.solved
-        ]
-        return Nodes(groups), Nodes([replace(group, pressure=group.before) for group in groups])
+        each = [self._groups(contact, np.array([contact.g]), np.zeros(1, int)) for contact in self.solved]
+        fine, coarse = zip(*each)
+        return Nodes(fine), Nodes(coarse)
 
-    def _group(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> Group:
+    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Group, Group]:
+        """States of a contact that was solved, and with fewer unknowns."""
         h, m = (
             np.full(len(rows), length * self.layers.punch.unit)
             for length in (contact.half_width, contact.centre)
         )
-        return Group(rows, g[rows], contact.pressure, h, m, contact.before)
+        fine = Group(rows, g[rows], contact.pressure, h, m)
+        return fine, replace(fine, pressure=contact.before)
 
     def contacts(self, g: NDArray) -> tuple[ContactsOnLayers, ContactsOnLayers]:
         """Contacts with frictions (states,), and those with fewer unknowns."""
-        groups: list[list[Group]]
+        groups: Any
         if self.interpolated is not None:
             edges = EdgeExponents(self.task.response, g)
             groups = [[mixture(nodes, edges)] for nodes in self._nodes]
         else:
             which = np.searchsorted([contact.g for contact in self.solved], g)
             which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
-            fine = [self._group(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
-            groups = [fine, [replace(group, pressure=group.before) for group in fine]]
+            groups = zip(
+                *(self._groups(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which))
+            )
         fine_contacts, coarse = (
             ContactsOnLayers(self.task.response, tuple(each), self.layers) for each in groups
         )
@@ -331,7 +333,7 @@ class LayeredSolution(ExactSolution):
     def __init__(self, at: _OverLayers, g: NDArray) -> None:
         super().__init__(at.task, g)
         self._at = at
-        self.contacts, self._coarse = at.contacts(g)
+        self.contacts, self._coarse = self._both = at.contacts(g)
 
     def _limits(self, surface: Surface) -> Turns | None:
         """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
@@ -353,7 +355,7 @@ class LayeredSolution(ExactSolution):
         widest = max(contact.half_width for contact in self._at.solved)
         for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
             level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
-            σ.append(self.contacts.joined(partial(self.contacts.both_at_interface, X, level), 2))
+            σ.append([each.joined(partial(each.at_interface, X, level), 1) for each in self._both])
             errors.append(widest * level.error * max(1.0, *(medium.modulus for medium in level.media)))
         return np.stack(σ, axis=3), np.array(errors)
 
@@ -365,7 +367,8 @@ class LayeredSolution(ExactSolution):
     @cached_property
     def both_inside(self) -> NDArray[np.float64]:
         """Stresses inside, and with fewer unknowns, (2, 3, states, m)."""
-        return self.contacts.joined(partial(self.contacts.both_inside, *self.places.points.T), 2)
+        X, Y = self.places.points.T[:, None]
+        return np.array([each.joined(partial(each.inside, X=X, Y=Y), 1) for each in self._both])
 
     @property
     def inside(self) -> NDArray[np.float64]:  # type: ignore[override]
@@ -396,8 +399,8 @@ class LayeredSolution(ExactSolution):
         (group,) = (group for group in self.contacts.groups if state in group.rows)
         one = slice(0, 1)
         alone = replace(group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one])
-        X, Y = points.T
-        return self.contacts.both_inside(X, Y, alone)[0, :, 0]
+        X, Y = points.T[:, None]
+        return self.contacts.inside(alone, X, Y)[:, 0]
 
     @property
     def estimates(self) -> "_Estimates":

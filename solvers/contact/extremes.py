@@ -23,6 +23,9 @@ GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
 #: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
 #: which it is left out.
 _COINCIDE = 0.1
+#: Distance of two places over their own size below which no polynomial is taken between them: its nodes
+#: would coincide by rounding.
+_CLOSEST = 1e4 * np.finfo(float).eps
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
 _SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
 
@@ -72,6 +75,8 @@ def largest(
         tops += zip(y[i], x[i], x[np.maximum(i - 1, 0)], x[np.minimum(i + 1, len(x) - 1)])
     best = max([(value, place) for value, place, *_ in tops], default=(-np.inf, np.nan))
     for _, _, low, high in sorted(tops, reverse=True)[:refined]:
+        if high - low <= _CLOSEST * max(abs(low), abs(high)):
+            continue
         u = (low + high) / 2.0 + (high - low) / 2.0 * _NODES
         height, place = summit(u[None], function(u)[None], np.array([low]), np.array([high]))
         best = max(best, (height[0], place[0]))

@@ -36,7 +36,6 @@ from numpy.typing import NDArray
 from ..approximation import barycentric
 from ..layers.kernel import REACH, Kernel, Level, Scaled
 from ..layers.layered import Layered, LayersAtSpeed
-from ..layers.stiffness import Medium
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
 from ..profiles.punches import Flat
 from .closed_form import FreeEnds
@@ -516,14 +515,9 @@ class ContactsOnLayers(Contacts):
         return group.read(("strain", r.tobytes()), values)
 
     def inside(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        return self.both_inside(X[0], Y[0], group)[0]
-
-    def both_inside(self, X: NDArray, Y: NDArray, group: Group) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY of a group at points (n,), and with fewer unknowns: (2, 3, rows, n).
-
-        At an interface they are those above it.
-        """
-        σ = np.empty((2, 3, len(group.rows), len(X)))
+        """σ_XX, σ_YY, σ_XY of a group at points (1, n), at an interface those above it: (3, rows, n)."""
+        X, Y = X[0], Y[0]
+        σ = np.empty((3, len(group.rows), len(X)))
         for height in np.unique(Y).tolist():
             there = height == Y
             name = "inside", height, X[there].tobytes()
@@ -535,29 +529,18 @@ class ContactsOnLayers(Contacts):
         level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
         error = h * level.error * max(1.0, level.media[0].modulus)
         self.layers.errors[height] = max(self.layers.errors.get(height, 0.0), error)
-        return self._along(node, level, X, 1)[:, [2, 0, 1]]
+        return self._along(node, level, X, 1)[[2, 0, 1]]
 
-    def both_at_interface(self, X: NDArray, level: Level, group: Group) -> NDArray[np.float64]:
-        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,): (2, 4, rows, n).
-
-        They are followed by those with fewer unknowns.
-        """
+    def at_interface(self, X: NDArray, level: Level, group: Group) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,), of a group: (4, rows, n)."""
         return group.read(
             ("interface", level.depth, X.tobytes()), lambda node: self._along(node, level, X, 2)
         )
 
     def _along(self, node: Group, level: Level, X: NDArray, sides: int) -> NDArray[np.float64]:
-        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2, 2 + sides, rows, n)."""
-        h, both = self._size(node), []
-        for pressure in (node.pressure, node.before):
-            t, forces = pressure.points(level.depth / h)
-            u_X, σ_YY, σ_XY = level.read(t, forces, node.g, X, h)
-            media = level.media[:sides]
-            both.append([σ_YY, σ_XY, *(_in_plane(medium, u_X, σ_YY, σ_XY) for medium in media)])
-        return np.array(both)
-
-
-def _in_plane(medium: Medium, u_X: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-    """σ_XX in a solid, from strain and tractions that both sides of an interface share."""
-    M = medium.modulus
-    return np.asarray(M * medium.response.σ_XX(u_X, σ_YY / M, σ_XY / M))
+        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
+        h = self._size(node)
+        t, forces = node.pressure.points(level.depth / h)
+        u_X, σ_YY, σ_XY = level.read(t, forces, node.g, X, h)
+        media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
+        return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])

@@ -116,8 +116,7 @@ class Contact:
     @property
     def strengths(self) -> tuple[float | None, ...]:
         """Yield strengths of all layers and of the solid below [Pa]; None where one is not given."""
-        layers = self.solid.layers if self.layered else ()  # type: ignore[attr-defined]
-        return (*(layer.yield_strength for layer in layers), self.yield_strength)
+        return (*(layer.yield_strength for layer in self.solid.layers), self.yield_strength)
 
     def response(self, c: float) -> HalfPlane:
         """Response of the half-plane at a speed over its wave speed, dimensionless.

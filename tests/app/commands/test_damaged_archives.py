@@ -13,7 +13,6 @@ from tampering import archived, gone, opened
 
 from galinx.app.cli import cli
 from galinx.postprocess import schema
-from galinx.postprocess.errors import UnreadableArchive
 from galinx.postprocess.hdf5 import archive
 from galinx.postprocess.schema import ATTRIBUTES, FIRST
 
@@ -33,19 +32,6 @@ def content(map_run, tmp_path_factory):
 def path(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path / "a.h5"
-
-
-def refused(path, capsys, which=COMMANDS):
-    """The message of every command; all refuse, print nothing and write nothing."""
-    before = sorted(os.listdir(path.parent))
-    messages = set()
-    for name, *options in which:
-        with pytest.raises(UnreadableArchive) as caught:
-            cli.main([name, str(path), *options], standalone_mode=False)
-        messages.add(str(caught.value))
-    assert capsys.readouterr().out == "" and sorted(os.listdir(path.parent)) == before
-    assert len(messages) == 1
-    return messages.pop()
 
 
 def test_the_status_of_a_damaged_archive(content, path):

@@ -63,23 +63,6 @@ def test_what_will_cost_accuracy_is_warned_of(changes, message):
     assert message in warning
 
 
-@pytest.mark.parametrize(
-    "changes, message",
-    [
-        ({"solve.cuts": 4}, "found 4 without solve.degree"),
-        ({"solve.degree": 2.5, "solve.cuts": 4}, "whole number"),
-        ({"solve.degree": 13, "solve.cuts": 4}, "13"),
-        ({"solve.degree": 2, "solve.cuts": 4, "solve.mode": "traction"}, "contact"),
-        ({"solve.solver": "jacobi"}, "jacobi"),
-        ({"solve.solver": "gamg", "solid.nu": 0.5}, "indefinite"),
-        ({"solve.degree": 2, "solve.cuts": 4, "solid.nu": 0.5}, "two degrees less"),
-    ],
-)
-def test_what_cannot_be_is_refused(changes, message):
-    with pytest.raises(BadInput, match=message):
-        make_plan(template("tables4_5", changes))
-
-
 @pytest.mark.parametrize("sign, ratio", [("physical", -1.0), ("eq25", 1.0)])
 def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
     """A punch that goes forward drags the surface along: σ_XY has the sign of -σ_YY f."""

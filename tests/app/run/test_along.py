@@ -5,7 +5,6 @@ import pytest
 from support import THOROUGH
 
 import galinx
-from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
 from galinx.postprocess.tables import inner_sheet, loops_sheet
 
@@ -77,25 +76,6 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert row["mean_f"] == pytest.approx([0.44], rel=1e-12)
     # Loops are those of the law alone: their work and force are none of this contact.
     assert not loops_sheet(result.data, result.units()).rows and not inner_sheet(result.data).rows
-
-
-@pytest.mark.parametrize(
-    ("friction", "more", "words"),
-    [
-        ("along = [[-1, 0.2], [1, 0.5]]\nmu = 0.3", "", "take mu away"),
-        ("along = [[-0.9, 0.2], [1, 0.5]]", "", "from X/a = -1 to X/a = 1"),
-        ("along = [[-1, -0.2], [1, 0.5]]", "", "none below 0"),
-        ("along = [[-1, 0], [1, 0]]", "", "not all 0"),
-        ("along = [[-1, 0.2], [1, 0.5]]", '[punch]\nprofile = "parabolic"\nradius = 1', "flat punch"),
-        ("along = [[-1, 0.2], [1, 0.5]]", "[time]\nend = 3\n[output]\nquantities = ['time']", "in time"),
-        (DAHL.format(0.5, 1e4, 1.0), 'strokes = ["forward", "backward"]', "strokes"),
-        (DAHL.format(0.5, 1e4, 1.0), '[solve]\nmesh = "box"', 'mesh = "box"'),
-        ("along = [[-1, 0.2], [0, 0.3], [0.0005, 0.3], [1, 0.5]]", "", "0.001 of another"),
-    ],
-)
-def test_what_is_not_computed_is_refused_with_the_reason(friction, more, words):
-    with pytest.raises(BadInput, match=words):
-        parse(scene(friction, more=more))
 
 
 @pytest.mark.parametrize("row", [(0.203, 0.1), (0.2011, 0.6989)])

@@ -1,7 +1,6 @@
 """Friction laws in scenes: states, loops, what strokes take, contact; motions of all kinds."""
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -107,28 +106,6 @@ def test_a_motion_may_be_given_point_by_point():
     np.testing.assert_allclose(data["states/f"], wanted, rtol=1e-13)
 
 
-@pytest.mark.parametrize(
-    "motion, said",
-    [
-        ("speed = 1, strokes = [{to = 0}]", "stroke 1 goes to 0 L, where it begins"),
-        ("speed = 1, strokes = [{to = 1.5}]", "in a stroke, to: found 1.5"),
-        ("speed = 1, strokes = [{two = 1}]", "found the key 'two' in a stroke"),
-        ("speed = 1, strokes = [{speed = 1}]", "found a stroke without to"),
-        ("speed = 1, strokes = [{to = 0.1}], X_over_L = 0.5", "no position that a stroke passes"),
-        ("speed = 1, strokes = [{to = 1, speed = 1e9}]", "found a stroke at 1e"),
-        ("speed = 1, path = [[0, 0], [1, 1e-5]]", "path gives the speed"),
-        ("path = [[0, 0], [0, 1e-5]]", "times that do not grow"),
-        ("path = [[0, 0], [1, 1e-3]]", "the position 0.001 m, expected 0 to"),
-        ("path = [[0, 0], [1, 0]]", "found one position in all rows"),
-        ("path = [[0, 0]]", "expected at least 2 rows"),
-        ("path = [[0, 0, 1], [1, 1, 1]]", "rows of 2 numbers"),
-    ],
-)  # fmt: skip
-def test_faults_of_motions_are_told(motion, said):
-    with pytest.raises(BadInput, match=re.escape(said)):
-        scene("coulomb", {"mu_c": 0.4}, motion)
-
-
 def test_rate_and_state_has_no_answer_at_rest():
     with pytest.raises(BadInput, match="friction: found the speed 0 m/s"):
         galinx.compute(scene("rate_and_state", RATE_AND_STATE, "c = 0"))
@@ -158,21 +135,6 @@ def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
         wanted = 0.1 * (1.0 - np.cos(2.0 * later))
         np.testing.assert_allclose(data["slider/velocity"][row], wanted, rtol=0.0, atol=1e-9)
     assert [drawing.name for drawing in result.drawings()] == ["slider"]
-
-
-@pytest.mark.parametrize(
-    "words, slider, said",
-    [
-        ('["friction", "slider"]', "", "go together"),
-        ('["friction"]', SLIDER, "go together"),
-        ('["friction", "slider"]', "slider = {mass = 1, stiffness = 1}", "missing drive_speed, duration"),
-        ('["friction", "slider"]', SLIDER.replace("2,", "-2,"), "found -2, expected > 0"),
-    ],
-)
-def test_faults_of_sliders_are_told(words, slider, said):
-    text = SCENE.format(model="coulomb", friction="mu_c = 0.4", motion="speed = 1", quantities=words)
-    with pytest.raises(BadInput, match=re.escape(said)):
-        parse(text + slider)
 
 
 def test_what_a_law_refuses_is_bad_input_and_few_loops_are_integrated(monkeypatch):

@@ -51,8 +51,3 @@ def test_incompressible_solids_have_stresses_inside_in_closed_form_only():
     for ij in ("XX", "YY", "XY"):
         name = f"interior/closed_form/sigma_{ij}"
         np.testing.assert_allclose(data[name], near[name], rtol=1e-5, atol=1e-7)
-
-
-def test_a_point_beyond_the_mesh_is_refused():
-    with pytest.raises(BadInput, match="coordinate of 90 a, expected at most 60 a with the box mesh"):
-        computed("tables4_5", with_points([[0.0, -90.0]]) | {"solve.mesh": "box"})

@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 from support import THOROUGH, computed, here
 
-from galinx import template
-from galinx.app.errors import BadInput
-from galinx.app.plan.plan import make_plan
 from galinx.solvers.contact.edges import from_edge
 from galinx.solvers.fem.traction import LinearLoads
 from galinx.solvers.solids import Isotropic
@@ -111,18 +108,3 @@ def test_what_is_wrong_fails(monkeypatch, tmp_path):
     assert errors(result.data)[1] == pytest.approx(0.01, rel=0.1)
     result.save(tmp_path / "a.h5")
     assert here("check", tmp_path / "a.h5").returncode == 0
-
-
-@pytest.mark.parametrize(
-    "changes, message",
-    [
-        ({"solve.mesh": "box"}, 'solve.mesh: found "box".*expected "confocal" or "graded"'),
-        ({"solve.mesh": "uniform"}, 'solve.mesh: found "uniform".*expected "confocal" or "graded"'),
-        ({"solve.mesh": "graded", "solid.nu": 0.5}, "ν = 0.5.*expected .confocal. or ν <= 0.49"),
-        ({"solve.pressure": [[-1, -1], [0, -1], [1e-10, -2], [1, 0]]}, "differ by 1e-10, expected at"),
-        ({"solve.pressure": [[-1, 0], [0.5, 0], [1, 0]]}, "found no pressure but 0"),
-    ],
-)
-def test_what_cannot_be_put_in_is_said(changes, message):
-    with pytest.raises(BadInput, match=message):
-        make_plan(template("traction", ONE | {"solve.pressure": HUMP} | changes))

@@ -5,7 +5,6 @@ import pytest
 from support import computed
 
 import galinx
-from galinx.app.errors import BadInput
 from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import Memory, compute
@@ -93,12 +92,3 @@ def test_a_path_has_the_speed_of_each_piece():
     )
     f = expected.data["states/f"]
     assert (np.sign(data["states/f"][:3]) == 1).all() and np.isfinite(f).all()
-
-
-@pytest.mark.parametrize(
-    "speed, message", [("2950 m/s", "Rayleigh speed"), ("4 km/s", "shear wave speed")]
-)
-def test_a_stroke_that_is_too_fast_is_refused(speed, message):
-    strokes = [{"to": 0.8}, {"to": 0.2, "speed": speed}]
-    with pytest.raises(BadInput, match=message):
-        make_plan(galinx.template("tables4_5", SCENE | {"motion.strokes": strokes}))

@@ -1,9 +1,7 @@
 """Lists of numbers of solid, layers and punch: each state is that of a scene of its own."""
 
 import numpy as np
-import pytest
 
-from galinx.app.errors import BadInput
 from galinx.app.results import check
 from galinx.app.results.result import compute, load
 from galinx.app.scene.changes import changed, from_words
@@ -102,18 +100,3 @@ def test_thicknesses_of_a_layer():
             held, expected = result.data[row.path][state], alone.data[row.path][0]
             # The positions along interfaces are those of both thicknesses.
             assert np.allclose(held, expected, rtol=2e-3, atol=2e-2 * ("_X" in row.path)), row.path
-
-
-@pytest.mark.parametrize(
-    "words, message",
-    [
-        ("solid.nu=[0.2, 0.7]", r"solid.nu \(Poisson's ratio\): found 0.7"),
-        ("solid.E=[]", "found an empty list"),
-        ("punch.profile=['flat', 'parabolic']", "expected flat, parabolic"),
-        ("punch.tilt=['0 deg', '0.1 deg']", "of another kind"),
-        ("layer.thickness=1e-6", r"layers by their number from the top: the scene has 0"),
-    ],
-)
-def test_what_cannot_be_swept_is_refused(words, message):
-    with pytest.raises(BadInput, match=message):
-        compute(parse(changed(FLAT, from_words([words]))))

@@ -97,13 +97,6 @@ def test_invariants_inside_are_those_of_the_stresses(inside_run):
         np.testing.assert_allclose(data[f"interior/{method}/von_mises"], mises, rtol=1e-14)
 
 
-def test_yield_without_a_strength_is_refused():
-    with pytest.raises(BadInput, match=r'"yield": expected solid\.yield_strength'):
-        computed("tables4_5", {"output.quantities": ["yield"]})
-    with pytest.raises(BadInput, match=r"expected solid\.yield_strength"):
-        computed("tables4_5", {"solid.material": "BK7", "output.quantities": ["yield"]})
-
-
 def test_incompressible_solids_have_it_in_closed_form_only():
     with pytest.raises(BadInput, match=r"output\.quantities: found .* expected ν <= 0\.49"):
         computed("tables4_5", CHANGES | {"solid.nu": 0.5, "solve.methods": ["fem"]})

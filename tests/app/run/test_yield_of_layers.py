@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from galinx.app.errors import BadInput
 from galinx.app.results.result import compute
 from galinx.app.scene.changes import changed
 from galinx.app.scene.read import parse
@@ -71,10 +70,3 @@ def test_no_sample_is_larger_and_some_come_near(thickness):
     unit = 1e5 / (2.0 * data[HALF_WIDTH["sie"].path])
     share = held * unit[:, None] / np.array([4e9, 600e6])
     assert np.allclose(data[yielding.OVER_STRENGTH["sie"].path], share, rtol=1e-12)
-
-
-def test_over_layers_sharp_edges_have_no_largest_stress():
-    text = SCENE.format(layer=TIN).replace('"parabolic"\nradius = "5 mm"', '"flat"')
-    assert "yield" not in parse(text).output.quantities
-    with pytest.raises(BadInput, match="two free ends and no tip"):
-        compute(parse(changed(text, {"output.quantities": ["sif", "yield"]})))

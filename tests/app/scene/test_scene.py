@@ -3,58 +3,22 @@
 import re
 import tomllib
 
+import numpy as np
 import pytest
-from support import HOME, SCENE
+from support import HOME, SCENE, computed
 
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
-from galinx.app.scene.changes import changed
+from galinx.app.scene.changes import changed, from_words
+from galinx.app.scene.library import LIBRARY
 from galinx.app.scene.read import parse, read
+from galinx.app.scene.scene import oddities
+from galinx.postprocess.quantities import states, validity, yielding
+from galinx.solvers.parameters import values
 
 TEXT = SCENE.read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    "changes, message",
-    [
-        ({"solid.nu": None, "solid.nuu": 0.25}, "did you mean nu"),
-        ({"solid.nu_": 1}, "solid.nu_: no such key"),
-        ({"sloid.nu": 0.25}, "did you mean solid"),
-        ({"solid.nu": None}, "solid.nu: missing"),
-        ({"solid.nu": 0.51}, "0.51"),
-        ({"solid.E": "193 mm"}, r"\[length\]"),
-        ({"friction.model": "amontons"}, "dahl"),
-        ({"motion.c": -0.1}, "motion.c"),
-        ({"motion.c": 0.95}, "Rayleigh speed c_R = 0.919402"),
-        ({"motion.speed": "1 m/s"}, "exclude each other"),
-        ({"motion.c": None}, "motion: expected c"),
-        (
-            {"motion.c": None, "motion.speed": ["4 km/s", "5 km/s"]},
-            r"^motion.speed = 4000, 5000 m/s: expected less than the Rayleigh speed 2881.39 m/s \(by",
-        ),
-        (
-            {"motion.c": None, "motion.speed": "4 km/s", "solve.methods": ["closed_form"]},
-            r"^motion.speed = 4000 m/s: expected less than the shear wave speed 3133.99 m/s$",
-        ),
-        ({"motion.c": None, "motion.speed": "3.1 km/s"}, r"c_R = 0.919402 \(over c_s\), 2881.39 m/s"),
-        ({"motion.X_over_L": 1.2}, "X_over_L"),
-        ({"solve.methods": ["fme"]}, "expected closed_form, sie or fem; did you mean fem\\?"),
-        ({"motion.strokes": ["foward"]}, "did you mean forward\\?"),
-        ({"solid.material": "STEEL"}, r"has 1 fault:.*found 'STEEL', .*; did you mean steel\?"),
-        ({"solid.material": "gold"}, r"has 1 fault:.*rubber or PTFE$"),
-        ({"solve.methods": []}, "solve.methods is empty"),
-        ({"solve.pressure": [[-1, -1], [1, -1]]}, "traction"),
-        ({"solve.mode": "traction", "solve.pressure": [[-1, -1], [0.5, -1]]}, "X/a = 1"),
-        ({"output.quantities": ["friction", "siff"]}, "quantities"),
-    ],
-)
-def test_each_fault_has_its_message(changes, message):
-    with pytest.raises(BadInput, match=re.compile(message, re.DOTALL)):
-        make_plan(template("tables4_5", changes))
-
-
 FROZEN = sorted((HOME / "tests" / "frozen").glob("*.toml"))
 #: A scene of each key: all keys are in one, see tests/frozen.
 KEYS = {
@@ -158,46 +122,124 @@ _APART = {"friction.sigma0_over_load": None, "friction.sigma0": "1.5922 N/µm/mm
 
 def test_stiffness_and_load_apart():
     """The study's σ₀ = 1.5922 N/µm and N = 55.3 N, of any depth, are σ₀ l/N = 28 792 1/m."""
-    (law,) = read(SCENE, _APART).friction.laws()
-    assert law.λ == pytest.approx(28792.0, abs=0.5)
+
+    def stiffness(text, changes):
+        return parse(changed(text, changes)).friction.parameters["sigma0_over_load"]
+
+    assert stiffness(TEXT, _APART) == pytest.approx((28792.0,), abs=0.5)
     deeper = {"friction.sigma0": "0.15922 N/µm/mm", "punch.load": "5.53 N/mm"}
-    assert read(SCENE, _APART | deeper).friction.parameters == pytest.approx(
-        read(SCENE, _APART).friction.parameters
-    )
+    assert stiffness(TEXT, _APART | deeper) == pytest.approx(stiffness(TEXT, _APART))
     # The load that a scene has where it gives none.
-    alone = '[solid]\nmaterial = "T302"\n[motion]\nc = 0.3\n[friction]\nmu_c = 0.7\n'
-    assert parse(f"{alone}sigma0 = [1.5922e9, 55.3e6]").friction.parameters[
-        "sigma0_over_load"
-    ] == pytest.approx((28792.04, 1000.0))
+    alone = {"punch.load": None, "friction.sigma0": [1.5922e9, 55.3e6]}
+    assert stiffness(TEXT, _APART | alone) == pytest.approx((28792.04, 1000.0))
     lugre = {"friction.model": "lugre", "friction.mu_s": 0.8, "friction.stribeck_velocity": 1e-3}
-    assert read(SCENE, _APART | lugre).friction.parameters["sigma0_over_load"] == pytest.approx(
-        (28792.04,)
-    )
+    assert stiffness(TEXT, _APART | lugre) == pytest.approx((28792.04,))
+    # A scene that has it loses it with the law.
+    coulomb = parse(changed(changed(TEXT, _APART), {"friction.model": "coulomb"})).friction
+    assert coulomb.law.__name__ == "Coulomb"
+
+
+def test_a_known_solid_gives_its_constants_and_the_scene_may_differ():
+    solid = template("fig5").solid
+    assert (solid.E, solid.ν, solid.ρ) == (193e9, 0.25, 7860.0)
+    solid = template("own_material", {"solid.material": "steel", "solid.rho": 8000}).solid
+    assert (solid.E, solid.ν, solid.ρ) == (210e9, 0.3, 8000.0)
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_every_known_solid_is_one(name):
+    solid = template("fig5", {"solid.material": name}).solid
+    soft, hard = {"rubber": (20.0, 35.0), "PTFE": (250.0, 350.0)}, ("DLC", "Al2O3", "Si3N4")
+    slow, fast = soft.get(name, (500.0, 7500.0 if name in hard else 6000.0))
+    assert LIBRARY[name].source and slow < solid.c_s < fast
+
+
+def test_laws_that_vary_are_products_of_their_own_and_come_once():
+    friction = template(
+        "study",
+        {
+            "friction.mu_c": 0.5, "friction.sigma0_over_load": "25 1/mm", "friction.delta": 1.0,
+            "friction.vary": [
+                {"mu_c": [0.1, 0.5]},
+                {"sigma0_over_load": ["12.5 1/mm", 25e3], "delta": {"from": 1, "to": 2, "number": 2}},
+                {},
+            ],
+        },
+    ).friction  # fmt: skip
+    listed = [tuple(values(law).values()) for law in friction.laws()]
+    assert listed == [
+        (0.1, 25e3, 1.0), (0.5, 25e3, 1.0), (0.5, 12.5e3, 1.0), (0.5, 12.5e3, 2.0), (0.5, 25e3, 2.0),
+    ]  # fmt: skip
+    assert friction.count == 5
+    assert [tuple(row) for row in zip(*friction.columns().values())] == listed
+    together = friction.together(friction.columns(), slice(1, 4))
+    assert np.ravel(together.δ).tolist() == [1.0, 1.0, 2.0]
+
+
+def test_changes_reach_laws_that_vary():
+    study = HOME / "scenes" / "study.toml"
+    assert read(study, from_words(["friction.sign=eq25"])).friction.count == 9
+    other = read(study, from_words(["friction.vary=[{mu_c = [0.2, 0.3]}]"]))
+    assert [law.μ_C for law in other.friction.laws()] == [0.2, 0.3]
+    assert read(study, from_words([], ["friction.vary"])).friction.count == 1
+    coulomb = read(study, from_words(["friction.model=coulomb"]))  # has no parameter that is varied
+    assert coulomb.friction.count == 1 and coulomb.friction.vary == ()
+
+
+#: Without strokes a law without memory has one state at each speed.
+STEADY = """
+[solid]
+material = "BK7"
+[punch]
+profile = "parabolic"
+radius = "5 mm"
+load = "100 N/mm"
+[friction]
+mu = 0.15
+[motion]
+speed = "1 m/s"
+"""
+
+
+def test_mu_alone_is_coulombs_law_and_a_scene_without_strokes_is_steady():
+    """It asks for what the solid bears."""
+    scene = parse(STEADY)
+    given = parse(STEADY.replace("mu = 0.15", 'model = "coulomb"\nmu_c = 0.15'))
+    assert scene.friction == given.friction and scene.steady and given.steady
+    speeds = {"motion.speed": ["1 m/s", "2 m/s"], "solve.methods": ["closed_form"]}
+    result = computed(STEADY, speeds)
+    assert len(result.data[states.SPEED.path]) == 2
+    assert not [text for text in result.attributes["warnings"] if "stroke" in text]
+    assert np.isnan(result.data[validity.CROSSINGS.path]).all()
+    assert result.data[yielding.VON_MISES["closed_form"].path].shape == (2,)
+    assert yielding.FIRST_LOAD["closed_form"].path not in result.data  # without a yield strength
 
 
 @pytest.mark.parametrize(
-    ("changes", "message"),
+    "old, new, message",
     [
-        ({"friction.sigma0": 1e9}, "sigma0 and sigma0_over_load exclude each other; keep one"),
-        (_APART | {"punch.load": [1e3, 2e3]}, "found 2 loads, expected one punch.load"),
-        (_APART | {"friction.sigma0": "5 kg"}, "of dimension"),
-        (_APART | {"friction.sigma0": -1.0}, "friction.sigma0"),
-        (_APART | {"punch.load": "1 m"}, "punch.load"),
+        ("mu = 0.15", "mu = 0,15", "found 0,15 in line 9, expected a decimal point, as in 0.15"),
+        ('"5 mm"', "5 mm", 'found 5 mm in line 6, expected quotes around a number and unit, "5 mm"'),
+        ('"1 m/s"', "1 m/s # fast", "found 1 m/s in line 11, expected quotes"),
+        ('"5 mm"', '"5,5 mm"', "decimals have a point"),
+        ("mu = 0.15", "mu = 0.15\ndelta = 1", 'no such key of model = "coulomb"; dahl has it'),
+        ("mu = 0.15", "mu = 0.15\nmu_c = 0.15", "1 fault:\n  friction: mu and mu_c exclude each other"),
+        ("mu = 0.15", "mu = 0.15\nsigma0 = 1e9", "friction.sigma0: no such key"),
     ],
 )
-def test_a_stiffness_that_does_not_go_with_the_rest_is_one_fault(changes, message):
-    with pytest.raises(BadInput, match="has 1 fault") as error:
-        read(SCENE, changes)
-    assert message in str(error.value)
+def test_messages_say_what_to_write(old, new, message):
+    with pytest.raises(BadInput) as raised:
+        parse(STEADY.replace(old, new))
+    assert message in str(raised.value)
 
 
-def test_laws_without_that_stiffness_do_not_have_the_key():
-    text = '[solid]\nmaterial = "T302"\n[motion]\nc = 0.3\n[friction]\nmodel = "coulomb"\nmu_c = 0.3\n'
-    with pytest.raises(BadInput, match=r"friction\.sigma0: no such key"):
-        parse(text + "sigma0 = 1e9")
-    with pytest.raises(BadInput, match=r"friction\.sigma0: no such key"):
-        read(SCENE, _APART | {"friction.model": "coulomb"})
-    # A scene that has it loses it with the law.
-    apart = changed(SCENE.read_text(encoding="utf-8"), _APART)
-    coulomb = parse(changed(apart, {"friction.model": "coulomb"})).friction
-    assert coulomb.law.__name__ == "Coulomb"
+def test_slopes_that_are_not_small_are_warned_about():
+    """Of a table those that it has, of a cylinder half-width over radius."""
+    steep = 'profile = "table"\nshape = [[-1, 1], [0, 0], [1, 1]]'
+    scene = parse(STEADY.replace('profile = "parabolic"\nradius = "5 mm"', steep))
+    assert any("slopes are up to 1," in text for text in oddities(scene))
+    changes = {"punch.radius": "5 mm", "solid.E": "2 MPa", "solid.nu": 0.4}
+    narrow, wide = (template("cylinder", changes | {"punch.load": load}) for load in ("1 N/m", "1e4 N/m"))
+    a = wide.body.half_width
+    assert a > 1e-3 and any(f"slopes of {a / 5e-3:.2g}, " in text for text in oddities(wide))
+    assert not any("slopes of" in text for text in oddities(narrow))

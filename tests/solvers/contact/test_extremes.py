@@ -58,3 +58,10 @@ def test_no_polynomial_goes_through_samples_of_two_pieces():
 def test_of_equal_heights_the_left_one_is_taken():
     height, place = highest(np.array([[1.0, 1.0 + 1e-13, 0.9]]), np.array([[-0.5, 0.5, -0.9]]))
     assert (height[0], place[0]) == (1.0, -0.5)
+
+
+def test_places_that_coincide_by_rounding_have_no_polynomial_between_them():
+    """Next to a turn a piece of a billionth is sampled more closely than numbers are apart."""
+    piece = 0.5 + 1e-9 / (1.0 + np.exp(-np.linspace(-18.0, 18.0, 109)))
+    value, place = largest(lambda X: -((X - 0.5) ** 2), [np.linspace(-1.0, 0.5, 9), piece])
+    assert value == pytest.approx(0.0, abs=1e-18) and place == pytest.approx(0.5, abs=1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from random_solids import random_solid
-from started import ByFiniteElements
+from starts import ByFiniteElements
 
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.harmonic import OscillatingPunch, highest

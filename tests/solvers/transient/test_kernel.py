@@ -1,12 +1,15 @@
-"""The kernels of motion in time against the transform by its definition, its symbols by eigenvectors."""
+"""Kernels of motion in time against their definition; symbols by eigenvectors and in many digits."""
 
+import mpmath as mp
 import numpy as np
 import pytest
+from layers_reference import admittance, plane_strain
 from random_solids import isotropic_as, random_solid, stiffness
 
+from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame, rayleigh_speed
-from galinx.solvers.transient.line_load import Kernel
+from galinx.solvers.transient.line_load import Echoes, Kernel, UniformLayers
 
 
 def panels(edges):
@@ -107,3 +110,48 @@ def test_roots_meet_at_speeds_of_waves_in_isotropic_solids():
         np.testing.assert_allclose(surface.meeting, [1.0, fast], rtol=1e-12)
         assert abs(surface.fastest / fast - 1.0) < 1e-12
     np.testing.assert_allclose(surface.impedance, np.diag([1.0, fast]), atol=1e-12)
+
+
+STACK = Layered(
+    (Layer(0.7, Isotropic(7.5, 0.3, 1.2)), Layer(0.4, Isotropic(1.5, 0.1, 0.7))),
+    Isotropic(2.5, 0.25, 1.0),
+)
+SHEETS = UniformLayers.of(STACK.response(0.0))
+#: The same for the reference.
+DIGITS = [(7.5, 0.3, 1.2), (1.5, 0.1, 0.7), (2.5, 0.25, 1.0)]
+
+
+def random_points(count):
+    """k, s with Re s > 0, and c, seeded."""
+    rng = np.random.default_rng(5)
+    for _ in range(count):
+        s = complex(10.0 ** rng.uniform(-1.0, 1.0), 10.0 ** rng.uniform(-1.0, 1.3) * rng.choice([-1, 1]))
+        yield -(10.0 ** rng.uniform(-1.0, 0.8)), s, rng.uniform(-0.55, 0.55)
+
+
+def test_symbol_of_layers_is_that_of_many_digits():
+    mp.mp.dps = 40
+    of = [(plane_strain(E, ν), ρ) for E, ν, ρ in DIGITS]
+    layers = [(H, *one) for H, one in zip((0.7, 0.4), of)]
+    for k, s, c in random_points(12):
+        C = c + 1j * s / k
+        V2 = mp.mpmathify(C) ** 2 * STACK.μ / STACK.ρ
+        exact = admittance(layers, of[-1], V2, mp.mpf(k)) - admittance([], of[0], V2, mp.mpf(k))
+        exact = np.array((exact * STACK.μ).tolist(), dtype=complex)
+        found = SHEETS.change(np.array([k]), np.array([C]))[0]
+        np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-13)
+
+
+def test_echoes_are_the_transform_of_their_symbol():
+    """By the trapezoidal rule along the whole axis of k."""
+    c, s, x = 0.3, 1.5 + 4.0j, np.array([0.05, 0.4, 1.7])
+    κ = np.linspace(-80.0, 80.0, 16000)  # an even number: none at 0, where a formula divides
+    found = Echoes(SHEETS, c)(x, s)
+    left, of = κ < 0.0, np.empty((len(κ), 2, 2), dtype=complex)
+    of[left] = SHEETS.change(κ[left], c + 1j * s / κ[left])
+    # Fields of k > 0 are the conjugates of those of -k and the conjugate of s.
+    other = -κ[~left]
+    of[~left] = np.conj(SHEETS.change(other, c + 1j * np.conj(s) / other))
+    values = of[:, ::-1, ::-1].reshape(-1, 4).T / (1j * κ)
+    expected = values @ np.exp(1j * np.outer(κ, x)) * (κ[1] - κ[0]) / (2.0 * np.pi)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-8 * np.abs(expected).max())

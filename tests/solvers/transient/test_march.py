@@ -1,0 +1,180 @@
+"""Friction that changes in time, by the integral equation: what is known, what is left, what is seen."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from random_solids import random_solid
+from scipy.interpolate import make_interp_spline
+from starts import SOLID, by_integral_equation
+from support import THOROUGH
+
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.history import smooth
+from galinx.solvers.transient.line_load import both_sides
+from galinx.solvers.transient.march import FrictionInterpolation, Radau, Residual
+from galinx.solvers.transient.punch import ON_SURFACE, PLACES, AlongSurface, StartingPunch
+from galinx.solvers.transient.transform import Basis, Transformed
+
+
+def load(t):
+    return smooth(t, 3.0)
+
+
+@pytest.fixture(scope="module")
+def at_once():
+    """Response, scheme, basis and answers of a start at c = 0.6 and g = -0.4, in the transform."""
+    response, scheme = SOLID.response(0.6), Radau(4.0, 20)
+    transformed = Transformed(response, SOLID.limit(), scheme.s, 16)
+    basis = transformed.basis(-0.4)
+    (answers,) = transformed.answers(basis)
+    return response, scheme, basis, scheme.answered(answers[..., None], load(scheme.times)[..., None])
+
+
+@pytest.fixture(scope="module")
+def marching():
+    return StartingPunch(SOLID.response(0.6), SOLID.limit(), 4.0, 20, 16)
+
+
+def test_pressures_of_all_frictions_lie_between_those_of_a_few():
+    response = random_solid(1).response(0.1)
+    between, X = FrictionInterpolation(response, -0.9, 0.2, 24), np.cos(np.linspace(0.05, 3.1, 50))
+    for g in (-0.9, -0.31, 0.2):
+        found = np.tensordot(between.shares(g), [one.pressure(X) for one in between.bases], 1)
+        exact = Basis(response, g, 24).pressure(X)
+        np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-9 * np.abs(exact).max())
+    assert 5 < len(between.bases) < 16
+    assert len(FrictionInterpolation(response, 0.3, 0.3, 24).bases) == 1
+
+
+def test_friction_that_stays_is_a_special_case(at_once, marching):
+    """Marched through, and at once in the transform; what comes round in that is left."""
+    _, _, basis, solved = at_once
+    marched = marching.course(-0.4, load)
+    σ_YY, v0 = solved[:, :-1] @ basis.pressure(PLACES).T, solved[:, -1]
+    for found, known in ((marched.v0, v0), (marched.σ_YY, σ_YY)):
+        np.testing.assert_allclose(found, known, rtol=0.0, atol=1e-10 * np.abs(known).max())
+
+
+def test_steady_motion_goes_on(marching):
+    found = marching.course(lambda t: -0.4 + 0.0 * t, lambda t: 1.0 + 0.0 * t, steady=True)
+    steady = FlatPunch(SOLID.response(0.6), -0.4)
+    np.testing.assert_allclose(found.v0, 0.0, atol=1e-12)
+    np.testing.assert_allclose(found.centre, steady.β - steady.α, rtol=1e-10)
+    np.testing.assert_allclose([found.K_left, found.K_right], steady.K_I, rtol=1e-10)
+    np.testing.assert_allclose(found.work_of_friction, 0.0, atol=1e-12)
+
+
+def transformed_by_a_ladder(solid, c, g0, g1, s, λ, ramp, rungs, terms):
+    """Of v₀ and the pressure's first moment where g = g0 + g1 e^(-λt), without any steps in time.
+
+    Laplace's transform of e^(-λt) σ is that of σ at s + λ, so that each s asks for the next; far away the
+    load has hardly any. All pressures have the exponents of the middle.
+    """
+    response = solid.response(c)
+    at = s + λ * np.arange(rungs)
+    t, w = np.polynomial.legendre.leggauss(60)
+    t, w = (t + 1.0) * ramp / 2.0, w * ramp / 2.0
+    loads = np.exp(-np.multiply.outer(at, t)) @ (w * smooth(t, ramp)) + np.exp(-at * ramp) / at
+    whole = Transformed(response, solid.limit(), at.astype(complex), terms)
+    basis = Basis(response, g0 + g1 / 2.0, terms)
+    by_g = [Basis(response, g, terms) for g in (0.0, 1.0)]
+    for one in by_g:
+        one.pressure = basis.pressure  # the same pressures under another friction
+    A, both = (whole.sinking(one, basis.tests).real for one in by_g)
+    B, known = both - A, np.zeros(terms)
+    for n in range(rungs - 1, -1, -1):
+        matrix, right = np.zeros((terms + 1, terms + 1)), np.zeros(terms + 1)
+        matrix[:-1, :-1] = A[n] + g0 * B[n]
+        matrix[0, -1], matrix[-1, 0] = basis.tests.integral, basis.pressure.integral
+        right[:-1], right[-1] = -g1 * B[n] @ known, -2.0 * loads[n]
+        x = np.linalg.solve(matrix, right)
+        known = x[:-1]
+    return x[-1], known @ basis.moments[:, 1]
+
+
+def transformed(t, s, values):
+    """∫ e^(-st) values dt from rest at t = 0."""
+    curve = make_interp_spline(np.append(0.0, t), np.append(0.0, values), 5)
+    x, w = np.polynomial.legendre.leggauss(200)
+    x, w = (x + 1.0) * t[-1] / 2.0, w * t[-1] / 2.0
+    return (w * np.exp(-s * x)) @ curve(x)
+
+
+def test_a_ladder_of_transforms_says_the_same():
+    """Friction 0.1 + 0.5 (1 - e^(-1.3t)) leaves at s = 3 what is over by t = 6."""
+    g0, g1, λ, s = -0.6, 0.5, 1.3, 3.0
+    found = by_integral_equation(SOLID, 0.6, lambda t: g0 + g1 * np.exp(-λ * t), 6.0, 40)
+    moment = -2.0 * found.load * found.centre
+    v0, first = transformed_by_a_ladder(SOLID, 0.6, g0, g1, s, λ, 3.0, 24, 20)
+    _, other = transformed_by_a_ladder(SOLID, 0.6, g0, 0.0, s, λ, 3.0, 1, 20)
+    assert abs(transformed(found.t, s, found.v0) / v0 - 1.0) < 1e-4
+    assert abs(transformed(found.t, s, moment) / first - 1.0) < 1e-4
+    assert abs(other / first - 1.0) > 0.05
+
+
+@pytest.mark.parametrize("g", [-0.4, lambda t: -0.5 * np.sin(0.8 * t)], ids=["constant", "changing"])
+def test_the_residual_falls_with_the_steps(g):
+    coarse, fine = (by_integral_equation(SOLID, 0.6, g, 4.0, n, checked=True).residual for n in (10, 20))
+    assert fine < min(coarse / 6.0, 1e-3)
+
+
+def test_the_residual_shows_a_wrong_number(at_once):
+    response, scheme, basis, solved = at_once
+    residual = Residual(response, SOLID.limit(), scheme.times[:, -1], 16)
+    right = residual.of([basis], solved[:, :-1], solved[:, -1])
+    # Of the pressure's polynomials, and the indentation.
+    for when, number in product((3, 10, 19), (0, 1, 5, -1)):
+        wrong = solved.copy()
+        wrong[when, number] += 0.05 * np.abs(solved).max()
+        assert residual.of([basis], wrong[:, :-1], wrong[:, -1]) > 5.0 * right
+
+
+def test_panels_hold_the_waves_of_short_steps():
+    """Steps of 0.008 a/c_s ask for these s: the slowest wave turns by 2 000 for each a."""
+    solid = Isotropic(200e9, 0.25, 7800.0)
+    s = np.array([80.0 + 700.0j, 80.0 + 200.0j][: 2 if THOROUGH else 1])
+    found, finer = (
+        punch.sinking(basis := punch.basis(-0.4), basis.tests)
+        for punch in (
+            Transformed(solid.response(0.6), solid.limit(), s, 8, *finest) for finest in ((), (2.5e-3,))
+        )
+    )
+    np.testing.assert_allclose(found, finer, rtol=0.0, atol=1e-6 * np.abs(finer).max())
+
+
+def strains(solid, c, g, s, X):
+    """û,X at places under the pressure of a punch at some s, and that pressure."""
+    s, response = np.array(s, dtype=complex), solid.response(c)
+    transformed = Transformed(response, solid.limit(), s, 14)
+    basis = transformed.basis(g)
+    (answers,) = transformed.answers(basis)
+    a = answers[:, :-1, None]
+    return (AlongSurface(response, solid.limit(), s, X).strains(basis) @ a)[..., 0], basis, a
+
+
+def test_strain_beside_the_contact_is_that_of_the_kernel():
+    X, s, g = np.array([-1.3, 1.3]), [0.3, 1.0 + 4.0j, 2.0 - 6.0j], -0.5
+    found, basis, a = strains(SOLID, 0.5, g, s, X)
+    loads, w = basis.pressure.rule(120)
+    σ = (w * (basis.pressure.polynomials(loads) @ a)[..., 0])[:, None]
+    ahead, behind = both_sides(SOLID.response(0.5), SOLID.limit(), 1)
+    kernels = np.array(
+        [[behind(loads - X[0], at, True)[2:], ahead(X[1] - loads, at, True)[2:]] for at in s]
+    )
+    by_σ_XY = g * np.array([-1.0, 1.0])[:, None] * kernels[:, :, 1]  # behind it that of the mirror image
+    expected = ((kernels[:, :, 0] + by_σ_XY) * σ).sum(axis=-1)
+    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-8)
+
+
+@pytest.mark.parametrize(("solid", "c", "g"), [(SOLID, 0.6, -0.5), (random_solid(1), 0.2, 0.4)])
+def test_strain_at_late_times_is_steady(solid, c, g):
+    """What is left falls like s, with its logarithm."""
+    steady, X, off = FlatPunch(solid.response(c), g), ON_SURFACE[::4], []
+    σ, weight = np.nan_to_num(steady.σ_YY(X)), np.minimum(np.sqrt(np.abs(1.0 - X**2)), 1.0)
+    for s in (1e-4, 1e-6):
+        u_X = strains(solid, c, g, [s], X)[0][0].real
+        off.append(np.abs((solid.response(c).σ_XX(u_X, σ, g * σ) - steady.σ_XX(X)) * weight).max())
+    assert off[1] < 3e-4
+    assert off[1] < 0.05 * off[0]

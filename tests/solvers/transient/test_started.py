@@ -1,0 +1,249 @@
+"""Starts from rest by both methods against what is known, and against each other."""
+
+import numpy as np
+import pytest
+from random_solids import isotropic_as, random_solid
+from starts import SOLID, ByFiniteElements, by_integral_equation
+from support import THOROUGH
+
+from galinx.meshes.waves import Reached
+from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.fem.dynamic import Damping
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.transient.history import smooth
+from galinx.solvers.transient.late_time import approach
+from galinx.solvers.transient.line_load import UniformLayers
+from galinx.solvers.transient.punch import BESIDE
+
+ONE, COAT, SOFT = Isotropic(2.5, 0.25, 1.0), Isotropic(7.5, 0.3, 1.2), Isotropic(1.5, 0.1, 0.7)
+STACK = Layered((Layer(0.7, COAT), Layer(0.4, SOFT)), ONE)
+NAMES = ("v0", "load", "centre", "K_left", "K_right", "work_of_load", "work_of_friction", "σ_XX_left")
+
+
+def differences(solid, c, g, end, steps, ramp=3.0, terms=24, **mesh):
+    """Of v₀, centre, K_I, energy and work over their largest, of energy and work, and of the centre."""
+    started = ByFiniteElements(solid, c, end, steps, **mesh)
+    run = started.run(g, lambda t: smooth(t, ramp))
+    found, expected = started.told(run, g), by_integral_equation(solid, c, g, end, steps, ramp, terms)
+    np.testing.assert_allclose(found.load, expected.load, atol=1e-10)
+    K = max(np.abs(expected.K_left).max(), np.abs(expected.K_right).max())
+    lean, work = expected.centre * expected.load, expected.work_of_load + expected.work_of_friction
+    return [
+        np.abs(run.v0 - expected.v0).max() / np.abs(expected.v0).max(),
+        np.abs(found.centre * expected.load - lean).max() / np.abs(lean).max(),
+        max(np.abs(found.K_left - expected.K_left).max(), np.abs(found.K_right - expected.K_right).max())
+        / K,
+        np.abs(work - run.energy - run.absorbed).max() / np.abs(work).max(),
+        np.abs(run.energy + run.absorbed - run.work).max() / np.abs(run.work).max(),
+        np.abs(found.centre * expected.load - lean).max(),
+    ]
+
+
+def over_layers(end):
+    fast = UniformLayers.of(STACK.response(0.0)).fastest
+    return Reached(1.0 + fast * end / 2.0, fast * end / 2.0, 1.0, 0.15, 1e-4, depths=(0.7, 1.1))
+
+
+ROTATED = random_solid(1)
+BOTH = {
+    "one friction": ((SOLID, 0.6, -0.4, 4.0, 20), {}, (3e-5, 5e-4, 1e-3, 1e-4, 1e-5)),
+    "changing friction": (
+        (SOLID, 0.6, lambda t: -0.6 * (1.0 - np.exp(-t)), 3.0, 20), {}, (3e-5, 1e-3, 1e-3, 1e-4, 1e-5)),
+    "rotated": ((ROTATED, 0.6 * ROTATED.limit(), -0.4, 3.0, 20), {}, (5e-4, 5e-4, 5e-4, 1e-4, 1e-5)),
+    "layers": (
+        (STACK, 0.3, -0.4, 3.0, 18, 2.0, 16), {"degree": 6, "mesh": over_layers(3.0)},
+        (1e-4, 2e-3, 1e-3, 1e-4, 1e-5)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BOTH)
+def test_both_methods_agree(name):
+    """They know nothing of each other; load and friction give what moves and is strained."""
+    start, options, limits = BOTH[name]
+    found = differences(*start, **options)
+    assert (np.array(found[:5]) < limits).all(), found
+
+
+@pytest.mark.skipif(not THOROUGH, reason="takes long: GALINX_THOROUGH=1")
+@pytest.mark.parametrize("seed", range(8))
+def test_both_methods_agree_on_random_solids(seed):
+    """What is left is K_I of the finite elements at strongly singular ends."""
+    rng, solid = np.random.default_rng(seed), random_solid(seed)
+    share, g = rng.uniform(0.0, 0.85), rng.uniform(-0.7, 0.7)
+    found = differences(solid, share * solid.limit(), g, 5.0, 60, degree=9)
+    assert max(found[0], found[5]) < 3e-4 and found[2] < 3e-3
+
+
+@pytest.mark.skipif(not THOROUGH, reason="takes long: GALINX_THOROUGH=1")
+@pytest.mark.parametrize("seed", range(6))
+def test_both_methods_agree_on_random_solids_where_friction_changes(seed):
+    rng, solid = np.random.default_rng(seed), random_solid(seed)
+    c, (one, other) = rng.uniform(0.0, 0.8) * solid.limit(), rng.uniform(-0.7, 0.7, 2)
+    found = differences(solid, c, lambda t: one + other * np.sin(t), 4.0, 50, degree=9)
+    assert found[0] < 1e-4 and max(found[1:3]) < 3e-3 and found[3] < 3e-4
+
+
+LIKE = {
+    "orthotropic": (isotropic_as("orthotropic", SOLID, 33.0), 1e-8),
+    "anisotropic": (isotropic_as("anisotropic", SOLID, 33.0), 1e-8),
+    "layers": (Layered((Layer(0.6, SOLID), Layer(0.5, SOLID)), SOLID), 1e-10),
+}
+
+
+@pytest.mark.parametrize("kind", LIKE)
+def test_an_isotropic_solid_is_one_however_it_is_given(kind):
+    """At an angle and as layers, too; roots of shear and pressure waves stay apart or meet alike."""
+    solid, digits = LIKE[kind]
+    known, found = (by_integral_equation(one, 0.5, -0.4, 4.0, 10) for one in (SOLID, solid))
+    for name in NAMES:
+        np.testing.assert_allclose(getattr(found, name), getattr(known, name), rtol=digits, atol=digits)
+
+
+def test_early_pressure_is_that_of_a_plane_wave():
+    """p = ρ c_d v̇₀ where no wave from the ends has come, so that v₀ = (c_s/c_d) ∫ load dt + O(t²)."""
+    slow, ratios = SOLID.response(0.0).k, []
+    for end in (0.02, 0.04):
+        found = by_integral_equation(SOLID, 0.0, 0.0, end, 10, ramp=end, terms=24)
+        # Half of the end is ∫ load dt over the ramp.
+        ratios.append(found.v0[-1] / (slow**0.5 * end / 2.0))
+    assert abs(2.0 * ratios[0] - ratios[1] - 1.0) < 1e-3
+    assert abs(ratios[1] - 1.0) < 0.02
+
+
+def test_frictionless_start_at_rest_is_symmetric():
+    solid = Isotropic(1.0, 0.3, 1.0)
+    found = by_integral_equation(solid, 0.0, 0.0, 4.0, 20)
+    assert np.abs(found.centre).max() < 1e-12 and not found.work_of_friction.any()
+    np.testing.assert_allclose(found.K_left, found.K_right, rtol=0.0, atol=1e-11)
+    forces = ByFiniteElements(solid, 0.0, 2.0, 10, degree=4, innermost=1e-2).run(0.0).forces
+    assert np.abs(forces - forces[:, ::-1]).max() < 1e-12 * np.abs(forces).max()
+
+
+def test_integral_equation_knows_the_mirror_image():
+    """What moves the other way with friction reversed is the same from the other side."""
+    forward = by_integral_equation(SOLID, 0.5, -0.6, 4.0, 20)
+    backward = by_integral_equation(SOLID, 0.5, 0.6, 4.0, 20, way=-1)
+    np.testing.assert_allclose(backward.v0, forward.v0, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose((backward.centre + forward.centre) * forward.load, 0.0, atol=1e-12)
+    np.testing.assert_allclose(backward.K_left, forward.K_right, rtol=0.0, atol=1e-12)
+
+
+def test_quadrature_has_its_order():
+    """Steps of a half leave a 2⁵th at least, up to what K_I and rounding leave."""
+    best, coarse, fine = (by_integral_equation(SOLID, 0.6, -0.4, 4.0, n).v0 for n in (40, 5, 10))
+    errors = [np.abs(one - best[k - 1 :: k]).max() for one, k in ((coarse, 8), (fine, 4))]
+    assert errors[0] / errors[1] > 2.0**3.5
+
+
+def test_scheme_of_finite_elements_converges():
+    """The same mesh, steps of a half and a quarter: of order four where the load is smooth enough.
+
+    The ramp's third derivative jumps, so that somewhat less is seen of two halvings.
+    """
+    started = ByFiniteElements(SOLID, 0.6, 2.0, 20, degree=6, innermost=1e-2)
+    v0 = {n: started.run(-0.4, lambda t: smooth(t, 2.0), n).v0 for n in (5, 20, 80)}
+    coarse, fine = (np.abs(v0[n] - v0[80][80 // n - 1 :: 80 // n]).max() for n in (5, 20))
+    assert coarse / fine > 2.0**5
+
+
+@pytest.fixture(scope="module")
+def small():
+    """Few cells, up to t = 2."""
+    return ByFiniteElements(SOLID, 0.5, 2.0, 10, degree=5, innermost=1e-2)
+
+
+def test_steady_motion_goes_on(small):
+    """Where nothing changes; and friction that does makes it change."""
+    run = small.run(-0.4, lambda t: 1.0, steady=True)
+    size = np.abs(run.forces).max()
+    np.testing.assert_allclose(run.forces, np.tile(run.forces[0], (10, 1)), atol=1e-9 * size)
+    assert np.abs(run.v0).max() < 1e-9
+    assert np.abs([run.work, run.energy, run.absorbed]).max() < 1e-9
+    other = small.run(lambda t: -0.4 * (1.0 - t / 2.0), lambda t: 1.0, steady=True)
+    assert np.abs(other.forces[-1] - run.forces[-1]).max() > 1e-2 * size
+
+
+def test_the_way_back_is_the_mirror_image(small):
+    there, back = small.run(-0.4), small.run(0.4, directions=(-1,))
+    size = np.abs(there.forces).max()
+    np.testing.assert_allclose(back.forces[:, ::-1], there.forces, rtol=0.0, atol=1e-12 * size)
+    np.testing.assert_allclose(back.v0, there.v0, atol=1e-12)
+    assert np.abs(there.forces - there.forces[:, ::-1]).max() > 1e-2 * size
+
+
+def test_friction_that_changes_turns_and_loses_no_energy(small):
+    """Work is energy and what is absorbed, but for the jump where the punch turns round."""
+    run = small.run(lambda t: -0.4 * np.sin(3.0 * t), directions=(1, -1), steps=40)
+    gained = np.diff(run.energy + run.absorbed - run.work)
+    assert np.abs(np.delete(gained, 19)).max() < 1e-4 * np.abs(run.work).max()
+
+
+def test_what_cells_hold_is_not_damped(small):
+    """Polynomials of a low degree are left alone in every cell, and higher ones lose energy far away."""
+    space = small.motion.space
+    D = Damping(space).matrices
+    assert np.linalg.eigvalsh(D).min() > -1e-9 * D.max()
+    assert (np.abs(D).max(axis=(1, 2)) > 0.0).any() and (np.abs(D).max(axis=(1, 2)) == 0.0).any()
+    X, Y = space.coordinates.T[:2]
+    low, high = X**2 - X * Y, np.cos(4.0 * X) * np.sin(3.0 * Y)
+    D, M = small.motion.D, small.motion.M
+    assert abs(low @ D @ low) < 1e-9 * (low @ M @ low)
+    assert high @ D @ high > 1e-3 * (high @ M @ high)
+
+
+def test_finite_elements_see_no_interface_between_equal_solids():
+    """Finite elements of a stack of one solid are those of the solid, on one mesh."""
+    mesh = Reached(4.0, 3.0, 1.0, 0.3, 1e-2, depths=(0.5, 1.2))
+    assert {-0.5, -1.2} <= set(np.round(mesh.drawn().points[:, 1], 12).tolist())
+    one, other = (
+        ByFiniteElements(solid, 0.5, 2.0, 10, 5, mesh=mesh).run(-0.4, lambda t: smooth(t, 2.0)).forces
+        for solid in (ONE, Layered((Layer(0.5, ONE), Layer(0.7, ONE)), ONE))
+    )
+    np.testing.assert_allclose(other, one, atol=1e-10 * np.abs(one).max())
+
+
+@pytest.mark.parametrize(
+    "solid, share, g",
+    [
+        (SOLID, 0.5, -0.4),
+        pytest.param(random_solid(2), 0.5, -0.4, marks=pytest.mark.skipif(not THOROUGH, reason="long")),
+    ],
+)
+def test_what_is_left_falls_like_1_over_t(solid, share, g):
+    """The first term of a series with t log t in the next: two times tell it without most of that."""
+    c = share * solid.limit()
+    steady, told, left = FlatPunch(solid.response(c), g), approach(solid, c, g), []
+    sides = steady.σ_XX(np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
+    for end in (40.0, 80.0):
+        found = by_integral_equation(solid, c, g, end, 40, 4.0, 14)
+        ratios = found.K_left[-1] / steady.K_I - 1.0, found.K_right[-1] / steady.K_I - 1.0
+        beside = np.array([found.σ_XX_left[-1], found.σ_XX_right[-1]]) - sides
+        left.append(np.array([found.centre[-1] - (steady.β - steady.α), *ratios, *beside]))
+    # Since the load was half.
+    found = 2.0 * left[1][:3] * 78.0 - left[0][:3] * 38.0
+    np.testing.assert_allclose(found, [told.centre, told.K_left, told.K_right], rtol=0.05)
+    assert np.abs(2.0 * left[1] - left[0])[3:].max() < 5e-3 * np.abs(sides).max()
+
+
+def test_stress_beside_the_contact_of_any_solid_comes_to_that_of_steady_motion():
+    solid, c, g = random_solid(2), 0.25, 0.4
+    one, two = (by_integral_equation(solid, c, g, end, 40, 4.0, 14) for end in (40.0, 80.0))
+    expected = FlatPunch(solid.response(c), g).σ_XX(np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
+    for side, exact in zip(("σ_XX_left", "σ_XX_right"), expected):
+        early, late = getattr(one, side)[-1], getattr(two, side)[-1]
+        assert abs(2.0 * late - early - exact) < 5e-3 * np.abs(expected).max()
+
+
+def test_at_rest_it_falls_like_the_square():
+    told, found = approach(SOLID, 0.0, 0.0), by_integral_equation(SOLID, 0.0, 0.0, 20.0, 40, 4.0, 12)
+    assert told.centre == told.K_left == told.K_right == 0.0
+    left = np.array([found.K_left[-1], found.K_right[-1]]) / FlatPunch(SOLID.response(0.0), 0.0).K_I - 1.0
+    np.testing.assert_allclose(left * 18.0**2, told.at_rest, rtol=0.05)
+    assert told.within(0.01) == pytest.approx((100.0 * told.at_rest) ** 0.5)
+
+
+def test_a_graded_layer_is_refused():
+    graded = Layered((Layer(1.0, ONE, bottom=COAT),), COAT)
+    with pytest.raises(ValueError, match="graded"):
+        UniformLayers.of(graded.response(0.3))

@@ -100,7 +100,7 @@ class Results:
         """In-plane stress of a state over N/(2a), at one or several of the positions."""
         return self.in_plane[self.state(**state), at]
 
-    def σ_YY(self, **state: Any) -> NDArray[np.float64]:
+    def contact_stress(self, **state: Any) -> NDArray[np.float64]:
         """Contact stress of a state over N/(2a) where pressures are compared."""
         return self.pressure[self.state(**state), self.under]
 
@@ -249,11 +249,11 @@ def _exponent(r: Results) -> _Decided:
 )
 def _backwards(r: Results) -> _Decided:
     places = (0.2, 0.5, 1.0)
-    nearly = [_apart(r.σ_YY(X=X), r.σ_YY(X=X, motion="FM2")) for X in places[1:]]
-    on_axis = [_apart(r.σ_YY(X=X), r.σ_YY(X=X, motion="BM1")) for X in places]
+    nearly = [_apart(r.contact_stress(X=X), r.contact_stress(X=X, motion="FM2")) for X in places[1:]]
+    on_axis = [_apart(r.contact_stress(X=X), r.contact_stress(X=X, motion="BM1")) for X in places]
     sign, response = r.data[states.RATIO.path][r.state()] / r.f(), r.solid.response(SLOW)
     travelled = [
-        _apart(r.σ_YY(X=X), FlatPunch(response, sign * f).σ_YY(r.X[r.under]))
+        _apart(r.contact_stress(X=X), FlatPunch(response, sign * f).σ_YY(r.X[r.under]))
         for X, f in zip(places, np.interp(places, r.places, r.loop()[1]).tolist())
     ]
     for differences, note in (
@@ -326,7 +326,7 @@ def _level(r: Results) -> _Decided:
     laws = r.over("mu_c", REFERENCE)
     σ_YY, σ_XX = (
         [float(np.ptp([of(X=X, **law) for law in laws], axis=0).max()) for X in (0.2, 0.8)]
-        for of in (r.σ_YY, lambda **state: r.σ_XX(r.behind, **state))
+        for of in (r.contact_stress, lambda **state: r.σ_XX(r.behind, **state))
     )
     yield (
         _grows(σ_YY) and _grows(σ_XX),

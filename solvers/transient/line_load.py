@@ -45,8 +45,8 @@ from ..solids.half_plane import HalfPlane
 
 #: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
 _POINTS, _WIDTH = 12, 0.8
-#: Decay after which an integrand is negligible.
-_GONE = 32.0
+#: Decay after which an integrand is negligible; panels of a way, of which few are used, as long as that.
+_GONE, _FARTHEST = 32.0, 80
 #: Directions of the ways below the real axis, and how far from the fastest decay one is taken.
 _DIRECTIONS = np.arange(0.6, 1.7, 0.3)
 #: Panels between two speeds at which 𝐘 is not analytic: at first, halvings at most, and accuracy.
@@ -140,26 +140,20 @@ class Kernel:
 
     def _ways(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
         """Points and weighted values of both ways in a direction, over so many panels and the first."""
-        count = _POINTS * (panels + 1)
-        return [(ζ[:count], values[:, :count]) for ζ, values in self._downwards(down, panels)]
-
-    def _downwards(self, down: int, panels: int) -> list[tuple[NDArray, NDArray]]:
-        ways = self._computed_ways.get(down)
-        if ways is None or len(ways[0][0]) < _POINTS * (panels + 1):
-            v, weights = _distances(self._first, panels + 8)
+        if down not in self._all_ways:
+            v, weights = _distances(self._first, _FARTHEST)
             along = np.exp(-1j * _DIRECTIONS[down])
-            ends = (self._edges[-1], False, 1.0), (0.0, True, -1.0)
-            ways = []
-            for start, below, sign in ends:
-                ζ = start + along * v
-                factor = sign * 1j / (2.0 * pi) * along * weights
-                ways.append((ζ, factor * self._rows(ζ, below)))
-            self._computed_ways[down] = ways
-        return ways
+            factor = 1j / (2.0 * pi) * along * weights
+            up, straight = self._edges[-1] + along * v, along * v
+            self._all_ways[down] = [
+                (up, factor * self._rows(up)), (straight, -factor * self._rows(straight, below=True))
+            ]  # fmt: skip
+        count = _POINTS * (panels + 1)
+        return [(ζ[:count], values[:, :count]) for ζ, values in self._all_ways[down]]
 
     @cached_property
-    def _computed_ways(self) -> dict[int, list[tuple[NDArray, NDArray]]]:
-        """Points and weighted values of both ways by direction, as far as they have been computed."""
+    def _all_ways(self) -> dict[int, list[tuple[NDArray, NDArray]]]:
+        """Points and weighted values of both ways by direction."""
         return {}
 
     @cached_property

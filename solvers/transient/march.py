@@ -19,7 +19,6 @@ steps, polynomials or a wrong number of the solution leave.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import ceil, pi
 
 import numpy as np
@@ -163,30 +162,10 @@ class FrictionInterpolation:
 _BLOCK = 16
 
 
-@dataclass(frozen=True)
-class PressureHistory:
-    """Pressure and indentation over time.
-
-    Attributes:
-        between: pressures of a few frictions.
-        shares: coefficients in σ_YY of the polynomials of these at all stages, (steps, stages,
-            few·terms).
-        begun: coefficients before t = 0, (few·terms,).
-        a: coefficients of the pressure's polynomials after each step, (steps, terms).
-        v0: indentation after each step, (steps,).
-    """
-
-    between: FrictionInterpolation
-    shares: NDArray[np.float64]
-    begun: NDArray[np.float64]
-    a: NDArray[np.float64]
-    v0: NDArray[np.float64]
-
-
 def march(
     transformed: Transformed, scheme: Radau, between: FrictionInterpolation,
     g: History, load: History, steady: bool,
-) -> PressureHistory:  # fmt: skip
+) -> tuple[NDArray[np.float64], ...]:  # fmt: skip
     """Pressure and indentation from t = 0 on, step after step.
 
     Args:
@@ -196,72 +175,46 @@ def march(
         g: σ_XY/σ_YY at times.
         load: share of N at times.
         steady: True for steady motion before t = 0 at the load and friction of t = 0; False for rest.
+
+    Returns:
+        Coefficients in σ_YY of the polynomials of the few frictions before t = 0, (few·terms,), and what
+        is added to them at all stages, (steps, stages, few·terms); coefficients of the pressure's own
+        polynomials after each step, (steps, terms); and the indentation, (steps,).
     """
-    tests, h = between.middle.tests, _History(transformed, scheme, between)
+    tests, steps, terms = between.middle.tests, len(scheme.times), between.middle.tests.terms
     few, given = between.shares(g(scheme.times)), -2.0 * load(scheme.times)
     forces = [basis.pressure.integral for basis in between.bases]
+    # Tested displacements by lag, stage and test, of the polynomials of each stage and friction.
+    weights = np.empty((steps, STAGES, terms, STAGES, len(forces), terms))
+    for n, basis in enumerate(between.bases):
+        weights[..., n, :] = scheme.weights(transformed.sinking(basis, tests)).swapaxes(2, 3)
+    flat = weights.reshape(steps, STAGES * terms, -1)
+    begun, added = np.zeros(len(forces) * terms), np.zeros((steps, STAGES, len(forces) * terms))
     if steady:
         start = between.shares(g(np.zeros(())))
-        h.begun[:, :: tests.terms] = start * (-2.0 * float(load(np.zeros(()))) / (start @ forces))
-    coefficients, v0 = np.empty((len(few), tests.terms)), np.empty(len(few))
-    shape = STAGES, tests.terms + 1
+        begun[::terms] = start * (-2.0 * float(load(np.zeros(()))) / (start @ forces))
+    before = np.tile(-flat[0] @ np.tile(begun, STAGES), (steps, 1))
+    a, v0, shape = np.empty((steps, terms)), np.empty(steps), (STAGES, terms + 1)
     for n, share in enumerate(few):
+        first = n - n % _BLOCK
+        if n == first:  # a weight serves many steps of the block
+            for lag in range(1, last := min(first + _BLOCK, steps)):
+                begin, end = max(0, first - lag), min(first, last - lag)
+                if end > begin:
+                    before[begin + lag : end + lag] += (
+                        added[begin:end].reshape(end - begin, -1) @ flat[lag].T
+                    )
+        for m in range(first, n):
+            before[n] += flat[n - m] @ added[m].ravel()
         whole, right = np.zeros((*shape, *shape)), np.empty(shape)
-        whole[:, :-1, :, :-1] = h.now(share)
+        whole[:, :-1, :, :-1] = np.einsum("itjfk,jf->itjk", weights[0], share)
         whole[range(STAGES), 0, range(STAGES), -1] = tests.integral
         whole[range(STAGES), -1, range(STAGES), 0] = share @ forces
-        right[:, :-1], right[:, -1] = -h.before(n), given[n]
+        right[:, :-1], right[:, -1] = -before[n].reshape(STAGES, -1), given[n]
         x = np.linalg.solve(whole.reshape(right.size, right.size), right.ravel()).reshape(shape)
-        h.record(n, share[:, :, None] * x[:, None, :-1])
-        coefficients[n], v0[n] = x[-1, :-1], x[-1, -1]
-    return PressureHistory(between, h.added + h.begun, h.begun[0], coefficients, v0)
-
-
-class _History:
-    """Coefficients of the pressure in all steps, and the displacements that they cause later.
-
-    Attributes:
-        added: coefficients in σ_YY less those before t = 0, (steps, stages, few·terms).
-        begun: coefficients before t = 0, (stages, few·terms), equal at all stages.
-    """
-
-    def __init__(self, transformed: Transformed, scheme: Radau, between: FrictionInterpolation) -> None:
-        tests, few = between.middle.tests, len(between.bases)
-        self._weights = np.empty((len(scheme.times), STAGES, tests.terms, STAGES, few, tests.terms))
-        for n, basis in enumerate(between.bases):
-            weights = scheme.weights(transformed.sinking(basis, tests))
-            self._weights[..., n, :] = weights.swapaxes(2, 3)
-        self._flat = self._weights.reshape(len(self._weights), STAGES * tests.terms, -1)
-        self.added = np.zeros((len(self._weights), STAGES, few * tests.terms))
-        self.begun = np.zeros((STAGES, few * tests.terms))
-        self._ahead = np.zeros((len(self._weights), STAGES * tests.terms))
-
-    def now(self, share: NDArray) -> NDArray[np.float64]:
-        """Tested displacements by a step's own polynomials, (stages, tests, stages, terms)."""
-        return np.asarray(np.einsum("itjfk,jf->itjk", self._weights[0], share))
-
-    def before(self, n: int) -> NDArray[np.float64]:
-        """Tested displacements in step n by the pressure of earlier steps, (stages, tests)."""
-        first = n - n % _BLOCK
-        if n == first:
-            self._look_ahead(first)
-        whole = self._ahead[n] - self._flat[0] @ self.begun.ravel()
-        for m in range(first, n):
-            whole = whole + self._flat[n - m] @ self.added[m].ravel()
-        return np.asarray(whole.reshape(STAGES, -1))
-
-    def _look_ahead(self, first: int) -> None:
-        """Add the displacements in a block by all steps before it; a weight serves many steps."""
-        last = min(first + _BLOCK, len(self._flat))
-        for lag in range(1, last):
-            begin, end = max(0, first - lag), min(first, last - lag)
-            if end > begin:
-                been = self.added[begin:end].reshape(end - begin, -1)
-                self._ahead[begin + lag : end + lag] += been @ self._flat[lag].T
-
-    def record(self, n: int, whole: NDArray) -> None:
-        """Keep the coefficients in σ_YY of step n, (stages, few, terms)."""
-        self.added[n] = whole.reshape(STAGES, -1) - self.begun
+        added[n] = (share[:, :, None] * x[:, None, :-1]).reshape(STAGES, -1) - begun
+        a[n], v0[n] = x[-1, :-1], x[-1, -1]
+    return begun, added, a, v0
 
 
 #: Steps over those of the solution, and polynomials of the tests besides as many as the pressure has.

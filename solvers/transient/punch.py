@@ -232,20 +232,20 @@ class StartingPunch:
         t, ratios, first = scheme.times[:, -1], ratio(scheme.times), float(ratio(np.zeros(())))
         occurring = np.append(ratios, first)
         between = FrictionInterpolation(self._response, occurring.min(), occurring.max(), self._terms)
-        marched = march(transformed, scheme, between, ratio, load, steady)
-        held, added, a = between.middle.pressure, marched.shares - marched.begun, marched.a
+        begun, added, a, v0 = march(transformed, scheme, between, ratio, load, steady)
+        held = between.middle.pressure
         rows = [
             np.hstack([transformed.dragging(of, held), self._along.strains(of)]) for of in between.bases
         ]
         u, u_X = np.split(scheme.answered(np.concatenate(rows, axis=2), added), [self._terms], axis=1)
         shared = np.hstack([basis.pressure.tested(held) for basis in between.bases])
-        forces = ratios[:, -1:] * (marched.shares[:, -1] @ shared.T)
+        forces = ratios[:, -1:] * ((begun + added[:, -1]) @ shared.T)
         different = {ratio: Basis(self._response, ratio, self._terms) for ratio in set(ratios[:, -1])}
         bases = [different[ratio] for ratio in ratios[:, -1]]
         beside, along = u_X[:, :2], u_X[:, 2:]
         σ_XX = self._response.σ_XX(beside, np.zeros_like(beside), np.zeros_like(beside))
         due = load(t)
-        by_load = _work(t, 2.0 * due[:, None], marched.v0[:, None], 2.0 * load(np.zeros(1)))
+        by_load = _work(t, 2.0 * due[:, None], v0[:, None], 2.0 * load(np.zeros(1)))
         normal = np.array([coefficients @ basis.moments for coefficients, basis in zip(a, bases)])
         carried = -normal[:, 0] / 2.0
         ends = np.array([basis.ends for basis in bases])
@@ -255,40 +255,24 @@ class StartingPunch:
             np.einsum("nj,nej->en", a[:, :n], ends[..., :n]) for n in (self._terms, self._terms // 2)
         )
         K_left, K_right = -(whole + (whole - half) / 3.0) / 2.0
+        pressed = np.array(
+            [basis.pressure(PLACES) @ coefficients for coefficients, basis in zip(a, bases)]
+        )
         surface, residual = None, np.nan
         if self._surface:
-            under = ON_SURFACE[_UNDER]
-            begun = marched.begun @ np.vstack([basis.pressure(under).T for basis in between.bases])
-            surface = self._on_surface(bases, a, along, begun, first)
+            before = begun @ np.vstack([basis.pressure(PLACES).T for basis in between.bases])
+            σ_YY, σ_XY = np.zeros((2, *along.shape))
+            σ_YY[:, _UNDER] = pressed - before
+            σ_XY[:, _UNDER] = ratios[:, -1:] * pressed - first * before
+            surface = np.array([self._response.σ_XX(along, σ_YY, σ_XY), σ_YY, σ_XY])
         if self._residual is not None:
             off = np.abs(carried - due).max() / max(np.abs(due).max(), np.finfo(float).tiny)
-            residual = max(self._residual.of(between.bases, added[:, -1], marched.v0), float(off))
+            residual = max(self._residual.of(between.bases, added[:, -1], v0), float(off))
         return Course(
-            t, marched.v0, carried, normal[:, 1] / normal[:, 0], K_left, K_right, by_load,
-            _work(t, forces, u, first * (shared @ marched.begun)),
-            np.array([basis.pressure(PLACES) @ coefficients for coefficients, basis in zip(a, bases)]),
-            σ_XX[:, 0], σ_XX[:, 1], surface, residual,
+            t, v0, carried, normal[:, 1] / normal[:, 0], K_left, K_right, by_load,
+            _work(t, forces, u, first * (shared @ begun)), pressed, σ_XX[:, 0], σ_XX[:, 1], surface,
+            residual,
         )  # fmt: skip
-
-    def _on_surface(
-        self, bases: list[Basis], a: NDArray, u_X: NDArray, begun: NDArray, ratio: float
-    ) -> NDArray[np.float64]:
-        """σ_XX, σ_YY and σ_XY at ``ON_SURFACE`` less those before t = 0, (3, times, places).
-
-        Args:
-            bases: polynomials of the pressure at each time.
-            a: their coefficients, (times, terms).
-            u_X: strain less that before t = 0, (times, places).
-            begun: σ_YY under the punch before t = 0, (places under it,).
-            ratio: σ_XY/σ_YY then.
-        """
-        σ_YY, σ_XY = np.zeros((2, *u_X.shape))
-        for n, (coefficients, basis) in enumerate(zip(a, bases)):
-            σ_YY[n, _UNDER] = basis.pressure(ON_SURFACE[_UNDER]) @ coefficients
-            σ_XY[n] = basis.g * σ_YY[n]
-        σ_YY[:, _UNDER] -= begun
-        σ_XY[:, _UNDER] -= ratio * begun
-        return np.array([self._response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:

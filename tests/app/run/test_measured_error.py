@@ -17,7 +17,7 @@ G = np.array([-0.5])
 FIRST = 6
 
 
-def level(value, left=0.0, rounding=0.0, mirrored=True):
+def level(value, left=0.0, rounding=0.0, mirrored=True, word="sif"):
     """One number that is relative to 1, and what a level knows of itself."""
     return SimpleNamespace(
         space=SimpleNamespace(cells=1, size=1, degree=FIRST),
@@ -25,7 +25,7 @@ def level(value, left=0.0, rounding=0.0, mirrored=True):
         mirrored=mirrored,
         task=TASK,
         gauges=lambda g, load=None: [
-            Gauge("sif", np.full((len(g), 1), value), np.ones((len(g), 1)), left)
+            Gauge(word, np.full((len(g), 1), value), np.ones((len(g), 1)), left)
         ],
         rounding=lambda g, load: [rounding],
         close=lambda: None,
@@ -63,9 +63,10 @@ TASK = SimpleNamespace(
 )
 
 
-def estimated(left=0.0, rounding=0.0, tolerance=1e-3):
+def estimated(left=0.0, rounding=0.0, tolerance=1e-3, word="sif"):
     """The estimate of three levels, the last as given."""
-    return measured_error(level(0.0), level(0.0), level(0.0, left, rounding), tolerance).of(G)["sif"][0]
+    levels = level(0.0, word=word), level(0.0, word=word), level(0.0, left, rounding, word=word)
+    return measured_error(*levels, tolerance).of(G)[word][0]
 
 
 def measured_error(first, second, last, tolerance=1e-3):
@@ -85,6 +86,16 @@ def test_an_estimate_holds_what_the_far_boundary_leaves_of_the_edges():
     innermost, far = kind.unseen(wanted, FIRST, 1, 1.0), kind.truncation(wanted, 1.0)
     leaning = (2.0 + 0.55 * np.log(3.0)) * (0.5 + 0.1)
     assert estimated() == pytest.approx(innermost + far * (leaning + 1.8 * far), rel=1e-12)
+
+
+@pytest.mark.parametrize("word", ["surface", "interfaces"])
+def test_an_estimate_of_stresses_holds_what_the_far_boundary_leaves_of_places_and_of_cells(word):
+    """Sizes of 1 take 0.3 + 1.9 of the compliance; cells beside the edges count where places are near."""
+    kind, wanted = MESHES["confocal"], Requirements(1e-3)
+    cells, far = kind.unseen(wanted, FIRST, 1, 1.0), kind.truncation(wanted, 1.0)
+    cells += kind.unseen_beside(wanted, FIRST, 1) if word == "surface" else 0.0
+    of_places = (2.0 + 0.55 * np.log(3.0)) * (0.5 + 0.1 + 0.3 + 1.9)
+    assert estimated(word=word) == pytest.approx(cells + far * (of_places + 1.8 * far), rel=1e-12)
 
 
 def climbed(work):

@@ -97,7 +97,10 @@ FAULTS = {
         (_PATH | {"motion.path": [[0, 0, 1], [1, 1, 1]]}, "rows of 2 numbers"),
         (_SLIDES | {"slider": None}, "go together"),
         (_SLIDES | {"output.quantities": ["friction"]}, "go together"),
-        (_SLIDES | {"slider": {"mass": 1, "stiffness": 1}}, "slider.drive_speed: missing…slider.duration: missing"),
+        (
+            _SLIDES | {"slider": {"mass": 1, "stiffness": 1}},
+            "slider.drive_speed: missing…slider.duration: missing",
+        ),
         (_SLIDES | {"slider": _SLIDER | {"mass": -2}}, "found -2, expected > 0"),
         ({"solve.methods": ["fme"]}, "expected closed_form, sie or fem; did you mean fem?"),
         ({"solve.methods": []}, "solve.methods is empty"),

@@ -393,8 +393,9 @@ def test_both_methods_tell_all_of_a_cylinder_and_the_archive_is_whole(tmp_path):
 @pytest.mark.parametrize("layers", [{}, *(GRADED,) * THOROUGH])
 @pytest.mark.parametrize("tolerance", [1e-3, *(1e-6,) * THOROUGH])
 def test_both_methods_tell_all_of_a_given_pressure_and_the_archive_is_whole(layers, tolerance, tmp_path):
+    points = {"output.points": [[0.2, -0.5], [-1.0, -0.3], [0.7, -3.0]]}
     asked = {"solve.tolerance": tolerance, "solve.methods": BOTH}
-    result = coated(ALL, GIVEN, layers, asked)
+    result = coated(ALL, points, GIVEN, layers, asked)
     data = result.data
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     for text, word in (("σ_XX against", "sigma_XX"), ("stresses inside against", "inside"),

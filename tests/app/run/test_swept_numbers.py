@@ -1,7 +1,9 @@
 """Lists of numbers of solid, layers and punch: each state is that of a scene of its own."""
 
 import numpy as np
+import pytest
 
+from galinx.app.errors import BadInput
 from galinx.app.results import check
 from galinx.app.results.result import compute, load
 from galinx.app.scene.changes import changed, from_words
@@ -100,3 +102,9 @@ def test_thicknesses_of_a_layer():
             held, expected = result.data[row.path][state], alone.data[row.path][0]
             # The positions along interfaces are those of both thicknesses.
             assert np.allclose(held, expected, rtol=2e-3, atol=2e-2 * ("_X" in row.path)), row.path
+
+
+def test_contacts_of_another_kind_are_no_sweep():
+    tilts = from_words(["punch.tilt=['0 deg', '0.1 deg']"])
+    with pytest.raises(BadInput, match="of another kind"):
+        compute(parse(changed(FLAT, tilts)))

@@ -192,6 +192,7 @@ FAULTS = {
     "cylinder": [
         ({"punch.profile": ["flat", "parabolic"]}, "expected flat, parabolic"),
         ({"solid.E": []}, "found an empty list"),
+        ({"solid.nu": [0.2, 0.7]}, "solid.nu (Poisson's ratio): found 0.7"),
         ({"layer.thickness": 1e-6}, "layers by their number from the top: the scene has 0"),
     ],
     "start_from_rest": [

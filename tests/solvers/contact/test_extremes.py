@@ -74,7 +74,8 @@ def test_the_stress_between_turns_is_highest_between_its_samples(place, sign):
     """(1 - X)^(2 - 2p) (1 + X)^(2 + 2p) is largest at p, over one interval and beside a turn."""
     a, b = 2.0 - 2.0 * place, 2.0 + 2.0 * place
     top = (1.0 - place) ** a * (1.0 + place) ** b
-    for turns in (np.array([-1.0, 1.0]), np.array([-1.0, (place - 1.0) / 2.0, 1.0]), np.array([-1.0, 0.95, 1.0])):
-        _, found = at_and_between(turns, lambda X: sign * (1.0 - X)[None] ** a * (1.0 + X)[None] ** b / top)
+    stress = lambda X: sign * (1.0 - X)[None] ** a * (1.0 + X)[None] ** b / top  # noqa: E731
+    for inner in ([], [(place - 1.0) / 2.0], [0.95]):
+        _, found = at_and_between(np.array([-1.0, *inner, 1.0]), stress)
         at, value = found[:, 0 if sign > 0.0 else 1, 0]
         assert value == pytest.approx(sign, rel=3e-8) and at == pytest.approx(place, abs=1e-5)

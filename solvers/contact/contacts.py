@@ -193,30 +193,40 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     return panels_of_slope(a, kinks, not jumps(profile) and k != round(k))
 
 
-def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
-    """Contacts of a body, prescribed, with free ends or sharp.
+def between_edges(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
+    """Contacts between two sharp corners of a punch.
 
     Args:
-        body: see :class:`galinx.solvers.contact.solution.Contact`.
+        body: see :class:`galinx.solvers.contact.solution.SharpContact`.
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY, (states,).
     """
-    if body.found:
-        return contacts(response, g, body.profile, body.compression)
-    if known := body.known_pressures(response, g):
-        return Contacts(response, tuple(_fixed(rows, g, p, body.half_width) for rows, p in known))
+    if body.flat:
+        return between_given_ends(body, response, g, [FlatPunch(response, g[:, None])])
     from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 
-    groups, loads = [], np.broadcast_to(body.load, g.shape).tolist()
-    for i, (value, load) in enumerate(zip(g.tolist(), loads)):
-        pressure = Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
-        groups.append(_fixed(np.array([i]), g, pressure, body.half_width))
+    loads = np.broadcast_to(body.load, g.shape).tolist()
+    each = [
+        Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
+        for value, load in zip(g.tolist(), loads)
+    ]
+    return between_given_ends(body, response, g, each)
+
+
+def between_given_ends(
+    body: Any, response: HalfPlane, g: NDArray, pressures: Sequence[Pressure]
+) -> Contacts:
+    """Contacts from -a to a of given pressures.
+
+    Args:
+        body, response, g: as in :func:`between_edges`.
+        pressures: one for all states, or one for each.
+    """
+    groups = []
+    for rows, pressure in zip(np.array_split(np.arange(len(g)), len(pressures)), pressures):
+        half_width = np.full(len(rows), body.half_width)
+        groups.append(Group(rows, g[rows], pressure, half_width, np.zeros(len(rows))))
     return Contacts(response, tuple(groups))
-
-
-def _fixed(rows: NDArray, g: NDArray, pressure: Pressure, half_width: float) -> Group:
-    """States with given ends, of a half-width [m]; frictions are those of all states."""
-    return Group(rows, g[rows], pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
 
 
 def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
-from .contacts import Contacts, Group, contacts_of
+from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
 from .ends import Punch
 from .equation import SolvedContact
@@ -78,7 +78,7 @@ class ExactSolution:
     @cached_property
     def contacts(self) -> Contacts:
         """Pressures, half-widths and middles of all solved states."""
-        return contacts_of(self._body, self.task.response, self._g)
+        return self._body.contacts(self.task.response, self._g)
 
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
@@ -209,6 +209,11 @@ class ExactSolution:
             batch = slice(first, first + _TOGETHER)
             σ[:, :, batch] = self.contacts.stresses(*points[batch].T)
         return σ[:, self._rows]
+
+    @property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
+        return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
     def strength(self) -> Strength:
@@ -376,8 +381,8 @@ class LayeredSolution(ExactSolution):
         return self.both_inside[0]
 
     @cached_property
-    def σ_ZZ(self) -> NDArray[np.float64]:
-        """Normal stress out of the plane at points inside, (states, m)."""
+    def σ_ZZ(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
         Y = self.places.points[:, 1]
         sizes = self.half_width / self._at.layers.punch.unit
         σ_ZZ = np.empty(self.inside.shape[1:])

@@ -22,7 +22,6 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM
 from galinx.postprocess.quantities.stresses import STRESSES_INSIDE
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
-from galinx.solvers.contact.contacts import contacts_of
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.fem_plan import FemPlan
 from galinx.solvers.contact.solution import GIVEN_ENDS, Task
@@ -447,7 +446,7 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
     }
     if state.exact:
         # The largest difference of a component from the closed form; NaN on the surface.
-        exact = contacts_of(body, task.response, np.array([state.g])).stresses(*points[~on].T)[:, 0]
+        exact = body.contacts(task.response, np.array([state.g])).stresses(*points[~on].T)[:, 0]
         error = np.full(len(points), np.nan)
         error[~on] = np.abs(stresses[:, ~on] - exact).max(axis=0)
         data["sigma_error"] = body.stress * error

@@ -13,9 +13,22 @@ from galinx.postprocess.quantities.states import FRICTION, VELOCITY
 from galinx.texts import plain
 
 from ..errors import BadInput
-from .choice import Archive, Drawing, both, explained, named, require_one_of, short_name
+from .choice import (
+    PLACE,
+    Archive,
+    C,
+    Drawing,
+    N,
+    StateLabels,
+    both,
+    explained,
+    named,
+    not_shown,
+    require_one_of,
+    short_name,
+    spread,
+)
 from .render import Map, Panel, Size, render
-from .states import PLACE, C, N, StateLabels, not_shown, spread
 from .style import COLUMN, looks
 
 #: Values of a parameter that make a curve, and those of two that make a map; curves that can be told

@@ -32,20 +32,21 @@ class _Figure:
     """A kind of figure: how it is drawn, whether an archive has it, the options that it follows, and
     whether it is drawn without being named."""
 
-    draw: Callable[[Archive], Any]
+    draw: Callable[[Archive], Drawing]
     has: Callable[[Archive], bool]
     follows: frozenset[str] = frozenset()
     usual: Callable[[Archive], bool] = lambda _: False
 
 
-def film(of: Archive) -> tuple[Film, str]:
-    """Film of the strokes, or of a motion in time, and a sentence on what it leaves out.
+def film(of: Archive) -> Drawing:
+    """Film of the strokes, or of a motion in time.
 
     Raises:
         BadInput: there are too few states along the strokes.
     """
     if not _has_strokes(of) and motion.has_film(of):
-        return motion.film(of)
+        made, left_out = motion.film(of)
+        return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
     labels, frames = of.labels, _frames(of)
     if len(frames) < _LEAST_FRAMES:
         raise BadInput(
@@ -66,7 +67,8 @@ def film(of: Archive) -> tuple[Film, str]:
         return [replace(base, curves=[*base.curves, dot], title=title), *beside[frame]]
 
     left_out = not_shown(labels, frames, "--figure film --states", of.choice.states)
-    return Film(panels, len(frames), of.size), left_out
+    made = Film(panels, len(frames), of.size)
+    return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
 
 
 def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
@@ -74,7 +76,7 @@ def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
     they are chosen."""
     made: list[list[Panel]] = [[] for _ in frames]
     if _has(stresses.surface_names)(of):
-        method, _ = next(iter(stresses.stresses_along(of).values.values())).popitem()
+        method = next(iter(next(iter(stresses.stresses_along(of).values.values()))))
         surface = stresses.stresses_along(of, method)
         for name in surface.values:
             ylim = stresses.limits(surface.X, surface.drawn(name)[frames])
@@ -159,22 +161,21 @@ FIGURES = {
 
 
 def of_archive(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> Iterator[Drawing]:
-    """The figures that a choice selects, one after the other.
+    """The figures that a choice selects, and the film if it is named, one after the other.
 
     Raises:
         BadInput: the archive lacks a selected figure or quantity; the message says what it has.
     """
     of = Archive(data, scene, choice)
     for name in names(data, scene, choice):
-        if name != FILM:
-            try:
-                yield FIGURES[name].draw(of)
-            except TooSmall as error:
-                raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
+        try:
+            yield FIGURES[name].draw(of)
+        except TooSmall as error:
+            raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
 
 
 def write(data: dict[str, Any], scene: Scene, choice: Choice, files: Files) -> list[Written]:
-    """Write the figures of :func:`of_archive`, and the film if it is selected.
+    """Write the figures of :func:`of_archive`.
 
     Raises:
         BadInput: the archive lacks a selected figure or quantity, or it cannot be written in this format.
@@ -183,10 +184,8 @@ def write(data: dict[str, Any], scene: Scene, choice: Choice, files: Files) -> l
     """
     if not choice.figures and OF_FILMS.keys() & {files.ending, *files.formats}:
         choice = replace(choice, figures=(FILM,))
-    selected = names(data, scene, choice)
-    files.check(selected)
-    whole = (lambda: film(Archive(data, scene, choice))) if FILM in selected else None
-    return files.write(of_archive(data, scene, choice), whole)
+    files.check(names(data, scene, choice))
+    return files.write(of_archive(data, scene, choice))
 
 
 def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[str]:

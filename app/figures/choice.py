@@ -25,7 +25,7 @@ from galinx.texts import number, plain, unit
 from ..errors import BadInput, nearest, short
 from ..scene.scene import Scene
 from .measured import Measured
-from .render import Curve, Size, lines_and_markers
+from .render import Curve, Film, Size, lines_and_markers
 from .style import LINES, MARKERS, Look, looks
 
 _INCHES = {"in": 1.0, "cm": 1.0 / 2.54, "mm": 1.0 / 25.4, "pt": 1.0 / 72.0}
@@ -125,6 +125,7 @@ class Drawing:
         figure: the matplotlib figure.
         pixels: True where a page should embed it as pixels.
         left_out: which states it does not show and how to draw them; "" where it shows all.
+        film: the film of which the figure is the first frame; None for figures.
     """
 
     name: str
@@ -132,6 +133,7 @@ class Drawing:
     figure: Figure
     pixels: bool = False
     left_out: str = ""
+    film: Film | None = None
 
     @property
     def full_caption(self) -> str:

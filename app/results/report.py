@@ -38,7 +38,7 @@ from galinx.texts import counted, folded, plain
 
 from ..console import program
 from ..figures.choice import Archive, Choice, Drawing, spread
-from ..figures.files import embedded, in_a_page
+from ..figures.files import content, embedded
 from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_along
 from ..figures.stresses import (
     SHOWN,
@@ -341,7 +341,11 @@ class Report:
             width = round(96.0 * drawing.figure.get_figwidth())
             picture |= {"source": embedded(png), "width": width}
         elif not picture["charts"]:
-            picture["source"] = in_a_page(drawing.figure, drawing.pixels)
+            picture["source"] = (
+                embedded(content(drawing.figure, "png", 160))
+                if drawing.pixels
+                else embedded(content(drawing.figure, "svg", transparent=True), "svg+xml")
+            )
         self._pictures.append(picture)
 
     def text(self) -> str:

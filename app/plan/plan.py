@@ -730,6 +730,12 @@ def make_plan(
         responses = [body.response(c) for c in states.speeds]
         fem = plan_fem(scene, responses, _output_places(scene, places), friction.g)
         warnings += warnings_of(fem)
+    motions = starts(scene, friction) if friction else None
+    if motions and motions.until_turn:
+        warnings.append(
+            f"time: the integral equation computes motions {motions.until_turn}; what two methods agree "
+            "to holds up to there, and later numbers are those of finite elements alone"
+        )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
     skipped = (*_skipped(scene, body, methods, quantities), *refused)
@@ -737,7 +743,7 @@ def make_plan(
         body=body, places=places, methods=methods, quantities=quantities,
         tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
         fem=fem, skipped=skipped, warnings=tuple(warnings),
-        starts=starts(scene, friction) if friction else None, friction=friction,
+        starts=motions, friction=friction,
     )  # fmt: skip
     if lack := lacking(_HELD * plan.chunk * plan.numbers):
         warnings.append(f"the stresses of a single state need {lack}: ask for fewer points")

@@ -38,12 +38,10 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
         if as_json:
             print(json.dumps(_as_json(data, attributes, units), ensure_ascii=False, indent=1))
         else:
-            further = (
-                loops_sheet(data, units, width()),
-                inner_sheet(data),
-                limits_sheet(data, units, width()),
-            )
-            sheets = *sheets_of_run(data, units, attributes["title"], width()), *further
+            sheets = sheets_of_run(data, units, attributes["title"], width())
+            if not result.scene.steady:  # else no stroke was asked for
+                sheets += [loops_sheet(data, units, width()), inner_sheet(data)]
+            sheets.append(limits_sheet(data, units, width()))
             print_result([sheet for sheet in sheets if sheet.rows], data, attributes, verbose)
             print_warnings(attributes)
     return errors.GOOD

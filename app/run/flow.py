@@ -332,7 +332,7 @@ def _solve(
         for part in journal.parts() if journal else ():
             take(part)
     before = finished.copy()
-    if ranks.size() > 1:
+    if ranks.size() > 1 and plans[0].fem:  # else this rank is alone here
         from mpi4py import MPI
 
         before = MPI.COMM_WORLD.bcast(before)

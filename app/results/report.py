@@ -367,7 +367,7 @@ class Report:
         content = {
             "title": attributes["title"] or "A sliding punch",
             "verdict": attributes["verdict"],
-            "checked": checked(attributes),
+            "checked": checked(data, attributes),
             "summary": summary(data, scene),
             "warnings": json.loads(attributes["warnings"]),
             "reasons": json.loads(attributes["verdict_reasons"]),

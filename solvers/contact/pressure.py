@@ -101,7 +101,7 @@ class Pressure:
         return g, self.hilbert(r), 0.0
 
     def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, Any]:
-        """σ_XY/σ_YY at t, as a number of each state, (states,), times a function of t; g is the states'."""
+        """σ_XY/σ_YY at t: a number of each state, (states,), times a function of t; g: the states'."""
         return g, 1.0
 
     def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:

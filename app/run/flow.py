@@ -42,6 +42,7 @@ from ..plan.states import States
 from ..plan.variants import joined_positions, joined_states, lines_of, make_plans
 from ..scene.scene import Scene
 from .over_time import solve_motions
+from .share import shared_out
 from .solve import Work
 
 
@@ -377,8 +378,6 @@ def _parts(
         if not plan.fem or not plan.fem.shared_speeds:
             yield from chain.from_iterable(map(work.parts, tasks))
             continue
-        from .share import shared_out
-
         if to_do := sorted(tasks, key=lambda task: -task.response.c):  # the fastest are the dearest
             work.begin()
         yield from shared_out(to_do, work.parts)

@@ -625,7 +625,7 @@ def lines(plan: Plan) -> list[str]:
         count = scene.friction.count * len(scene.punch.loads)
         result.append(f"slider: {counted(count, 'motion')} of {scene.slider.duration:g} s")
     if plan.starts:
-        result += plan.starts.words(scene.solid)  # type: ignore[arg-type]
+        result += plan.starts.words()
     for name in plan.methods:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {counted(plan.states, 'state')}")

@@ -293,7 +293,7 @@ def compute(
     judge = Judge(scene, plan.rules)
     if plan.starts:
         progress.say("starts from rest")
-        motions = solve_motions(plan.starts, scene.solid, clock, partial(progress.done, what="starts"))
+        motions = solve_motions(plan.starts, clock, partial(progress.done, what="starts"))
         put(motions)
         if ranks.is_root():
             judge.see(comparisons(motions, plan.body.load, plan.rules))

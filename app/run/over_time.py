@@ -23,7 +23,6 @@ from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Pressure
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
-from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.history import Drive, Way
 from galinx.solvers.transient.late_time import approach
 from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, PLACES, Course, StartingPunch
@@ -39,7 +38,7 @@ _Job = tuple[str, float]
 
 
 def solve_motions(
-    starts: Starts, solid: Solid, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
+    starts: Starts, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
 ) -> _Datasets:
     """Motions of all starts over time: datasets by path.
 
@@ -54,7 +53,7 @@ def solve_motions(
 
     def solve(job: _Job) -> Iterator[tuple[_Job, list[_Datasets]]]:
         of_method = _finite_elements if job[0] == FEM else _integral_equation
-        yield job, of_method(starts, solid, job[1], clock)
+        yield job, of_method(starts, job[1], clock)
 
     # Finite elements are the dearer ones, and the fastest of them.
     jobs = [(name, c) for name in (FEM, SIE) if name in starts.methods
@@ -63,20 +62,20 @@ def solve_motions(
     for job, motions in shared_out(jobs, solve):
         by_job[job] = motions
         done(sum(map(len, by_job.values())), len(starts.methods) * starts.count)
-    return _joined(starts, solid, by_job) if ranks.is_root() else {}
+    return _joined(starts, by_job) if ranks.is_root() else {}
 
 
-def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
+def _joined(starts: Starts, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
     """Datasets by path, one row for each start."""
     t, every = starts.times(), list[_Datasets]()
     for c, drives in starts.drives.items():
         for i, drive in enumerate(drives):
             g = drive(t)
-            centres = _steady_centres(starts, solid, c, g)
+            centres = _steady_centres(starts, c, g)
             K_I = late = np.array(np.nan)  # over layers there is no formula
-            if not len(solid.depths):
-                K_I = np.array(FlatPunch(starts.response(solid, c), g[-1]).K_I)
-                late = np.array(approach(solid, c, g[-1]).within(0.01))
+            if not len(starts.solid.depths):
+                K_I = np.array(FlatPunch(starts.response(c), g[-1]).K_I)
+                late = np.array(approach(starts.solid, c, g[-1]).within(0.01))
             every.append({
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
                 rows.STEADY_CENTRE.path: centres[-1], rows.CENTRES.path: centres,
@@ -97,10 +96,10 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     return whole
 
 
-def _steady_centres(starts: Starts, solid: Solid, c: float, ratios: NDArray) -> NDArray[np.float64]:
+def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.float64]:
     """Centre of the pressure over a in steady motion at frictions σ_XY/σ_YY, (n,)."""
     different, which = np.unique(ratios, return_inverse=True)
-    response: Any = starts.response(solid, c)
+    response: Any = starts.response(c)
     if len(response.depths):
         stack, accuracy = response.stack(response.a), 0.1 * starts.tolerance
         punch = Punch(Flat(response.a), response.a, 1.0)
@@ -121,9 +120,9 @@ def _centre(pressure: Pressure) -> float:
 _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
 
-def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
+def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
     """Motions at a speed up to the first turn, NaN after it."""
-    first, response, drives = starts.ways[0], starts.response(solid, c), starts.drives[c]
+    first, response, drives = starts.ways[0], starts.response(c), starts.drives[c]
     shortest = min(starts.shortest, *(drive.shortest for drive in drives))
     largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.h / largest - 1e-9))
@@ -139,7 +138,14 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
     with clock("integral equation in time"):
         punches = {
             way: StartingPunch(
-                response, solid.limit(), first.duration, first.steps * finer, terms, surface, way, alone
+                response,
+                starts.solid.limit(),
+                first.duration,
+                first.steps * finer,
+                terms,
+                surface,
+                way,
+                alone,
             )
             for way in {drive.way for drive in drives}
         }
@@ -184,15 +190,15 @@ def _contact(method: str, *values: NDArray) -> _Datasets:
 _ENDS = np.array([-1.0 - BESIDE, 1.0 + BESIDE])
 
 
-def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
+def _finite_elements(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
     """Motions at a speed, with the changes from a coarser level as estimates."""
-    coarse, fine = (_at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
+    coarse, fine = (_at_level(level, starts, c, clock) for level in starts.levels(c))
     load, motions = starts.load(starts.times(2)), []
     for drive, (before, coarse_datasets), (values, datasets) in zip(starts.drives[c], coarse, fine):
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
         lean = np.zeros(1)
         if starts.changing:
-            lean = _steady_centres(starts, solid, c, drive(starts.times()))
+            lean = _steady_centres(starts, c, drive(starts.times()))
         change = largest_change(before, [value[1::2] for value in values], load, lean)
         motions.append(
             _contact(FEM, *values) | {rows.ESTIMATE.path: np.array(change)} | datasets
@@ -202,7 +208,7 @@ def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> li
 
 
 def _at_level(
-    level: Level, starts: Starts, solid: Solid, c: float, clock: Clock
+    level: Level, starts: Starts, c: float, clock: Clock
 ) -> list[tuple[tuple[NDArray, ...], _Datasets]]:
     """Motions at a speed at one level of mesh, degree and steps.
 
@@ -215,10 +221,10 @@ def _at_level(
     from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime, Watch
     from galinx.solvers.fem.space import Space, distribute
 
-    response = starts.response(solid, c)
+    response = starts.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, solid.form, clock=clock)
+    space = Space(*mesh, TAGS, Physical(), level.degree, starts.solid.form, clock=clock)
     motion, motions = Motion(space, response, starts.sharp), []
     solver = SlidingInTime(motion, clock)
     surface = SurfaceInTime(motion, np.append(_ENDS, ON_SURFACE) if starts.every else _ENDS)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from galinx import __version__
 from galinx.clock import Clock
-from galinx.postprocess.compare import RULES, Comparison, comparisons
+from galinx.postprocess.compare import RULES, comparisons
 from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.quantities import column, declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
@@ -143,14 +143,13 @@ class Judge:
         self._limits = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
         self._judged: dict[str, float] = {}
 
-    def see(self, comparisons: list[Comparison]) -> None:
-        """Take a part's comparisons into account; NaN is worse than any number."""
-        for comparison in comparisons:
-            value = float(np.max([self.worst.get(comparison.text, 0.0), comparison.value]))
-            self.worst[comparison.text] = value
-            limit = self._limits.get(comparison.name)
+    def see(self, comparisons: Mapping[str, float]) -> None:
+        """Take comparisons by the rule's name into account; NaN is worse than any number."""
+        for name, value in comparisons.items():
+            text, limit = RULES[name].text, self._limits.get(name)
+            self.worst[text] = float(np.max([self.worst.get(text, 0.0), value]))
             if limit is not None:
-                self._judged[comparison.text] = limit
+                self._judged[text] = limit
 
     def verdict(self) -> tuple[str, list[str]]:
         """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""

@@ -73,7 +73,6 @@ from galinx.solvers.contact.solution import (
     Places,
     Task,
 )
-from galinx.solvers.contact.yielding import places as yield_places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import exponent
 from galinx.solvers.rays import NEAR
@@ -737,7 +736,7 @@ def make_plan(
     refusals = {name: kind.refusal(scene, body, None) for name, kind in METHODS.items()}
     named = dict.fromkeys(scene.solve.methods) if contact else {}
     methods = tuple(name for name in named if not refusals[name])
-    around = yield_places(body) if YIELD in scene.output.quantities else np.empty((0, 2))
+    around = body.yield_places if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     depths, positions = interface_grid(body)
     places = Places(surface_grid(), points, around, depths, positions if along is None else along)

@@ -116,8 +116,11 @@ class Column:
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
 
-#: Step over a to which places are rounded where they are shown.
-_STEP = 1e-5
+#: Step over a to which places, and over N/(2a) to which stresses, are rounded where they are shown: less
+#: is rounding of the methods.
+_STEP, _STRESS_STEP = 1e-5, 1e-7
+
+_STRESS = "N/(2a)"
 
 #: Methods in the order in which their numbers are preferred.
 _PREFERRED = (FEM, CLOSED_FORM, SIE)
@@ -171,8 +174,8 @@ _LIMITS = (
     _Spec("strain above 5 % within, from X = -a", validity.STRAIN[0]),
     _Spec("strain above 5 % within, from X = a", validity.STRAIN[1]),
     _Spec("waves that cross the contact in a stroke", validity.CROSSINGS),
-    _Spec("flutter from σ_XY/σ_YY > 0 of", validity.FLUTTER["positive"]),
-    _Spec("flutter from σ_XY/σ_YY < 0 of", validity.FLUTTER["negative"]),
+    _Spec("flutter threshold, σ_XY/σ_YY > 0", validity.FLUTTER["positive"]),
+    _Spec("flutter threshold, σ_XY/σ_YY < 0", validity.FLUTTER["negative"]),
 )  # fmt: skip
 #: Friction loops, of all strokes together, and sliders.
 _OF_LOOPS = (
@@ -256,7 +259,9 @@ def _columns(
         specs: what the columns have.
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
-    columns, step = [], _STEP * float(np.max(units.length.factor))
+    columns: list[Column] = []
+    steps = dict.fromkeys((X_OVER_A, CONTACT), _STEP * float(np.max(units.length.factor)))
+    steps[_STRESS] = _STRESS_STEP * float(np.max(units.stress.factor))
     for head, rows, digits, taken in specs:
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
@@ -266,12 +271,12 @@ def _columns(
             texts = [*map(str, taken(data[row.path]))]
             columns.append(Column(head, texts, "none", scaled.name, row.path))
         elif archived or np.isfinite(data[row.path]).any():
-            place, along = head.startswith("at "), row.scale in (X_OVER_A, CONTACT)
+            place, of_kind = head.startswith("at "), _STRESS if row.unit == _STRESS else row.scale
             columns.append(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
                     scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
-                    step if along and not (units.dimensionless or archived) else 0.0,
+                    0.0 if units.dimensionless or archived else steps.get(of_kind, 0.0),
                 )
             )  # fmt: skip
     return columns
@@ -371,6 +376,8 @@ def layout(
     if width and len(labels) == 1:
         lines: list[list[str]] = []
         for column in columns:
+            if column.place and lines and lines[-1][1].startswith("0 "):
+                continue
             if column.place and lines:
                 lines[-1][1] += f"{' ' if ' at ' not in lines[-1][1] else ', '}{_at(column)}"
             elif column.texts()[0]:

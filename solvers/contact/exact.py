@@ -6,7 +6,7 @@ Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contac
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
-from .contacts import Contacts, Group, contacts_of
+from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
 from .ends import Punch
 from .equation import SolvedContact
 from .method import Solver
-from .on_layers import ContactsOnLayers, LayersUnderPunch, Nodes, mixture
+from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
@@ -80,7 +80,7 @@ class ExactSolution:
     @cached_property
     def contacts(self) -> Contacts:
         """Pressures, half-widths and middles of all solved states."""
-        return contacts_of(self._body, self.task.response, self._g)
+        return self._body.contacts(self.task.response, self._g)
 
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
@@ -163,7 +163,7 @@ class ExactSolution:
             kinks = np.append(group.pressure.kinks, group.pressure.breaks)
             return of_field(
                 self.task.response, group.g, (group.α, group.β), group.contact_stress,
-                lambda X, Y: self.contacts.stresses_of(group, X[None], Y[None]),
+                lambda X, Y: group.stresses(X[None], Y[None]),
                 self.places.points, kinks,
             )  # fmt: skip
 
@@ -206,6 +206,11 @@ class ExactSolution:
             σ[:, :, batch] = contacts.stresses(*points[batch].T)
         return σ[:, self._rows]
 
+    @property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
+        return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
+
     @cached_property
     def strength(self) -> Strength:
         """Yield of the states, which is searched for at places of each."""
@@ -228,7 +233,7 @@ class ExactSolution:
             return contacts.stresses(points[..., 0], points[..., 1])
 
         return Strength(
-            field, body, contacts.response, contacts.g, self.local, self.half_width,
+            field, body, contacts.groups[0].response, contacts.of("g"), self.local, self.half_width,
             _turns_of(contacts), _NEAREST,
         )  # fmt: skip
 
@@ -239,12 +244,12 @@ def _turns_of(contacts: Contacts) -> Turns | None:
     for group in contacts.groups:
         kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
         X = np.concatenate([ENDS[ends], kinks])
-        σ_XX, σ_YY = contacts.surface_of(group, X)
+        σ_XX, σ_YY = group.surface(X)
         between = None
         if kinks:
             places = np.array([-1.0, *kinks, 1.0])
             infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
-            _, between = at_and_between(places, lambda r: contacts.surface_of(group, r)[0], infinite)  # noqa: B023
+            _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
         σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
         each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))
     turns = together(each)
@@ -319,31 +324,26 @@ class _OverLayers:
         fine, coarse = zip(*each)
         return Nodes(fine), Nodes(coarse)
 
-    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Group, Group]:
+    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[OnLayers, OnLayers]:
         """States of a contact that was solved, and with fewer unknowns."""
         h, m = (
             np.full(len(rows), length * self.layers.punch.unit)
             for length in (contact.half_width, contact.centre)
         )
-        fine = Group(rows, g[rows], contact.pressure, h, m)
+        fine = OnLayers(self.task.response, rows, g[rows], contact.pressure, h, m, self.layers)
         return fine, replace(fine, pressure=contact.before)
 
-    def contacts(self, g: NDArray) -> tuple[ContactsOnLayers, ContactsOnLayers]:
+    def contacts(self, g: NDArray) -> tuple[Contacts, Contacts]:
         """Contacts with frictions (states,), and those with fewer unknowns."""
-        groups: Any
         if self.interpolated is not None:
             edges = EdgeExponents(self.task.response, g)
-            groups = [[mixture(nodes, edges)] for nodes in self._nodes]
-        else:
-            which = np.searchsorted([contact.g for contact in self.solved], g)
-            which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
-            groups = zip(
-                *(self._groups(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which))
-            )
-        fine_contacts, coarse = (
-            ContactsOnLayers(self.task.response, tuple(each), self.layers) for each in groups
-        )
-        return fine_contacts, coarse
+            fine, coarse = (Contacts((mixture(nodes, edges),)) for nodes in self._nodes)
+            return fine, coarse
+        which = np.searchsorted([contact.g for contact in self.solved], g)
+        which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
+        each = [self._groups(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+        fine, coarse = (Contacts(groups) for groups in zip(*each))
+        return fine, coarse
 
 
 class LayeredSolution(ExactSolution):
@@ -354,7 +354,7 @@ class LayeredSolution(ExactSolution):
         g: σ_XY/σ_YY, (states,).
     """
 
-    contacts: ContactsOnLayers
+    contacts: Contacts
 
     def __init__(self, at: _OverLayers, g: NDArray) -> None:
         super().__init__(at.task, g)
@@ -381,7 +381,7 @@ class LayeredSolution(ExactSolution):
         widest = max(contact.half_width for contact in self._at.solved)
         for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
             level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
-            σ.append([each.joined(partial(each.at_interface, X, level), 1) for each in self._both])
+            σ.append([each.joined(lambda group: group.at_interface(X, level), 1) for each in self._both])  # noqa: B023
             errors.append(widest * level.error * max(1.0, *(medium.modulus for medium in level.media)))
         return np.stack(σ, axis=3), np.array(errors)
 
@@ -394,7 +394,7 @@ class LayeredSolution(ExactSolution):
     def both_inside(self) -> NDArray[np.float64]:
         """Stresses inside, and with fewer unknowns, (2, 3, states, m)."""
         X, Y = self.places.points.T[:, None]
-        return np.array([each.joined(partial(each.inside, X=X, Y=Y), 1) for each in self._both])
+        return np.array([each.joined(lambda group: group.inside(X, Y), 1) for each in self._both])
 
     @property
     def inside(self) -> NDArray[np.float64]:  # type: ignore[override]
@@ -402,8 +402,8 @@ class LayeredSolution(ExactSolution):
         return self.both_inside[0]
 
     @cached_property
-    def σ_ZZ(self) -> NDArray[np.float64]:
-        """Normal stress out of the plane at points inside, (states, m)."""
+    def σ_ZZ(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
         Y = self.places.points[:, 1]
         sizes = self.half_width / self._at.layers.punch.unit
         σ_ZZ = np.empty(self.inside.shape[1:])
@@ -425,8 +425,7 @@ class LayeredSolution(ExactSolution):
         (group,) = (group for group in self.contacts.groups if state in group.rows)
         one = slice(0, 1)
         alone = replace(group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one])
-        X, Y = points.T[:, None]
-        return self.contacts.inside(alone, X, Y)[:, 0]
+        return alone.inside(*points.T[:, None])[:, 0]
 
     @property
     def estimates(self) -> "_Estimates":

@@ -39,7 +39,7 @@ from ..layers.layered import Layered, LayersAtSpeed
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
 from ..profiles.punches import Flat
 from .closed_form import FreeEnds
-from .contacts import Contacts, Group, contacts, off_tips, panels_of
+from .contacts import Group, contacts, off_tips, panels_of
 from .edges import EdgeExponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import Equation, Resolution, SolvedContact, converged
@@ -407,6 +407,67 @@ def weights_between(nodes: NDArray, g: NDArray) -> NDArray[np.float64]:
     return barycentric(nodes, weights, g)
 
 
+@dataclass(frozen=True)
+class OnLayers(Group):
+    """States over layers whose pressure is of one kind, and their stresses.
+
+    Attributes:
+        layers: the layers, with kernels.
+    """
+
+    layers: LayersUnderPunch
+
+    def read(self, what: Any, values: "Callable[[OnLayers], NDArray]") -> NDArray[np.float64]:
+        """Values that are linear in the pressure, (..., rows, n).
+
+        Args:
+            what: a name of the values, by which they are kept.
+            values: gives them for states that were solved, (..., rows, n).
+        """
+        return values(self)
+
+    @property
+    def size(self) -> float:
+        """Half-width of the contacts over the unit of the layers."""
+        return float(self.half_width[0]) / self.layers.punch.unit
+
+    def strain(self, r: NDArray) -> NDArray[np.float64]:
+        def values(node: OnLayers) -> NDArray[np.float64]:
+            by_kernel = node.pressure.integral(self.layers.scaled(node.size), r)
+            return np.asarray(by_kernel[:, 1] + node.g[:, None] * by_kernel[:, 0])
+
+        return self.read(("strain", r.tobytes()), values)
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n), at an interface those above it: (3, rows, n)."""
+        X, Y = X[0], Y[0]
+        σ = np.empty((3, len(self.rows), len(X)))
+        for height in np.unique(Y).tolist():
+            there = height == Y
+            at_height = partial(OnLayers._at_height, X=X[there], height=height)
+            σ[..., there] = self.read(("inside", height, X[there].tobytes()), at_height)
+        return σ
+
+    def _at_height(self, X: NDArray, height: float) -> NDArray[np.float64]:
+        h, errors = self.size, self.layers.errors
+        level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
+        error = h * level.error * max(1.0, level.media[0].modulus)
+        errors[height] = max(errors.get(height, 0.0), error)
+        return self._along(X, level, 1)[[2, 0, 1]]
+
+    def at_interface(self, X: NDArray, level: Level) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,): (4, rows, n)."""
+        name = "interface", level.depth, X.tobytes()
+        return self.read(name, lambda node: node._along(X, level, 2))
+
+    def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
+        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
+        t, forces = self.pressure.points(level.depth / self.size)
+        u_X, σ_YY, σ_XY = level.read(t, forces, self.g, X, self.size)
+        media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
+        return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
+
+
 class Nodes:
     """Contacts at Chebyshev's points in g, between which values are interpolated.
 
@@ -414,11 +475,11 @@ class Nodes:
         groups: contacts, one state each.
     """
 
-    def __init__(self, groups: Sequence[Group]) -> None:
+    def __init__(self, groups: Sequence[OnLayers]) -> None:
         self.groups = groups
         self._read: dict[Any, NDArray] = {}
 
-    def read(self, what: Any, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
         """Values of all nodes, (..., nodes, n); the last ones are kept."""
         if what not in self._read:
             if len(self._read) >= _KEPT:
@@ -468,10 +529,10 @@ class Interpolated(Pressure):
 
 
 @dataclass(frozen=True)
-class Mixture(Group):
+class Mixture(OnLayers):
     """States interpolated between nodes."""
 
-    def read(self, what: Any, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
         return np.asarray(self.pressure.weights @ self.pressure.nodes.read(what, values))
 
 
@@ -486,61 +547,9 @@ def mixture(nodes: Nodes, edges: EdgeExponents) -> Mixture:
         np.concatenate([getattr(node, name) for node in nodes.groups])
         for name in ("g", "half_width", "centre")
     )
-    g = np.asarray(edges.g)
+    g, layers = np.asarray(edges.g), nodes.groups[0].layers
     weights = weights_between(g_nodes, g)
     pressure = Interpolated(nodes, weights, edges.α[:, None], edges.β[:, None])
     # Exact where all nodes have one half-width.
-    return Mixture(np.arange(len(g)), g, pressure, h[0] + weights @ (h - h[0]), weights @ m)
-
-
-@dataclass(frozen=True)
-class ContactsOnLayers(Contacts):
-    """Contacts over layers at one speed.
-
-    Attributes:
-        layers: the layers, with kernels.
-    """
-
-    layers: LayersUnderPunch
-
-    def _size(self, group: Group) -> float:
-        """Half-width of a group's contacts over the unit of the layers."""
-        return float(group.half_width[0]) / self.layers.punch.unit
-
-    def strain(self, group: Group, r: NDArray) -> NDArray[np.float64]:
-        def values(node: Group) -> NDArray[np.float64]:
-            by_kernel = node.pressure.integral(self.layers.scaled(self._size(node)), r)
-            return np.asarray(by_kernel[:, 1] + node.g[:, None] * by_kernel[:, 0])
-
-        return group.read(("strain", r.tobytes()), values)
-
-    def inside(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY of a group at points (1, n), at an interface those above it: (3, rows, n)."""
-        X, Y = X[0], Y[0]
-        σ = np.empty((3, len(group.rows), len(X)))
-        for height in np.unique(Y).tolist():
-            there = height == Y
-            name = "inside", height, X[there].tobytes()
-            σ[..., there] = group.read(name, partial(self._at_height, X[there], height))
-        return σ
-
-    def _at_height(self, X: NDArray, height: float, node: Group) -> NDArray[np.float64]:
-        h = self._size(node)
-        level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
-        error = h * level.error * max(1.0, level.media[0].modulus)
-        self.layers.errors[height] = max(self.layers.errors.get(height, 0.0), error)
-        return self._along(node, level, X, 1)[[2, 0, 1]]
-
-    def at_interface(self, X: NDArray, level: Level, group: Group) -> NDArray[np.float64]:
-        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,), of a group: (4, rows, n)."""
-        return group.read(
-            ("interface", level.depth, X.tobytes()), lambda node: self._along(node, level, X, 2)
-        )
-
-    def _along(self, node: Group, level: Level, X: NDArray, sides: int) -> NDArray[np.float64]:
-        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
-        h = self._size(node)
-        t, forces = node.pressure.points(level.depth / h)
-        u_X, σ_YY, σ_XY = level.read(t, forces, node.g, X, h)
-        media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
-        return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
+    half_width = h[0] + weights @ (h - h[0])
+    return Mixture(edges.response, np.arange(len(g)), g, pressure, half_width, weights @ m, layers)

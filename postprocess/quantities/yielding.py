@@ -34,7 +34,7 @@ from .quantity import (
 )
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
-_INFINITE = "NaN where it is infinite: with friction, where the pressure ends in a jump"
+_INFINITE = "NaN where infinite: with friction, at a jump of the pressure"
 _BEYOND = "NaN beyond 10 a: no solid carries that"
 
 
@@ -122,7 +122,8 @@ REACH_LEFT = _both(
 )  # fmt: skip
 REACH_RIGHT = _both(
     "yield_reach_right", "1",
-    f"reach of yield from X = a, the same there, over the half-width; {_BEYOND}",
+    "reach of yield from X = a, the largest distance on its side of the middle at which the von Mises "
+    f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 DEPTH = _both(

@@ -496,7 +496,9 @@ def _value(kind: Any) -> str:
     """What kind of value a key wants."""
     if word := getattr(kind, "word", ""):
         return f'`"{word}"` or {_value(kind.kind)}'
-    kind = getattr(kind, "kind", kind)  # of a value that all laws share
+    if about := getattr(kind, "about", ""):
+        return about
+    kind = getattr(kind, "kind", kind)  # of each number of a list
     text = _plain(type(kind).__doc__ or "").replace("``", "`").rstrip(".")
     unit = getattr(kind, "unit", None)
     text = text.partition(", as [[")[0]  # of rows, which the page describes once

@@ -22,6 +22,7 @@ from galinx.solvers.contact import stresses
 from galinx.solvers.contact.edges import under_punch
 
 from .quantities import layers as on_layers
+from .quantities import over_time as in_time
 from .quantities import states as of
 from .quantities import stresses as at
 from .quantities import table
@@ -490,8 +491,13 @@ def judged(attributes: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     }
 
 
-def checked(attributes: Mapping[str, Any]) -> str:
-    """Quality of checked numbers in one line: the worst of all figures of a kind."""
+def checked(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
+    """Quality of checked numbers in one line: the worst of all figures of a kind.
+
+    Args:
+        data: datasets by path; those of motions in time say up to when two methods compute them.
+        attributes: attributes of the archive's root.
+    """
     figures = judged(attributes)
     kinds: dict[str, list[float]] = {"two methods agree to": [], "estimated error": [], "residual": []}
     for text, (value, _) in figures.items():
@@ -505,7 +511,18 @@ def checked(attributes: Mapping[str, Any]) -> str:
     if not parts:
         return "numbers not checked: one method alone, and nothing to compare it with"
     wanted = max(set(limits), key=limits.count)
-    return f"numbers checked: {', '.join(parts)}, wanted {wanted:.0e} (dimensionless)"
+    line = f"numbers checked: {', '.join(parts)}, wanted {wanted:.0e} (dimensionless)"
+    paths = [row.path for row in (in_time.TIMES, in_time.V0[SIE], in_time.V0[FEM])]
+    if any(path not in data for path in paths):
+        return line
+    t, sie = (np.asarray(data[path]) for path in paths[:2])
+    solved = np.isfinite(sie).all(axis=0)
+    if solved.all():
+        return line
+    return (
+        f"{line}; motions in time by two methods only to t = {t[solved].max(initial=0.0):.6g} a/c_s, "
+        "where the punch turns round, and later by finite elements alone"
+    )
 
 
 def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:

@@ -200,7 +200,7 @@ def compare(
             inputs = options.inputs(*archives, *_given(measured))
             files = Files(to, archives[0].stem, overwrite=overwrite, inputs=inputs)
             files.check(["compare"])
-            written = files.write(iter([comparison.drawing(points)]), None)
+            written = files.write([comparison.drawing(points)])
         print_sheets(comparison.sheets(), comparison.notes())
         _print_files(written if to else ())
     return errors.GOOD
@@ -292,7 +292,7 @@ def dispersion(
                 "faster radiates into them, and is no limit of the punch"
             )
         print(f"highest speed of a punch: {slowest.limit:.8g} m/s")
-        _print_files(files.write(iter([waves.dispersion_drawing(slowest)]), None))
+        _print_files(files.write([waves.dispersion_drawing(slowest)]))
     return errors.GOOD
 
 
@@ -353,7 +353,7 @@ def response(
         for answer in stiffnesses:
             print(answer.words)
             print(*punch.table(checked, answer), sep="\n")
-        _print_files(files.write(iter([punch.response_drawing(stiffnesses)]), None))
+        _print_files(files.write([punch.response_drawing(stiffnesses)]))
     return errors.GOOD
 
 

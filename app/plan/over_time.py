@@ -310,15 +310,22 @@ class Starts:
             return frozenset({OF_SIE})
         return rules(SIE in self.methods, self.steady, bool(self.every), self.sharp)
 
+    @property
+    def until_turn(self) -> str:
+        """Where the integral equation ends before the motion does, in words; "" elsewhere."""
+        if SIE not in self.methods or len(self.strokes) == 1:
+            return ""
+        return (
+            f"only to t = {self.strokes[0]:.6g} a/c_s, where the punch turns round: the equation is of a "
+            "constant velocity"
+        )
+
     def words(self, solid: Solid) -> list[str]:
         """Plan in words, one line for each method."""
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
-        turns = (
-            f"; only to t = {self.strokes[0]:.6g} a/c_s, where the punch turns round: the equation is of "
-            "a constant velocity"
-        ) * (len(self.strokes) > 1)
-        lines = [f"integral equation in time: {what}{turns}"] if SIE in self.methods else []
+        turn = f"; {self.until_turn}" * bool(self.until_turn)
+        lines = [f"integral equation in time: {what}{turn}"] if SIE in self.methods else []
         if not self.smooth:
             lines.append("no K_I over time: strokes are over before waves cross the contact")
         for c in self.drives if FEM in self.methods else ():

@@ -111,55 +111,69 @@ class Tasks:
         body: contact of punch and solid, under the first of the loads.
         places: points where stresses are output.
         order: of the states.
+        first: row of the first state in the archive.
     """
 
     body: Contact
     places: Places
     order: Order
+    first: int = 0
 
     def __len__(self) -> int:
         return len(self.order.speeds)
 
     def __iter__(self) -> Iterator[Task]:
-        for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs())):
+        for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs(self.first))):
             response = self.body.response(c)
             yield Task(i, self.body, response, self.places, runs, self.order.loads)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Plan of the work of a scene.
+    """Plan of the work of a scene without swept numbers, or of a variant of one with some.
 
     Attributes:
+        scene: the scene, or the variant.
+        friction: of all its states.
         body: contact of punch and solid, under the first of the loads.
         places: points where stresses are output.
         methods: names of the methods that solve the contact, none for friction alone.
         quantities: evaluated from their solutions, in the order of the table.
         tasks: one a speed.
-        tolerance: relative accuracy to reach.
-        starts: motions in time, None for none.
-        friction: of all states, None where the plan does not depend on it.
         fem: plan of the finite elements, None without.
+        starts: motions in time, None for none.
         skipped: messages about work that is not done, with the reason.
         warnings: messages to the user before the work starts.
+        speed: number of its first speed in the archive's record.
     """
 
+    scene: Scene
+    friction: States
     body: Contact
     places: Places
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
     tasks: Tasks
-    tolerance: float
     fem: FemPlan | None
+    starts: Starts | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
-    starts: Starts | None = None
-    friction: States | None = None
+    speed: int = 0
+
+    @property
+    def tolerance(self) -> float:
+        """Relative accuracy to reach."""
+        return self.scene.solve.tolerance
 
     @property
     def states(self) -> int:
         """Number of states."""
-        return len(self.tasks.order)
+        return len(self.friction)
+
+    @property
+    def rows(self) -> slice:
+        """Rows of its states in the archive."""
+        return slice(self.tasks.first, self.tasks.first + self.states)
 
     @property
     def different(self) -> int:
@@ -233,10 +247,6 @@ class Plan:
             for run in task.runs
             for first in range(run.start, run.stop, self.chunk)
         ]
-
-    def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
-        """Load of the states of these rows [N/m], (rows,)."""
-        return self.tasks.order.load(rows)
 
 
 def free_memory() -> float:
@@ -601,8 +611,9 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
         yield f"the finite elements need {lack}: use fewer cuts, a larger tolerance, or more machines"
 
 
-def lines(scene: Scene, plan: Plan) -> list[str]:
+def lines(plan: Plan) -> list[str]:
     """The plan in words, one step a line."""
+    scene = plan.scene
     law, integrator = scene.friction.law.about, scene.friction.integrator
     result = [f"friction: {counted(plan.states, 'state')}, {law}, integrator {integrator}"]
     if scene.slider:
@@ -614,7 +625,7 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {counted(plan.states, 'state')}")
     if plan.fem:
-        result += _fem_lines(scene, plan, plan.fem)
+        result += _fem_lines(plan, plan.fem)
     if plan.asks(stresses.ON_SURFACE):
         result.append(f"stresses on the surface: {plan.states} x {len(plan.places.X)} points")
     if plan.asks(stresses.BELOW):
@@ -622,7 +633,7 @@ def lines(scene: Scene, plan: Plan) -> list[str]:
     return result
 
 
-def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
+def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
     if fem.mode == OWN_MESHES:
         return [
             f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
@@ -638,7 +649,7 @@ def _fem_lines(scene: Scene, plan: Plan, fem: FemPlan) -> list[str]:
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2
     result = [f"mesh: {fem.mesh}, {cells} quadrilaterals, shared by all speeds"]
-    pressure = " and those of a pressure" * scene.solid.nearly_incompressible
+    pressure = " and those of a pressure" * plan.scene.solid.nearly_incompressible
     others = "one of a higher degree measures" if fem.fixed else "two of lower degree measure"
     by = ", assembled by dolfinx" * (fem.assembler == DOLFINX)
     solver = "one factorisation" if fem.solver == "direct" else f"conjugate gradients with {fem.solver}"
@@ -701,18 +712,20 @@ def make_plan(
     scene: Scene,
     done: Callable[[int, int], None] = lambda laws, of: None,
     along: np.ndarray | None = None,
+    first: tuple[int, int] = (0, 0),
 ) -> Plan:
-    """Plan of a scene's work; none of it is done yet but friction, where the plan depends on that.
+    """Plan of a scene's work; none of it is done yet but friction.
 
     Args:
         scene: the scene, the first variant of one with swept numbers.
         done: called with the number of laws whose friction is computed, and with that of all laws.
         along: positions X/a along interfaces, (places,); None for those that suit the scene.
+        first: numbers of its first state and of its first speed in the archive.
 
     Raises:
         BadInput: an output of the scene has no answer by the scene's methods.
     """
-    states, body = order(scene), scene.body
+    order_, body = order(scene), scene.body
     methods = _methods(scene, body)
     around = body.yield_places if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
@@ -720,23 +733,26 @@ def make_plan(
     places = Places(surface_grid(), points, around, depths, positions if along is None else along)
     for fault in _faults(scene, body, methods, places):
         raise BadInput(fault)
-    warnings = [*oddities(scene), *_near_limit(scene, states.speeds, FEM in methods)]
+    warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
     warnings += _left_out(scene, body, methods)
-    friction = enumerate_states(scene, done) if FEM in methods or scene.time else None
-    fem = None
+    friction, fem = enumerate_states(scene, done), None
     if FEM in methods:
-        assert friction
-        responses = [body.response(c) for c in states.speeds]
+        responses = [body.response(c) for c in order_.speeds]
         fem = plan_fem(scene, responses, _output_places(scene, places), friction.g)
         warnings += warnings_of(fem)
+    motions = starts(scene, friction)
+    if motions and motions.until_turn:
+        warnings.append(
+            f"time: the integral equation computes motions {motions.until_turn}; what two methods agree "
+            "to holds up to there, and later numbers are those of finite elements alone"
+        )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
     skipped = (*_skipped(scene, body, methods, quantities), *refused)
     plan = Plan(
-        body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, states), tolerance=scene.solve.tolerance,
-        fem=fem, skipped=skipped, warnings=tuple(warnings),
-        starts=starts(scene, friction) if friction else None, friction=friction,
+        scene=scene, friction=friction, body=body, places=places, methods=methods, quantities=quantities,
+        tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions, skipped=skipped,
+        warnings=tuple(warnings), speed=first[1],
     )  # fmt: skip
     if lack := lacking(_HELD * plan.chunk * plan.numbers):
         warnings.append(f"the stresses of a single state need {lack}: ask for fewer points")

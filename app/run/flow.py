@@ -2,16 +2,14 @@
 
 :func:`compute` is the run as a program. Its parts: the attributes of an archive, in SI, that describe the
 scene and the versions with which results were computed (:func:`scene_attributes`, :func:`libraries`);
-sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); the
-collector, which judges finished parts and writes them (:class:`Collector`); and motions of sliders
-(:func:`slide`).
+sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); and motions of
+sliders (:func:`slide`).
 """
 
 import json
 import platform
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import chain, product
 from math import inf
@@ -41,13 +39,7 @@ from ..errors import BadInput
 from ..methods import METHODS
 from ..plan.plan import Plan
 from ..plan.states import States
-from ..plan.variants import (
-    Variant,
-    joined_positions,
-    joined_states,
-    lines_of,
-    make_variants,
-)
+from ..plan.variants import joined_positions, joined_states, lines_of, make_plans
 from ..scene.scene import Scene
 from .over_time import solve_motions
 from .solve import Work
@@ -217,65 +209,6 @@ def gathered(parts: Iterable[Part], most: int) -> Iterator[Part]:
         yield joined(small)
 
 
-class Collector:
-    """Collector of finished parts, which it judges and writes.
-
-    Args:
-        sink: destination of results.
-        judge: takes comparisons into account.
-        progress: shows the states done.
-        variants: variants of the scene, with their plans.
-        clock: takes wall time by step.
-    """
-
-    def __init__(
-        self, sink: Sink, judge: Judge, progress: Progress, variants: Sequence[Variant], clock: Clock
-    ) -> None:
-        self._sink, self._judge, self._progress, self._plan = sink, judge, progress, variants[0].plan
-        self._done, self._states = 0, sum(variant.plan.states for variant in variants)
-        self._tasks = sum(len(variant.plan.tasks) for variant in variants)
-        self._clock, self._records = clock, dict[int, dict[str, Any]]()
-        for quantity in self._plan.quantities:
-            sink.reserve(quantity.path, (self._states, *self._plan.shape(quantity)))
-
-    def take(self, part: Part) -> None:
-        """Judge and write a part."""
-        self._judge.see(part.comparisons)
-        self._judge.validity.see(part.data)
-        with self._clock("archive"):
-            for name, values in part.data.items():
-                self._sink.write(name, part.rows, values)
-        if part.record:
-            self._records[part.record["speed"]] = part.record
-        self._done += part.rows.stop - part.rows.start
-        self._progress.done(self._done, self._states)
-
-    def finish(self) -> None:
-        """Write the records of the speeds.
-
-        Raises:
-            SolveError: no speed could be solved.
-        """
-        records = [self._records[i] for i in sorted(self._records)]
-        failures = [
-            f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
-        ]
-        if len(failures) == self._tasks and not any(record.get("solved") for record in records):
-            raise SolveError(failures[0])
-        self._judge.failures = failures
-        if self._plan.fem or failures:
-            self._sink.put(FAILURES.path, failures)
-        if not self._plan.fem:
-            return
-        for name, quantity in RECORD.items():
-            values = np.array([record[name] for record in records], quantity.type)
-            self._sink.put(quantity.path, values)
-        changes = [record.get("change_by_degree", []) for record in records]
-        if longest := max(map(len, changes)):
-            padded = [change + [0.0] * (longest - len(change)) for change in changes]
-            self._sink.put(CHANGES.path, np.array(padded))
-
-
 #: Archived times of a slider, and times of its last cycle.
 _TIMES, _STEPS = 4001, 1001
 
@@ -351,9 +284,9 @@ def compute(
     progress, clock = progress or Progress(), Clock() if clock is None else clock
     with clock("friction"):
         progress.say("friction")
-        variants = make_variants(scene, partial(progress.done, what="friction loops"))
-        plan, states = variants[0].plan, joined_states(variants)
-        _put_states(sink, scene, variants, states)
+        plans = make_plans(scene, partial(progress.done, what="friction loops"))
+        plan, states = plans[0], joined_states(plans)
+        _put_states(sink, scene, plans, states)
     if scene.slider:
         with clock("slider"):
             progress.say("slider")
@@ -364,63 +297,105 @@ def compute(
         _put_starts(sink, plan, judge, progress, clock)
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
-        _solve(sink, judge, progress, journal, variants, clock)
-    _put_work(sink, scene, variants, clock)
-    return _attributes(scene, variants, judge)
+        _solve(sink, judge, progress, journal, plans, states, clock)
+    _put_work(sink, plans, clock)
+    return _attributes(scene, plans, judge)
 
 
 def _solve(
-    sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, variants: Sequence[Variant],
-    clock: Clock,
+    sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, plans: Sequence[Plan],
+    states: States, clock: Clock,
 ) -> None:  # fmt: skip
-    """Solve the contacts of all variants and collect their parts on rank 0; collective."""
-    finished = np.zeros(sum(variant.plan.states for variant in variants), dtype=bool)
-    collector = Collector(sink, judge, progress, variants, clock) if ranks.is_root() else None
-    if journal and collector:
-        if journal.damaged:
+    """Solve the contacts of all variants; rank 0 judges and writes their parts. Collective.
+
+    Raises:
+        SolveError: no speed could be solved.
+    """
+    finished, records = np.zeros(len(states), dtype=bool), dict[int, dict[str, Any]]()
+
+    def take(part: Part) -> None:
+        judge.see(part.comparisons)
+        judge.validity.see(part.data)
+        with clock("archive"):
+            for name, values in part.data.items():
+                sink.write(name, part.rows, values)
+        if part.record:
+            records[part.record["speed"]] = part.record
+        finished[part.rows] = True
+        progress.done(int(finished.sum()), len(states))
+
+    if ranks.is_root():
+        for quantity in plans[0].quantities:
+            sink.reserve(quantity.path, (len(states), *plans[0].shape(quantity)))
+        if journal and journal.damaged:
             progress.warn(f"kept parts that are damaged: {journal.damaged}; computed again")
-        for part in journal.parts():
-            finished[part.rows] = True
-            collector.take(part)
-    for part in gathered(_parts(variants, finished, progress, clock), variants[0].plan.chunk):
-        if collector:  # all ranks that share one mesh have the same results
+        for part in journal.parts() if journal else ():
+            take(part)
+    before = finished.copy()
+    if ranks.size() > 1 and plans[0].fem:  # else this rank is alone here
+        from mpi4py import MPI
+
+        before = MPI.COMM_WORLD.bcast(before)
+    for part in gathered(_parts(plans, states, before, progress, clock), plans[0].chunk):
+        if ranks.is_root():  # all ranks that share one mesh have the same results
             if journal and "failure" not in (part.record or {}):  # a run that goes on tries it again
                 with clock("archive"):
                     journal.keep(part)
-            collector.take(part)
-    if collector:
-        collector.finish()
+            take(part)
+    if ranks.is_root():
+        judge.failures = _put_records(sink, plans, [records[i] for i in sorted(records)])
 
 
 def _parts(
-    variants: Sequence[Variant], finished: NDArray[np.bool_], progress: Progress, clock: Clock
+    plans: Sequence[Plan], states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
-    """Parts of all variants that are not finished, with their places among the states of all."""
-    for variant in variants:
-        if not variant.alone:
-            progress.say(variant.scene.variant)
-        for part in _parts_of(variant.plan, variant.states, finished[variant.rows], progress, clock):
-            yield _placed(part, variant)
+    """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
+    for plan in plans:
+        if plan.scene.swept:
+            progress.say(plan.scene.variant)
+        methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
+        work = Work(plan, states.g, states.load, methods, clock, finished)
+        tasks = (task for task in plan.tasks if work.batches(task))
+        if not plan.fem or not plan.fem.shared_speeds:
+            yield from chain.from_iterable(map(work.parts, tasks))
+            continue
+        from .share import shared_out
+
+        if to_do := sorted(tasks, key=lambda task: -task.response.c):  # the fastest are the dearest
+            work.begin()
+        yield from shared_out(to_do, work.parts)
 
 
-def _placed(part: Part, variant: Variant) -> Part:
-    """A part of a variant with the places of its states and of its speed among those of all."""
-    (first, speed), record = variant.first, part.record
-    if record:
-        record = record | {"speed": record["speed"] + speed}
-        if "failure" in record and not variant.alone:
-            record["failure"] = f"{record['failure']}, {variant.scene.variant}"
-    return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
+def _put_records(sink: Sink, plans: Sequence[Plan], records: Sequence[dict[str, Any]]) -> list[str]:
+    """Write the records of the speeds; return those that could not be solved, with the reasons.
+
+    Raises:
+        SolveError: no speed could be solved.
+    """
+    failures = [f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record]
+    if len(failures) == sum(len(plan.tasks) for plan in plans) and not any(
+        record["solved"] for record in records
+    ):
+        raise SolveError(failures[0])
+    if plans[0].fem or failures:
+        sink.put(FAILURES.path, failures)
+    if plans[0].fem:
+        for name, quantity in RECORD.items():
+            sink.put(quantity.path, np.array([record[name] for record in records], quantity.type))
+        changes = [record.get("change_by_degree", []) for record in records]
+        if longest := max(map(len, changes)):
+            padded = [change + [0.0] * (longest - len(change)) for change in changes]
+            sink.put(CHANGES.path, np.array(padded))
+    return failures
 
 
-def _put_states(sink: Sink, scene: Scene, variants: Sequence[Variant], states: States) -> None:
-    plan = variants[0].plan
+def _put_states(sink: Sink, scene: Scene, plans: Sequence[Plan], states: States) -> None:
     sink.put(runs.SCENE.path, scene.text)
     for path, values in states.datasets.items():
         sink.put(path, values)
-    for path, positions in joined_positions(variants).items():
+    for path, positions in joined_positions(plans).items():
         sink.put(path, positions)
-    if plan.asks(stresses.BELOW) and scene.output.map:
+    if plans[0].asks(stresses.BELOW) and scene.output.map:
         sink.put(stresses.MAP.path, np.array([count for *_, count in reversed(scene.output.map)]))
 
 
@@ -437,41 +412,17 @@ def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock:
         judge.see(comparisons(datasets, plan.body.load, plan.rules))
 
 
-def _parts_of(
-    plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
-) -> Iterator[Part]:
-    """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
-    methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
-    if ranks.size() > 1 and plan.fem:
-        from mpi4py import MPI
-
-        from .share import shared_out
-
-        finished = MPI.COMM_WORLD.bcast(finished)
-    work = Work(plan, states.g, methods, clock, finished)
-    tasks = (task for task in plan.tasks if work.to_do(task))
-    if plan.fem and plan.fem.shared_speeds:
-        # The fastest are the dearest.
-        to_do = sorted(tasks, key=lambda task: -task.response.c)
-        if to_do:
-            work.begin()
-        yield from shared_out(to_do, work.parts)
-    else:
-        for task in tasks:
-            yield from work.parts(task)
-
-
-def _put_work(sink: Sink, scene: Scene, variants: Sequence[Variant], clock: Clock) -> None:
-    sink.put(runs.DONE.path, lines_of(scene, variants))
-    sink.put(runs.SKIPPED.path, list(dict.fromkeys(chain(*(each.plan.skipped for each in variants)))))
+def _put_work(sink: Sink, plans: Sequence[Plan], clock: Clock) -> None:
+    sink.put(runs.DONE.path, lines_of(plans))
+    sink.put(runs.SKIPPED.path, list(dict.fromkeys(chain(*(plan.skipped for plan in plans)))))
     clock.lap()
     names = sorted(clock)  # a run that goes on does them in another order
     sink.put(runs.STEPS.path, names)
     sink.put(runs.SECONDS.path, np.array([clock[name] for name in names], dtype=float))
 
 
-def _attributes(scene: Scene, variants: Sequence[Variant], judge: Judge) -> dict[str, Any]:
-    warnings = dict.fromkeys(chain(*(each.plan.warnings for each in variants)))
+def _attributes(scene: Scene, plans: Sequence[Plan], judge: Judge) -> dict[str, Any]:
+    warnings = dict.fromkeys(chain(*(plan.warnings for plan in plans)))
     verdict, reasons = judge.verdict()
     return {
         "version": __version__,
@@ -479,7 +430,7 @@ def _attributes(scene: Scene, variants: Sequence[Variant], judge: Judge) -> dict
         "machine": machine(),
         "scene_sha256": scene.sha256,
         **scene_attributes(scene),
-        "rules": json.dumps(sorted(variants[0].plan.rules)),
+        "rules": json.dumps(sorted(plans[0].rules)),
         "verdict": verdict,
         "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
         "comparisons": json.dumps(judge.worst, ensure_ascii=False),

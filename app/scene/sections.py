@@ -41,21 +41,18 @@ from .values import (
     DEPTHS,
     POINTS,
     PRESSURE,
+    STROKES,
     Choice,
-    Choices,
     Constants,
     Kind,
+    List,
     Map,
     Number,
-    NumberList,
     Numbers,
-    OneOrMore,
     Or,
     Rows,
-    Strokes,
     Variations,
     Whole,
-    Wrapped,
 )
 
 #: Stands for a default where a key has to be given.
@@ -382,7 +379,7 @@ class Motion:
         "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
     )  # fmt: skip
     strokes: tuple[str | Partial, ...] = key(
-        Strokes(), "strokes in order of time", ("forward", "backward", "forward"),
+        STROKES, "strokes in order of time", ("forward", "backward", "forward"),
         "of a law without memory, Coulomb's or Stribeck's, there is a single steady state forward if "
         "neither `strokes` nor `X_over_L` is given; a stroke `{to = 0.8}` goes on from where the one "
         "before ended; it may have a `speed` of its own, `rest` is the time at rest before it",
@@ -406,7 +403,8 @@ class Solve:
     """[solve]: methods and their options; ``pressure`` is None for that of the closed form."""
 
     methods: tuple[str, ...] = key(
-        Choices(METHODS, at_least=0), "methods that solve the contact", OWN_METHODS,
+        List(Choice(METHODS), "a list of names", at_least=0), "methods that solve the contact",
+        OWN_METHODS,
         "an empty list for friction alone",
     )  # fmt: skip
     tolerance: float = key(
@@ -530,7 +528,7 @@ class Output:
     """
 
     quantities: tuple[str, ...] = key(
-        Choices(WORDS), "quantities to compute", ("friction", "sif", "surface"),
+        List(Choice(WORDS), "a list of names"), "quantities to compute", ("friction", "sif", "surface"),
         "of a scene without strokes also `interfaces` and `yield`, where there are any; "
         "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
@@ -681,8 +679,9 @@ class Section:
             return self._made(**given)
         model = self._models[name]
         own = {key: values[key] for key in parameters(model)}
-        if self._several:
-            return self._made(law=model, parameters=own, vary=values["vary"], **given)
+        if self._several:  # a table is the same for all laws
+            of_laws = {key: own[key] if p.single else (own[key],) for key, p in parameters(model).items()}
+            return self._made(law=model, parameters=of_laws, vary=values["vary"], **given)
         return self._made(**{self._model: build_model(model, own)}, **given)
 
     def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
@@ -722,15 +721,13 @@ class Section:
         elif parameter.columns:
             value = Rows(parameter.columns)
         elif parameter.count:
-            value = NumberList(parameter.unit, parameter.count)
+            value = List(Number(parameter.unit), count=parameter.count)
         else:
             value = (Numbers if self._several else Number)(parameter.unit, parameter.range)
         default = self._defaults.get(parameter.key, fields(model)[parameter.key].default)
-        if self._several:  # each then is a tuple of what laws have
+        if self._several and parameter.single:  # a tuple of what laws have
             if isinstance(value, Choice):
-                value = OneOrMore(value)
-            elif not parameter.single:
-                value = Wrapped(value)
+                value = List(value, "a text or a list of texts", alone=True)
             if default is not REQUIRED:
                 default = (default,)
         return Key(value, parameter.about, default, parameter.note)
@@ -873,6 +870,6 @@ def entry(key: Key, several: bool = False) -> dict[str, Any]:
     unit = getattr(key.kind, "unit", None)
     about = key.about + ("" if unit is None else f" [{unit or 'dimensionless'}]")
     described = key.kind.schema() | {"description": about}
-    if key.default is not REQUIRED and key.default not in (None, ((),)):  # a table left out is none
+    if key.default is not REQUIRED and key.default is not None:
         described["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
     return described

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -44,11 +43,20 @@ class ClosedForm:
 
     solution: Callable[[Task, NDArray, NDArray | None], Any]
 
-    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
-        def states(g: NDArray, load: NDArray | None = None) -> Any:
-            return self.solution(task, g, load)
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
+        return nullcontext(_AtSpeed(task, self.solution))
 
-        return nullcontext(SimpleNamespace(states=states, record=dict))
+
+@dataclass(frozen=True)
+class _AtSpeed:
+    task: Task
+    solution: Callable[[Task, NDArray, NDArray | None], Any]
+
+    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
+        return self.solution(self.task, g, load)
+
+    def record(self) -> dict[str, Any]:
+        return {}
 
 
 class ExactSolution:

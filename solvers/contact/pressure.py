@@ -111,6 +111,15 @@ class Pressure:
         """σ_XY/σ_YY at r, H[σ_YY], and H[σ_XY] beyond the product of both; ``g`` is a state's ratio."""
         return g, self.hilbert(r), 0.0
 
+    def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, Any]:
+        """σ_XY/σ_YY at t: a number of each state, (states,), times a function of t; g: the states'."""
+        return g, 1.0
+
+    def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        """Strain by kernels of σ_XY and of σ_YY, the first ones, (states, len(r))."""
+        by_kernel = self.integral(kernel, r)
+        return np.asarray(by_kernel[:, 1] + g[:, None] * by_kernel[:, 0])
+
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")

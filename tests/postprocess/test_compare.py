@@ -184,7 +184,7 @@ def test_failures_are_told_by_how_much_they_exceed_their_limits():
     assert "4.0e-06, 4 times" in second
     assert "solve.tolerance=1e-07 computes" in last and "solve.tolerance=1e-03 accepts" in last
     assert compare.failed({}, attributes | {"verdict": "PASS"}) == []
-    told = compare.checked(attributes)
+    told = compare.checked({}, attributes)
     assert "agree to 4e-06, estimated error 3e-05, residual 2e-06, wanted 1e-06" in told
 
 

@@ -43,7 +43,7 @@ def test_the_plan_skips_what_is_not_asked_for():
     assert any("mesh and finite elements" in text for text in closed.skipped)
     scene = template("tables4_5", {"output.quantities": ["friction", "sif"]})
     assert not make_plan(scene).asks("surface")
-    assert not any("surface" in text for text in lines(scene, make_plan(scene)))
+    assert not any("surface" in text for text in lines(make_plan(scene)))
 
 
 def test_the_closed_form_beyond_the_rayleigh_speed_is_formal():

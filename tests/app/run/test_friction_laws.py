@@ -139,11 +139,11 @@ def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
 
 def test_what_a_law_refuses_is_bad_input_and_few_loops_are_integrated(monkeypatch):
     from galinx.app.plan import states
-    from galinx.app.plan.variants import make_variants
+    from galinx.app.plan.variants import make_plans
 
     wrong = scene("table", {"shape": [[1e-6, 0.1], [2e-6, 0.2]]})
     with pytest.raises(BadInput, match="friction: shape: found the slips"):
-        make_variants(wrong)
+        make_plans(wrong)
     law = {"mu_c": [0.3, 0.4, 0.5], "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma0_over_load": 2e4}
     for name in ("exact", "work"):  # as a law of one's own that has no formula
         monkeypatch.setattr(LAWS["elasto_plastic"], name, getattr(FrictionLaw, name))

@@ -1,6 +1,7 @@
 """Uniform half-planes under any contact pressure: stresses by its Hilbert transform and potential."""
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -35,3 +36,12 @@ class LoadedHalfPlane:
 def under(punch):
     """The half-plane under a flat punch."""
     return LoadedHalfPlane(punch.response, punch.g, punch)
+
+
+def yield_of(body, stresses, response, g, local=None):
+    """Yield of states with frictions g, (states,), by the stresses at points, as a solution has it."""
+    solution = SimpleNamespace(
+        stresses=stresses, task=SimpleNamespace(response=response), g=g, local=local,
+        half_width=body.half_width, yield_turns=None, nearest=1.0,
+    )  # fmt: skip
+    return body.strength(solution)

@@ -25,12 +25,9 @@ from .pressure import ENDS
 from .residual import of_contact, of_field
 from .solution import Solver, Task, solved_once
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
-from .yielding import Strength, StrengthOfLayers
 
 #: Most points inside whose potentials are held in memory at a time.
 _TOGETHER = 20_000
-#: Least distance over a from an end or a kink at which stresses are evaluated.
-_NEAREST = 1e-7
 
 
 @dataclass(frozen=True)
@@ -214,18 +211,26 @@ class ExactSolution:
         return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
-    def strength(self) -> Strength:
-        """Yield of the states, which is searched for at places of each."""
-        task, solved_each = self.task, isinstance(self._rows, slice)
-        each = self if solved_each else ExactSolution(task, self.g)
+    def strength(self) -> Any:
+        """Yield of the states."""
+        return self.task.body.strength(self)
 
-        def field(points: NDArray) -> NDArray[np.float64]:
-            return each.contacts.stresses(points[..., 0], points[..., 1])
+    #: Least distance over a from an end or a kink at which stresses are evaluated.
+    nearest = 1e-7
 
-        return Strength(
-            field, task.body, task.response, self.g, self.local, self.half_width, each._turns,
-            _NEAREST,
-        )  # fmt: skip
+    @cached_property
+    def _each(self) -> "ExactSolution":
+        """The states, of which none shares its contact with a similar one."""
+        return self if isinstance(self._rows, slice) else ExactSolution(self.task, self.g)
+
+    @property
+    def yield_turns(self) -> Turns | None:
+        """Limits of stresses at free ends and under kinks; None where there are none."""
+        return self._each._turns
+
+    def stresses(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points with Y <= 0, (1 or states, n, 2)."""
+        return self._each.contacts.stresses(points[..., 0], points[..., 1])
 
 
 @dataclass(frozen=True)
@@ -384,15 +389,7 @@ class LayeredSolution(ExactSolution):
             σ_ZZ[rows] = self._body.σ_ZZ(self.inside[:, rows], h * Y)
         return σ_ZZ
 
-    @cached_property
-    def strength(self) -> StrengthOfLayers:  # type: ignore[override]
-        """Largest von Mises stresses of all layers."""
-        return StrengthOfLayers(
-            self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
-            self._body, self.half_width,
-        )  # fmt: skip
-
-    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+    def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, all at one depth, of one state, which was solved: (3, n)."""
         (group,) = (group for group in self.contacts.groups if state in group.rows)
         one = slice(0, 1)

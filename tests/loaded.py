@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from galinx.solvers.contact.closed_form import in_plane
-
 
 @dataclass(frozen=True)
 class LoadedHalfPlane:
@@ -19,7 +17,7 @@ class LoadedHalfPlane:
 
     def σ_XX(self, r):
         """In-plane stress on the surface."""
-        return in_plane(self.response, self.g, self.pressure.σ_YY(r), self.pressure.hilbert(r))
+        return self.response.in_plane(self.g, self.pressure.σ_YY(r), self.pressure.hilbert(r))
 
     def inside(self, X, Y):
         """σ_XX, σ_YY, σ_XY at points with Y < 0."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
+from .closed_form import FlatPunch
 from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
 from .ends import Punch
@@ -124,8 +125,8 @@ class ExactSolution:
 
         Under flat punches only.
         """
-        flat: Any = self.contacts.groups[0].pressure
-        return np.hstack(flat.strained_within(strain / self.task.body.strain))[self._rows]
+        flat = FlatPunch(self.task.response, self.g)
+        return np.column_stack(flat.strained_within(strain / self.task.body.strain))
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

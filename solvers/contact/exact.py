@@ -125,8 +125,11 @@ class ExactSolution:
 
         Under flat punches only.
         """
-        flat = FlatPunch(self.task.response, self.g)
-        return np.column_stack(flat.strained_within(strain / self.task.body.strain))
+        return np.column_stack(self._flat.strained_within(strain / self.task.body.strain))
+
+    @cached_property
+    def _flat(self) -> FlatPunch:
+        return FlatPunch(self.task.response, self.g)
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -179,19 +179,20 @@ class SlidingPunch(Punch):
         along: gives G by g where friction varies along the contact; None where G is g.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case, which shows whether the others need it.
+        least: relative residual of the contact forces that may remain.
     """
 
     def __init__(
         self, space: Space, response: HalfPlane, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
-        negligible: float = NEGLIGIBLE,
+        negligible: float = NEGLIGIBLE, least: float = LEAST,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
         nodes = space.contact
         A = space.assemble(response)
-        self._rows = [
-            A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=A.comm)) for i in (0, 1)
-        ]
+        both = np.column_stack([nodes.dofs(0), nodes.dofs(1)]).ravel()
+        #: Rows of the contact nodes, along X and Y in turn.
+        self._rows = A.createSubMatrix(PETSc.IS().createGeneral(both, comm=A.comm))
         self._first = A.getOwnershipRange()[0]
         rigid = space.rigid_motions(response)
         #: Motions of the whole body along X and Y, at this rank's rows, (rows, 2).
@@ -206,7 +207,7 @@ class SlidingPunch(Punch):
         A = space.held(A, response, ("contact", "far"))
         self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
         #: Relative residual that may remain; number of parts; true where solutions are refined.
-        self._left, self._parts, self._refines = LEAST, len(shapes), False
+        self._left, self._parts, self._refines = least, len(shapes), False
         self.fields, self.forces = self._frictionless(shaped, negligible)
         #: Orthonormal loads, (n, loads), and displacements of the last ones that have no fields yet.
         self._loads: NDArray[np.float64] = np.empty((len(nodes.s), 0))
@@ -412,14 +413,15 @@ class SlidingPunch(Punch):
         nodes = self.space.contact
         forces = np.zeros((x.shape[1], 2, len(nodes.s)))
         w = x - self._motions @ self._contact_motion(x)
-        for i, rows in enumerate(self._rows):
-            forces[:, i, nodes.owned] = times(rows, w).T
+        reactions = times(self._rows, w).T
+        for i in (0, 1):
+            forces[:, i, nodes.owned] = reactions[:, i::2]
         self.space.comm.Allreduce(MPI.IN_PLACE, forces)
         return forces
 
     def destroy(self) -> None:
         super().destroy()
-        for held in (self.factor, self._boundary, *self._rows):
+        for held in (self.factor, self._boundary, self._rows):
             held.destroy()
 
 
@@ -435,7 +437,7 @@ class ElasticPunch(SlidingPunch):
     of all that frictions require.
 
     Args:
-        space, solver, heights: as of :class:`SlidingPunch`.
+        space, solver, heights, least: as of :class:`SlidingPunch`.
         response: of the plate and the punch.
     """
 
@@ -443,7 +445,7 @@ class ElasticPunch(SlidingPunch):
 
     def __init__(
         self, space: Space, response: PairAtSpeed, solver: str = "direct",
-        heights: NDArray[np.float64] | None = None, along: None = None,
+        heights: NDArray[np.float64] | None = None, along: None = None, least: float = LEAST,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
@@ -451,7 +453,7 @@ class ElasticPunch(SlidingPunch):
         others = unit[1:]
         punch = SlidingPunch(space, response.punch, solver, others)
         each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, each)
+        super().__init__(space, response.plate, solver, each, least=least)
         self.response, self._parts = response, self._parts - len(others)
         self._moving_fields = self.fields[self._parts :]
         #: Forces in the plate by each unit of v', (n, 2, n).
@@ -485,7 +487,7 @@ class ElasticPunch(SlidingPunch):
         changes /= np.linalg.norm(changes, axis=1, keepdims=True)
         _, size, rows = np.linalg.svd(changes, full_matrices=False)
         #: Combinations of displacements and tangential forces, (basis, 2 n).
-        self._basis = rows[size > LEAST * size[0]]
+        self._basis = rows[size > self._left * size[0]]
         b = self._tangential(self._basis[:, n:].T)
         fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
         for field, moved in zip(fields, self._basis[:, :n] @ units):
@@ -501,10 +503,10 @@ class ElasticPunch(SlidingPunch):
         return np.concatenate([first, self._changes(g) @ self._basis.T], axis=2)
 
 
-def sliding_punch(space: Space, response: HalfPlane, *args: Any) -> SlidingPunch:
+def sliding_punch(space: Space, response: HalfPlane, *args: Any, **options: Any) -> SlidingPunch:
     """Punch of the arguments of :class:`SlidingPunch`, elastic where the response is that of a pair."""
     kind = ElasticPunch if isinstance(response, PairAtSpeed) else SlidingPunch
-    return kind(space, response, *args)  # type: ignore[arg-type]
+    return kind(space, response, *args, **options)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from . import friction, motion, numerics, stresses, sweep
-from .choice import PLACE, STROKE, Archive, Choice, Drawing, not_shown, require_one_of
+from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
 from .render import MARKERS, Curve, Film, Panel, TooSmall
@@ -53,6 +53,8 @@ def film(of: Archive) -> Drawing:
             f"a film needs at least {_LEAST_FRAMES} states along strokes, found {len(frames)}; give "
             "motion.X_over_L more places"
         )
+    if not stresses.surface_names(of) and not stresses.map_names(of):
+        raise BadInput('a film needs stresses; add "surface" to output.quantities, or output.map')
     loop = Loops(of).of(frames[0])
     if loop is None:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
@@ -66,7 +68,7 @@ def film(of: Archive) -> Drawing:
         title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
         return [replace(base, curves=[*base.curves, dot], title=title), *beside[frame]]
 
-    left_out = not_shown(labels, frames, "--figure film --states", of.choice.states)
+    left_out = of.not_shown(frames, "--figure film --states")
     made = Film(panels, len(frames), of.size)
     return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
 

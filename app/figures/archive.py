@@ -19,7 +19,7 @@ from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
 from .render import MARKERS, Curve, Film, Panel, TooSmall
-from .style import Look, looks
+from .style import Look
 
 #: Name that stands for all figures, and a choice that leaves everything open.
 ALL, PLAIN = "all", Choice()
@@ -73,27 +73,16 @@ def film(of: Archive) -> Drawing:
     return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
 
 
-def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
+def _stresses_of(of: Archive, frames: list[int]) -> list[tuple[Panel, ...]]:
     """Panels of every frame: stresses along the surface by one method, or maps where there are none or
     they are chosen."""
-    made: list[list[Panel]] = [[] for _ in frames]
     if _has(stresses.surface_names)(of):
-        method = next(iter(next(iter(stresses.stresses_along(of).values.values()))))
-        surface = stresses.stresses_along(of, method)
-        for name in surface.values:
-            ylim = stresses.limits(surface.X, surface.drawn(name)[frames])
-            for panels, i in zip(made, frames):
-                shown = [stresses.Shown(surface, i, looks(1)[0])]
-                x = stresses.position_name(of, "")
-                panels.append(stresses.surface_panel(name, shown, ylim, x=x))
-        return made
-    fields = stresses.Fields(of)
-    for name in of.choice.quantities or ("sigma_XX", "von_mises"):
-        values, limit = fields.of_states(name, fields.methods[0], frames)
-        options = {"label": fields.label(name), "level": 0.0, "equal": False}
-        for panels, i, of_state in zip(made, frames, values):
-            panels.append(fields.panel(name, of_state, i, limit, **options))
-    return made
+        surface, x = stresses.stresses_along(of).alone, stresses.position_name(of, "")
+        made = [stresses.surface_panels(surface, name, frames, x=x) for name in surface.values]
+    else:
+        fields, names_ = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
+        made = [fields.panels(name, frames, level=0.0, equal=False) for name in names_]
+    return list(zip(*made))
 
 
 def _has_strokes(of: Archive) -> bool:

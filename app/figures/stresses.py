@@ -128,6 +128,12 @@ class Surface:
     position: str = "position on the surface $X/a$"
 
     @property
+    def alone(self) -> "Surface":
+        """Stresses by the first method alone."""
+        values = {name: dict([*by_method.items()][:1]) for name, by_method in self.values.items()}
+        return replace(self, values=values)
+
+    @property
     def methods(self) -> set[str]:
         """Methods of all stresses."""
         return {method for values in self.values.values() for method in values}
@@ -196,14 +202,17 @@ def surface_panel(
     return replace(panel, **options)
 
 
-def stresses_along(of: Archive, method: str = "") -> Surface:
-    """Stresses of an archive's states along the surface, the chosen ones or those shown by default.
+def surface_panels(
+    surface: Surface, name: str, states: Sequence[int], label: str = "", **options: Any
+) -> list[Panel]:
+    """A panel for each of some states, all with the same limits; arguments as for surface_panel."""
+    ylim, (look,) = limits(surface.X, surface.drawn(name)[list(states)]), looks(1)
+    return [surface_panel(name, [Shown(surface, i, look, label)], ylim, **options) for i in states]
 
-    Args:
-        of: the archive.
-        method: the only one; "" for those that are chosen.
-    """
-    available = of.by_method(STATE, POINT, method=method or None)
+
+def stresses_along(of: Archive) -> Surface:
+    """Stresses of an archive's states along the surface, the chosen ones or those shown by default."""
+    available = of.by_method(STATE, POINT)
     axes, values = {}, {}
     for name in of.choice.quantities or [name for name in SHOWN if name in available]:
         rows = available[require_one_of("quantity", name, available)]
@@ -533,6 +542,12 @@ class Fields:
             x, x.replace("X", "Y"), map=Map(b + a * self.X, a * self.Y, values, limit=limit, **shown),
             bar=(b - a, b + a),
         )  # fmt: skip
+
+    def panels(self, name: str, states: Sequence[int], **options: Any) -> list[Panel]:
+        """A panel for each of some states by the first method, all with the same colours."""
+        values, limit = self.of_states(name, self.methods[0], states)
+        options = {"label": self.label(name)} | options
+        return [self.panel(name, of_state, i, limit, **options) for i, of_state in zip(states, values)]
 
     def _on_grid(self, values: NDArray) -> NDArray:
         return values[..., : np.prod(self._shape)].reshape(*values.shape[:-1], *self._shape)

@@ -43,14 +43,12 @@ from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_al
 from ..figures.stresses import (
     SHOWN,
     Fields,
-    Shown,
-    limits,
     map_names,
     stresses_along,
     surface_names,
-    surface_panel,
+    surface_panels,
 )
-from ..figures.style import as_hex, looks
+from ..figures.style import as_hex
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
@@ -201,28 +199,22 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     fields = Fields(of) if below else None
     sizes = [4 * len(surface.X) if surface else 1, fields.X.size * fields.Y.size if fields else 1]
     shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
-    varied, look = labels.varied(), looks(1)[0]
+    varied = labels.varied()
     made: dict[str, Any] = {
         "states": [f"state {i}{': ' * bool(varied)}{labels.text(i, varied)}" for i in shown],
         "of": len(labels.all), "surface": [], "maps": [],
     }  # fmt: skip
     for name in surface.values if surface else ():
         assert surface
-        ylim = limits(surface.X, surface.drawn(name)[shown])
-        method = next(iter(surface.values[name]))
-        panels = [surface_panel(name, [Shown(surface, i, look, METHODS[method])], ylim) for i in shown]
-        made["surface"].append([chart(panel) for panel in panels])
-        for drawn in made["surface"][-1]:
-            for trace in drawn["data"]:
-                trace["showlegend"] = bool(trace["name"])
+        label = METHODS[next(iter(surface.values[name]))]
+        charts = [chart(panel) for panel in surface_panels(surface, name, shown, label)]
+        for trace in (trace for drawn in charts for trace in drawn["data"]):
+            trace["showlegend"] = bool(trace["name"])
+        made["surface"].append(charts)
     for name in (name for name in ("von_mises", *SHOWN) if name in below):
         assert fields
-        values, limit = fields.of_states(name, fields.methods[0], shown)
-        label = fields.label(name)
-        panels = [
-            fields.panel(name, of_state, i, limit, label=label) for i, of_state in zip(shown, values)
-        ]
-        made["maps"].append({"label": plain(label), "charts": [chart(panel) for panel in panels]})
+        charts = [chart(panel) for panel in fields.panels(name, shown)]
+        made["maps"].append({"label": plain(fields.label(name)), "charts": charts})
     return made
 
 

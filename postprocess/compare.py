@@ -40,21 +40,6 @@ from .quantities.quantity import (
 
 
 @dataclass(frozen=True)
-class Comparison:
-    """Figure of disagreement between two results.
-
-    Attributes:
-        name: name of the rule that measured it.
-        text: its meaning in words, by which archives and reports list it.
-        value: the figure, dimensionless.
-    """
-
-    name: str
-    text: str
-    value: float
-
-
-@dataclass(frozen=True)
 class Rule:
     """Rule of comparison: the quantities compared, the figure measured, and its limit for a PASS.
 
@@ -258,20 +243,20 @@ def _depth(fem: Any, exact: Any, data: dict[str, Any], load: Any) -> float | Non
 _NO_REACH = 1e-300
 
 
-def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
-    """Every comparison that the data of states allow, in the order of ``RULES``.
+def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> dict[str, float]:
+    """Figure of every rule that the data of states allow, by the rule's name, in the order of ``RULES``.
 
     Args:
         data: datasets by path.
         load: N per depth [N/m], a number or (states,).
         names: names of the rules that the quantities in the data have.
     """
-    figures, applicable = [], set(names)
+    figures, applicable = dict[str, float](), set(names)
     for name, rule in RULES.items():
         if name in applicable and all(row.path in data for row in rule.needs):
             value = rule.measure(data, load)
             if value is not None:
-                figures.append(Comparison(name, rule.text, float(value)))
+                figures[name] = float(value)
     return figures
 
 
@@ -445,10 +430,19 @@ RULES: Registry[Rule] = Registry(
         "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
         **_both("stresses inside", _inside, "stresses inside{}, relative to themselves or the largest",
                 at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True),
+        "stresses in the punch": against(
+            CLOSED_FORM, _inside, "stresses in the elastic punch, relative to themselves or the largest",
+            {method: of_all[:3] for method, of_all in at.STRESSES_IN_PUNCH.items()},
+            beside=(at.INSIDE_X, at.INSIDE_Y),
+        ),
         "estimate inside": _estimate(at.ESTIMATE_INSIDE[FEM], "stresses inside"),
         "largest stresses": against(
             CLOSED_FORM, _relative, "largest von Mises and shear stress, relative",
             to.VON_MISES, to.SHEAR, own_pressure=True,
+        ),
+        "largest stresses of the punch": against(
+            CLOSED_FORM, _relative, "largest von Mises stress of the elastic punch, relative",
+            to.PUNCH_VON_MISES,
         ),
         "largest stresses over layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress{_SIE}, relative", to.VON_MISES

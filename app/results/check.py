@@ -400,14 +400,13 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
             if not np.allclose(rows[name], row.of_data(rows), rtol=_SAME, atol=1e-15, equal_nan=True):
                 yield f"{name} is not what {', '.join(row.needs)} give in states {start} ..."
         load = rows.get(LOAD.path, archive.attributes["load"])
-        for comparison in compare.comparisons(rows, load, rules):
-            text, value = comparison.text, comparison.value
-            worst[text] = float(np.max([worst.get(text, 0.0), value]))
-            # Forces that do not balance are a fault, whatever the verdict.
-            if text == compare.BALANCE.text and not value <= balance:
-                yield f"{text} in states {start} ...: {value:.1e}, at most {balance:g}"
-    for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
-        worst[comparison.text] = comparison.value
+        for name, value in compare.comparisons(rows, load, rules).items():
+            rule = compare.RULES[name]
+            worst[rule.text] = float(np.max([worst.get(rule.text, 0.0), value]))
+            if rule is compare.BALANCE and not value <= balance:  # a fault whatever the verdict
+                yield f"{rule.text} in states {start} ...: {value:.1e}, at most {balance:g}"
+    in_time = compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules})
+    worst |= {compare.RULES[name].text: value for name, value in in_time.items()}
     archived = _texts(archive, "comparisons")
     if archived.keys() != worst.keys() or any(
         not np.isclose(worst[text], archived[text], rtol=_SAME, atol=0.0, equal_nan=True)
@@ -446,9 +445,7 @@ def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:
     }
     judge = Judge(scene, rules.values())
     archived = _texts(archive, "comparisons")
-    judge.see(
-        [compare.Comparison(rules[text], text, archived[text]) for text in archived if text in rules]
-    )
+    judge.see({rules[text]: archived[text] for text in archived if text in rules})
     judge.failures = list(archive.data.get(runs.FAILURES.path, ()))
     verdict, reasons = judge.verdict()
     if attributes["verdict"] != verdict:

@@ -137,8 +137,9 @@ def _solved(
         task = tasks[parameters["c"]]
         task = replace(task, body=task.body.loaded(parameters.get("load")))
         degree = degrees[i] or plan.fem.degrees[task.number] + more
-        with method.one_state(task, parameters["g"], degree) as solution:
-            yield Solved(scene, number, parameters, task, degree, *solution, method.work.comm)
+        with method.one_state(task, parameters["g"], degree) as (space, fields, weights, pressure):
+            comm = method.work.comm
+            yield Solved(scene, number, parameters, task, degree, space, fields, weights, pressure, comm)
 
 
 def _refuse(scene: Scene, degrees: Sequence[int | None]) -> None:

@@ -14,8 +14,7 @@ from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.solvers.contact.method import Method, Solver
-from galinx.solvers.contact.solution import Contact, Places, Task
+from galinx.solvers.contact.solution import Contact, Method, Places, Solver, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS

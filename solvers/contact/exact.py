@@ -4,9 +4,10 @@ Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contac
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,11 @@ from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
 from .ends import Punch
 from .equation import SolvedContact
-from .method import Solver
 from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Task, solved_once
+from .solution import Contact, Solver, Task, solved_once
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import Strength, StrengthOfLayers
 
@@ -32,6 +32,8 @@ from .yielding import Strength, StrengthOfLayers
 _TOGETHER = 20_000
 #: Least distance over a from an end or a kink at which stresses are evaluated.
 _NEAREST = 1e-7
+#: Signs of σ_XX, σ_YY, σ_XY of a field mirrored at Y = 0.
+_MIRROR = np.array([1.0, 1.0, -1.0])[:, None, None]
 
 
 @dataclass(frozen=True)
@@ -44,21 +46,11 @@ class ClosedForm:
 
     solution: Callable[[Task, NDArray, NDArray | None], Any]
 
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        yield _AtSpeed(task, self.solution)
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
+        def states(g: NDArray, load: NDArray | None = None) -> Any:
+            return self.solution(task, g, load)
 
-
-@dataclass(frozen=True)
-class _AtSpeed:
-    task: Task
-    solution: Callable[[Task, NDArray, NDArray | None], Any]
-
-    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
-        return self.solution(self.task, g, load)
-
-    def record(self) -> dict[str, Any]:
-        return {}
+        return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
 class ExactSolution:
@@ -184,30 +176,24 @@ class ExactSolution:
 
     @cached_property
     def _turns(self) -> Turns | None:
-        """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
-        turns = together([self._turns_of(group) for group in self.contacts.groups])
-        return turns.of(self.contacts.order) if turns and turns.X.size else None
-
-    def _turns_of(self, group: Group) -> Turns:
-        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
-        X = np.concatenate([ENDS[ends], kinks])
-        σ_XX, σ_YY = group.surface(X)
-        between = None
-        if kinks:
-            places = np.array([-1.0, *kinks, 1.0])
-            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
-            _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)
-        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
-        return Turns(np.tile(X, (len(group.rows), 1)), σ, between)
+        return _turns_of(self.contacts)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self._stresses_of(self.contacts)
+
+    @cached_property
+    def inside_punch(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY in an elastic punch, at X and -Y of the points inside, (3, states, m)."""
+        return _MIRROR * self._stresses_of(self.contacts.in_punch)
+
+    def _stresses_of(self, contacts: Contacts) -> NDArray[np.float64]:
         points = self.places.points
         σ = np.empty((3, len(self._g), len(points)))
         for first in range(0, len(points), _TOGETHER):
             batch = slice(first, first + _TOGETHER)
-            σ[:, :, batch] = self.contacts.stresses(*points[batch].T)
+            σ[:, :, batch] = contacts.stresses(*points[batch].T)
         return σ[:, self._rows]
 
     @property
@@ -218,16 +204,46 @@ class ExactSolution:
     @cached_property
     def strength(self) -> Strength:
         """Yield of the states, which is searched for at places of each."""
-        task, solved_each = self.task, isinstance(self._rows, slice)
-        each = self if solved_each else ExactSolution(task, self.g)
+        return self._yield(self._each.contacts, self.task.body)
 
+    @cached_property
+    def strength_of_punch(self) -> Strength:
+        """Yield of an elastic punch, whose heights Y have the other sign."""
+        mirrored = self._yield(self._each.contacts.in_punch, self.task.body.of_punch)
+        turns = mirrored.turns and replace(mirrored.turns, σ=_MIRROR * mirrored.turns.σ)
+        return replace(mirrored, field=lambda points: _MIRROR * mirrored.field(points), turns=turns)
+
+    @property
+    def _each(self) -> "ExactSolution":
+        """The same states, none of them similar to another."""
+        return self if isinstance(self._rows, slice) else ExactSolution(self.task, self.g)
+
+    def _yield(self, contacts: Contacts, body: Contact) -> Strength:
         def field(points: NDArray) -> NDArray[np.float64]:
-            return each.contacts.stresses(points[..., 0], points[..., 1])
+            return contacts.stresses(points[..., 0], points[..., 1])
 
         return Strength(
-            field, task.body, task.response, self.g, self.local, self.half_width, each._turns,
-            _NEAREST,
+            field, body, contacts.groups[0].response, contacts.of("g"), self.local, self.half_width,
+            _turns_of(contacts), _NEAREST,
         )  # fmt: skip
+
+
+def _turns_of(contacts: Contacts) -> Turns | None:
+    """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
+    each = []
+    for group in contacts.groups:
+        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
+        X = np.concatenate([ENDS[ends], kinks])
+        σ_XX, σ_YY = group.surface(X)
+        between = None
+        if kinks:
+            places = np.array([-1.0, *kinks, 1.0])
+            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
+        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
+        each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))
+    turns = together(each)
+    return turns.of(contacts.order) if turns and turns.X.size else None
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Starts from rest: run on one rank with the other tests and again under mpirun on two."""
+"""Starts from rest, shared out over two ranks."""
 
 import numpy as np
 from mpi4py import MPI

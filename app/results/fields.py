@@ -31,7 +31,8 @@ from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed, listed
 from ..methods import METHODS
-from ..plan.plan import Plan, farthest_inside, make_plan
+from ..plan.elements import farthest_inside
+from ..plan.plan import Plan, make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.variants import of_state
 from ..scene.scene import FRICTIONS, Scene

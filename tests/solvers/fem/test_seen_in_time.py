@@ -121,9 +121,10 @@ def test_strains_along_the_surface_are_those_of_polynomials(moving):
 
 
 def test_pressure_of_forces_is_the_one_they_are_of(moving):
-    """A polynomial with the weight of a punch, integrated with the shapes of the whole contact."""
+    """The weight of a punch times what bends between two facets, integrated with all shapes."""
     α, β, p = -0.37, -0.63, 4
     X, forces = moving.X, np.zeros(len(moving.X))
+    bend = X[p * (len(X) // p // 2)]
     nodes = (X[p * 2 : p * 3 + 1] - X[p * 2]) / (X[p * 3] - X[p * 2])
     for k in range(len(X) // p):
         left, right = X[k * p], X[k * p + p]
@@ -132,11 +133,13 @@ def test_pressure_of_forces_is_the_one_they_are_of(moving):
         r, half = (left + right) / 2.0 + (right - left) / 2.0 * x, (right - left) / 2.0
         w = w * half ** (1.0 + at_left + at_right)
         w = w * (1.0 if k == 0 else (1.0 + r) ** β) * (1.0 if right == X[-1] else (1.0 - r) ** α)
-        forces[k * p : k * p + p + 1] += (w * (1.0 - r**3)) @ lagrange(nodes, (1.0 + x) / 2.0)[0]
+        forces[k * p : k * p + p + 1] += (w * (2.0 - np.abs(r - bend))) @ lagrange(
+            nodes, (1.0 + x) / 2.0
+        )[0]
     found = SurfaceInTime(moving, ON_SURFACE).pressure(forces, α, β)
     under = np.abs(ON_SURFACE) < 1.0
     r = ON_SURFACE[under]
-    expected = (1.0 - r) ** α * (1.0 + r) ** β * (1.0 - r**3)
+    expected = (1.0 - r) ** α * (1.0 + r) ** β * (2.0 - np.abs(r - bend))
     np.testing.assert_allclose(found[under], expected, rtol=1e-6, atol=1e-8)
     assert not found[~under].any()
 

@@ -119,6 +119,14 @@ def test_von_mises_and_shear_are_compared_each(which, wanted):
     assert archive(**rows)["largest stresses"] == pytest.approx(wanted)
 
 
+def test_largest_stresses_over_layers_are_judged_everywhere():
+    """A stress that one method does not know is no agreement."""
+    for fem, wanted in ((4.0, 0.0), (3.0, 0.25), (np.nan, np.nan)):
+        rows = {"states/fem/von_mises": np.array([4.0, fem]), "states/sie/von_mises": np.full(2, 4.0)}
+        found = archive(**rows)["largest stresses over layers"]
+        assert found == pytest.approx(wanted, nan_ok=True)
+
+
 @pytest.mark.parametrize(
     "normal, tangential, wanted", [(-8.0, -4.0, 0.0), (-9.0, -4.0, 0.1), (-8.0, -3.0, 0.1)]
 )

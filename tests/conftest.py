@@ -41,7 +41,8 @@ FIRST = "docs/test_pages.py"
 
 
 def pytest_configure(config):
-    """Make the folder of results that all workers read."""
+    """Make the folder of results that all workers read; figures open no windows."""
+    os.environ["MPLBACKEND"] = "Agg"
     if not hasattr(config, "workerinput"):
         config.kept = tempfile.TemporaryDirectory(prefix="galinx-tests-")
         os.environ["GALINX_KEPT"] = config.kept.name

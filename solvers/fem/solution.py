@@ -15,12 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.edges import Exponents
+from ..contact.recovery import StressesBelow
 from ..contact.residual import of_contact
-from ..contact.solution import Contact, Task, solved_once
-from ..contact.stresses import Places, Surface, together
-from ..contact.yielding import Strength, StrengthOfLayers
+from ..contact.solution import Contact, InPunch, Task, solved_once
+from ..contact.stresses import Places, Surface, Turns, together
 from .displacement import Displacement
 from .punch import ContactStates
+
+#: Least distance over a from an end or a kink at which stresses of an elastic punch are evaluated.
+_NEAREST = 1e-7
 
 
 @dataclass(frozen=True)
@@ -229,20 +232,51 @@ class Solution:
         return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
 
     @cached_property
-    def strength(self) -> Strength | StrengthOfLayers:
+    def strength(self) -> Any:
         """Yield of the states."""
-        if self.body.layered:
-            return StrengthOfLayers(
-                self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
-                self.body, self.half_width,
-            )  # fmt: skip
-        turns = self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
-        return Strength(
-            self._stresses, self.body, self.task.response, self.g, self.local, self.half_width, turns,
-            max(states.level.nearest(states) for states in self.solved),
-        )  # fmt: skip
+        return self.body.strength(self)
 
-    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+    @cached_property
+    def _punch(self) -> list[StressesBelow]:
+        """Stresses of each solved state in an elastic punch, mirrored at Y = 0, below its pressure."""
+        punch = self.task.response.punch  # type: ignore[attr-defined]
+        return [
+            StressesBelow(punch, -g, states.pressure, i, α, β)
+            for states in self.solved
+            for i, (g, α, β) in enumerate(zip(states.contact.g, states.local.α, states.local.β))
+        ]
+
+    def _stresses_of_punch(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
+        if len(points) == 1:
+            σ = np.stack([of(points[0]) for of in self._punch], axis=1)[:, self.rows]
+        else:
+            σ = np.stack([self._punch[row](own) for row, own in zip(self.rows, points)], axis=1)
+        return σ * [[[1.0]], [[1.0]], [[-1.0]]]
+
+    @cached_property
+    def inside_punch(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY in an elastic punch, at X and -Y of the points inside, (3, states, m)."""
+        return self._stresses_of_punch(self.places.points[None])
+
+    @cached_property
+    def strength_of_punch(self) -> Any:
+        """Yield of an elastic punch, whose heights Y have the other sign."""
+        each = np.tile([-1.0, 1.0], (len(self.rows), 1))
+        turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
+        return self.body.of_punch.strength(InPunch(self, self._stresses_of_punch, turns, _NEAREST))
+
+    @property
+    def yield_turns(self) -> Turns | None:
+        """Limits of stresses at ends and kinks, where an end is free."""
+        return self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
+
+    @property
+    def nearest(self) -> float:
+        """Least distance over a from an end or a kink at which stresses are accurate."""
+        return max(states.level.nearest(states) for states in self.solved)
+
+    def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (n, 2), of one state, (3, n)."""
         row = self.rows[state]
         for states in self.solved:
@@ -251,13 +285,13 @@ class Solution:
             row -= len(states.contact.g)
         raise IndexError(state)
 
-    def _stresses(self, points: NDArray) -> NDArray[np.float64]:
+    def stresses(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         if len(self.solved) == 1:
             states = self.solved[0]
             return states.displacement.at(points, states.contact.weights[self.rows])
         each = np.broadcast_to(points, (len(self.rows), *points.shape[1:]))
-        return np.stack([self._inside(state, own) for state, own in enumerate(each)], axis=1)
+        return np.stack([self.inside_of(state, own) for state, own in enumerate(each)], axis=1)
 
 
 def solution_of(

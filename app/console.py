@@ -304,14 +304,16 @@ def _parts(sheet: Any, width: int) -> list[list[int]]:
     return parts
 
 
-def print_verdict(console: Any, attributes: dict[str, Any], verbose: bool = False) -> None:
+def print_verdict(
+    console: Any, data: dict[str, Any], attributes: dict[str, Any], verbose: bool = False
+) -> None:
     """Print how well numbers were checked, and the verdict of an archive; verbose, all comparisons."""
     from galinx.postprocess.compare import checked
 
     if verbose:
         for text, value in json.loads(attributes["comparisons"]).items():
             console.print(f"  {text}: {value:.1e}")
-    _print_folded(console, checked(attributes))
+    _print_folded(console, checked(data, attributes))
     styles = {"PASS": "bold green", "FAIL": "bold red"}
     console.print(f"verdict: {attributes['verdict']}", style=styles.get(attributes["verdict"]))
     if verbose:
@@ -349,7 +351,7 @@ def print_result(
         if i:
             console.print()
         print_sheet(console, sheet)
-    print_verdict(console, attributes, verbose)
+    print_verdict(console, data, attributes, verbose)
 
 
 def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:

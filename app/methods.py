@@ -14,16 +14,17 @@ from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
-from galinx.solvers.contact.method import Method
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,
+    IN_PUNCH,
     ONE_FREE,
     PRESCRIBED,
     PUNCH,
     SHARP,
     SOLVED,
     Contact,
+    Method,
 )
 from galinx.solvers.profiles import smooth
 
@@ -41,7 +42,7 @@ class MethodKind:
 
     Attributes:
         about: title in a plan.
-        made: makes a :class:`galinx.solvers.contact.method.Method` for a plan, a progress and a clock.
+        made: makes a :class:`galinx.solvers.contact.solution.Method` for a plan, a progress and a clock.
             MachineFailure says that a library is missing.
         refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
             quantity None the reason why it gives no quantity at all.
@@ -111,7 +112,7 @@ _PRESCRIBED = {SOLVED: "the pressure is prescribed"}
 _LACKING = {
     TRACTION: _PRESCRIBED,
     OWN_PRESSURE: _PRESCRIBED | {FLAT: "the pressure is prescribed"},
-    OWN_MESHES: _RECOVERED,
+    OWN_MESHES: _RECOVERED | {IN_PUNCH: "under kinks the closed form alone has the punch's stresses"},
     FREE_ON_LAYERS: _RECOVERED,
 }
 

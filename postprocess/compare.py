@@ -22,6 +22,7 @@ from galinx.solvers.contact import stresses
 from galinx.solvers.contact.edges import under_punch
 
 from .quantities import layers as on_layers
+from .quantities import over_time as in_time
 from .quantities import states as of
 from .quantities import stresses as at
 from .quantities import table
@@ -36,21 +37,6 @@ from .quantities.quantity import (
     STATE,
     Quantity,
 )
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Figure of disagreement between two results.
-
-    Attributes:
-        name: name of the rule that measured it.
-        text: its meaning in words, by which archives and reports list it.
-        value: the figure, dimensionless.
-    """
-
-    name: str
-    text: str
-    value: float
 
 
 @dataclass(frozen=True)
@@ -257,20 +243,20 @@ def _depth(fem: Any, exact: Any, data: dict[str, Any], load: Any) -> float | Non
 _NO_REACH = 1e-300
 
 
-def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
-    """Every comparison that the data of states allow, in the order of ``RULES``.
+def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> dict[str, float]:
+    """Figure of every rule that the data of states allow, by the rule's name, in the order of ``RULES``.
 
     Args:
         data: datasets by path.
         load: N per depth [N/m], a number or (states,).
         names: names of the rules that the quantities in the data have.
     """
-    figures, applicable = [], set(names)
+    figures, applicable = dict[str, float](), set(names)
     for name, rule in RULES.items():
         if name in applicable and all(row.path in data for row in rule.needs):
             value = rule.measure(data, load)
             if value is not None:
-                figures.append(Comparison(name, rule.text, float(value)))
+                figures[name] = float(value)
     return figures
 
 
@@ -444,10 +430,19 @@ RULES: Registry[Rule] = Registry(
         "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
         **_both("stresses inside", _inside, "stresses inside{}, relative to themselves or the largest",
                 at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True),
+        "stresses in the punch": against(
+            CLOSED_FORM, _inside, "stresses in the elastic punch, relative to themselves or the largest",
+            {method: of_all[:3] for method, of_all in at.STRESSES_IN_PUNCH.items()},
+            beside=(at.INSIDE_X, at.INSIDE_Y),
+        ),
         "estimate inside": _estimate(at.ESTIMATE_INSIDE[FEM], "stresses inside"),
         "largest stresses": against(
             CLOSED_FORM, _relative, "largest von Mises and shear stress, relative",
             to.VON_MISES, to.SHEAR, own_pressure=True,
+        ),
+        "largest stresses of the punch": against(
+            CLOSED_FORM, _relative, "largest von Mises stress of the elastic punch, relative",
+            to.PUNCH_VON_MISES,
         ),
         "largest stresses over layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress{_SIE}, relative", to.VON_MISES
@@ -490,8 +485,13 @@ def judged(attributes: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     }
 
 
-def checked(attributes: Mapping[str, Any]) -> str:
-    """Quality of checked numbers in one line: the worst of all figures of a kind."""
+def checked(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
+    """Quality of checked numbers in one line: the worst of all figures of a kind.
+
+    Args:
+        data: datasets by path; those of motions in time say up to when two methods compute them.
+        attributes: attributes of the archive's root.
+    """
     figures = judged(attributes)
     kinds: dict[str, list[float]] = {"two methods agree to": [], "estimated error": [], "residual": []}
     for text, (value, _) in figures.items():
@@ -505,7 +505,18 @@ def checked(attributes: Mapping[str, Any]) -> str:
     if not parts:
         return "numbers not checked: one method alone, and nothing to compare it with"
     wanted = max(set(limits), key=limits.count)
-    return f"numbers checked: {', '.join(parts)}, wanted {wanted:.0e} (dimensionless)"
+    line = f"numbers checked: {', '.join(parts)}, wanted {wanted:.0e} (dimensionless)"
+    paths = [row.path for row in (in_time.TIMES, in_time.V0[SIE], in_time.V0[FEM])]
+    if any(path not in data for path in paths):
+        return line
+    t, sie = (np.asarray(data[path]) for path in paths[:2])
+    solved = np.isfinite(sie).all(axis=0)
+    if solved.all():
+        return line
+    return (
+        f"{line}; motions in time by two methods only to t = {t[solved].max(initial=0.0):.6g} a/c_s, "
+        "where the punch turns round, and later by finite elements alone"
+    )
 
 
 def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:

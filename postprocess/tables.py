@@ -116,8 +116,11 @@ class Column:
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
 
-#: Step over a to which places are rounded where they are shown.
-_STEP = 1e-5
+#: Step over a to which places, and over N/(2a) to which stresses, are rounded where they are shown: less
+#: is rounding of the methods.
+_STEP, _STRESS_STEP = 1e-5, 1e-7
+
+_STRESS = "N/(2a)"
 
 #: Methods in the order in which their numbers are preferred.
 _PREFERRED = (FEM, CLOSED_FORM, SIE)
@@ -155,6 +158,11 @@ _EXPONENTS = _Spec("exponent β, left", of.BETA), _Spec("exponent α, right", of
 _INDENTATION = _Spec("indentation v₀", of.INDENTATION)
 #: Pull under the punch, which no punch exerts.
 _PULL = _Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X)
+_OF_PUNCH = (
+    _Spec("largest von Mises in the punch", yielding.PUNCH_VON_MISES),
+    _Spec("at X", yielding.PUNCH_VON_MISES_X), _Spec("at Y", yielding.PUNCH_VON_MISES_Y),
+    _Spec("load at first yield of the punch", yielding.PUNCH_FIRST_LOAD),
+)  # fmt: skip
 #: What says where answers hold, and more of yield, in a table of its own.
 _LIMITS = (
     _Spec("largest shear in the plane", yielding.SHEAR), _Spec("at X", yielding.SHEAR_X),
@@ -166,8 +174,8 @@ _LIMITS = (
     _Spec("strain above 5 % within, from X = -a", validity.STRAIN[0]),
     _Spec("strain above 5 % within, from X = a", validity.STRAIN[1]),
     _Spec("waves that cross the contact in a stroke", validity.CROSSINGS),
-    _Spec("flutter from σ_XY/σ_YY > 0 of", validity.FLUTTER["positive"]),
-    _Spec("flutter from σ_XY/σ_YY < 0 of", validity.FLUTTER["negative"]),
+    _Spec("flutter threshold, σ_XY/σ_YY > 0", validity.FLUTTER["positive"]),
+    _Spec("flutter threshold, σ_XY/σ_YY < 0", validity.FLUTTER["negative"]),
 )  # fmt: skip
 #: Friction loops, of all strokes together, and sliders.
 _OF_LOOPS = (
@@ -202,6 +210,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
     results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
+    results += _columns(data, units, _OF_PUNCH) + _yields_first(data, units)
     depth = _columns(data, units, [_Spec("depth of yield", yielding.DEPTH)])
     results += [column for column in depth if np.nanmax(column.values)]
     if any(np.any(column.values) for column in intensities):
@@ -250,7 +259,9 @@ def _columns(
         specs: what the columns have.
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
-    columns, step = [], _STEP * float(np.max(units.length.factor))
+    columns: list[Column] = []
+    steps = dict.fromkeys((X_OVER_A, CONTACT), _STEP * float(np.max(units.length.factor)))
+    steps[_STRESS] = _STRESS_STEP * float(np.max(units.stress.factor))
     for head, rows, digits, taken in specs:
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
@@ -260,12 +271,12 @@ def _columns(
             texts = [*map(str, taken(data[row.path]))]
             columns.append(Column(head, texts, "none", scaled.name, row.path))
         elif archived or np.isfinite(data[row.path]).any():
-            place, along = head.startswith("at "), row.scale in (X_OVER_A, CONTACT)
+            place, of_kind = head.startswith("at "), _STRESS if row.unit == _STRESS else row.scale
             columns.append(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
                     scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
-                    step if along and not (units.dimensionless or archived) else 0.0,
+                    0.0 if units.dimensionless or archived else steps.get(of_kind, 0.0),
                 )
             )  # fmt: skip
     return columns
@@ -339,6 +350,17 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
 
 
+def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Column of the body that yields first of two elastic ones; none where that was not computed."""
+    of_plate, of_punch = (preferred(data, row) for row in (yielding.VON_MISES, yielding.PUNCH_VON_MISES))
+    strengths = units.contact.yield_strength, units.contact.solid.punch_strength
+    if not of_plate or not of_punch or not all(strengths):
+        return []
+    plate, punch = (data[row.path] / Y for row, Y in zip((of_plate, of_punch), strengths))
+    words = ["" if isnan(a) else "plate" if a > b else "punch" for a, b in zip(plate, punch)]
+    return [Column("yields first", words, "none", "yields_first")]
+
+
 def layout(
     title: str, labels: Sequence[str], columns: Sequence[Column], width: int = 0, noun: str = "state"
 ) -> Sheet:
@@ -354,6 +376,8 @@ def layout(
     if width and len(labels) == 1:
         lines: list[list[str]] = []
         for column in columns:
+            if column.place and lines and lines[-1][1].startswith("0 "):
+                continue
             if column.place and lines:
                 lines[-1][1] += f"{' ' if ' at ' not in lines[-1][1] else ', '}{_at(column)}"
             elif column.texts()[0]:

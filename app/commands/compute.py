@@ -115,13 +115,11 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
     Example: ./run.sh plan scenes/tables4_5.toml
     """
     from ..plan.plan import expense
-    from ..plan.variants import lines_of, make_variants
+    from ..plan.variants import lines_of, make_plans
 
-    checked = options.read(scene, changes, unset)
-    variants = make_variants(checked)
-    plans = [variant.plan for variant in variants]
+    plans = make_plans(options.read(scene, changes, unset))
     if ranks.is_root():
-        for text in lines_of(checked, variants):
+        for text in lines_of(plans):
             say(f"do    {text}", 6)
         reasons: dict[str, dict[str, None]] = {}
         for what, _, reason in (text.partition(": ") for each in plans for text in each.skipped):

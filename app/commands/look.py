@@ -38,12 +38,10 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
         if as_json:
             print(json.dumps(_as_json(data, attributes, units), ensure_ascii=False, indent=1))
         else:
-            further = (
-                loops_sheet(data, units, width()),
-                inner_sheet(data),
-                limits_sheet(data, units, width()),
-            )
-            sheets = *sheets_of_run(data, units, attributes["title"], width()), *further
+            sheets = sheets_of_run(data, units, attributes["title"], width())
+            if not result.scene.steady:  # else no stroke was asked for
+                sheets += [loops_sheet(data, units, width()), inner_sheet(data)]
+            sheets.append(limits_sheet(data, units, width()))
             print_result([sheet for sheet in sheets if sheet.rows], data, attributes, verbose)
             print_warnings(attributes)
     return errors.GOOD
@@ -202,7 +200,7 @@ def compare(
             inputs = options.inputs(*archives, *_given(measured))
             files = Files(to, archives[0].stem, overwrite=overwrite, inputs=inputs)
             files.check(["compare"])
-            written = files.write(iter([comparison.drawing(points)]), None)
+            written = files.write([comparison.drawing(points)])
         print_sheets(comparison.sheets(), comparison.notes())
         _print_files(written if to else ())
     return errors.GOOD
@@ -294,7 +292,7 @@ def dispersion(
                 "faster radiates into them, and is no limit of the punch"
             )
         print(f"highest speed of a punch: {slowest.limit:.8g} m/s")
-        _print_files(files.write(iter([waves.dispersion_drawing(slowest)]), None))
+        _print_files(files.write([waves.dispersion_drawing(slowest)]))
     return errors.GOOD
 
 
@@ -355,7 +353,7 @@ def response(
         for answer in stiffnesses:
             print(answer.words)
             print(*punch.table(checked, answer), sep="\n")
-        _print_files(files.write(iter([punch.response_drawing(stiffnesses)]), None))
+        _print_files(files.write([punch.response_drawing(stiffnesses)]))
     return errors.GOOD
 
 

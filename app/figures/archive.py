@@ -5,19 +5,20 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
+from galinx.postprocess.quantities import Quantity, over_time, runs
 from galinx.postprocess.quantities.quantity import METHODS
 from galinx.postprocess.quantities.states import FRICTION
+from galinx.postprocess.quantities.stresses import RATIO_ALONG
 from galinx.texts import number
 
 from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from . import friction, motion, numerics, stresses, sweep
-from .choice import Archive, Choice, Drawing, require_one_of
+from .choice import PLACE, STROKE, Archive, Choice, Drawing, not_shown, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
-from .render import Curve, Film, Panel, TooSmall
-from .states import PLACE, STROKE, not_shown
+from .render import MARKERS, Curve, Film, Panel, TooSmall
 from .style import Look, looks
 
 #: Name that stands for all figures, and a choice that leaves everything open.
@@ -31,22 +32,21 @@ class _Figure:
     """A kind of figure: how it is drawn, whether an archive has it, the options that it follows, and
     whether it is drawn without being named."""
 
-    draw: Callable[[Archive], Any]
+    draw: Callable[[Archive], Drawing]
     has: Callable[[Archive], bool]
     follows: frozenset[str] = frozenset()
-    usual: Callable[[Archive], bool] | None = None
+    usual: Callable[[Archive], bool] = lambda _: False
 
 
-def film(of: Archive) -> tuple[Film, str]:
-    """Film of the strokes, or of a motion in time, and a sentence on what it leaves out.
+def film(of: Archive) -> Drawing:
+    """Film of the strokes, or of a motion in time.
 
     Raises:
         BadInput: there are too few states along the strokes.
     """
     if not _has_strokes(of) and motion.has_film(of):
-        return motion.film_of_surface(of)
-    if not _has_strokes(of) and motion.has_pressures(of):
-        return motion.pressure_film(of)
+        made, left_out = motion.film(of)
+        return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
     labels, frames = of.labels, _frames(of)
     if len(frames) < _LEAST_FRAMES:
         raise BadInput(
@@ -62,30 +62,31 @@ def film(of: Archive) -> tuple[Film, str]:
 
     def panels(frame: int) -> list[Panel]:
         i = frames[frame]
-        dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form="markers")
+        dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form=MARKERS)
         title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
         return [replace(base, curves=[*base.curves, dot], title=title), *beside[frame]]
 
     left_out = not_shown(labels, frames, "--figure film --states", of.choice.states)
-    return Film(panels, len(frames), of.size), left_out
+    made = Film(panels, len(frames), of.size)
+    return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
 
 
 def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
     """Panels of every frame: stresses along the surface by one method, or maps where there are none or
     they are chosen."""
     made: list[list[Panel]] = [[] for _ in frames]
-    chosen, x = of.choice.quantities, stresses.position_name(of, "")
-    if stresses.has_surface(of):
-        method = next(iter(next(iter(stresses.Surface(of).values.values()))))
-        shown = stresses.Surface(Archive(of.data, of.scene, replace(of.choice, method=method)))
-        for name in shown.values:
-            ylim = stresses.limits(shown.X, shown.drawn(name)[frames])
+    if _has(stresses.surface_names)(of):
+        method = next(iter(next(iter(stresses.stresses_along(of).values.values()))))
+        surface = stresses.stresses_along(of, method)
+        for name in surface.values:
+            ylim = stresses.limits(surface.X, surface.drawn(name)[frames])
             for panels, i in zip(made, frames):
-                states = [stresses.Shown(shown, i, looks(1)[0])]
-                panels.append(stresses.surface_panel(name, states, ylim, x=x))
+                shown = [stresses.Shown(surface, i, looks(1)[0])]
+                x = stresses.position_name(of, "")
+                panels.append(stresses.surface_panel(name, shown, ylim, x=x))
         return made
     fields = stresses.Fields(of)
-    for name in chosen or ("sigma_XX", "von_mises"):
+    for name in of.choice.quantities or ("sigma_XX", "von_mises"):
         values, limit = fields.of_states(name, fields.methods[0], frames)
         options = {"label": fields.label(name), "level": 0.0, "equal": False}
         for panels, i, of_state in zip(made, frames, values):
@@ -94,13 +95,8 @@ def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
 
 
 def _has_strokes(of: Archive) -> bool:
-    shown = stresses.surface_names(of) or stresses.map_names(of)
-    return bool(shown) and len(_frames(of)) >= _LEAST_FRAMES
-
-
-def _has_film(of: Archive) -> bool:
-    """Return True if an archive has enough states along the strokes, or times, and stresses to show."""
-    return _has_strokes(of) or motion.has_film(of) or motion.has_pressures(of)
+    names = stresses.surface_names(of) or stresses.map_names(of)
+    return bool(names) and len(_frames(of)) >= _LEAST_FRAMES
 
 
 def _frames(of: Archive) -> list[int]:
@@ -120,6 +116,16 @@ def _frames(of: Archive) -> list[int]:
     return sorted(states.tolist(), key=travelled)
 
 
+def _has(names: Callable[[Archive], list[str]]) -> Callable[[Archive], bool]:
+    """Condition that an archive has some stresses of a kind, and the chosen ones among them."""
+    return lambda of: bool(there := names(of)) and set(of.choice.quantities) <= set(there)
+
+
+def _holds(*rows: Quantity) -> Callable[[Archive], bool]:
+    """Condition that an archive holds all of some quantities."""
+    return lambda of: of.has(*rows)
+
+
 def _always(of: Archive) -> bool:
     return True
 
@@ -128,11 +134,13 @@ _STRESSES = frozenset({"states", "quantities", "method"})
 
 #: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
-    "surface": _Figure(stresses.surface, stresses.has_surface, _STRESSES | {"measured"}, _always),
-    "along": _Figure(
-        stresses.friction_along, stresses.has_along, frozenset({"states", "method"}), _always
+    "surface": _Figure(
+        stresses.surface, _has(stresses.surface_names), _STRESSES | {"measured"}, _always
     ),
-    "inside": _Figure(stresses.inside, stresses.has_inside, _STRESSES, _always),
+    "along": _Figure(
+        stresses.friction_along, _holds(RATIO_ALONG), frozenset({"states", "method"}), _always
+    ),
+    "inside": _Figure(stresses.inside, _has(stresses.map_names), _STRESSES, _always),
     "parameters": _Figure(
         sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _always
     ),
@@ -140,35 +148,34 @@ FIGURES = {
         friction.friction, lambda of: not of.scene.steady, frozenset({"states", "measured"}),
         friction.has_loop,
     ),
-    "slider": _Figure(friction.slider, friction.has_slider, usual=_always),
-    "time": _Figure(motion.time, motion.has_motions, usual=_always),
-    "interfaces": _Figure(stresses.interfaces, stresses.has_interfaces, _STRESSES),
-    "pressures": _Figure(motion.pressures, motion.has_pressures),
+    "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_always),
+    "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_always),
+    "interfaces": _Figure(stresses.interfaces, _has(stresses.interface_names), _STRESSES),
+    "pressures": _Figure(motion.pressures, _holds(*motion.PRESSURES)),
     "stresses": _Figure(motion.stresses, motion.has_surface),
-    "energies": _Figure(motion.energies, motion.has_energies),
-    "degrees": _Figure(numerics.degrees, numerics.has_degrees),
+    "energies": _Figure(motion.energies, _holds(*motion.ENERGIES)),
+    "degrees": _Figure(numerics.degrees, _holds(*numerics.DEGREES)),
     "mesh": _Figure(numerics.mesh, lambda of: bool(make_plan(of.scene).fem)),
-    FILM: _Figure(film, _has_film, _STRESSES),
+    FILM: _Figure(film, lambda of: _has_strokes(of) or motion.has_film(of), _STRESSES),
 }  # fmt: skip
 
 
 def of_archive(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> Iterator[Drawing]:
-    """The figures that a choice selects, one after the other.
+    """The figures that a choice selects, and the film if it is named, one after the other.
 
     Raises:
         BadInput: the archive lacks a selected figure or quantity; the message says what it has.
     """
     of = Archive(data, scene, choice)
     for name in names(data, scene, choice):
-        if name != FILM:
-            try:
-                yield FIGURES[name].draw(of)
-            except TooSmall as error:
-                raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
+        try:
+            yield FIGURES[name].draw(of)
+        except TooSmall as error:
+            raise BadInput(f"--size: the figure {name} does not fit; {error}") from error
 
 
 def write(data: dict[str, Any], scene: Scene, choice: Choice, files: Files) -> list[Written]:
-    """Write the figures of :func:`of_archive`, and the film if it is selected.
+    """Write the figures of :func:`of_archive`.
 
     Raises:
         BadInput: the archive lacks a selected figure or quantity, or it cannot be written in this format.
@@ -177,10 +184,8 @@ def write(data: dict[str, Any], scene: Scene, choice: Choice, files: Files) -> l
     """
     if not choice.figures and OF_FILMS.keys() & {files.ending, *files.formats}:
         choice = replace(choice, figures=(FILM,))
-    selected = names(data, scene, choice)
-    files.check(selected)
-    whole = (lambda: film(Archive(data, scene, choice))) if FILM in selected else None
-    return files.write(of_archive(data, scene, choice), whole)
+    files.check(names(data, scene, choice))
+    return files.write(of_archive(data, scene, choice))
 
 
 def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[str]:
@@ -213,7 +218,7 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
     )
     for name in choice.quantities:
         require_one_of("quantity", name, quantities)
-    usual = [name for name in available if (is_usual := FIGURES[name].usual) and is_usual(plain)]
+    usual = [name for name in available if FIGURES[name].usual(plain)]
     offered = available if whole or choice.given else usual or available[:1]
     selected = list(named) or [
         name for name in offered if name != FILM and choice.given <= FIGURES[name].follows

@@ -1,10 +1,11 @@
-"""Options of figures, what they are drawn from, and figures with their captions.
+"""Options of figures, the archive that they are drawn from, and figures with their captions.
 
 A choice says which figures, states and quantities are drawn, over what, how large and in which units.
+Parameters that distinguish an archive's states say which of them a figure shows, and name them.
 """
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,16 +14,19 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import Quantity, table
+from galinx.postprocess.quantities import Quantity, column, table
 from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
+from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.swept import WAVE_SPEED
+from galinx.postprocess.tables import parameters
 from galinx.postprocess.units import Scaled, Units, as_archived
+from galinx.texts import number, plain, unit
 
 from ..errors import BadInput, nearest, short
 from ..scene.scene import Scene
 from .measured import Measured
-from .render import Curve, Size, lines_and_markers
-from .states import StateLabels
-from .style import Look
+from .render import Curve, Film, Size, lines_and_markers
+from .style import LINES, MARKERS, Look, looks
 
 _INCHES = {"in": 1.0, "cm": 1.0 / 2.54, "mm": 1.0 / 25.4, "pt": 1.0 / 72.0}
 _LENGTH = r"(\d+(?:\.\d*)?|\.\d+)\s*(in|cm|mm|pt)"
@@ -121,6 +125,7 @@ class Drawing:
         figure: the matplotlib figure.
         pixels: True where a page should embed it as pixels.
         left_out: which states it does not show and how to draw them; "" where it shows all.
+        film: the film of which the figure is the first frame; None for figures.
     """
 
     name: str
@@ -128,11 +133,222 @@ class Drawing:
     figure: Figure
     pixels: bool = False
     left_out: str = ""
+    film: Film | None = None
 
     @property
     def full_caption(self) -> str:
         """Caption, with the states that are left out."""
         return f"{self.caption} {self.left_out}".strip()
+
+
+#: States and values that a sentence names.
+_NAMED = 6
+
+#: Names of the stroke and the place on it, of the speed and the load.
+STROKE, PLACE, C, N = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED, LOAD))
+
+
+class StateLabels:
+    """Parameters that distinguish an archive's states, and how a legend names them.
+
+    Args:
+        data: datasets of the archive by path.
+        scene: the archive's scene.
+        units: of parameters.
+    """
+
+    def __init__(self, data: dict[str, Any], scene: Scene, units: Units | None = None) -> None:
+        self._data, self.c_s = data, scene.solid.c_s
+        self._units = units or Units(scene.body, data, dimensionless=True)
+        self.parameters = {path.rpartition("/")[2]: row for path, row in parameters(data).items()}
+        self.all = np.arange(len(data[SPEED.path]))
+
+    @property
+    def law(self) -> list[str]:
+        """Names of the friction law's parameters."""
+        return [name for name in self.parameters if name not in (C, N, STROKE, PLACE)]
+
+    def varied(self, states: NDArray | Sequence[int] | None = None) -> list[str]:
+        """Names of the parameters that differ between some states, between all if not given."""
+        return [name for name in self.parameters if len(self.distinct(name, states)) > 1]
+
+    def values(self, name: str) -> NDArray:
+        """Values of a parameter in all states, (states,); speeds over the wave speed of the first solid.
+
+        In a sweep over solids one speed has several c, as the wave speed differs.
+        """
+        values = self._data[column(name)]
+        if name != C or WAVE_SPEED.path not in self._data:
+            return values
+        V = values * self._data[WAVE_SPEED.path]
+        return np.array([float(f"{speed:.12g}") for speed in V]) / self.c_s
+
+    def distinct(self, name: str, states: NDArray | Sequence[int] | None = None) -> list[Any]:
+        """Distinct values of a parameter: numbers in ascending order, texts in the order of states."""
+        values = self.values(name)[self.all if states is None else np.asarray(states)].tolist()
+        return sorted(set(values)) if self.numeric(name) else list(dict.fromkeys(values))
+
+    def numeric(self, name: str) -> bool:
+        """Return True if a parameter is a number."""
+        return self.parameters[name].type != TEXT
+
+    def where(self, states: NDArray, **values: Any) -> NDArray[np.int64]:
+        """States whose named parameters have the given values, among some states."""
+        for name, value in values.items():
+            states = states[self.values(name)[states] == value]
+        return states
+
+    def ordered(self, states: NDArray) -> NDArray[np.int64]:
+        """Some states in the order of their parameters, the first parameter slowest."""
+        return states[np.lexsort([self._places(name, states) for name in self.parameters][::-1])]
+
+    def _places(self, name: str, states: NDArray) -> NDArray[np.int64]:
+        """Positions of some states' values of a parameter among its distinct values, (states,)."""
+        values = self.distinct(name, states)
+        return np.array([values.index(value) for value in self.values(name)[states].tolist()])
+
+    def label(self, state: int, names: Sequence[str]) -> str:
+        """Named parameters of a state, with formulas in TeX."""
+        return ", ".join(self._values_label(name, [self.values(name)[state]]) for name in names)
+
+    def text(self, state: int, names: Sequence[str]) -> str:
+        """Named parameters of a state, as plain text."""
+        return plain(self.label(state, names))
+
+    def all_at(self, states: Sequence[int]) -> str:
+        """Sentence on the parameters that some states share and others have otherwise; "" for none."""
+        fixed = [name for name in self.varied() if name not in self.varied(states)]
+        return f" All at {self.text(int(states[0]), fixed)}." if fixed else ""
+
+    def absent(self, name: str, shown: Sequence[int]) -> str:
+        """Values of a parameter that none of some states has, as plain text; "" for none."""
+        absent = [value for value in self.distinct(name) if value not in self.values(name)[shown]]
+        return plain(self._values_label(name, absent)) if absent else ""
+
+    def _values_label(self, name: str, values: Sequence[Any]) -> str:
+        if not self.numeric(name):
+            return _short([str(value) for value in values])
+        symbol, factor, in_unit = self.scale(name)
+        text = f"${symbol} = {_short([number(factor * value) for value in values])}{unit(in_unit)}$"
+        if name == C and self._units.dimensionless and len(values) == 1:
+            text += f" (${number(values[0] * self.c_s)}{unit('m/s')}$)"
+        return text
+
+    def scale(self, name: str) -> tuple[str, float, str]:
+        """Symbol in TeX of a numeric parameter, what its values are multiplied by, and its unit."""
+        row = self.parameters[name]
+        scaled = self._units(row, name)
+        if scaled is None or np.ndim(scaled.factor) or scaled.offset:
+            return str(row.symbol), 1.0, row.unit
+        return (
+            "V" if name == C and scaled.unit != "1" else str(row.symbol),
+            float(scaled.factor),
+            scaled.unit,
+        )
+
+    def fixed(self, names: Sequence[str], states: NDArray) -> dict[str, Any]:
+        """Values of the named parameters at which the others are varied.
+
+        They are a combination that most states have: the first stroke, its last place, and of other
+        parameters the middle value, or the combination nearest to this one.
+        """
+        if not len(names):
+            return {}
+        values = {name: self.distinct(name, states) for name in names}
+        chosen = {STROKE: 0, PLACE: -1}
+        middle = [chosen.get(name, (len(values[name]) - 1) // 2) % len(values[name]) for name in names]
+        places = np.stack([self._places(name, states) for name in names])
+        combinations, counts = np.unique(places, axis=1, return_counts=True)
+        most = combinations[:, counts == counts.max()]
+        best = most[:, np.abs(most - np.array(middle)[:, None]).sum(axis=0).argmin()]
+        return {name: values[name][n] for name, n in zip(names, best)}
+
+    def looks(self, states: Sequence[int], names: Sequence[str]) -> list[Look]:
+        """Colours, lines and markers of the curves of some states that differ in the named parameters.
+
+        Two parameters have colours and lines of their own; else each curve has.
+        """
+        if len(names) != 2:
+            return looks(len(states), bool(names) and self.numeric(names[0]))
+        count = len(self.distinct(names[0], states))
+        colours, places = (
+            looks(count, self.numeric(names[0])),
+            [self._places(name, np.asarray(states)).tolist() for name in names],
+        )
+        return [
+            Look(colours[n].colour, LINES[m % len(LINES)], MARKERS[(n + m * count) % len(MARKERS)])
+            for n, m in zip(*places)
+        ]
+
+
+def drive_label(c: float, g: float, way: float) -> str:
+    """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""
+    towards = f", towards ${'-+'[int(way > 0)]}X$" * bool(c > 0.0 and way != 0)
+    return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
+
+
+def spread(values: Sequence[Any], most: int) -> list[Any]:
+    """At most so many of some values, the first and the last among them, evenly between these."""
+    if len(values) <= most:
+        return list(values)
+    return [values[n] for n in np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))]
+
+
+def states_for_panel(
+    labels: StateLabels, names: Sequence[str], states: NDArray, most: int
+) -> tuple[list[str], NDArray]:
+    """States for one panel: as many parameters vary as that leaves a readable number of curves.
+
+    Args:
+        labels: of the archive's states.
+        names: parameters that differ between ``states``, slowest first.
+        states: numbers of states.
+        most: curves in a panel.
+
+    Returns:
+        The parameters that vary, and the states.
+    """
+    # A sweep is looked at for what it sweeps; without one, strokes and places are.
+    swept = [name for name in names if name not in (STROKE, PLACE)]
+    varying: list[str] = []
+    count = 1
+    for name in [*swept, *(name for name in names if name not in swept)]:
+        values = len(labels.distinct(name, states))
+        if count * min(values, most) <= most or not varying:
+            varying.append(name)
+            count *= min(values, most)
+    rest = [name for name in names if name not in varying]
+    states = labels.where(states, **labels.fixed(rest, states))
+    for name in varying:
+        states = states[np.isin(labels.values(name)[states], spread(labels.distinct(name, states), most))]
+    return [name for name in names if name in varying], states
+
+
+def not_shown(labels: StateLabels, shown: Sequence[int], how: str, requested: Sequence[int] = ()) -> str:
+    """Sentence on the states that a figure does not show, and how to draw them; "" where it shows all.
+
+    Args:
+        labels: of the archive's states.
+        shown: states that the figure shows.
+        how: options that draw others.
+        requested: states that the user chose; () for all.
+    """
+    missing = sorted(set(requested or labels.all.tolist()) - set(shown))
+    if not missing:
+        return ""
+    values = [labels.absent(name, shown) for name in labels.varied()]
+    without = f" ({'; '.join(filter(None, values))})" if any(values) else ""
+    runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1)
+    ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
+    return (
+        f"{len(missing)} of {len(labels.all)} states not shown{without}: "
+        f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
+    )
+
+
+def _short(words: Sequence[str], comma: str = ", ") -> str:
+    """The first of some words with commas between them, and "…" where there are more."""
+    return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
 
 
 class Archive:

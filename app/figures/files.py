@@ -2,10 +2,10 @@
 
 import shutil
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from io import BytesIO
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -26,6 +26,8 @@ from .style import DPI, styled
 #: Kinds of files of figures and of films, by the format's ending.
 FORMATS: dict[str, Kind] = {"pdf": PDF, "png": PNG, "svg": SVG}
 OF_FILMS: dict[str, Kind] = {"mp4": MP4, "gif": GIF}
+#: Nouns and formats of figures, and of films.
+_KINDS = ("figure", FORMATS), ("film", OF_FILMS)
 #: Formats by default: text that stays text, and pixels for everything else.
 USUAL = ("pdf", "png")
 #: The picture that moves.
@@ -117,20 +119,8 @@ def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, byt
     return {t.path.stem: data for t, data in made.items() if t.path.suffix == ".png"}
 
 
-def in_a_page(figure: Figure, pixels: bool) -> str:
-    """Data URI of a figure for a page.
-
-    Args:
-        figure: what to show.
-        pixels: as PNG, for pictures with too many elements to draw each; else as SVG, without ground.
-    """
-    if pixels:
-        return embedded(content(figure, "png", 160))
-    return embedded(content(figure, "svg", transparent=True), "svg+xml")
-
-
 def embedded(data: bytes, kind: str = "png") -> str:
-    """Data URI of the bytes of a picture's file."""
+    """Data URI of the bytes of a picture's file, for a page."""
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
 
 
@@ -191,20 +181,18 @@ class Files:
         """
         if self.dpi and self.dpi not in _RESOLUTIONS:
             raise BadInput(f"--dpi: found {self.dpi}, expected {_RESOLUTIONS[0]} to {_RESOLUTIONS[-1]}")
-        option, endings = (f"-o {self.to}", [self.ending]) if self.ending else ("--format", self.formats)
-        for name in names:
-            for ending in endings:
-                if ending not in _formats(name):
-                    other = _CONVERTED.get(ending)
-                    raise BadInput(
-                        f"{option}: found {ending!r} for the {_noun(name)} {name}, expected "
-                        f"{', '.join(_formats(name))}{' or a folder' * bool(self.ending)}"
-                        + (f"; convert a {other} for {ending}" if other else "")
-                    )
-                if ending in OF_FILMS and not can_write(ending):
-                    raise BadInput(
-                        f"{option}: {ending} needs ffmpeg, which is not installed; gif does not"
-                    )
+        option, endings = (f"-o {self.to}", (self.ending,)) if self.ending else ("--format", self.formats)
+        for name, ending in product(names, endings):
+            noun, kinds = _KINDS[name == FILM]
+            if ending not in kinds:
+                other = _CONVERTED.get(ending)
+                raise BadInput(
+                    f"{option}: found {ending!r} for the {noun} {name}, expected "
+                    f"{', '.join(kinds)}{' or a folder' * bool(self.ending)}"
+                    + (f"; convert a {other} for {ending}" if other else "")
+                )
+            if ending in OF_FILMS and not can_write(ending):
+                raise BadInput(f"{option}: {ending} needs ffmpeg, which is not installed; gif does not")
         if self.ending and self.formats not in ((), (self.ending,)):
             raise BadInput(f"--format {','.join(self.formats)} is not the ending of {self.to}; give one")
         if self.ending and len(names) != 1:
@@ -218,42 +206,30 @@ class Files:
         usual = ("mp4" if can_write("mp4") else "gif",) if name == FILM else USUAL
         return (self.ending,) if self.ending else self.formats or usual
 
-    def write(
-        self, drawings: Iterator[Drawing], made: Callable[[], tuple[Film, str]] | None
-    ) -> list[Written]:
-        """Write all figures, and the film if ``made`` is given; none where one cannot be written.
+    def write(self, drawings: Iterable[Drawing]) -> list[Written]:
+        """Write figures and films; none where one cannot be written.
 
         Raises:
             Occupied: something is there that may not be replaced.
             UnwritableArchive: the file system refused.
         """
         folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
-        files: list[tuple[Target, bytes]] = []
-        said: list[Written] = []
-
-        def add(name: str, left_out: str, as_bytes: Callable[[str], bytes]) -> None:
-            for ending in self.endings(name):
-                kind, called = _formats(name)[ending], f"{self.name}_{name}.{ending}".removeprefix("_")
-                target = folder.target(called, kind) if folder else self._target(kind)
-                files.append((target, as_bytes(ending)))
-                said.append(Written(target.path, _noun(name), left_out))
-
+        made: list[tuple[Target, bytes, Written]] = []
         for drawing in drawings:
-            add(drawing.name, drawing.left_out, partial(content, drawing.figure, dpi=self.dpi or DPI))
-        if made:
-            film, left_out = made()
-            add(FILM, left_out, partial(film_content, film, dpi=self.dpi or FILM_DPI))
-        for target, data in files:
+            noun, kinds = _KINDS[drawing.film is not None]
+            for ending in self.endings(drawing.name):
+                called = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
+                target = (
+                    folder.target(called, kinds[ending])
+                    if folder
+                    else Target(self.to, kinds[ending], self.overwrite, self.inputs)
+                )
+                data = (
+                    film_content(drawing.film, ending, self.dpi or FILM_DPI)
+                    if drawing.film
+                    else content(drawing.figure, ending, self.dpi or DPI)
+                )
+                made.append((target, data, Written(target.path, noun, drawing.left_out)))
+        for target, data, _ in made:
             target.write(data)
-        return said
-
-    def _target(self, kind: Kind) -> Target:
-        return Target(self.to, kind, self.overwrite, self.inputs)
-
-
-def _formats(name: str) -> dict[str, Kind]:
-    return OF_FILMS if name == FILM else FORMATS
-
-
-def _noun(name: str) -> str:
-    return "film" if name == FILM else "figure"
+        return [written for *_, written in made]

@@ -14,9 +14,8 @@ from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.motion import names
 
 from ..plan.states import order
-from .choice import Archive, Drawing, named
+from .choice import Archive, C, Drawing, N, named, not_shown, spread
 from .render import DOTS, Curve, Panel, Size, across, handle, render
-from .states import C, N, not_shown, spread
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Axes of a loop.
@@ -186,11 +185,6 @@ def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Size | No
     strokes = [name for name, *_ in loops[0].along()] if len(loops) > 1 and any(entries) else []
     notes = [handle(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(strokes)]
     return render(panels, size, across(size.width, len(panels), 2.0), notes, high=0.78)
-
-
-def has_slider(of: Archive) -> bool:
-    """Return True if an archive holds a slider."""
-    return of.has(runs.TIMES)
 
 
 def slider(of: Archive) -> Drawing:

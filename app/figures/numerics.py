@@ -12,18 +12,16 @@ from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
 
 from ..plan.plan import make_plan
-from .choice import Archive, Drawing
+from .choice import Archive, C, Drawing, spread
 from .render import DOTS, JOINED, MARKERS, Curve, Panel, Size, marked, render
-from .states import C, spread
 from .style import COLOURS, COLUMN, Look, looks
 
 #: Speeds that can be told apart in a figure.
 _SPEEDS = 6
 
 
-def has_degrees(of: Archive) -> bool:
-    """Return True if an archive holds how its numbers converge with the polynomial degree."""
-    return of.has(runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE[FEM])
+#: Quantities that an archive has that tells how its numbers converge with the polynomial degree.
+DEGREES = runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE[FEM]
 
 
 def mesh(of: Archive) -> Drawing:

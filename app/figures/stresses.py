@@ -1,8 +1,8 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
 inside; friction along the contact; and stresses of several archives, one over the other."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from galinx.postprocess.quantities import Quantity, stresses
 from galinx.postprocess.quantities.layers import ALONG_X
 from galinx.postprocess.quantities.quantity import (
     ALONG,
+    CLOSED_FORM,
     CONTACT,
     INSIDE,
     INTERFACE,
@@ -20,7 +21,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
 )
 from galinx.postprocess.quantities.states import RESULTANT_RATIO, SPEED
-from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, RATIO_ALONG, SURFACE_X
+from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFACE_X
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import from_edge, under_punch
@@ -29,20 +30,22 @@ from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.texts import number, plain
 
 from ..errors import BadInput
-from .choice import Archive, Drawing, both, explained, named, require_one_of, short_name
-from .render import (
-    LINE,
-    Curve,
-    Map,
-    Panel,
-    Size,
-    TooSmall,
-    across,
-    handle,
-    render,
-    spaced,
+from .choice import (
+    Archive,
+    C,
+    Drawing,
+    N,
+    StateLabels,
+    both,
+    explained,
+    named,
+    not_shown,
+    require_one_of,
+    short_name,
+    spread,
+    states_for_panel,
 )
-from .states import C, N, StateLabels, not_shown, spread, states_for_panel
+from .render import JOINED, LINE, MARKERS, Map, Panel, Size, TooSmall, across, handle, render, spaced
 from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
@@ -56,26 +59,9 @@ _APART = 4.0
 
 #: Stresses that are shown by default along the surface: what axes call them, and their sign.
 SHOWN = {
-    next(iter(rows.values())).path.rpartition("/")[2]: label
-    for rows, label in (
-        (PRESSURE, (r"contact pressure $-\sigma_{YY}$", -1.0)),
-        (IN_PLANE, (r"in-plane stress $\sigma_{XX}$", 1.0)),
-    )
+    "sigma_YY": (r"contact pressure $-\sigma_{YY}$", -1.0),
+    "sigma_XX": (r"in-plane stress $\sigma_{XX}$", 1.0),
 }
-
-
-def along(X: NDArray, values: NDArray) -> float:
-    """Half-width over a of the part of the surface shown for values, (states, points)."""
-    return _UNDER if np.isnan(values[:, ~under_punch(X)]).all() else _BESIDE
-
-
-def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
-    """Positions and values of a line broken at the edges of the punch: across one it would lie."""
-    beside = ~under_punch(X)
-    parts = (beside & (X < 0.0), ~beside, beside & (X > 0.0))
-    pieces = [part for part in parts if not np.isnan(values[part]).all()]
-    x, y = (np.concatenate([np.append(z[part], np.nan) for part in pieces]) for z in (X, values))
-    return x, y
 
 
 def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
@@ -92,35 +78,25 @@ def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def surface_curves(
-    X: NDArray, values: Mapping[str, NDArray], look: Look, label: str, turn: float,
-    place: tuple[float, float] = (1.0, 0.0),
-) -> list[Curve]:  # fmt: skip
-    """Curves of a stress along the surface, broken at the edges; positions times and plus ``place``."""
-    factor, offset = place
-    inside = np.abs(X) <= along(X, np.array(list(values.values())))
-    curves = []
-    for curve in both(X, dict(values), look, label, turn):
-        y = np.asarray(curve.y)
-        if curve.form == "joined":  # markers, and a line that breaks between them
-            at = spaced(np.where(inside, X, np.nan), turn)
-            curves.append(replace(curve, form="markers", label="", x=X[at], y=y[at]))
-            curve = replace(curve, form=LINE, width=0.6)
-        x, y = broken(X, y) if curve.form == LINE else (X[inside], y[inside])
-        curves.append(replace(curve, x=x, y=y))
-    return [replace(curve, x=offset + factor * curve.x) for curve in curves]
-
-
-def place_of(of: Archive, state: int) -> tuple[float, float]:
-    """Factor and offset that turn positions over a of a state into the figure's units."""
-    scale = of.units.position
-    a, b = (float(z[state] if np.ndim(z) else z) for z in (scale.factor, scale.offset))
-    return a, b
+def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
+    """Positions and values of a line broken at the edges of the punch: across one it would lie."""
+    beside = ~under_punch(X)
+    parts = (beside & (X < 0.0), ~beside, beside & (X > 0.0))
+    pieces = [part for part in parts if not np.isnan(values[part]).all()]
+    x, y = (np.concatenate([np.append(z[part], np.nan) for part in pieces]) for z in (X, values))
+    return x, y
 
 
 def position_name(of: Archive, words: str = "position on the surface ") -> str:
     """Name of the axis of positions."""
     return f"{words}$X/a$" if of.units.dimensionless else f"{words}$X$ ({of.units.position.unit})"
+
+
+def places_of(of: Archive, states: Sequence[int]) -> list[tuple[float, float]]:
+    """Factor and offset that turn positions over a of each state into the figure's units."""
+    scale = of.units.position
+    each = ((z[i] if np.ndim(z) else z for z in (scale.factor, scale.offset)) for i in states)
+    return [(float(a), float(b)) for a, b in each]
 
 
 def window(places: Sequence[tuple[float, float]], half: float) -> tuple[float, float]:
@@ -133,68 +109,115 @@ def _contacts(places: Sequence[tuple[float, float]]) -> list[tuple[float, float]
     return sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
 
 
+@dataclass(frozen=True)
 class Surface:
-    """Stresses of an archive along the surface, the chosen ones or those that are shown by default.
+    """Stresses along the surface by name and by method; a row is of a state, or of a time.
 
     Attributes:
-        of: the archive.
         X: positions over a, (points,).
         axes: name of the axis of each stress, by its name.
-        values: numbers in the figure's units by name and by method, (states, points).
+        values: numbers in the figure's units by name and by method, (rows, points).
+        places: factor and offset that turn X into positions in the figure, of each row.
+        position: name of the axis of positions.
     """
 
-    def __init__(self, of: Archive) -> None:
-        self.of, self.X = of, of.data[SURFACE_X.path]
-        available = of.by_method(STATE, POINT)
-        self.axes: dict[str, str] = {}
-        self.values: dict[str, dict[str, NDArray]] = {}
-        for name in of.choice.quantities or [name for name in SHOWN if name in available]:
-            rows = available[require_one_of("quantity", name, available)]
-            first = next(iter(rows.values()))
-            words, sign = SHOWN.get(name, (short_name(first), 1.0))
-            self.axes[name] = named(words, of.scaled(first).unit)
-            self.values[name] = {method: sign * of.values(row) for method, row in rows.items()}
+    X: NDArray[np.float64]
+    axes: dict[str, str]
+    values: dict[str, dict[str, NDArray]]
+    places: Sequence[tuple[float, float]]
+    position: str = "position on the surface $X/a$"
+
+    @property
+    def methods(self) -> set[str]:
+        """Methods of all stresses."""
+        return {method for values in self.values.values() for method in values}
 
     def drawn(self, name: str) -> NDArray[np.float64]:
-        """A stress by the first method, after which panels are laid out, (states, points)."""
+        """A stress by the first method, after which panels are laid out, (rows, points)."""
         return next(iter(self.values[name].values()))
+
+    def shown(
+        self, looks: Sequence[Look], labels: Sequence[str] = (), width: float = 1.0
+    ) -> list["Shown"]:
+        """The first rows with their looks and their names in the legend."""
+        return [
+            Shown(self, row, look, labels[row] if labels else "", width) for row, look in enumerate(looks)
+        ]
 
 
 class Shown(NamedTuple):
-    """A state in a panel, its look, and its name in the legend."""
+    """A row of stresses along the surface in a panel, its look, its name in the legend, and the width of
+    its line [pt]."""
 
     surface: Surface
-    state: int
+    row: int
     look: Look
     label: str = ""
+    width: float = 1.0
 
 
-def surface_panel(name: str, shown: Sequence[Shown], ylim: Any = None, **options: Any) -> Panel:
-    """Panel of a stress along the surface, as wide as the contacts of its states need.
+def surface_panel(
+    name: str, shown: Sequence[Shown], ylim: tuple[float, float] | None = None, **options: Any
+) -> Panel:
+    """Panel of a stress along the surface, as wide as its contacts need; lines break at the edges.
 
     Args:
         name: of the stress.
-        shown: states, which may be of several archives with the same units.
-        ylim: limits of the stress, those of the states by default.
+        shown: rows, which may be of several archives with the same units.
+        ylim: limits of the stress, those of the rows by default.
         options: further attributes of the panel.
     """
-    curves, ranges, places = [], [], []
-    half, first = _UNDER, shown[0].surface
-    for k, (surface, state, look, label) in enumerate(shown):
-        values = {method: y[state] for method, y in surface.values[name].items()}
-        places.append(place_of(surface.of, state))
-        curves += surface_curves(surface.X, values, look, label, k / len(shown), places[-1])
-        ranges.append(limits(surface.X, surface.drawn(name)[[state]]))
-        half = max(half, along(surface.X, surface.drawn(name)))
+    curves, ranges, places, half = [], [], [], _UNDER
+    for k, (surface, row, look, label, width) in enumerate(shown):
+        X, values = surface.X, {method: y[row] for method, y in surface.values[name].items()}
+        every = np.array(list(values.values()))
+        own = _UNDER if np.isnan(every[:, ~under_punch(X)]).all() else _BESIDE
+        half, inside = max(half, own), np.abs(X) <= own
+        ranges.append(limits(X, every[:1]))
+        places.append(surface.places[row])
+        a, b = places[-1]
+        for curve in both(X, values, look, label, k / len(shown)):
+            x, y = X[inside], np.asarray(curve.y)[inside]
+            thin = width
+            if curve.form == JOINED:  # markers, and a line that breaks between them
+                at = spaced(x, curve.turn)
+                curves.append(replace(curve, form=MARKERS, label="", x=b + a * x[at], y=y[at]))
+                curve, thin = replace(curve, form=LINE), 0.6 * width
+            if curve.form == LINE:
+                x, y = broken(X, np.asarray(curve.y))
+            curves.append(replace(curve, x=b + a * x, y=y, width=thin))
     low, high = np.array(ranges).T
     ends = _contacts(places)
     panel = Panel(
-        position_name(first.of), first.axes[name], curves=curves, xlim=window(places, half),
-        ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
+        shown[0].surface.position, shown[0].surface.axes[name], curves=curves,
+        xlim=window(places, half), ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
         bands=ends[:1] if half == _BESIDE and np.allclose(ends, ends[0], rtol=1e-9) else (),
     )  # fmt: skip
-    panel, measured = replace(panel, **options), first.of.choice.measured
-    return measured.over_stress(panel, name, first.of.units) if measured else panel
+    return replace(panel, **options)
+
+
+def stresses_along(of: Archive, method: str = "") -> Surface:
+    """Stresses of an archive's states along the surface, the chosen ones or those shown by default.
+
+    Args:
+        of: the archive.
+        method: the only one; "" for those that are chosen.
+    """
+    available = of.by_method(STATE, POINT, method=method or None)
+    axes, values = {}, {}
+    for name in of.choice.quantities or [name for name in SHOWN if name in available]:
+        rows = available[require_one_of("quantity", name, available)]
+        first = next(iter(rows.values()))
+        words, sign = SHOWN.get(name, (short_name(first), 1.0))
+        axes[name] = named(words, of.scaled(first).unit)
+        values[name] = {each: sign * of.values(row) for each, row in rows.items()}
+    places = places_of(of, range(len(of.labels.all)))
+    return Surface(of.data[SURFACE_X.path], axes, values, places, position_name(of))
+
+
+def _with_measured(of: Archive, panel: Panel, name: str) -> Panel:
+    measured = of.choice.measured
+    return measured.over_stress(panel, name, of.units) if measured else panel
 
 
 #: Ends of captions by the ends of the contact.
@@ -206,7 +229,7 @@ _ENDS = {SHARP: ": at its edges they grow without bound.", PRESCRIBED: "."} | di
 def surface(of: Archive) -> Drawing:
     """Figure of stresses along the surface: a column for each speed, or else for each value of the
     parameter that varies most slowly."""
-    choice, labels, stressed = of.choice, of.labels, Surface(of)
+    choice, labels, stressed = of.choice, of.labels, stresses_along(of)
     width = choice.size.width if choice.size else PAGE
     same = of.scene.body.alike and N in labels.parameters and not choice.states and of.units.dimensionless
     states = labels.where(labels.all, **{N: labels.values(N)[0]}) if same else labels.all
@@ -214,19 +237,21 @@ def surface(of: Archive) -> Drawing:
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
     for n, name in enumerate(stressed.values):
-        drawn = stressed.drawn(name)
-        ranges = _ranges(stressed.X, drawn, [numbers for _, numbers, _ in groups])
+        # The same limits for all columns, unless a few would hardly be visible then.
+        ranges = [limits(stressed.X, stressed.drawn(name)[numbers]) for _, numbers, _ in groups]
+        low, high = min(y[0] for y in ranges), max(y[1] for y in ranges)
+        alike = high - low <= _APART * min(y[1] - y[0] for y in ranges)
         for column, (title, numbers, names) in enumerate(groups):
             styles = labels.looks(numbers, names)
             called = [labels.label(i, names) if len(every) > 1 else "" for i in numbers]
-            shown = [Shown(stressed, *one) for one in zip(numbers, styles, called)]
-            panel = surface_panel(name, shown, ranges[column], title=title if not n else "")
-            panels.append(replace(panel, y=None) if column and len(set(ranges)) == 1 else panel)
+            shown = [Shown(stressed, *each) for each in zip(numbers, styles, called)]
+            ylim = (low, high) if alike else ranges[column]
+            panel = _with_measured(of, surface_panel(name, shown, ylim, title="" if n else title), name)
+            panels.append(replace(panel, y=None) if column and alike else panel)
     columns = len(groups)
     if columns == 1 and width > 4.5 and len(stressed.values) > 1:  # side by side
         columns = 2
-    methods = {method for values in stressed.values.values() for method in values}
-    figure = render(panels, choice.size, columns, explained(methods))
+    figure = render(panels, choice.size, columns, explained(stressed.methods))
     caption = (
         "Stresses along the surface, under the punch (grey) and beside it" + _ENDS[of.scene.body.ends]
     )
@@ -235,13 +260,6 @@ def surface(of: Archive) -> Drawing:
     caption += labels.all_at(every)
     missing = not_shown(labels, every, "--figure surface --states", choice.states)
     return Drawing("surface", caption, figure, left_out=missing)
-
-
-def _ranges(X: NDArray, values: NDArray, groups: Sequence[Sequence[int]]) -> list[tuple[float, float]]:
-    """Limits of each column: the same for all, unless a few would hardly be visible then."""
-    every = [limits(X, values[list(numbers)]) for numbers in groups]
-    low, high = min(y[0] for y in every), max(y[1] for y in every)
-    return every if high - low > _APART * min(y[1] - y[0] for y in every) else [(low, high)] * len(every)
 
 
 def _groups(
@@ -253,9 +271,7 @@ def _groups(
     most = max(1, min(_COLUMNS, int(width / _LEAST)))
     by = varied[0] if len(varied) > 1 else ""
     values = labels.distinct(by, states) if by else []
-    if requested and len(values) > most:
-        by = ""
-    if not by:
+    if not by or (requested and len(values) > most):
         names, shown = (
             (varied, states) if requested else states_for_panel(labels, varied, states, _CURVES)
         )
@@ -289,24 +305,26 @@ def compared(
         BadInput: an archive has no stresses along the surface, or measured points lie elsewhere.
     """
     for of, label in zip(archives, labels):
-        if not has_surface(of):
+        if not surface_names(of):
             raise BadInput(
                 f'{label} holds no stresses along the surface; add "surface" to output.quantities'
             )
     chosen, styles = spread(range(len(pairs)), _COMPARED), looks(len(archives))
-    surfaces, several = [Surface(of) for of in archives], len(chosen) > 1
+    surfaces, several = [stresses_along(of) for of in archives], len(chosen) > 1
     panels = []
-    for name in dict.fromkeys(name for one in surfaces for name in one.values):
+    for name in dict.fromkeys(name for surface in surfaces for name in surface.values):
         shown = [
             Shown(
-                one, pairs[k][n], look._replace(line=LINES[order % len(LINES)]) if several else look,
+                surface, pairs[k][n],
+                look._replace(line=LINES[order % len(LINES)]) if several else look,
                 f"{label}, {titles[k]}" if several else label,
             )
-            for n, (one, look, label) in enumerate(zip(surfaces, styles, labels)) if name in one.values
+            for n, (surface, look, label) in enumerate(zip(surfaces, styles, labels))
+            if name in surface.values
             for order, k in enumerate(chosen)
         ]  # fmt: skip
-        panels.append(surface_panel(name, shown))
-    methods = {method for one in surfaces for values in one.values.values() for method in values}
+        panels.append(_with_measured(archives[0], surface_panel(name, shown), name))
+    methods = {method for surface in surfaces for method in surface.methods}
     try:
         figure = render(panels, None, min(2, len(panels)), explained(methods))
     except TooSmall as error:
@@ -323,38 +341,42 @@ _FRICTIONS = 4
 
 def friction_along(of: Archive) -> Drawing:
     """Figure of f over X, and of the pressure beside that of one friction with the same resultant."""
-    data, labels, X = of.data, of.labels, of.data[SURFACE_X.path]
+    data, labels = of.data, of.labels
     names, chosen = states_for_panel(labels, labels.varied(of.selected()), of.selected(), _FRICTIONS)
     states, rows = chosen.tolist(), {method: row for method, row in PRESSURE.items() if of.has(row)}
-    of_one = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
-    under, scale = np.abs(X) < 1.0, of.scaled(next(iter(rows.values())))
-    pressures = {method: -of.values(row)[:, under] for method, row in rows.items()}
-    curves: tuple[list[Curve], ...] = ([], [], [])
-    for k, (i, look) in enumerate(zip(states, labels.looks(states, names))):
-        (a, middle), turn = place_of(of, i), k / len(states)
-        x, f = middle + a * X[under], of.scene.friction.stress_ratio * data[RATIO_ALONG.path][i][under]
-        punch = FlatPunch(of.scene.body.response(float(data[SPEED.path][i])), float(of_one[i]))
-        one = scale.of(-punch.σ_YY(X[under])[None], [i])[0]
-        each = {method: p[i] for method, p in pressures.items()}
-        curves[0].append(Curve(x, f, look, labels.label(i, names)))
-        curves[1].extend(both(x, each, look, "", turn))
-        curves[1].append(Curve(x, one, look._replace(line=LINES[3]), "", width=0.7))
-        curves[2].extend(both(x, {method: p / one for method, p in each.items()}, look, "", turn))
-    axes = (
-        ("friction coefficient $f$", 0.0),
-        (named(SHOWN["sigma_YY"][0], scale.unit), 0.0),
-        ("over that of one friction", 1.0),
-    )
+    resultant = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
+    under, scale = np.abs(data[SURFACE_X.path]) < 1.0, of.scaled(next(iter(rows.values())))
+    X = data[SURFACE_X.path][under]
+    motions = zip(data[SPEED.path][states].tolist(), resultant[states].tolist())
+    flat = [FlatPunch(of.scene.body.response(c), g) for c, g in motions]
+    uniform = scale.of(np.array([-punch.σ_YY(X) for punch in flat]), states)
+    pressures = {method: -of.values(row)[states][:, under] for method, row in rows.items()}
+    values = {
+        "f": {CLOSED_FORM: of.scene.friction.stress_ratio * data[RATIO_ALONG.path][states][:, under]},
+        "sigma_YY": pressures,
+        "over uniform": {method: p / uniform for method, p in pressures.items()},
+    }
+    axes = {
+        "f": "friction coefficient $f$",
+        "sigma_YY": named(SHOWN["sigma_YY"][0], scale.unit),
+        "over uniform": "over that of one friction",
+    }
+    places, position = places_of(of, states), position_name(of, "position ")
+    styles, dotted = labels.looks(states, names), LINES[3]
+    own = Surface(X, axes, values, places, position)
+    beside = Surface(X, axes, {"sigma_YY": {CLOSED_FORM: uniform}}, places, position)
+    shown = own.shown(styles, [labels.label(i, names) for i in states])
+    shown_beside = beside.shown([look._replace(line=dotted) for look in styles], width=0.7)
     panels = [
-        Panel(
-            position_name(of, "position "), y, curves=drawn, at_y=(level,),
-            xlim=window([place_of(of, i) for i in states], _UNDER),
-            ylim=limits(X[under], np.array([curve.y for curve in drawn])) if drawn != curves[0] else None,
-        )
-        for drawn, (y, level) in zip(curves, axes)
-    ]  # fmt: skip
-    dotted = handle(Look(GREY, LINES[3], ""), "dotted: one friction of the same resultant")
-    figure = render(panels, of.size, 0 if of.size else 3, [*explained(set(pressures)), dotted], 0.8)
+        replace(surface_panel("f", shown), ylim=None),
+        surface_panel("sigma_YY", [*own.shown(styles), *shown_beside]),
+        surface_panel("over uniform", own.shown(styles), at_y=(1.0,)),
+    ]
+    notes = [
+        *explained(set(pressures)),
+        handle(Look(GREY, dotted, ""), "dotted: one friction of the same resultant"),
+    ]
+    figure = render(panels, of.size, 0 if of.size else 3, notes, 0.8)
     caption = (
         "Friction along the contact, and the contact pressure beside that of one friction with the same "
         "resultant (dotted). At each end the pressure has the exponent of the friction there."
@@ -388,7 +410,7 @@ def interfaces(of: Archive) -> Drawing:
     available = of.by_method(STATE, INTERFACE, ALONG)
     for name in choice.quantities:
         require_one_of("quantity", name, available)
-    X, places = of.data[ALONG_X.path], [place_of(of, state) for state in numbers]
+    X, places = of.data[ALONG_X.path], places_of(of, numbers)
     panels: list[Panel] = []
     sides_drawn, methods = 0, set[str]()
     for of_sides, words in _AT_INTERFACES.items():
@@ -458,6 +480,8 @@ _MAPS = {
 #: Columns of states, and the share of values that have colours of their own: those at the edges of the
 #: punch would leave none for the rest.
 _STATES, _SHARE = 2, 0.985
+#: What names of quantities in an elastic punch begin with.
+_PUNCH = "punch_"
 
 
 class Fields:
@@ -466,7 +490,10 @@ class Fields:
     def __init__(self, of: Archive, method: str | None = None) -> None:
         self._of, data = of, of.data
         self._shape = tuple(data[stresses.MAP.path].tolist())
-        self._quantities = of.by_method(STATE, INSIDE, method=method)
+        every = of.by_method(STATE, INSIDE, method=method)
+        punch = {name: rows for name, rows in every.items() if name.startswith(_PUNCH)}
+        self._quantities = {name: rows for name, rows in every.items() if name not in punch}
+        self._in_punch = {row.path: row for rows in punch.values() for row in rows.values()}
         self.methods = [m for m in METHODS if any(m in rows for rows in self._quantities.values())]
         X, Y = (self._on_grid(data[row.path]) for row in (stresses.INSIDE_X, stresses.INSIDE_Y))
         #: Positions over a along both axes.
@@ -486,6 +513,23 @@ class Fields:
         if name == "max_shear":
             return maximum_shear(XX, YY, XY)
         return von_mises(XX, YY, XY, self._of.scene.solid.σ_ZZ(XX, YY, XY))
+
+    def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
+        """One quantity of a state in an elastic punch at -Y, and its strength; None without."""
+        names = ("sigma_XX", "sigma_YY", "sigma_XY") if name == "max_shear" else (name,)
+        rows = [self._in_punch.get(f"interior/{method}/{_PUNCH}{part}") for part in names]
+        each = [self._scaled(row, state) for row in rows if row]
+        if len(each) < len(names):
+            return None
+        level = self._level(name, self._of.scene.solid.punch_strength)
+        return (maximum_shear(*each) if len(each) > 1 else each[0]), level
+
+    def _level(self, name: str, strength: float | None) -> float:
+        """Yield strength [Pa] in the figure's units where a map shows von Mises stresses, 0 for none."""
+        of = self._of
+        if name != "von_mises" or not strength or of.scene.layers or of.units.stress.unit == "N/(2a)":
+            return 0.0
+        return strength * float(of.units.scale("Pa").factor)
 
     def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
         """One quantity of states, (states, rows, columns), and the largest with its own colour."""
@@ -507,11 +551,8 @@ class Fields:
             limit: largest number with a colour of its own.
             options: further attributes of the map.
         """
-        of, (a, b) = self._of, place_of(self._of, state)
-        strength, scale = of.scene.half_plane.yield_strength, of.units.stress
-        level = 0.0
-        if name == "von_mises" and strength and not of.scene.layers and scale.unit != "N/(2a)":
-            level = strength * float(of.units.scale("Pa").factor)
+        of, ((a, b),) = self._of, places_of(self._of, [state])
+        level = self._level(name, of.scene.half_plane.yield_strength)
         shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
         x = position_name(of, "")
         return Panel(
@@ -539,7 +580,7 @@ def inside(of: Archive) -> Drawing:
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
-    dashes, panels, off, yields = _interfaces(of), [], 0.0, False
+    dashes, panels, off, yields, both = _interfaces(of), [], 0.0, False, False
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
         clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
@@ -551,10 +592,13 @@ def inside(of: Archive) -> Drawing:
             off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
         for k, state in enumerate(states):
             label = fields.label(name) if k == len(states) - 1 else ""
-            options = {"extend": extend, "lines": alone, "label": label}
+            above = fields.above(name, method, state)
+            options = {"extend": extend, "lines": alone, "label": label, "above": above}
             panel = fields.panel(name, every[k], state, limit, **options)
             assert panel.map
-            yields |= bool(0.0 < panel.map.level < panel.map.values.max())
+            bodies = [(panel.map.values, panel.map.level), *([above] if above else ())]
+            yields |= any(0.0 < level < field.max() for field, level in bodies)
+            both |= above is not None
             panels.append(replace(
                 panel, x=panel.x if not wide or n == len(names) - 1 else None,
                 y=panel.y if k == 0 else None, dashes=dashes,
@@ -562,17 +606,18 @@ def inside(of: Archive) -> Drawing:
             ))  # fmt: skip
     maps = [panel.map for panel in panels if panel.map]
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
-    panels = [replace(panel, xlim=xlim, ylim=(ylim, 0.0)) for panel in panels]
+    panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
     figure = render(panels, size, columns)
     fixed = [name for name in labels.parameters if name not in labels.varied(states)]
     caption = (
-        f"Stresses inside below the punch (black bar), {METHODS[method]}, at "
+        f"Stresses inside {'both bodies, above the contact' if both else 'below the punch'} (black bar)"
+        f"{' the punch as a half-plane' * both}, {METHODS[method]}, at "
         f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
         "bar its colours are clipped."
     )
     caption += " Dashed lines are the interfaces." * bool(dashes)
-    caption += " Within the white line the solid would yield." * yields
+    caption += f" Within the white line {'a body' if both else 'the solid'} would yield." * yields
     if off:
         caption += (
             f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."
@@ -610,27 +655,3 @@ def interface_names(of: Archive) -> list[str]:
 def map_names(of: Archive) -> list[str]:
     """Names of the stresses that an archive has maps of."""
     return Fields(of).names if of.has(stresses.MAP) and of.by_method(STATE, INSIDE) else []
-
-
-def has_surface(of: Archive) -> bool:
-    """Return True if an archive has the chosen stresses along the surface."""
-    return _has(surface_names(of), of)
-
-
-def has_interfaces(of: Archive) -> bool:
-    """Return True if an archive has the chosen stresses along interfaces."""
-    return _has(interface_names(of), of)
-
-
-def has_inside(of: Archive) -> bool:
-    """Return True if an archive has a map, and the chosen stresses in it."""
-    return _has(map_names(of), of)
-
-
-def _has(names: Sequence[str], of: Archive) -> bool:
-    return bool(names) and set(of.choice.quantities) <= set(names)
-
-
-def has_along(of: Archive) -> bool:
-    """Return True if an archive has friction that varies along the contact."""
-    return of.has(RATIO_ALONG)

@@ -20,9 +20,8 @@ from ..errors import BadInput
 from ..plan.over_time import headings
 from ..plan.states import enumerate_states
 from ..scene.scene import Scene
-from .choice import Drawing
+from .choice import Drawing, drive_label, spread
 from .render import MARKERS, Curve, Panel, Size, render
-from .states import drive_label, spread
 from .style import COLUMN, GREY, looks
 
 #: Wavenumbers times the thickness of all layers; fewer where a layer is graded.

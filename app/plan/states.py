@@ -73,26 +73,17 @@ class Order:
     @cached_property
     def speeds(self) -> tuple[float, ...]:
         """All speeds over c_s, each once, in the order of the first state with it."""
-        return self.given if self._given_alone else tuple(dict.fromkeys(self._met.ravel().tolist()))
+        return tuple(dict.fromkeys(self._met.ravel().tolist()))
 
-    @property
-    def _given_alone(self) -> bool:
-        return bool(np.isnan(self.own).all())
-
-    def runs(self) -> Iterator[tuple[slice, ...]]:
-        """Rows of the states of every speed, as runs of consecutive states."""
-        if self._given_alone:
-            for i in range(len(self.given)):
-                yield (slice(i * self.states, (i + 1) * self.states),)
-            return
+    def runs(self, row: int = 0) -> Iterator[tuple[slice, ...]]:
+        """Rows of the states of every speed, as runs of consecutive ones; ``row`` is the first of all."""
         # A state's speed is the same under every load and law: it changes at few rows.
         c = self.c
         first = np.flatnonzero(np.diff(c, prepend=np.nan))
         by_speed: dict[float, list[slice]] = {}
-        for start, stop in zip(first.tolist(), [*first[1:].tolist(), len(c)]):
-            by_speed.setdefault(float(c[start]), []).append(slice(start, stop))
-        for speed in self.speeds:
-            yield tuple(by_speed[speed])
+        for start, stop in zip((row + first).tolist(), [*(row + first[1:]).tolist(), row + len(c)]):
+            by_speed.setdefault(float(c[start - row]), []).append(slice(start, stop))
+        yield from map(tuple, by_speed.values())
 
     def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
         """Load of the states of these rows [N/m], (rows,)."""
@@ -139,6 +130,11 @@ class States:
     def g(self) -> NDArray[np.float64]:
         """σ_XY/σ_YY under the punch, (states,)."""
         return self.columns["g"]
+
+    @property
+    def load(self) -> NDArray[np.float64] | None:
+        """Load of every state [N/m], (states,); None where all have one load."""
+        return self.columns.get("load")
 
     @property
     def datasets(self) -> dict[str, NDArray]:

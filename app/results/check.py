@@ -35,6 +35,7 @@ from galinx.postprocess.quantities.quantity import (
     SIE,
     STATE,
 )
+from galinx.postprocess.quantities.quantity import SPEED as SPEEDS
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
@@ -47,7 +48,7 @@ from galinx.solvers.profiles import smooth
 from ..console import Progress
 from ..methods import METHODS
 from ..plan.plan import Plan
-from ..plan.variants import Variant, joined_positions, joined_states, make_variants, restricted
+from ..plan.variants import joined_positions, joined_states, make_plans
 from ..run.flow import Judge, scene_attributes
 from ..run.solve import Work
 from ..scene import read as scenes
@@ -72,18 +73,17 @@ class _Part:
 
     Args:
         archive: of all variants.
-        variant: the variant.
+        plan: of the variant.
     """
 
-    def __init__(self, archive: Archive, variant: Variant) -> None:
-        self._archive, self._first = archive, 0 if variant.alone else variant.rows.start
-        self.scene, self.plan = variant.scene, variant.plan
-        quantities = table()
-        self.data: Mapping[str, Any] = (
-            archive.data
-            if variant.alone
-            else restricted(archive.data, variant, lambda path: quantities[path].over)
-        )
+    def __init__(self, archive: Archive, plan: Plan) -> None:
+        self._archive, self._first, self.scene, self.plan = archive, plan.rows.start, plan.scene, plan
+        quantities, speeds = table(), slice(plan.speed, plan.speed + len(plan.tasks))
+        rows = {STATE: plan.rows, SPEEDS: speeds}
+        self.data: Mapping[str, Any] = {
+            path: values[own] if (own := rows.get((*quantities[path].over, "")[0])) else values
+            for path, values in archive.data.items()
+        }
         self.attributes, self.names = archive.attributes, archive.names
 
     def held(self, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -218,7 +218,8 @@ def _computed(
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
-    work = Work(alone, data[states.RATIO.path], made, Clock(), np.zeros(plan.states, dtype=bool))
+    g, load = data[states.RATIO.path], data.get(LOAD.path)
+    work = Work(alone, g, load, made, Clock(), np.zeros(plan.states, dtype=bool))
     for task, rows in _tasks(plan, selected):
         if f"c = {task.response.c:g}" not in failed:
             yield rows, work.of_states(task, rows)
@@ -312,7 +313,7 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.i
     method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
     held, g = data[states.INDENTATION.path], data[states.RATIO.path]
     for task, rows in _tasks(looked_at, selected):
-        load = plan.load(rows)
+        load = plan.tasks.order.load(rows)
         body = plan.body.loaded(load)
         try:
             with method.at(task, np.unique(g[rows])) as solver:
@@ -348,24 +349,24 @@ def faults(path: Path) -> list[str]:
     """
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
-        variants = make_variants(scene)
-        texts = [*_of_states(archive, variants)]
+        plans = make_plans(scene)
+        texts = [*_of_states(archive, plans)]
         if archive.attributes["version"] == __version__:  # other versions plan and tell otherwise
-            texts += _of_plan(archive, scene, variants)
+            texts += _of_plan(archive, scene, plans)
             fits = not texts
-            if fits and variants[0].plan.methods:
+            if fits and plans[0].methods:
                 texts += _of_warnings(archive, scene)
-            for variant in variants if fits else ():
-                part = _Part(archive, variant)
-                name = "" if variant.alone else f"with {variant.scene.variant}: "
+            for plan in plans if fits else ():
+                part = _Part(archive, plan)
+                name = f"with {plan.scene.variant}: " if len(plans) > 1 else ""
                 texts += [name + text for text in _recomputed_faults(part)]
         return [*texts, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
-def _of_states(archive: Archive, variants: Sequence[Variant]) -> Iterator[str]:
+def _of_states(archive: Archive, plans: Sequence[Plan]) -> Iterator[str]:
     """States and friction that differ from those of the scene, whose friction is followed once more."""
     data, older = archive.data, archive.attributes["schema_version"] < VERSION
-    states = joined_states(variants)
+    states = joined_states(plans)
     count, held = len(states), len(data[SPEED.path])
     if count != held:
         yield f"it holds {held} states, its scene has {count}"
@@ -387,16 +388,16 @@ def _same(archived: Any, expected: Any) -> bool:
     return np.allclose(archived, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
 
-def _of_plan(archive: Archive, scene: Scene, variants: Sequence[Variant]) -> Iterator[str]:
+def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[str]:
     """Attributes, positions and names of datasets that differ from those of the scene."""
-    plan = variants[0].plan
+    plan = plans[0]
     attributes, data = archive.attributes, archive.data
     given = scene_attributes(scene) | {"rules": json.dumps(sorted(plan.rules))}
     for name, value in given.items():
         if name in attributes and attributes[name] != value:  # older layouts have fewer
             archived = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {archived!r}, its scene gives {value!r}"
-    for name, positions in joined_positions(variants).items():
+    for name, positions in joined_positions(plans).items():
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"
     rows, planned = table(), {quantity.path for quantity in plan.quantities}
@@ -417,11 +418,14 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
         yield from (f"{name} is not finite in states {start} ..." for name in not_finite(rows))
         yield from _otherwise(rows, start)
         load = rows.get(LOAD.path, archive.attributes["load"])
-        for comparison in compare.comparisons(rows, load, rules):
-            worst[comparison.text] = float(np.max([worst.get(comparison.text, 0.0), comparison.value]))
-            yield from _out_of_balance(comparison, start)
-    for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
-        worst[comparison.text] = comparison.value
+        for name, value in compare.comparisons(rows, load, rules).items():
+            rule = compare.RULES[name]
+            worst[rule.text] = float(np.max([worst.get(rule.text, 0.0), value]))
+            limit = compare.BALANCE.limit or 0.0
+            if rule is compare.BALANCE and not value <= limit:  # a fault whatever the verdict
+                yield f"{rule.text} in states {start} ...: {value:.1e}, at most {limit:g}"
+    in_time = compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules})
+    worst |= {compare.RULES[name].text: value for name, value in in_time.items()}
     archived = _texts(archive, "comparisons")
     if archived.keys() != worst.keys() or any(
         not np.isclose(worst[text], archived[text], rtol=_SAME, atol=0.0, equal_nan=True)
@@ -459,15 +463,6 @@ def _otherwise(data: dict[str, Any], start: int) -> Iterator[str]:
             yield f"{name} is not what {', '.join(row.needs)} give in states {start} ..."
 
 
-def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]:
-    """Forces that do not balance are a fault, whatever the verdict."""
-    limit = compare.BALANCE.limit
-    assert limit is not None
-    if comparison.text == compare.BALANCE.text and not comparison.value <= limit:
-        value = f"{comparison.value:.1e}, at most {limit:g}"
-        yield f"{comparison.text} in states {start} ...: {value}"
-
-
 def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:
     """Verdict and reasons that do not follow from the archived comparisons."""
     attributes = archive.attributes
@@ -478,9 +473,7 @@ def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:
     }
     judge = Judge(scene, rules.values())
     archived = _texts(archive, "comparisons")
-    judge.see(
-        [compare.Comparison(rules[text], text, archived[text]) for text in archived if text in rules]
-    )
+    judge.see({rules[text]: archived[text] for text in archived if text in rules})
     judge.failures = list(archive.data.get(runs.FAILURES.path, ()))
     verdict, reasons = judge.verdict()
     if attributes["verdict"] != verdict:

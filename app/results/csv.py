@@ -1,7 +1,7 @@
 """Archives as comma-separated values: one tidy table, read and written some rows at a time."""
 
 import csv
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from galinx.postprocess.quantities import Quantity, over_time, runs, table
 from galinx.postprocess.quantities.quantity import ALONG, FRICTION_ALONE, INSIDE, INTERFACE, POINT, STATE
 from galinx.postprocess.quantities.states import FRICTION, LOAD
 from galinx.postprocess.tables import parameters, state_columns
-from galinx.postprocess.units import Scaled, Units
+from galinx.postprocess.units import Units
 from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 
 from ..errors import BadInput
@@ -37,8 +37,8 @@ _NUMBERED = {
 #: Rows held at once.
 _TOGETHER = 20_000
 
-#: Head of a column, and its values in some rows of the outermost dimension, an axis for each dimension.
-_Column = tuple[str, Callable[[slice, dict[str, Any]], NDArray]]
+#: Head of a column, and its values, with an axis for each dimension of the table.
+_Column = tuple[str, NDArray]
 
 
 def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> Iterator[str]:
@@ -65,48 +65,43 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 f'output.quantities = ["{word}"]'
             )
         sizes = [_size(archive, name) for name in over]
-        columns = _of_states(archive.data, units) if which == "states" else _over(rows, over, units)
-        if STATE in over and which != "states":
-            columns = _parameters(archive.data, units, len(over)) + columns
-        columns = [
-            (_NUMBERED[name], _counting(axis, size, len(over)))
-            for axis, (name, size) in enumerate(zip(over, sizes))
-            if name in _NUMBERED
-        ] + columns
-        yield _text([[head for head, _ in columns]])
-        large = [row.path for row in rows if STATE in row.over] if which != "states" else []
+        large = [row.path for row in rows if STATE in row.over] if word else []
         together = max(1, _TOGETHER // max(1, int(np.prod(sizes[1:]))))
         for start in range(0, sizes[0], together):
             block = slice(start, min(start + together, sizes[0]))
-            data = {**archive.data, **(archive.rows(block, large) if large else {})}
             shape = block.stop - block.start, *sizes[1:]
-            whole = [np.broadcast_to(values(block, data), shape).flat for _, values in columns]
+            columns = _numbers(over, shape, start)
+            if word:
+                data = {**archive.data, **(archive.rows(block, large) if large else {})}
+                columns += _parameters(archive.data, units, block, len(over)) if large else []
+                columns += _over(data, rows, units, block, over)
+            else:
+                columns += [(head, values[block]) for head, values in _of_states(archive.data, units)]
+            if start == 0:
+                yield _text([[head for head, _ in columns]])
+            whole = [np.broadcast_to(values, shape).flat for _, values in columns]
             for first in range(0, int(np.prod(shape)), _TOGETHER):
                 part = slice(first, first + _TOGETHER)
                 yield _text(zip(*(_cells(values[part], dimensionless) for values in whole)))
 
 
-def _counting(axis: int, size: int, axes: int) -> Callable[[slice, dict[str, Any]], NDArray]:
-    """Function that gives numbers along an axis."""
-    numbers = np.arange(size).reshape(*(-1 if n == axis else 1 for n in range(axes)))
-    return lambda block, _: numbers[block] if axis == 0 else numbers
+def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[_Column]:
+    """Columns that number states, interfaces, loops, starts and laws; the outermost begin at start."""
+    places = np.indices(shape, sparse=True)
+    places = [places[0] + start, *places[1:]]
+    return [(_NUMBERED[name], at) for name, at in zip(over, places) if name in _NUMBERED]
 
 
-def _held(values: Any, axes: int = 1) -> Callable[[slice, dict[str, Any]], NDArray]:
-    """Function that gives values of states."""
-    return lambda block, _: np.asarray(values)[block].reshape(-1, *(1,) * (axes - 1))
-
-
-def _parameters(data: dict[str, Any], units: Units, axes: int) -> list[_Column]:
+def _parameters(data: dict[str, Any], units: Units, block: slice, axes: int) -> list[_Column]:
     """Columns that tell states apart, and their load."""
     columns = [
-        (scaled.head, _held(scaled.of(data[path]), axes))
+        (scaled.head, scaled.of(data[path]))
         for path, row in parameters(data).items()
         if path != LOAD.path and (scaled := units(row))
     ]
     load = units.scale(LOAD.unit)
-    loads = load.of(np.full(len(data[FRICTION.path]), units.load))
-    return [*columns, (f"load [{load.unit}]", _held(loads, axes))]
+    columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))
+    return [(head, np.asarray(v)[block].reshape(-1, *(1,) * (axes - 1))) for head, v in columns]
 
 
 def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
@@ -115,7 +110,9 @@ def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
     Quantities of a state that have several numbers, as those of interfaces, have a column for each.
     """
     first = state_columns(data, units)
-    columns = [(f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, _held(c.values)) for c in first]
+    columns = [
+        (f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, np.asarray(c.values)) for c in first
+    ]
     taken = {column.path for column in first}
     for path, row in table().items():
         if path not in data or path.split("/")[0] not in ("states", "interfaces") or path in taken:
@@ -125,10 +122,10 @@ def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
             continue
         values = scaled.of(data[path])
         if len(row.over) == 1:
-            columns.append((scaled.head, _held(values)))
+            columns.append((scaled.head, values))
         else:
             unit = scaled.head.removeprefix(scaled.name)
-            columns += [(f"{scaled.name}_{i + 1}{unit}", _held(of)) for i, of in enumerate(values.T)]
+            columns += [(f"{scaled.name}_{i + 1}{unit}", of) for i, of in enumerate(values.T)]
     return columns
 
 
@@ -143,30 +140,25 @@ def _rows(archive: reader.Archive, over: tuple[str, ...]) -> list[Quantity]:
     return sorted(rows, key=lambda row: (len(row.over), over[0] in row.over))
 
 
-def _over(rows: Iterable[Quantity], over: tuple[str, ...], units: Units) -> list[_Column]:
-    """Columns of quantities along a table's dimensions."""
-    columns = [(row, scaled) for row in rows if (scaled := units(row))]
-    return [(scaled.head, _along(row, scaled, over)) for row, scaled in columns]
-
-
-def _along(
-    row: Quantity, scaled: Scaled, over: tuple[str, ...]
-) -> Callable[[slice, dict[str, Any]], NDArray]:
-    """Function that gives a quantity in its units."""
-
-    def values(block: slice, data: dict[str, Any]) -> NDArray:
+def _over(
+    data: dict[str, Any], rows: Iterable[Quantity], units: Units, block: slice, over: tuple[str, ...]
+) -> list[_Column]:
+    """Columns of quantities along a table's dimensions, in a block of the outermost one."""
+    columns = []
+    for row in rows:
+        if not (scaled := units(row)):
+            continue
         held = np.asarray(data[row.path])
         if over[0] in row.over and STATE not in row.over:
             held = held[block]
         sizes = dict(zip(row.over, held.shape))
         held = held.reshape([sizes.get(name, 1) for name in over])
-        if held.dtype.kind not in "fiu":
-            return held
-        if np.ndim(scaled.factor) and len(held) == 1:
-            held = np.broadcast_to(held, (block.stop - block.start, *held.shape[1:]))
-        return scaled.of(held, block)
-
-    return values
+        if held.dtype.kind in "fiu":
+            if np.ndim(scaled.factor) and len(held) == 1:
+                held = np.broadcast_to(held, (block.stop - block.start, *held.shape[1:]))
+            held = scaled.of(held, block)
+        columns.append((scaled.head, held))
+    return columns
 
 
 def _size(archive: reader.Archive, name: str) -> int:

@@ -22,7 +22,6 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM
 from galinx.postprocess.quantities.stresses import STRESSES_INSIDE
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
-from galinx.solvers.contact.contacts import contacts_of
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.fem_plan import FemPlan
 from galinx.solvers.contact.solution import GIVEN_ENDS, Task
@@ -40,64 +39,60 @@ from ..scene.sections import Output
 
 
 @dataclass(frozen=True)
-class OneState:
-    """A state of a scene, and what finite elements need to solve it.
-
-    Attributes:
-        number: of the state, from 0.
-        plan: finite elements at the scene's speeds, on one mesh.
-        task: the state's speed.
-        g: σ_XY/σ_YY under the punch.
-        degree: polynomial degree.
-        exact: True where a closed form of stresses inside is there to compare with.
-        parameters: values that distinguish the state, by the names of archives' columns.
-    """
-
-    number: int
-    plan: Plan
-    task: Task
-    g: float
-    degree: int
-    exact: bool
-    parameters: dict[str, Any]
-
-
-@dataclass(frozen=True)
 class Solved:
-    """Displacement of a state, by finite elements.
+    """A state of a scene, and its displacement by finite elements.
 
     Attributes:
-        state: the state.
+        scene: the scene, of a sweep the one that has this state.
+        number: of the state, from 0.
+        parameters: values that distinguish the state, by the names of archives' columns.
+        task: the state's speed.
+        degree: polynomial degree.
         space: the finite element space.
         fields, weights: displacements over N/(2μ), and their factors in the state's displacement.
         pressure: σ_YY over N/(2a) at X over a under the punch.
         comm: the ranks that share the mesh.
     """
 
-    state: OneState
+    scene: Scene
+    number: int
+    parameters: dict[str, Any]
+    task: Task
+    degree: int
     space: Any
     fields: Sequence[Any]
     weights: NDArray
     pressure: Callable[[NDArray], NDArray]
     comm: Any
 
+    def sampled(self, extent: float) -> Any:
+        """This rank's piece of the state's field over a, N/(2μ) and N/(2a)."""
+        from galinx.solvers.fem.export import sample
 
-def select_states(
+        return sample(self.space, self.task.response, self.fields, self.weights, extent, self.degree)
+
+
+def solve_states(
     scene: Scene,
     numbers: Sequence[int],
     degrees: Sequence[int | None] | None = None,
     extent: float = 0.0,
-) -> list[OneState]:
-    """States of a scene by number, prepared for finite elements whatever the scene asks for.
+    shared: bool = True,
+) -> Generator[Solved, None, None]:
+    """Solve states by finite elements, one after the other, whatever the scene asks for.
+
+    Collective. Each solution is valid until the next is requested; faults are raised at once.
 
     Args:
         scene: the scene.
         numbers: of the states, from 0, in the order of :func:`galinx.app.plan.states.enumerate_states`.
         degrees: polynomial degrees, one a state; None for the degree that the scene's tolerance suggests.
         extent: |X| and |Y| over a that the mesh holds, if it has no walls.
+        shared: all ranks share the mesh.
 
     Raises:
         BadInput: there is no such state, or finite elements have no answer for it.
+        SolveError: the equations could not be solved.
     """
     if not numbers:
         raise BadInput("states: found none, expected numbers of some")
@@ -114,152 +109,50 @@ def select_states(
                 f"states: found {listed([*map(str, numbers)])}, expected states of one solid and one "
                 f"punch, with the same {listed([*scene.swept])}"
             )
-        of_variant = select_states(own[0][0], [number for _, number in own], degrees, extent)
-        return [replace(state, number=number) for state, number in zip(of_variant, numbers)]
+        alone = solve_states(own[0][0], [number for _, number in own], degrees, extent, shared)
+        return (replace(solved, number=number) for solved, number in zip(alone, numbers))
+    degrees = degrees or [None] * len(numbers)
+    _refuse(scene, degrees)
     states = enumerate_states(scene)
+    columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
+    plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
+    assert plan.fem
+    plan = replace(plan, fem=replace(_reaching(plan.fem, extent, plan.tasks), shared_speeds=not shared))
+    with finite_elements_installed():
+        from galinx.solvers.fem.method import FiniteElements
+    return _solved(FiniteElements(plan, Progress(), Clock()), scene, plan, numbers, columns, degrees)
+
+
+def _solved(
+    method: Any, scene: Scene, plan: Plan, numbers: Sequence[int], columns: dict[str, list[Any]],
+    degrees: Sequence[int | None],
+) -> Generator[Solved, None, None]:  # fmt: skip
+    """Solutions of states, whose parameters stand in columns."""
+    assert plan.fem
+    tasks = {task.response.c: task for task in plan.tasks}
+    # Prescribed tractions are solved one degree above the rule: no measured error corrects it here.
+    more = scene.solve.mode == "traction"
+    for i, number in enumerate(numbers):
+        parameters = {name: values[i] for name, values in columns.items()}
+        task = tasks[parameters["c"]]
+        task = replace(task, body=task.body.loaded(parameters.get("load")))
+        degree = degrees[i] or plan.fem.degrees[task.number] + more
+        with method.one_state(task, parameters["g"], degree) as solution:
+            yield Solved(scene, number, parameters, task, degree, *solution, method.work.comm)
+
+
+def _refuse(scene: Scene, degrees: Sequence[int | None]) -> None:
+    """Refuse scenes and degrees for which finite elements have no fields.
+
+    Raises:
+        BadInput: this is one; the message says what to do.
+    """
     if GIVEN_ENDS in scene.body.lacks:
         raise BadInput(
             f"states: found a {scene.punch.profile.words()}, whose contact has another half-width in "
             "every state; fields of single states are there for a given half-width only. Stresses "
             'inside are archived by output.map and the quantity "interior"'
         )
-    state_degrees = degrees or [None] * len(numbers)
-    _check_states(scene, state_degrees)
-    columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
-    plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
-    assert plan.fem
-    fem = replace(with_reach(plan.fem, extent, plan.tasks), shared_speeds=False)
-    tasks = {task.response.c: task for task in plan.tasks}
-    # Prescribed tractions are solved one degree above the rule: no measured error corrects it here.
-    more = scene.solve.mode == "traction"
-    selection = []
-    for i, number in enumerate(numbers):
-        parameters = {name: values[i] for name, values in columns.items()}
-        task = tasks[parameters["c"]]
-        task = replace(task, body=task.body.loaded(parameters.get("load")))
-        degree = state_degrees[i] or fem.degrees[task.number] + more
-        inside = STRESSES_INSIDE[CLOSED_FORM][0]
-        exact = CLOSED_FORM in scene.solve.methods and not METHODS[CLOSED_FORM].refusal(
-            scene, task.body, inside
-        )
-        selection.append(
-            OneState(number, replace(plan, fem=fem), task, parameters["g"], degree, exact, parameters)
-        )
-    return selection
-
-
-def solve_states(states: Sequence[OneState]) -> Generator[Solved, None, None]:
-    """Solutions of states one after the other, each valid until the next is requested; collective.
-
-    Raises:
-        SolveError: the equations could not be solved.
-    """
-    with finite_elements_installed():
-        from galinx.solvers.fem.method import FiniteElements
-    fem = FiniteElements(states[0].plan, Progress(), Clock())
-    for state in states:
-        with fem.one_state(state.task, state.g, state.degree) as (space, fields, weights, pressure):
-            yield Solved(state, space, fields, weights, pressure, fem.work.comm)
-
-
-def with_reach(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
-    """Plan of finite elements with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
-    corner = max(abs(X + task.response.contraction) for task in tasks for X in (-1.0, 1.0)) * extent
-    if fem.kind.walls or corner <= fem.kind.reach(fem.wanted):
-        return fem
-    wider = replace(fem.wanted, farthest=corner)
-    return replace(fem, wanted=wider, refinement=fem.kind.refinement(wider))
-
-
-def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 0.0) -> Any:
-    """Displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
-
-    Arguments are those of :func:`chosen`.
-
-    Raises:
-        BadInput: no such state, finite elements have no answer there, or there are several ranks.
-        MachineFailure: dolfinx is not installed.
-        SolveError: the equations could not be solved.
-    """
-    if ranks.size() > 1:
-        raise BadInput(
-            f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
-        )
-    (state,) = select_states(scene, [number], [degree], extent)
-    body, response = state.task.body, state.task.response
-    with closing(solve_states([state])) as states:
-        from galinx.solvers.fem.export import in_physical_plane
-
-        solution = next(states)
-        half_width = body.half_width
-        return in_physical_plane(
-            solution.space, response, solution.fields, solution.weights, half_width, body.displacement
-        )
-
-
-def displacement_under_punch(
-    scene: Scene, numbers: Sequence[int], degree: int | None = None
-) -> tuple[NDArray, NDArray]:
-    """Displacements of states under the punch; not collective, of one rank only.
-
-    Args:
-        scene: the scene.
-        numbers: of the states, as in :func:`chosen`.
-        degree: polynomial degree; None for the degree that the scene's tolerance suggests.
-
-    Returns:
-        Positions over a, (n,), and u and v [m] relative to the surface 100 a away, (states, 2, n).
-
-    Raises:
-        BadInput: no such state, or finite elements have no answer there.
-        SolveError: the equations could not be solved.
-    """
-    X, fields = np.empty(0), []
-    for solution in solve_states(
-        [_alone(state) for state in select_states(scene, numbers, [degree] * len(numbers))]
-    ):
-        nodes = solution.space.contact
-        X = solution.space.chart.surface_position(nodes.s)
-        at_nodes = np.empty((2, len(nodes.s)))
-        for i in (0, 1):
-            values = [field.getValues(nodes.dofs(i)) for field in solution.fields]
-            at_nodes[i, nodes.owned] = solution.state.task.body.displacement * (
-                solution.weights @ np.array(values)
-            )
-        fields.append(at_nodes)
-    return X, np.array(fields)
-
-
-def _alone(state: OneState) -> OneState:
-    """State with a mesh that no other rank shares."""
-    assert state.plan.fem
-    return replace(state, plan=replace(state.plan, fem=replace(state.plan.fem, shared_speeds=True)))
-
-
-def _for_finite_elements(scene: Scene, speeds: set[float]) -> Scene:
-    """Scene with finite elements, at all its speeds that these can solve, and at the given speeds.
-
-    All speeds share one mesh; with the same speeds and places it is that of a run. States are steady
-    ones, whatever else the scene asks for.
-    """
-    steady = tuple(name for name in scene.output.quantities if name not in FRICTIONS)
-    every = order(scene).speeds
-    possible = tuple(v for v in every if v in speeds or scene.solid.response(v).margin > 0.0)
-    strokes = tuple(
-        stroke if isinstance(stroke, str) else replace(stroke, speed=None)
-        for stroke in scene.motion.strokes
-    )
-    return replace(
-        scene,
-        motion=replace(scene.motion, c=possible, speed=None, strokes=strokes),
-        solve=replace(scene.solve, methods=("fem",)),
-        output=replace(scene.output, quantities=steady) if steady else Output(quantities=(INTENSITIES,)),
-        slider=None,
-        time=None,
-    )
-
-
-def _check_states(scene: Scene, degrees: Sequence[int | None]) -> None:
     if scene.layers:
         raise BadInput(
             "layer: found layers, expected a uniform solid for fields of finite elements; "
@@ -275,6 +168,91 @@ def _check_states(scene: Scene, degrees: Sequence[int | None]) -> None:
             f"solid: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from finite "
             "elements"
         )
+
+
+def _reaching(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
+    """Plan of finite elements with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
+    corner = max(abs(X + task.response.contraction) for task in tasks for X in (-1.0, 1.0)) * extent
+    if fem.kind.walls or corner <= fem.kind.reach(fem.wanted):
+        return fem
+    wider = replace(fem.wanted, farthest=corner)
+    return replace(fem, wanted=wider, refinement=fem.kind.refinement(wider))
+
+
+def _for_finite_elements(scene: Scene, speeds: set[float]) -> Scene:
+    """Scene with finite elements, at all its speeds that these can solve, and at the given speeds.
+
+    All speeds share one mesh; with the same speeds and places it is that of a run. States are steady
+    ones, whatever else the scene asks for.
+    """
+    steady = tuple(name for name in scene.output.quantities if name not in FRICTIONS)
+    possible = tuple(
+        c for c in order(scene).speeds if c in speeds or scene.solid.response(c).margin > 0.0
+    )
+    strokes = tuple(
+        stroke if isinstance(stroke, str) else replace(stroke, speed=None)
+        for stroke in scene.motion.strokes
+    )
+    return replace(
+        scene,
+        motion=replace(scene.motion, c=possible, speed=None, strokes=strokes),
+        solve=replace(scene.solve, methods=("fem",)),
+        output=replace(scene.output, quantities=steady) if steady else Output(quantities=(INTENSITIES,)),
+        slider=None,
+        time=None,
+    )
+
+
+def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 0.0) -> Any:
+    """Displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
+
+    Arguments are those of :func:`solve_states`.
+
+    Raises:
+        BadInput: no such state, finite elements have no answer there, or there are several ranks.
+        MachineFailure: dolfinx is not installed.
+        SolveError: the equations could not be solved.
+    """
+    if ranks.size() > 1:
+        raise BadInput(
+            f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
+        )
+    with closing(solve_states(scene, [number], [degree], extent)) as states:
+        from galinx.solvers.fem.export import in_physical_plane
+
+        solved = next(states)
+        body, response = solved.task.body, solved.task.response
+        return in_physical_plane(
+            solved.space, response, solved.fields, solved.weights, body.half_width, body.displacement
+        )
+
+
+def displacement_under_punch(
+    scene: Scene, numbers: Sequence[int], degree: int | None = None
+) -> tuple[NDArray, NDArray]:
+    """Displacements of states under the punch; not collective, of one rank only.
+
+    Args:
+        scene: the scene.
+        numbers: of the states, as in :func:`solve_states`.
+        degree: polynomial degree; None for the degree that the scene's tolerance suggests.
+
+    Returns:
+        Positions over a, (n,), and u and v [m] relative to the surface 100 a away, (states, 2, n).
+
+    Raises:
+        BadInput: no such state, or finite elements have no answer there.
+        SolveError: the equations could not be solved.
+    """
+    X, fields = np.empty(0), []
+    for solved in solve_states(scene, numbers, [degree] * len(numbers), shared=False):
+        nodes, of_state = solved.space.contact, np.empty((2, len(solved.space.contact.s)))
+        X = solved.space.chart.surface_position(nodes.s)
+        for i in (0, 1):
+            values = np.array([field.getValues(nodes.dofs(i)) for field in solved.fields])
+            of_state[i, nodes.owned] = solved.task.body.displacement * (solved.weights @ values)
+        fields.append(of_state)
+    return X, np.array(fields)
 
 
 #: Quantities of a field, by name: (unit, long name).
@@ -335,25 +313,22 @@ def write_fields(
         UnwritableArchive: the file system refused.
     """
     _check(scene, extent)
-    states = select_states(scene, numbers, degrees, extent)
-    with finite_elements_installed():
-        from mpi4py import MPI
+    states = solve_states(scene, numbers, degrees, extent)
+    from mpi4py import MPI
+
     if MPI.COMM_WORLD.rank > 0:
-        for solution in solve_states(states):
-            solution.comm.send(_piece(solution, extent), 0)
+        for solved in states:
+            solved.comm.send(_in_si(solved, solved.sampled(extent)), 0)
         return
     from galinx.postprocess.hdf5 import vtkhdf
 
-    def pieces(solution: Solved) -> Iterable[StateField]:
+    def pieces(solved: Solved) -> Iterable[StateField]:
         """Pieces of the field of all ranks, of which rank 0 holds one of another at a time."""
-        others = (solution.comm.recv(source=rank) for rank in range(1, solution.comm.size))
-        return chain([_piece(solution, extent)], others)
+        others = (solved.comm.recv(source=rank) for rank in range(1, solved.comm.size))
+        return chain([_in_si(solved, solved.sampled(extent))], others)
 
-    steps = (
-        vtkhdf.Step(float(solution.state.number), pieces(solution), _attributes(scene, solution.state))
-        for solution in solve_states(states)
-    )
-    vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(states) > 1)
+    steps = (vtkhdf.Step(float(solved.number), pieces(solved), _attributes(solved)) for solved in states)
+    vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(numbers) > 1)
 
 
 def state_field(
@@ -365,7 +340,7 @@ def state_field(
 
     Args:
         scene: the scene.
-        number: of the state, from 0, in the order of :func:`galinx.app.plan.states.enumerate_states`.
+        number: of the state, as in :func:`solve_states`.
         extent: the field is cut at |X|, |Y| = extent, over a.
         degree: polynomial degree; None for the degree that the scene's tolerance suggests.
 
@@ -374,11 +349,10 @@ def state_field(
         SolveError: the equations could not be solved.
     """
     _check(scene, extent)
-    (state,) = select_states(scene, [number], [degree], extent)
-    with closing(solve_states([state])) as states:
-        solution = next(states)
-        whole = _sampled(solution, extent).gathered(solution.comm)
-        return None if whole is None else _in_si(solution, whole)
+    with closing(solve_states(scene, [number], [degree], extent)) as states:
+        solved = next(states)
+        whole = solved.sampled(extent).gathered(solved.comm)
+        return None if whole is None else _in_si(solved, whole)
 
 
 def _check(scene: Scene, extent: float) -> None:
@@ -390,42 +364,29 @@ def _check(scene: Scene, extent: float) -> None:
         )
 
 
-def _attributes(scene: Scene, state: OneState) -> dict[str, Any]:
+def _attributes(solved: Solved) -> dict[str, Any]:
     """Attributes of a state in a file beside its fields; numbers in SI."""
-    body = state.task.body
+    body = solved.task.body
     return {
-        "title": scene.title,
-        "state": state.number,
-        **state.parameters,
-        "speed": state.parameters["c"] * body.solid.c_s,
+        "title": solved.scene.title,
+        "state": solved.number,
+        **solved.parameters,
+        "speed": solved.parameters["c"] * body.solid.c_s,
         "load": body.load,
         "half_width": body.half_width,
         "mean_pressure": body.stress,
-        "degree": state.degree,
+        "degree": solved.degree,
         "program": f"galinx {__version__}",
     }
 
 
-def _piece(solution: Solved, extent: float) -> StateField:
-    """This rank's piece of the state's field, in SI."""
-    return _in_si(solution, _sampled(solution, extent))
-
-
-def _sampled(solution: Solved, extent: float) -> Any:
-    """This rank's piece of the state's field over a, N/(2μ) and N/(2a)."""
-    from galinx.solvers.fem.export import sample
-
-    response, degree = solution.state.task.response, solution.state.degree
-    return sample(solution.space, response, solution.fields, solution.weights, extent, degree)
-
-
-def _in_si(solution: Solved, sampled: Any) -> StateField:
+def _in_si(solved: Solved, sampled: Any) -> StateField:
     """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa."""
-    state, task = solution.state, solution.state.task
-    body, solid = task.body, task.body.solid
+    scene, task = solved.scene, solved.task
+    body = task.body
     stresses = task.response.stresses(sampled.gradient)
     XX, YY, XY = body.stress * stresses
-    ZZ = solid.σ_ZZ(XX, YY, XY)
+    ZZ = body.solid.σ_ZZ(XX, YY, XY)
     mises = von_mises(XX, YY, XY, ZZ)
     displacement, points = body.displacement * sampled.displacement, sampled.points
     X, Y = points.T
@@ -433,7 +394,7 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
     # Pressure under the punch, 0 beside it, NaN at its edges and inside.
     under, pressure = on & under_punch(X), np.full(len(points), np.nan)
     pressure[on & (np.abs(X) > 1.0)] = 0.0
-    pressure[under] = -solution.pressure(X[under])
+    pressure[under] = -solved.pressure(X[under])
     data = {
         "displacement": np.column_stack([displacement, np.zeros(len(displacement))]),
         "sigma_XX": XX,
@@ -445,9 +406,11 @@ def _in_si(solution: Solved, sampled: Any) -> StateField:
         "maximum_shear": maximum_shear(XX, YY, XY),
         "contact_pressure": body.stress * pressure,
     }
-    if state.exact:
+    refused = METHODS[CLOSED_FORM].refusal(scene, body, STRESSES_INSIDE[CLOSED_FORM][0])
+    if CLOSED_FORM in scene.solve.methods and not refused:
         # The largest difference of a component from the closed form; NaN on the surface.
-        exact = contacts_of(body, task.response, np.array([state.g])).stresses(*points[~on].T)[:, 0]
+        g = np.array([solved.parameters["g"]])
+        exact = body.contacts(task.response, g).stresses(*points[~on].T)[:, 0]
         error = np.full(len(points), np.nan)
         error[~on] = np.abs(stresses[:, ~on] - exact).max(axis=0)
         data["sigma_error"] = body.stress * error

@@ -37,17 +37,16 @@ from galinx.postprocess.units import Units, engineering
 from galinx.texts import counted, folded, plain
 
 from ..console import program
-from ..figures.choice import Archive, Choice, Drawing
-from ..figures.files import embedded, in_a_page
+from ..figures.choice import Archive, Choice, Drawing, spread
+from ..figures.files import content, embedded
 from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_along
-from ..figures.states import spread
 from ..figures.stresses import (
     SHOWN,
     Fields,
     Shown,
-    Surface,
     limits,
     map_names,
+    stresses_along,
     surface_names,
     surface_panel,
 )
@@ -200,7 +199,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     labels, below = of.labels, map_names(of)
     if not surface_names(of) and not below:
         return None
-    surface = Surface(of) if surface_names(of) else None
+    surface = stresses_along(of) if surface_names(of) else None
     fields = Fields(of) if below else None
     sizes = [4 * len(surface.X) if surface else 1, fields.X.size * fields.Y.size if fields else 1]
     shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
@@ -237,8 +236,9 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     load = " to ".join(
         engineering(N, "N/m") for N in sorted({min(scene.punch.loads), max(scene.punch.loads)})
     )
+    kind = "an elastic" if scene.elastic_punch else "a rigid"
     text = (
-        f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
+        f"{count} friction state{'s' * (count > 1)} of {kind} {scene.punch.profile.words()}, load "
         f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
         f"wave speed {c_s:.4g} m/s, on a half-plane with {solid.words()}."
     )
@@ -342,7 +342,11 @@ class Report:
             width = round(96.0 * drawing.figure.get_figwidth())
             picture |= {"source": embedded(png), "width": width}
         elif not picture["charts"]:
-            picture["source"] = in_a_page(drawing.figure, drawing.pixels)
+            picture["source"] = (
+                embedded(content(drawing.figure, "png", 160))
+                if drawing.pixels
+                else embedded(content(drawing.figure, "svg", transparent=True), "svg+xml")
+            )
         self._pictures.append(picture)
 
     def text(self) -> str:
@@ -364,7 +368,7 @@ class Report:
         content = {
             "title": attributes["title"] or "A sliding punch",
             "verdict": attributes["verdict"],
-            "checked": checked(attributes),
+            "checked": checked(data, attributes),
             "summary": summary(data, scene),
             "warnings": json.loads(attributes["warnings"]),
             "reasons": json.loads(attributes["verdict_reasons"]),

@@ -72,7 +72,7 @@ class Result:
         )
         table_ = f"<table><thead>{head}</thead><tbody>{''.join(rows)}</tbody></table>"
         warnings = [f"warning: {text}" for text in json.loads(self.attributes["warnings"])]
-        notes = [*sheet.notes, *failed(self.data, self.attributes), checked(self.attributes)]
+        notes = [*sheet.notes, *failed(self.data, self.attributes), checked(self.data, self.attributes)]
         return (
             f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
             f'<b style="color: {_COLOURS.get(self.verdict, "inherit")}">{escape(self.verdict)}</b></p>'

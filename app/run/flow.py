@@ -2,16 +2,14 @@
 
 :func:`compute` is the run as a program. Its parts: the attributes of an archive, in SI, that describe the
 scene and the versions with which results were computed (:func:`scene_attributes`, :func:`libraries`);
-sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); the
-collector, which judges finished parts and writes them (:class:`Collector`); and motions of sliders
-(:func:`slide`).
+sinks, the destinations of results (:class:`Sink`); the verdict on a run (:class:`Judge`); and motions of
+sliders (:func:`slide`).
 """
 
 import json
 import platform
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain, product
 from math import inf
@@ -23,16 +21,16 @@ from numpy.typing import NDArray
 
 from galinx import __version__
 from galinx.clock import Clock
-from galinx.postprocess.compare import RULES, Comparison, comparisons
+from galinx.postprocess.compare import RULES, comparisons
 from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.quantities import column, declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.errors import SolveError
-from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
+from galinx.solvers.friction.slider import cycle, outcome, pull
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles.punches import Flat
-from galinx.solvers.solids import SOLIDS, Solid
+from galinx.solvers.solids import SOLIDS
 from galinx.solvers.transient.late_time import approach
 
 from .. import ranks
@@ -41,28 +39,26 @@ from ..errors import BadInput
 from ..methods import METHODS
 from ..plan.plan import Plan
 from ..plan.states import States
-from ..plan.variants import (
-    Variant,
-    joined_positions,
-    joined_states,
-    lines_of,
-    make_variants,
-)
+from ..plan.variants import joined_positions, joined_states, lines_of, make_plans
 from ..scene.scene import Scene
 from .over_time import solve_motions
+from .share import shared_out
 from .solve import Work
 
 
 def scene_attributes(scene: Scene) -> dict[str, Any]:
     """Attributes of an archive's root that say what slides over what."""
     half_plane, solid = scene.half_plane, scene.solid
-    solid_words = _solid(half_plane.solid)
+    kind = next((name for name, law in SOLIDS.items() if law is type(half_plane.solid)), "")
+    solid_words: dict[str, Any] = {"kind": kind, **constants(half_plane.solid)}
     if half_plane.yield_strength:
         solid_words["yield_strength"] = half_plane.yield_strength
     if scene.layers:
         solid_words |= {f"layer {i}": layer.words() for i, layer in enumerate(scene.layers, 1)}
     if punch := scene.elastic_punch:
         solid_words["punch"] = punch.solid.words() + f", at {punch.speed:g} m/s over the contact"
+        if punch.yield_strength:
+            solid_words["punch yield_strength"] = punch.yield_strength
     return {
         "title": scene.title,
         "material": half_plane.material or "",
@@ -72,11 +68,6 @@ def scene_attributes(scene: Scene) -> dict[str, Any]:
         "c_s": solid.c_s,
         "speed_limit": solid.limit() * solid.c_s,
     }
-
-
-def _solid(solid: Solid) -> dict[str, Any]:
-    kind = next((name for name, law in SOLIDS.items() if law is type(solid)), "")
-    return {"kind": kind, **constants(solid)}
 
 
 #: Libraries that numbers depend on, by the module that holds the version.
@@ -154,14 +145,13 @@ class Judge:
         self._limits = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
         self._judged: dict[str, float] = {}
 
-    def see(self, comparisons: list[Comparison]) -> None:
-        """Take a part's comparisons into account; NaN is worse than any number."""
-        for comparison in comparisons:
-            value = float(np.max([self.worst.get(comparison.text, 0.0), comparison.value]))
-            self.worst[comparison.text] = value
-            limit = self._limits.get(comparison.name)
+    def see(self, comparisons: Mapping[str, float]) -> None:
+        """Take comparisons by the rule's name into account; NaN is worse than any number."""
+        for name, value in comparisons.items():
+            text, limit = RULES[name].text, self._limits.get(name)
+            self.worst[text] = float(np.max([self.worst.get(text, 0.0), value]))
             if limit is not None:
-                self._judged[comparison.text] = limit
+                self._judged[text] = limit
 
     def verdict(self) -> tuple[str, list[str]]:
         """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
@@ -217,65 +207,6 @@ def gathered(parts: Iterable[Part], most: int) -> Iterator[Part]:
         yield joined(small)
 
 
-class Collector:
-    """Collector of finished parts, which it judges and writes.
-
-    Args:
-        sink: destination of results.
-        judge: takes comparisons into account.
-        progress: shows the states done.
-        variants: variants of the scene, with their plans.
-        clock: takes wall time by step.
-    """
-
-    def __init__(
-        self, sink: Sink, judge: Judge, progress: Progress, variants: Sequence[Variant], clock: Clock
-    ) -> None:
-        self._sink, self._judge, self._progress, self._plan = sink, judge, progress, variants[0].plan
-        self._done, self._states = 0, sum(variant.plan.states for variant in variants)
-        self._tasks = sum(len(variant.plan.tasks) for variant in variants)
-        self._clock, self._records = clock, dict[int, dict[str, Any]]()
-        for quantity in self._plan.quantities:
-            sink.reserve(quantity.path, (self._states, *self._plan.shape(quantity)))
-
-    def take(self, part: Part) -> None:
-        """Judge and write a part."""
-        self._judge.see(part.comparisons)
-        self._judge.validity.see(part.data)
-        with self._clock("archive"):
-            for name, values in part.data.items():
-                self._sink.write(name, part.rows, values)
-        if part.record:
-            self._records[part.record["speed"]] = part.record
-        self._done += part.rows.stop - part.rows.start
-        self._progress.done(self._done, self._states)
-
-    def finish(self) -> None:
-        """Write the records of the speeds.
-
-        Raises:
-            SolveError: no speed could be solved.
-        """
-        records = [self._records[i] for i in sorted(self._records)]
-        failures = [
-            f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record
-        ]
-        if len(failures) == self._tasks and not any(record.get("solved") for record in records):
-            raise SolveError(failures[0])
-        self._judge.failures = failures
-        if self._plan.fem or failures:
-            self._sink.put(FAILURES.path, failures)
-        if not self._plan.fem:
-            return
-        for name, quantity in RECORD.items():
-            values = np.array([record[name] for record in records], quantity.type)
-            self._sink.put(quantity.path, values)
-        changes = [record.get("change_by_degree", []) for record in records]
-        if longest := max(map(len, changes)):
-            padded = [change + [0.0] * (longest - len(change)) for change in changes]
-            self._sink.put(CHANGES.path, np.array(padded))
-
-
 #: Archived times of a slider, and times of its last cycle.
 _TIMES, _STEPS = 4001, 1001
 
@@ -301,7 +232,9 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
         last, (x, v, f) = cycle(ride, slider.drive_speed), ride.at(times)
         cycle_v, cycle_f = np.full((2, _STEPS), np.nan)
         if np.isfinite(last.period):
-            _, cycle_v, cycle_f = ride.at(_close(ride))
+            t = ride.t[ride.cycle]  # dense where the integration took small steps
+            steps = np.linspace(0.0, len(t) - 1.0, _STEPS)
+            _, cycle_v, cycle_f = ride.at(np.interp(steps, np.arange(len(t)), t))
         motions.append({
             runs.POSITION.path: x, runs.VELOCITY.path: v, runs.FRICTION.path: f,
             runs.CYCLE_VELOCITY.path: cycle_v, runs.CYCLE_FRICTION.path: cycle_f,
@@ -312,13 +245,6 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
     return {runs.TIMES.path: times} | {
         path: np.array([motion[path] for motion in motions]) for path in motions[0]
     }  # fmt: skip
-
-
-def _close(ride: Ride) -> NDArray[np.float64]:
-    """Times in the last cycle [s], (times,), dense where the integration took small steps."""
-    assert ride.cycle is not None
-    t = ride.t[ride.cycle]
-    return np.interp(np.linspace(0.0, len(t) - 1.0, _STEPS), np.arange(len(t)), t)
 
 
 def compute(
@@ -349,139 +275,133 @@ def compute(
     if sink is None or not ranks.is_root():
         sink = Memory()
     progress, clock = progress or Progress(), Clock() if clock is None else clock
+
+    def put(datasets: Mapping[str, Any]) -> None:
+        for path, values in datasets.items():
+            sink.put(path, values)
+
     with clock("friction"):
         progress.say("friction")
-        variants = make_variants(scene, partial(progress.done, what="friction loops"))
-        plan, states = variants[0].plan, joined_states(variants)
-        _put_states(sink, scene, variants, states)
+        plans = make_plans(scene, partial(progress.done, what="friction loops"))
+        plan, states = plans[0], joined_states(plans)
+        put({runs.SCENE.path: scene.text} | states.datasets | joined_positions(plans))
+        if plan.asks(stresses.BELOW) and scene.output.map:
+            put({stresses.MAP.path: np.array([count for *_, count in reversed(scene.output.map)])})
     if scene.slider:
         with clock("slider"):
             progress.say("slider")
-            for path, values in slide(scene, lambda n, of: progress.done(n, of, "sliders")).items():
-                sink.put(path, values)
+            put(slide(scene, lambda n, of: progress.done(n, of, "sliders")))
     judge = Judge(scene, plan.rules)
     if plan.starts:
-        _put_starts(sink, plan, judge, progress, clock)
+        progress.say("starts from rest")
+        motions = solve_motions(plan.starts, clock, partial(progress.done, what="starts"))
+        put(motions)
+        if ranks.is_root():
+            judge.see(comparisons(motions, plan.body.load, plan.rules))
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
-        _solve(sink, judge, progress, journal, variants, clock)
-    _put_work(sink, scene, variants, clock)
-    return _attributes(scene, variants, judge)
+        _solve(sink, judge, progress, journal, plans, states, clock)
+    clock.lap()
+    names = sorted(clock)  # a run that goes on does them in another order
+    put({
+        runs.DONE.path: lines_of(plans),
+        runs.SKIPPED.path: list(dict.fromkeys(chain(*(each.skipped for each in plans)))),
+        runs.STEPS.path: names,
+        runs.SECONDS.path: np.array([clock[name] for name in names], dtype=float),
+    })  # fmt: skip
+    verdict, reasons = judge.verdict()
+    warnings = [*dict.fromkeys(chain(*(each.warnings for each in plans))), *judge.validity.words()]
+    texts = {
+        "versions": libraries(), "rules": sorted(plan.rules), "verdict_reasons": reasons,
+        "comparisons": judge.worst, "warnings": warnings,
+    }  # fmt: skip
+    return {
+        "version": __version__, "machine": machine(), "scene_sha256": scene.sha256, "verdict": verdict,
+        **scene_attributes(scene),
+        **{name: json.dumps(text, ensure_ascii=False) for name, text in texts.items()},
+    }  # fmt: skip
 
 
 def _solve(
-    sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, variants: Sequence[Variant],
-    clock: Clock,
+    sink: Sink, judge: Judge, progress: Progress, journal: Journal | None, plans: Sequence[Plan],
+    states: States, clock: Clock,
 ) -> None:  # fmt: skip
-    """Solve the contacts of all variants and collect their parts on rank 0; collective."""
-    finished = np.zeros(sum(variant.plan.states for variant in variants), dtype=bool)
-    collector = Collector(sink, judge, progress, variants, clock) if ranks.is_root() else None
-    if journal and collector:
-        if journal.damaged:
+    """Solve the contacts of all variants; rank 0 judges and writes their parts. Collective.
+
+    Raises:
+        SolveError: no speed could be solved.
+    """
+    finished, records = np.zeros(len(states), dtype=bool), dict[int, dict[str, Any]]()
+
+    def take(part: Part) -> None:
+        judge.see(part.comparisons)
+        judge.validity.see(part.data)
+        with clock("archive"):
+            for name, values in part.data.items():
+                sink.write(name, part.rows, values)
+        if part.record:
+            records[part.record["speed"]] = part.record
+        finished[part.rows] = True
+        progress.done(int(finished.sum()), len(states))
+
+    if ranks.is_root():
+        for quantity in plans[0].quantities:
+            sink.reserve(quantity.path, (len(states), *plans[0].shape(quantity)))
+        if journal and journal.damaged:
             progress.warn(f"kept parts that are damaged: {journal.damaged}; computed again")
-        for part in journal.parts():
-            finished[part.rows] = True
-            collector.take(part)
-    for part in gathered(_parts(variants, finished, progress, clock), variants[0].plan.chunk):
-        if collector:  # all ranks that share one mesh have the same results
+        for part in journal.parts() if journal else ():
+            take(part)
+    before = finished.copy()
+    if ranks.size() > 1 and plans[0].fem:  # else this rank is alone here
+        from mpi4py import MPI
+
+        before = MPI.COMM_WORLD.bcast(before)
+    for part in gathered(_parts(plans, states, before, progress, clock), plans[0].chunk):
+        if ranks.is_root():  # all ranks that share one mesh have the same results
             if journal and "failure" not in (part.record or {}):  # a run that goes on tries it again
                 with clock("archive"):
                     journal.keep(part)
-            collector.take(part)
-    if collector:
-        collector.finish()
+            take(part)
+    if ranks.is_root():
+        judge.failures = _put_records(sink, plans, [records[i] for i in sorted(records)])
 
 
 def _parts(
-    variants: Sequence[Variant], finished: NDArray[np.bool_], progress: Progress, clock: Clock
-) -> Iterator[Part]:
-    """Parts of all variants that are not finished, with their places among the states of all."""
-    for variant in variants:
-        if not variant.alone:
-            progress.say(variant.scene.variant)
-        for part in _parts_of(variant.plan, variant.states, finished[variant.rows], progress, clock):
-            yield _placed(part, variant)
-
-
-def _placed(part: Part, variant: Variant) -> Part:
-    """A part of a variant with the places of its states and of its speed among those of all."""
-    (first, speed), record = variant.first, part.record
-    if record:
-        record = record | {"speed": record["speed"] + speed}
-        if "failure" in record and not variant.alone:
-            record["failure"] = f"{record['failure']}, {variant.scene.variant}"
-    return replace(part, rows=slice(part.rows.start + first, part.rows.stop + first), record=record)
-
-
-def _put_states(sink: Sink, scene: Scene, variants: Sequence[Variant], states: States) -> None:
-    plan = variants[0].plan
-    sink.put(runs.SCENE.path, scene.text)
-    for path, values in states.datasets.items():
-        sink.put(path, values)
-    for path, positions in joined_positions(variants).items():
-        sink.put(path, positions)
-    if plan.asks(stresses.BELOW) and scene.output.map:
-        sink.put(stresses.MAP.path, np.array([count for *_, count in reversed(scene.output.map)]))
-
-
-def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
-    """Compute, archive and judge starts from rest; collective."""
-    assert plan.starts
-    progress.say("starts from rest")
-    datasets = solve_motions(
-        plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts")
-    )
-    for path, values in datasets.items():
-        sink.put(path, values)
-    if ranks.is_root():
-        judge.see(comparisons(datasets, plan.body.load, plan.rules))
-
-
-def _parts_of(
-    plan: Plan, states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
+    plans: Sequence[Plan], states: States, finished: NDArray[np.bool_], progress: Progress, clock: Clock
 ) -> Iterator[Part]:
     """Results of all tasks, in any order of states; on rank 0 only where speeds are shared out."""
-    methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
-    if ranks.size() > 1 and plan.fem:
-        from mpi4py import MPI
-
-        from .share import shared_out
-
-        finished = MPI.COMM_WORLD.bcast(finished)
-    work = Work(plan, states.g, methods, clock, finished)
-    tasks = (task for task in plan.tasks if work.to_do(task))
-    if plan.fem and plan.fem.shared_speeds:
-        # The fastest are the dearest.
-        to_do = sorted(tasks, key=lambda task: -task.response.c)
-        if to_do:
+    for plan in plans:
+        if plan.scene.swept:
+            progress.say(plan.scene.variant)
+        methods = {name: METHODS[name].made(plan, progress, clock) for name in plan.methods}
+        work = Work(plan, states.g, states.load, methods, clock, finished)
+        tasks = (task for task in plan.tasks if work.batches(task))
+        if not plan.fem or not plan.fem.shared_speeds:
+            yield from chain.from_iterable(map(work.parts, tasks))
+            continue
+        if to_do := sorted(tasks, key=lambda task: -task.response.c):  # the fastest are the dearest
             work.begin()
         yield from shared_out(to_do, work.parts)
-    else:
-        for task in tasks:
-            yield from work.parts(task)
 
 
-def _put_work(sink: Sink, scene: Scene, variants: Sequence[Variant], clock: Clock) -> None:
-    sink.put(runs.DONE.path, lines_of(scene, variants))
-    sink.put(runs.SKIPPED.path, list(dict.fromkeys(chain(*(each.plan.skipped for each in variants)))))
-    clock.lap()
-    names = sorted(clock)  # a run that goes on does them in another order
-    sink.put(runs.STEPS.path, names)
-    sink.put(runs.SECONDS.path, np.array([clock[name] for name in names], dtype=float))
+def _put_records(sink: Sink, plans: Sequence[Plan], records: Sequence[dict[str, Any]]) -> list[str]:
+    """Write the records of the speeds; return those that could not be solved, with the reasons.
 
-
-def _attributes(scene: Scene, variants: Sequence[Variant], judge: Judge) -> dict[str, Any]:
-    warnings = dict.fromkeys(chain(*(each.plan.warnings for each in variants)))
-    verdict, reasons = judge.verdict()
-    return {
-        "version": __version__,
-        "versions": json.dumps(libraries()),
-        "machine": machine(),
-        "scene_sha256": scene.sha256,
-        **scene_attributes(scene),
-        "rules": json.dumps(sorted(variants[0].plan.rules)),
-        "verdict": verdict,
-        "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
-        "comparisons": json.dumps(judge.worst, ensure_ascii=False),
-        "warnings": json.dumps([*warnings, *judge.validity.words()], ensure_ascii=False),
-    }
+    Raises:
+        SolveError: no speed could be solved.
+    """
+    failures = [f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record]
+    if len(failures) == sum(len(plan.tasks) for plan in plans) and not any(
+        record["solved"] for record in records
+    ):
+        raise SolveError(failures[0])
+    if plans[0].fem or failures:
+        sink.put(FAILURES.path, failures)
+    if plans[0].fem:
+        for name, quantity in RECORD.items():
+            sink.put(quantity.path, np.array([record[name] for record in records], quantity.type))
+        changes = [record.get("change_by_degree", []) for record in records]
+        if longest := max(map(len, changes)):
+            padded = [change + [0.0] * (longest - len(change)) for change in changes]
+            sink.put(CHANGES.path, np.array(padded))
+    return failures

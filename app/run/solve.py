@@ -1,7 +1,7 @@
 """Solution of a plan's tasks: every method solves them, quantities are evaluated and compared."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,12 +14,14 @@ from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.solvers.contact.method import Method, Solver
-from galinx.solvers.contact.solution import Contact, Places, Task
+from galinx.solvers.contact.solution import Contact, Method, Places, Solver, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
 from ..plan.plan import Plan
+
+#: Clock's step for the evaluation of a method's solutions, by method.
+_STEPS = {"fem": "recovery", "closed_form": "closed form"}
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,8 @@ class Work:
 
     Attributes:
         plan: the plan.
-        g: σ_XY/σ_YY of all states, (states,).
+        g: σ_XY/σ_YY of all states of the archive, (states,).
+        load: load of each of them [N/m], (states,); None where all have that of the plan.
         methods: methods by name.
         clock: takes wall time by step.
         finished: True for states that need not be computed again, (states,).
@@ -45,6 +48,7 @@ class Work:
 
     plan: Plan
     g: NDArray[np.float64]
+    load: NDArray[np.float64] | None
     methods: Mapping[str, Method]
     clock: Clock
     finished: NDArray[np.bool_]
@@ -55,9 +59,20 @@ class Work:
             if hasattr(method, "begin"):
                 method.begin()
 
-    def to_do(self, task: Task) -> list[slice]:
-        """Rows of a task's states that are still to be computed, chunk by chunk."""
-        return [rows for rows in self.plan.chunks(task) if not self.finished[rows].all()]
+    def batches(self, task: Task) -> list[list[slice]]:
+        """Rows of a task's states that are still to be computed, in batches of at most a chunk."""
+        batches: list[list[slice]] = []
+        room = 0
+        for rows in self.plan.chunks(task):
+            count = rows.stop - rows.start
+            if self.finished[rows].all():
+                continue
+            if not batches or count > room:
+                batches.append([])
+                room = self.plan.chunk
+            batches[-1].append(rows)
+            room -= count
+        return batches
 
     def parts(self, task: Task) -> Iterator[Part]:
         """Results at one speed.
@@ -66,139 +81,112 @@ class Work:
         ``speed``, and a ``failure`` where it could not be solved. Under some of its loads a contact may
         have no answer: the others are solved all the same.
         """
-        failures: dict[str, str] = {}
-        of_loads: dict[str, str] = {}
-        different, solved = len(task.body.dissimilar(task.loads)) > 1, False
+        reasons: dict[str, str] = {}
+        last, any_solved = None, False
         with ExitStack() as stack:
-            solvers: dict[str, Solver] = {}
-            for name, method in self.methods.items():
-                try:
-                    if self._together(name, task):
-                        solvers[name] = stack.enter_context(method.at(task, np.unique(task.of(self.g))))
-                except SolveError as error:
-                    failures[name] = str(error)
-            last: Part | None = None
-            for runs in self._batches(task):
-                reasons = dict(failures)
-                parts = list(self._parts(task, runs, solvers, reasons))
-                if reasons != failures and different:
-                    parts = []
-                    for load, runs_of_load in self._by_load(runs):
-                        reasons = dict(failures)
-                        parts += self._parts(task, runs_of_load, solvers, reasons)
-                        solved |= not reasons
-                        for name in reasons.keys() - failures.keys() - of_loads.keys():
-                            of_loads[name] = f"N = {load:g} N/m: {reasons[name]}"
-                else:
-                    failures = reasons
-                    solved |= len(task.loads) > 1 and not reasons
-                for part in parts:
+            solvers = self._solvers(task, task.of(self.g), stack, reasons)
+            for runs in self.batches(task):
+                rows = np.concatenate([np.arange(run.start, run.stop) for run in runs])
+                data, solved = self._solve(task, rows, solvers, reasons)
+                any_solved |= bool(solved.any())
+                with self.clock("comparison"):
+                    for quantity in self.plan.quantities:
+                        if quantity.of_data:
+                            data[quantity.path] = quantity.of_data(data)
+                    compared = self._compared(data, rows, solved) if solved.any() else {}
+                first = 0
+                for run in runs:
+                    own = slice(first, first := first + run.stop - run.start)
                     if last:
                         yield last
-                    last = part
+                    last = Part(run, {path: of[own] for path, of in data.items()}, compared, None)
+                    compared = {}  # that of the whole batch
             assert last
-            yield replace(last, record=_record(task, solvers, of_loads | failures, solved))
+            yield replace(last, record=self._record(task, solvers, reasons, any_solved))
 
     def of_states(self, task: Task, rows: NDArray[np.int64]) -> dict[str, NDArray]:
-        """Quantities of states of a speed by path, without comparisons.
+        """Quantities of states of a speed by path, without comparisons and what follows from others.
 
         Args:
             task: the speed.
-            rows: indices of the states, (n,).
+            rows: of the states, (n,).
 
         Raises:
             SolveError: they could not be solved.
         """
-        g, load = self.g[rows], None
-        if len(task.loads) > 1:
-            load = self.plan.load(rows)
-        body = task.body.loaded(load)
-        local = task.body.local_exponents(task.response, g, load)
-        data = self._of(LOCAL, Edges(local, g, task.places), body)
-        for name, method in self.methods.items():
-            with ExitStack() as stack:
-                solver = None
-                if self._together(name, task):
-                    solver = stack.enter_context(method.at(task, np.unique(g)))
-                data |= self._read(name, solver, task, g, load)
+        reasons: dict[str, str] = {}
+        with ExitStack() as stack:
+            solvers = self._solvers(task, self.g[rows], stack, reasons)
+            data, _ = self._solve(task, rows, solvers, reasons)
+        if reasons:
+            raise SolveError("; ".join(reasons.values()))
         return data
 
-    def _by_load(self, runs: Sequence[slice]) -> Iterator[tuple[float, list[slice]]]:
-        """Runs of states, cut so that each has a single load, with that load [N/m]."""
-        for rows in runs:
-            loads = self.plan.load(rows)
-            first = np.flatnonzero(np.diff(loads, prepend=np.nan)).tolist()
-            for start, stop in zip(first, [*first[1:], len(loads)]):
-                yield float(loads[start]), [slice(rows.start + start, rows.start + stop)]
+    def _solvers(
+        self, task: Task, g: NDArray, stack: ExitStack, reasons: dict[str, str]
+    ) -> dict[str, Solver | None]:
+        """Solvers of the speed by method, None for a method of which each load has its own.
 
-    def _batches(self, task: Task) -> list[list[slice]]:
-        """Rows that are still to be computed, in batches of at most a chunk."""
-        batches: list[list[slice]] = []
-        room = 0
-        for rows in self.to_do(task):
-            count = rows.stop - rows.start
-            if not batches or count > room:
-                batches.append([])
-                room = self.plan.chunk
-            batches[-1].append(rows)
-            room -= count
-        return batches
+        Methods that fail are left out; ``reasons`` gets why.
+        """
+        solvers: dict[str, Solver | None] = {}
+        for name, method in self.methods.items():
+            try:
+                together = self.load is None or METHODS[name].loads
+                solvers[name] = stack.enter_context(method.at(task, np.unique(g))) if together else None
+            except SolveError as error:
+                reasons[name] = str(error)
+        return solvers
 
-    def _together(self, name: str, task: Task) -> bool:
-        """True where a single solver takes the states of a method under all loads."""
-        return len(task.loads) == 1 or METHODS[name].loads
-
-    def _parts(
-        self, task: Task, runs: Sequence[slice], solvers: Mapping[str, Solver], failures: dict[str, str]
-    ) -> Iterator[Part]:
-        """Results of runs of states, which are solved together."""
-        g, load = np.concatenate([self.g[rows] for rows in runs]), None
-        if len(task.loads) > 1:
-            load = np.concatenate([self.plan.load(rows) for rows in runs])
-        body = task.body.loaded(load)
+    def _solve(
+        self, task: Task, rows: NDArray[np.int64], solvers: Mapping[str, Solver | None],
+        reasons: dict[str, str],
+    ) -> tuple[dict[str, NDArray], NDArray[np.bool_]]:  # fmt: skip
+        """Quantities of states by path, NaN where a method fails; and True where all methods solve."""
+        g, load = self.g[rows], None if self.load is None else self.load[rows]
+        solved = np.ones(len(g), dtype=bool)
         with self.clock(_STEPS["closed_form"]):
             local = task.body.local_exponents(task.response, g, load)
-            data = self._of(LOCAL, Edges(local, g, task.places), body)
+            data = self._of(LOCAL, Edges(local, g, task.places), task.body.loaded(load))
         for name in self.methods:
-            try:
-                if name not in failures:
-                    with self.clock(_STEPS.get(name, name)):
-                        data |= self._read(name, solvers.get(name), task, g, load)
-            except SolveError as error:
-                failures[name] = str(error)
-            if name in failures:
-                data |= self._unknown(name, len(g))
-        with self.clock("comparison"):
-            for quantity in self.plan.quantities:
-                if quantity.of_data:
-                    data[quantity.path] = quantity.of_data(data)
-            first = 0
-            for rows in runs:
-                own = slice(first, first + rows.stop - rows.start)
-                of_run = {path: values[own] for path, values in data.items()}
-                N = body.load if load is None else load[own]
-                compared = [] if failures else self._compared(of_run, g[own], N)
-                yield Part(rows, of_run, compared, None)
-                first = own.stop
+            if name not in solvers:
+                data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)
+                continue
+            with self.clock(_STEPS.get(name, name)):
+                values, own, why = self._by(name, solvers[name], task, g, load)
+            data, solved = data | values, solved & own
+            if why:
+                reasons.setdefault(name, why)
+        return data, solved
 
-    def _read(
-        self, name: str, solver: Solver | None, task: Task, g: NDArray, load: NDArray | None
-    ) -> dict[str, NDArray]:
-        """Quantities of states by one method, by path; if no solver is given, each load has its own."""
-        if solver is not None:
-            loads = (load,) if METHODS[name].loads else ()
-            return self._of(name, solver.states(g, *loads), task.body.loaded(load))
-        assert load is not None
+    def _by(
+        self, name: str, solver: Solver | None, task: Task, g: NDArray, load: Any
+    ) -> tuple[dict[str, NDArray], NDArray[np.bool_], str]:
+        """Quantities by a method, where it solves, (states,), and why it does not elsewhere.
+
+        Where all loads together have no answer each is tried alone.
+        """
+        takes, loads = METHODS[name].loads, [None] if load is None else np.unique(load).tolist()
+        solved, why = np.zeros(len(g), dtype=bool), ""
+        if solver or len(loads) == 1:
+            body = task.body.loaded(load if takes or load is None else loads[0])
+            alone = replace(task, body=body, loads=(body.load,)) if not solver else task
+            try:
+                with nullcontext(solver) if solver else self.methods[name].at(alone, np.unique(g)) as own:
+                    solution = own.states(g, load) if takes else own.states(g)  # type: ignore[call-arg]
+                    return self._of(name, solution, body), ~solved, ""
+            except SolveError as error:
+                if len(loads) == 1 or task.body.alike:
+                    where = "" if load is None or task.body.alike else f"N = {loads[0]:g} N/m: "
+                    return self._unknown(name, len(g)), solved, f"{where}{error}"
         data = self._unknown(name, len(g))
-        for N in np.unique(load).tolist():
-            rows_of_load = np.flatnonzero(load == N)
-            alone = replace(task, body=task.body.loaded(N), loads=(N,))
-            with self.methods[name].at(alone, np.unique(g[rows_of_load])) as solver_of_load:
-                for path, values in self._of(
-                    name, solver_of_load.states(g[rows_of_load]), alone.body
-                ).items():
-                    data[path][rows_of_load] = values
-        return data
+        for N in loads:
+            rows = load == N
+            values, solved[rows], of_load = self._by(name, solver, task, g[rows], load[rows])
+            why = why or of_load
+            for path in values:
+                data[path][rows] = values[path]
+        return data, solved, why
 
     def _of(self, method: str, solution: Any, body: Contact) -> dict[str, NDArray]:
         return {
@@ -211,34 +199,35 @@ class Work:
         return {
             quantity.path: np.full((states, *self.plan.shape(quantity)), np.nan)
             for quantity in self.plan.quantities
-            if quantity.method == method
+            if quantity.of and quantity.method == method
         }
 
-    def _compared(self, data: dict[str, NDArray], g: NDArray, load: Any) -> list[compare.Comparison]:
-        given = {states.RATIO.path: g} | self.plan.positions
-        return compare.comparisons(data | given, load, self.plan.rules)
+    def _compared(
+        self, data: dict[str, NDArray], rows: NDArray[np.int64], solved: NDArray[np.bool_]
+    ) -> dict[str, float]:
+        """Comparisons over the states that are solved."""
+        good = {path: values[solved] for path, values in data.items()} if not solved.all() else data
+        load = self.plan.body.load if self.load is None else self.load[rows[solved]]
+        given = {states.RATIO.path: self.g[rows[solved]]} | self.plan.positions
+        return compare.comparisons(good | given, load, self.plan.rules)
 
+    def _record(
+        self, task: Task, solvers: Mapping[str, Solver | None], reasons: Mapping[str, str], solved: bool
+    ) -> dict[str, Any] | None:
+        """Numbers of the work at a speed, None where no method has any.
 
-#: Clock's step for the evaluation of a method's solutions, by method.
-_STEPS = {"fem": "recovery", "closed_form": "closed form"}
-
-
-def _record(
-    task: Task, solvers: Mapping[str, Solver], reasons: Mapping[str, str], solved: bool
-) -> dict[str, Any] | None:
-    """Numbers of the work at a speed, None where no method has any.
-
-    Args:
-        task: the speed.
-        solvers: of its states, by method.
-        reasons: why states could not be solved, by method.
-        solved: True where states under another load were solved.
-    """
-    speed: dict[str, Any] = {"speed": task.number, "c": task.response.c}
-    numbers: dict[str, Any] = {}
-    if solved or not reasons:
-        numbers = {key: value for solver in solvers.values() for key, value in solver.record().items()}
-    if reasons:
-        failure = {"failure": "; ".join(reasons.values()), "solved": solved}
-        return dict.fromkeys(RECORD, 0.0) | numbers | speed | failure
-    return numbers | speed if numbers else None
+        Args:
+            task: the speed.
+            solvers: of its states, by method.
+            reasons: why states could not be solved, by method.
+            solved: True where some states were solved by all methods.
+        """
+        speed: dict[str, Any] = {"speed": self.plan.speed + task.number, "c": task.response.c}
+        numbers: dict[str, Any] = {}
+        for solver in filter(None, solvers.values() if solved or not reasons else ()):
+            numbers |= solver.record()
+        if reasons:
+            of_variant = f", {self.plan.scene.variant}" if self.plan.scene.swept else ""
+            failure = {"failure": "; ".join(reasons.values()) + of_variant, "solved": solved}
+            return dict.fromkeys(RECORD, 0.0) | numbers | speed | failure
+        return numbers | speed if numbers else None

@@ -27,7 +27,7 @@ from ..text_table import read_table
 from .library import LIBRARY
 from .scene import Scene, contradictions, in_words, usual_quantities
 from .sections import ADVECTED, SECTIONS, SWEPT, Key
-from .values import Number, Numbers, Or, Rows, Wrapped
+from .values import Number, Numbers, Or, Rows
 
 #: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm.
 _PLACE = re.compile(r"\(at line (\d+),")
@@ -119,7 +119,7 @@ def _named(tree: Mapping[str, Any]) -> Iterator[tuple[str, Rows, str]]:
     for path, table, keys in _tables(tree, SECTIONS):
         for key, file in table.items():
             kind = keys[key].kind if key in keys else None
-            if isinstance(kind, Wrapped | Or):
+            if isinstance(kind, Or):
                 kind = kind.kind
             if isinstance(kind, Rows) and isinstance(file, str) and _NAMED.search(f'{file}"'):
                 yield f"{path}.{key}", kind, file
@@ -339,9 +339,8 @@ def _fill_in_materials(tree: dict[str, Any]) -> None:
     """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
     if "solid" in tree:
         tree["solid"] = _with_constants(tree["solid"])
-    if isinstance(own := tree.get("punch.solid"), dict):  # nothing asks where the punch yields
-        every = _with_constants(own)
-        tree["punch.solid"] = {k: v for k, v in every.items() if k != "yield_strength" or k in own}
+    if "punch.solid" in tree:
+        tree["punch.solid"] = _with_constants(tree["punch.solid"])
     if isinstance(tree.get("layer"), list):
         tree["layer"] = [_with_constants(table) for table in tree["layer"]]
 

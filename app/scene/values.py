@@ -1,7 +1,7 @@
 """Kinds of values in a scene: each turns a value of TOML into the one to compute with, or refuses it.
 
-There are single numbers and texts, numbers as a list or a range, and tables: rows of numbers, variations
-of a law's parameters, strokes. Each kind also gives the JSON schema of its values.
+There are single numbers and texts, lists and tables of other kinds, numbers as a list or a range, and
+rows of numbers. Each kind also gives the JSON schema of its values.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ _NO_BOUNDS = Range()
 
 
 class Kind(Protocol):
-    """A kind of values; its docstring describes these in the documentation of scenes."""
+    """A kind of values; ``about`` or its docstring describes these in the documentation of scenes."""
 
     def __call__(self, value: Any) -> Any:
         """The checked value.
@@ -81,22 +81,6 @@ class Or:
 
 
 @dataclass(frozen=True)
-class NumberList:
-    """A list of ``count`` numbers in ``unit``, each of which may be a text with a unit."""
-
-    unit: str
-    count: int
-
-    def __call__(self, value: Any) -> tuple[float, ...]:
-        if not isinstance(value, list) or len(value) != self.count:
-            raise ValueError(f"found {excerpt(value)}, expected a list of {self.count} numbers")
-        return tuple(to_si(entry, self.unit) for entry in value)
-
-    def schema(self) -> dict[str, Any]:
-        return _array(Number(self.unit).schema(), self.count, self.count)
-
-
-@dataclass(frozen=True)
 class Whole:
     """A whole number."""
 
@@ -120,7 +104,9 @@ class Choice:
     def __call__(self, value: Any) -> str:
         if not isinstance(value, str) or value not in self.options:
             hint = meant(value, self.options) if isinstance(value, str) else ""
-            raise ValueError(f"found {excerpt(value)}, expected {_one_of(self.options)}{hint}")
+            *first, last = self.options
+            one_of = f"{', '.join(first)} or {last}" if first else last
+            raise ValueError(f"found {excerpt(value)}, expected {one_of}{hint}")
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -128,26 +114,77 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Choices:
-    """A list of names."""
+class List:
+    """A list of values of a kind.
 
-    options: Collection[str]
+    Attributes:
+        kind: of each.
+        about: the list in words.
+        count: number of values; None for any number from ``at_least`` on.
+        alone: True where a single value stands for a list of one.
+    """
+
+    kind: Kind
+    about: str = ""
+    count: int | None = None
     at_least: int = 1
+    alone: bool = False
 
-    def __call__(self, value: Any) -> tuple[str, ...]:
-        if not isinstance(value, list):
-            raise ValueError(f"found {excerpt(value)}, expected a list of names")
+    @property
+    def unit(self) -> str | None:
+        """Unit of each value, None where they have none."""
+        return getattr(self.kind, "unit", None)
+
+    def __call__(self, value: Any) -> tuple[Any, ...]:
+        if self.alone and not isinstance(value, list):
+            value = [value]
+        if not isinstance(value, list) or len(value) != (self.count or len(value)):
+            expected = self.about or f"a list of {self.count} numbers"
+            raise ValueError(f"found {excerpt(value)}, expected {expected}")
         if len(value) < self.at_least:
-            raise ValueError(f"found an empty list, expected {_one_of(self.options)}")
-        choice = Choice(self.options)
-        return tuple(choice(entry) for entry in value)
+            raise ValueError(f"found an empty list, expected {self.about}, at least one")
+        return tuple(self.kind(entry) for entry in value)
 
     def schema(self) -> dict[str, Any]:
-        return {"type": "array", "items": Choice(self.options).schema()}
+        single = self.kind.schema()
+        array = _array(single, self.count or self.at_least, self.count)
+        return {"anyOf": [single, array]} if self.alone else array
 
 
-def _one_of(options: Collection[str]) -> str:
-    return " or ".join(filter(None, (", ".join(list(options)[:-1]), list(options)[-1])))
+@dataclass(frozen=True)
+class Table:
+    """A table of values by key.
+
+    Attributes:
+        kinds: of the values, by key.
+        words: the table in words.
+        needed: keys that it has to have.
+        form: an example of the table, for messages.
+    """
+
+    kinds: Mapping[str, Kind]
+    words: str
+    needed: tuple[str, ...] = ()
+    form: str = ""
+
+    def __call__(self, value: Any) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            raise ValueError(f"found {excerpt(value)}, expected {self.form}")
+        if unknown := [key for key in value if key not in self.kinds]:
+            hint = nearest(unknown[0], [*self.kinds])
+            raise ValueError(f"found the key {excerpt(unknown[0])} in {self.words}{hint}")
+        if missing := [key for key in self.needed if key not in value]:
+            raise ValueError(f"found {self.words} without {missing[0]}, expected {self.form}")
+        values = {}
+        for key, entry in value.items():
+            try:
+                values[key] = self.kinds[key](entry)
+            except ValueError as error:
+                raise ValueError(f"in {self.words}, {key}: {error}") from None
+        return values
+
+    def schema(self) -> dict[str, Any]:
+        return _object({key: kind.schema() for key, kind in self.kinds.items()}, self.needed)
 
 
 def _array(items: dict[str, Any], at_least: int = 0, at_most: int | None = None) -> dict[str, Any]:
@@ -187,37 +224,8 @@ class Rows:
         return rows
 
     def schema(self) -> dict[str, Any]:
-        rows = _array(_array(Number().schema(), len(self.units), len(self.units)), self.at_least)
+        rows = _array(List(Number(), count=len(self.units)).schema(), self.at_least)
         return {"anyOf": [rows, {"type": "string", "pattern": r"\.[cC][sS][vV]$"}]}
-
-
-def _by_key(
-    given: Mapping[str, Any], kinds: Mapping[str, Kind], where: str, needed: str = "", form: str = ""
-) -> dict[str, Any]:
-    """Values of a table by key.
-
-    Args:
-        given: as TOML gives them.
-        kinds: of the values, by key.
-        where: the table in words.
-        needed: keys that it has to have, with blanks between them.
-        form: an example of the table, for messages.
-
-    Raises:
-        ValueError: a key is unknown or missing, or a value is refused.
-    """
-    if unknown := [key for key in given if key not in kinds]:
-        hint = nearest(unknown[0], [*kinds])
-        raise ValueError(f"found the key {excerpt(unknown[0])} in {where}{hint}")
-    if missing := [key for key in needed.split() if key not in given]:
-        raise ValueError(f"found {where} without {missing[0]}, expected {form}")
-    values = {}
-    for key, entry in given.items():
-        try:
-            values[key] = kinds[key](entry)
-        except ValueError as error:
-            raise ValueError(f"in {where}, {key}: {error}") from None
-    return values
 
 
 def _check_over_contact(pairs: Sequence[Sequence[float]]) -> None:
@@ -275,33 +283,30 @@ class Constants:
         return {"type": "object", "minProperties": 1}
 
 
+_AXIS = List(Number(), "[from, to, number]", 3)
+_AXES = Table(
+    {"X": _AXIS, "Y": _AXIS}, "a map", ("X", "Y"),
+    "{X = [from, to, number], Y = [from, to, number]}, over a",
+)  # fmt: skip
+
+
 class Map:
     """``{X = [from, to, number], Y = [from, to, number]}``, over a, Y below the surface."""
 
+    schema = _AXES.schema
+
     def __call__(self, value: Any) -> tuple[tuple[float, float, int], ...]:
-        if not isinstance(value, dict) or set(value) != {"X", "Y"}:
-            raise ValueError(
-                f"found {excerpt(value)}, expected {{X = [from, to, number], Y = [from, to, number]}}, "
-                "over a"
-            )
-        axes = []
-        for axis in ("X", "Y"):
-            found = f"{axis}: found {excerpt(given := value[axis])}, expected [from, to, number]"
-            if not isinstance(given, list) or len(given) != 3:
-                raise ValueError(found)
-            first, last, count = (to_si(entry, "") for entry in given)
+        axes = _AXES(value)
+        for axis, (first, last, count) in axes.items():
             if not first < last or count != int(count) or not 2 <= count <= 2000:
-                raise ValueError(f"{found}, from < to, 2 ... 2000")
-            axes.append((first, last, int(count)))
-        _check_points([axes[1]])
-        return tuple(axes)
-
-    def schema(self) -> dict[str, Any]:
-        axis = _array(Number().schema(), 3, 3)
-        return _object({"X": axis, "Y": axis}, ("X", "Y"))
+                raise ValueError(
+                    f"{axis}: found {excerpt(value[axis])}, expected [from, to, number], from < to, "
+                    "2 ... 2000"
+                )
+        _check_points([axes["Y"]])
+        return tuple((first, last, int(count)) for first, last, count in (axes["X"], axes["Y"]))
 
 
-_FORM = '{from = …, to = …, number = …}, with spacing = "log" where ratios are to be equal'
 #: Most numbers of a range.
 _MOST = 10**6
 
@@ -313,81 +318,48 @@ class Numbers:
     unit: str = ""
     bounds: Range = Range()
 
-    @property
-    def _range(self) -> dict[str, Kind]:
-        """Kinds of the keys of a range."""
-        end, number = Number(self.unit, self.bounds), Whole(Range(at_least=2, at_most=_MOST))
-        return {"from": end, "to": end, "number": number, "spacing": Choice(("linear", "log"))}
-
     def __call__(self, value: Any) -> tuple[float, ...]:
-        if isinstance(value, dict):
-            return tuple(_spread(value, self._range))
-        kind = Number(self.unit, self.bounds)
-        numbers = tuple(kind(entry) for entry in (value if isinstance(value, list) else [value]))
-        if not numbers:
-            raise ValueError("found an empty list, expected at least one number")
-        return numbers
+        return tuple(_spread(**self._range(value))) if isinstance(value, dict) else self._list(value)
+
+    @property
+    def _list(self) -> List:
+        return List(Number(self.unit, self.bounds), "a number or a list of numbers", alone=True)
+
+    @property
+    def _range(self) -> Table:
+        end = Number(self.unit, self.bounds)
+        number, spacing = Whole(Range(at_least=2, at_most=_MOST)), Choice(("linear", "log"))
+        return Table(
+            {"from": end, "to": end, "number": number, "spacing": spacing}, "a range",
+            ("from", "to", "number"),
+            '{from = …, to = …, number = …}, with spacing = "log" where ratios are to be equal',
+        )  # fmt: skip
 
     def schema(self) -> dict[str, Any]:
-        single = Number(self.unit, self.bounds).schema()
-        keys = {key: kind.schema() for key, kind in self._range.items()}
-        return {"anyOf": [*single["anyOf"], _array(single, 1), _object(keys, ("from", "to", "number"))]}
+        single, array = self._list.schema()["anyOf"]
+        return {"anyOf": [*single["anyOf"], array, self._range.schema()]}
 
 
-def _spread(given: dict[str, Any], keys: Mapping[str, Kind]) -> Iterator[float]:
+def _spread(to: float, number: int, spacing: str = "linear", **ends: float) -> Iterator[float]:
     """Numbers of a range, ends included; those between are within bounds where both ends are.
 
     They are computed in decimals: 0.3 of 0, 0.1, … 0.9 is the float of "0.3".
     """
-    values = {"spacing": "linear"} | _by_key(given, keys, "a range", "from to number", _FORM)
-    first, last, number, logarithmic = (
-        values["from"], values["to"], values["number"], values["spacing"] == "log",
-    )  # fmt: skip
-    if first == last:
-        raise ValueError(f"found a range from {first:g} to {last:g}, expected two different ends")
-    if logarithmic and min(first, last) <= 0.0:
+    first, logarithmic = ends["from"], spacing == "log"
+    if first == to:
+        raise ValueError(f"found a range from {first:g} to {to:g}, expected two different ends")
+    if logarithmic and min(first, to) <= 0.0:
         raise ValueError(
-            f'found a range from {first:g} to {last:g} with spacing = "log", expected both ends > 0'
+            f'found a range from {first:g} to {to:g} with spacing = "log", expected both ends > 0'
         )
-    low, high = (Decimal(repr(end)) for end in (first, last))
+    low, high = (Decimal(repr(end)) for end in (first, to))
     if logarithmic:
         low, high = low.ln(), high.ln()
     yield first
     for i in range(1, number - 1):
         at = (low * (number - 1 - i) + high * i) / (number - 1)
         yield float(at.exp() if logarithmic else at)
-    yield last
-
-
-@dataclass(frozen=True)
-class OneOrMore:
-    """A text or a list of texts."""
-
-    one: Choice
-
-    def __call__(self, value: Any) -> tuple[str, ...]:
-        if not isinstance(value, list):
-            return (self.one(value),)
-        if not value:
-            raise ValueError("found an empty list, expected at least one text")
-        return tuple(self.one(entry) for entry in value)
-
-    def schema(self) -> dict[str, Any]:
-        single = self.one.schema()
-        return {"anyOf": [single, _array(single, 1)]}
-
-
-@dataclass(frozen=True)
-class Wrapped:
-    """A value that is the same for all laws of a scene, as a list of one."""
-
-    kind: Kind
-
-    def __call__(self, value: Any) -> tuple[Any]:
-        return (self.kind(value),)
-
-    def schema(self) -> dict[str, Any]:
-        return self.kind.schema()
+    yield to
 
 
 @dataclass(frozen=True)
@@ -404,36 +376,29 @@ class Variations:
             raise ValueError(
                 f"found {excerpt(value)}, expected tables [[friction.vary]] of parameters of the law"
             )
-        return tuple(_by_key(table, self.kinds, f"table {n}") for n, table in enumerate(value, 1))
+        return tuple(Table(self.kinds, f"table {n}")(table) for n, table in enumerate(value, 1))
 
     def schema(self) -> dict[str, Any]:
         properties = {key: {"$ref": f"#/properties/friction/properties/{key}"} for key in self.every}
         return {"type": "array", "items": _object(properties)}
 
 
-_STROKE_FORM = '{to = …}, with speed = "…" and rest = "…" where it has its own'
-_KEYS: dict[str, Kind] = {
-    "to": Number("", Range(at_least=0.0, at_most=1.0)),
-    "speed": Number("m/s", Range(above=0.0)),
-    "rest": Number("s", Range(at_least=0.0)),
-}
+class _Stroke:
+    """A direction, or how far a stroke goes, at its own speed, after its own time at rest."""
 
+    table = Table(
+        {"to": Number("", Range(at_least=0.0, at_most=1.0)), "speed": Number("m/s", Range(above=0.0)),
+         "rest": Number("s", Range(at_least=0.0))},
+        "a stroke", ("to",), '{to = …}, with speed = "…" and rest = "…" where it has its own',
+    )  # fmt: skip
+    name = Choice(DIRECTION)
 
-class Strokes:
-    """A list of `"forward"`, `"backward"` and `{to = X/L, speed = …, rest = …}`."""
-
-    def __call__(self, value: Any) -> tuple[str | Partial, ...]:
-        if not isinstance(value, list):
-            raise ValueError(f"found {excerpt(value)}, expected a list of names or of {_STROKE_FORM}")
-        if not value:
-            raise ValueError(f"found an empty list, expected forward or backward or {_STROKE_FORM}")
-        return tuple(self._stroke(entry) for entry in value)
-
-    def _stroke(self, value: Any) -> str | Partial:
-        if not isinstance(value, dict):
-            return Choice(DIRECTION)(value)
-        return Partial(**_by_key(value, _KEYS, "a stroke", "to", _STROKE_FORM))
+    def __call__(self, value: Any) -> str | Partial:
+        return Partial(**self.table(value)) if isinstance(value, dict) else self.name(value)
 
     def schema(self) -> dict[str, Any]:
-        stroke = _object({key: kind.schema() for key, kind in _KEYS.items()}, ("to",))
-        return _array({"anyOf": [Choice(DIRECTION).schema(), stroke]}, 1)
+        return {"anyOf": [self.name.schema(), self.table.schema()]}
+
+
+#: Strokes one after the other.
+STROKES = List(_Stroke(), 'a list of `"forward"`, `"backward"` and `{to = X/L, speed = …, rest = …}`')

@@ -17,13 +17,12 @@ from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import fields
 from galinx.texts import number, plain
 
-from ..figures.choice import Archive, Choice, Drawing
+from ..figures.choice import PLACE, STROKE, Archive, C, Choice, Drawing, StateLabels
 from ..figures.friction import Loops, loop_panel, loops_figure
 from ..figures.numerics import mesh_figure
 from ..figures.render import MARKERS, Curve, Panel, lines_and_markers, render
 from ..figures.sketches import problem_figure, procedure_figure
-from ..figures.states import PLACE, STROKE, C, StateLabels
-from ..figures.stresses import _BESIDE, along, broken, limits, surface_curves
+from ..figures.stresses import Shown, Surface, broken, limits, surface_panel
 from ..figures.style import COLOURS, GREY, LINES, Look, looks
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states
@@ -216,28 +215,29 @@ def _archive(scene: Scene) -> Archive:
 
 def _laws(scene: Scene, X: NDArray) -> Drawing:
     """Contact stresses of several friction laws, by the closed form."""
-    under, shown, dots, curves = under_punch(X), [], [], []
+    loops, dots, curves = [], [], []
     motion = replace(scene.motion, c=(SLOW, FAST), X_over_L=(_AT,))
     for (name, (called, values)), look in zip(LAWS_SHOWN.items(), looks(len(LAWS_SHOWN))):
         given = {key: (field.default,) for key, field in fields(LAWS[name]).items()} | values
         friction = replace(scene.friction, law=LAWS[name], parameters=given, vary=())
         own = replace(scene, friction=friction, motion=motion)
         states = enumerate_states(own)
-        loops = Loops(Archive(states.datasets, own, Choice()))
-        of = [_state(loops.labels, {STROKE: FM2, C: c}) for c in (SLOW, FAST)]
-        punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in of]
-        both = [np.array([np.where(under, punch.σ_YY(X), np.nan), punch.σ_XX(X)]) for punch in punches]
-        curves.append(_Stressed(called, look, both[0], both[1]))
-        shown += [replace(loop, label=called) for loop in (loops.of(of[0], []),) if loop]
-        place = np.array([_AT]), np.array([states.columns["f"][of[0]]])
+        archive = Archive(states.datasets, own, Choice())
+        at = [_state(archive.labels, {STROKE: FM2, C: c}) for c in (SLOW, FAST)]
+        punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in at]
+        slow, fast = (
+            [[np.where(under_punch(X), punch.σ_YY(X), np.nan)], [punch.σ_XX(X)]] for punch in punches
+        )
+        curves.append(Shown(_surface(X, slow, fast), 0, look))
+        loops += [replace(loop, label=called) for loop in (Loops(archive).of(at[0], []),) if loop]
+        place = np.array([_AT]), np.array([states.columns["f"][at[0]]])
         dots.append(Curve(*place, look, "", MARKERS))
-    row = f"FM2, $X/L = {_AT:g}$", curves
-    left = loop_panel(shown)
+    left = loop_panel(loops)
     panels = [replace(left, curves=[*left.curves, *dots], title="loops, and the place shown")]
-    panels += [_stress_panel(X, [row], row, column, False) for column in range(2)]
-    figure = render(panels, None, 3, lines_and_markers(*_slow_and_fast(loops.labels, of)), high=0.95)
+    panels += _stress_panels([(f"FM2, $X/L = {_AT:g}$", curves)])
+    notes = lines_and_markers(*_slow_and_fast(archive.labels, at))
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
-    return Drawing("laws", _LAWS.format(laws=names, at=_AT), figure)
+    return Drawing("laws", _LAWS.format(laws=names, at=_AT), render(panels, None, 3, notes, high=0.95))
 
 
 def _loops(loops: Loops) -> Any:
@@ -256,50 +256,35 @@ def _loops(loops: Loops) -> Any:
     return loops_figure(panels, shown)
 
 
-@dataclass(frozen=True)
-class _Stressed:
-    """Stresses with one name and one look in a row of panels: lines, markers, or both.
-
-    Attributes:
-        label, look: name in the legend, and look of line and markers.
-        line, markers: σ_YY and σ_XX, (2, points); no markers by default.
-        width: of the line [pt].
-    """
-
-    label: str
-    look: Look
-    line: NDArray
-    markers: NDArray | None = None
-    width: float = 1.0
-
-
-#: Title and curves of a row of panels.
-_Row = tuple[str, list[_Stressed]]
-
 #: Axes of the two stresses.
-_AXES = (r"contact stress $\sigma_{YY}/(N/2a)$", r"in-plane stress $\sigma_{XX}/(N/2a)$")
+_AXES = {
+    "sigma_YY": r"contact stress $\sigma_{YY}/(N/2a)$",
+    "sigma_XX": r"in-plane stress $\sigma_{XX}/(N/2a)$",
+}
 #: Differences below this are those of rounding [N/(2a)], and height of their panels over the others'.
 _LEAST, _FLAT = 1e-15, 0.5
 
 
-def _stress_panel(X: NDArray, rows: Sequence[_Row], row: _Row, column: int, named: bool) -> Panel:
-    """Panel of one stress of a row, between limits that all rows share."""
-    every = [values for _, of in rows for curve in of for values in (curve.line, curve.markers)]
-    shown = np.array([values[column] for values in every if values is not None])
-    half = along(X, shown)
-    title, stressed = row
-    curves: list[Curve] = []
-    for n, curve in enumerate(stressed):
-        values = {CLOSED_FORM: curve.line[column]}
-        if curve.markers is not None:
-            values[FEM] = curve.markers[column]
-        drawn = surface_curves(X, values, curve.look, curve.label if named else "", n / len(stressed))
-        curves += [replace(one, width=curve.width) for one in drawn]
-    return Panel(
-        "position on the surface $X/a$", _AXES[column], curves=curves, title=title,
-        xlim=(-half, half), ylim=limits(X, shown), at_y=(0.0,),
-        bands=[(-1.0, 1.0)] if half == _BESIDE else (),
-    )  # fmt: skip
+def _surface(X: NDArray, lines: Any, markers: Any = None) -> Surface:
+    """Stresses drawn as lines, and as markers: σ_YY and σ_XX of each curve, (2, curves, points)."""
+    drawn = {CLOSED_FORM: lines} | ({} if markers is None else {FEM: markers})
+    values = {
+        name: {as_: np.asarray(both[n]) for as_, both in drawn.items()} for n, name in enumerate(_AXES)
+    }
+    return Surface(X, _AXES, values, [(1.0, 0.0)] * len(lines[0]))
+
+
+def _stress_panels(rows: Sequence[tuple[str, list[Shown]]]) -> list[Panel]:
+    """Panels of both stresses, row by row with title and curves, between limits that all rows share."""
+    ylim = {}
+    for name in _AXES:
+        values = [
+            y[row] for _, of in rows for surface, row, *_ in of for y in surface.values[name].values()
+        ]
+        ylim[name] = limits(rows[0][1][0].surface.X, np.array(values))
+    return [
+        surface_panel(name, shown, ylim[name], title=title) for title, shown in rows for name in _AXES
+    ]
 
 
 def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
@@ -308,7 +293,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
     single = len(figure.speeds) == 1
     marked = FEM if single else CLOSED_FORM
     solved = {method: PRESSURE[method].path in data for method in (CLOSED_FORM, FEM)}
-    rows: list[_Row] = []
+    rows: list[tuple[str, list[Shown]]] = []
     states: list[list[int]] = []
     for value in figure.rows:
         at = figure.at | {figure.row: value}
@@ -317,30 +302,25 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
             for curve in figure.curves
         ]
         states += pairs
-        curves = [
-            _Stressed(
-                labels.label(pair[0], [figure.curve]), look, _values(data, CLOSED_FORM, pair[0]),
-                _values(data, marked, pair[-1]) if solved[marked] else None,
-            )
-            for pair, look in zip(pairs, labels.looks([pair[0] for pair in pairs], [figure.curve]))
-        ]  # fmt: skip
+        first, last = [pair[0] for pair in pairs], [pair[-1] for pair in pairs]
+        markers = _values(data, marked, last) if solved[marked] else None
+        surface = _surface(X, _values(data, CLOSED_FORM, first), markers)
+        curves = surface.shown(
+            labels.looks(first, [figure.curve]), [labels.label(i, [figure.curve]) for i in first]
+        )
         if name == "fig7":
             travelled = _state(labels, at | {STROKE: BM1, C: SLOW, PLACE: 1.0 - value})
-            dots = Look(COLOURS[6], LINES[3], "")
+            surface = _surface(X, _values(data, CLOSED_FORM, [travelled]))
             label = "BM1 (SS), $X/L$ travelled since its turn"
-            curves.append(_Stressed(label, dots, _values(data, CLOSED_FORM, travelled), width=0.8))
-        rows.append((labels.label(pairs[0][0], [figure.row]), curves))
-    says = ("closed form", "finite elements") if single else _slow_and_fast(labels, states[0])
-    panels = [
-        panel if row is rows[-1] else replace(panel, x=None)
-        for row in rows
-        for panel in (_stress_panel(X, rows, row, column, column == 0) for column in range(2))
-    ]
+            curves.append(Shown(surface, 0, Look(COLOURS[6], LINES[3], ""), label, 0.8))
+        rows.append((labels.label(first[0], [figure.row]), curves))
+    panels = _stress_panels(rows)
+    panels = [*(replace(panel, x=None) for panel in panels[:-2]), *panels[-2:]]
     if not single and solved[FEM]:
         panels += [_difference_panel(data, states, column, panels[column]) for column in range(2)]
-    return Drawing(
-        name, figure.caption + _ENDS, render(panels, None, 2, lines_and_markers(*says), high=0.5)
-    )
+    says = ("closed form", "finite elements") if single else _slow_and_fast(labels, states[0])
+    drawn = render(panels, None, 2, lines_and_markers(*says), high=0.5)
+    return Drawing(name, figure.caption + _ENDS, drawn)
 
 
 def _difference_panel(

@@ -14,7 +14,7 @@ an integral, too.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -22,9 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-from ..friction.along import Along
+from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, from_edge, under_punch
+from .panels import Panels, stretched
 from .pressure import Expansion, Pressure
 from .recovery import Polynomials
 from .residual import Rule
@@ -133,6 +134,62 @@ class FlatAlong(Pressure):
         τ = self._amplitude * size * np.where(under_punch(r), local._cot * local._sin, np.sign(r))
         τ = np.where(from_edge(r) == 0.0, np.nan, τ)
         return self.along(r)[None], ((τ - self.response.n12 * C) / self._compliance(r))[None], C[None]
+
+
+@dataclass(frozen=True)
+class ExpansionAlong(Expansion):
+    """Pressure by its values on panels with friction that varies along the contact.
+
+    Attributes:
+        friction: σ_XY/σ_YY over X/a.
+    """
+
+    friction: Along = constant(0.0)
+
+    @cached_property
+    def _shear(self) -> NDArray[np.float64]:
+        """Values of σ_XY over the weight."""
+        return np.asarray(self.c * self.friction(self.functions.t))
+
+    def _hilbert(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
+        H, under = self.functions.rest(c, r, 1.0), np.abs(r) < 1.0
+        x = stretched(r[under])
+        of_weight = self.functions.weight(x) * self.functions.hilbert_of_weight(x)
+        H[under] += self.functions.interpolated(c, x) * of_weight
+        infinite = (from_edge(r) == 0.0) & np.where(r < 0.0, *~self.free)
+        return np.where(infinite, np.nan, H)
+
+    def hilbert(self, r: NDArray) -> NDArray[np.float64]:
+        return self._hilbert(self.c, r)
+
+    def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        ratio, H = self.friction(r), self.hilbert(r)
+        return ratio[None], H[None], (self._hilbert(self._shear, r) - ratio * H)[None]
+
+    def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
+        return np.ones_like(g), self.friction(t)
+
+    def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        of_shear = replace(self, c=self._shear).integral(kernel, r)[:, 0]
+        return (self.integral(kernel, r)[:, 1] + of_shear)[None]
+
+    @property
+    def resultant_ratio(self) -> float:
+        """Resultant of σ_XY over that of σ_YY."""
+        return float(self._shear @ self.functions.weights / (self.c @ self.functions.weights))
+
+    @property
+    def pressure_centre(self) -> float:
+        """Centre of pressure over a."""
+        forces = self.c * self.functions.weights
+        return float(forces @ self.functions.t / forces.sum())
+
+
+def expansion(α: float, β: float, c: NDArray, panels: Panels, friction: Along) -> Expansion:
+    """Pressure, or several, by values c on panels, (n,) or (states, n), with a friction."""
+    if friction.varies:
+        return ExpansionAlong(α, β, c, panels, friction=friction)
+    return Expansion(α, β, c, panels)
 
 
 @dataclass(frozen=True)

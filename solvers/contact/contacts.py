@@ -14,7 +14,7 @@ The ends of a contact with two free ends and any convex profile P meet two condi
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -40,15 +40,17 @@ _FIRST = 1e-3
 
 @dataclass(frozen=True)
 class Group:
-    """States whose pressure is of one kind.
+    """States at one speed whose pressure is of one kind, and their stresses.
 
     Attributes:
+        response: of the half-plane at that speed.
         rows: numbers of these states, (rows,).
         g: σ_XY/σ_YY, (rows,).
         pressure: pressure of all these states or of the only one.
         half_width, centre: half-width and centre of the contact [m], (rows,).
     """
 
+    response: HalfPlane
     rows: NDArray[np.int64]
     g: NDArray[np.float64]
     pressure: Any
@@ -80,14 +82,35 @@ class Group:
         stress = self.pressure.σ_YY(r)
         return np.broadcast_to(stress, (len(self.rows), stress.shape[-1]))
 
-    def read(self, what: Any, values: "Callable[[Group], NDArray]") -> NDArray[np.float64]:
-        """Values that are linear in the pressure, (..., rows, n).
+    def surface(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY, 0 beside the contact, at r off the ends, (points,) or (rows, points).
 
-        Args:
-            what: a name of the values, by which they are kept.
-            values: gives them for a group, (..., rows, n).
+        The result is (2, rows, points).
         """
-        return values(self)
+        r = off_tips(r, self.pressure.tips)
+        σ_YY = np.where(np.abs(r) < 1.0, self.pressure.σ_YY(r), 0.0)
+        ratio, H, C = self.pressure.transforms(self.g[:, None], r)
+        σ_XX = in_plane(self.response, ratio, σ_YY, H, self.response.m * C + self.strain(r))
+        return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
+
+    def strain(self, r: NDArray) -> Any:
+        """Strain μ u,X over N/(2a) that layers add on the surface at r, (rows, points)."""
+        return 0.0
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
+        return self.response.inside(self.pressure, self.g[:, None], X, Y)
+
+    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n), on the surface, too: (3, rows, n)."""
+        on = Y == 0.0
+        σ = self.inside(X, np.where(on, -1.0, Y))
+        columns = on.any(axis=0)
+        if columns.any():
+            σ_XX, σ_YY = self.surface(X[:, columns])
+            on_surface = [σ_XX, σ_YY, self.g[:, None] * σ_YY]
+            σ[..., columns] = np.where(on[:, columns], on_surface, σ[..., columns])
+        return σ
 
 
 def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:
@@ -103,23 +126,16 @@ class Contacts:
     """Contacts at one speed with several frictions.
 
     Attributes:
-        response: of the half-plane at that speed.
         groups: all states by the kind of their pressure.
     """
 
-    response: HalfPlane
     groups: tuple[Group, ...]
-
-    @property
-    def g(self) -> NDArray[np.float64]:
-        """σ_XY/σ_YY, (states,)."""
-        return self.of("g")
 
     def of(self, name: str) -> NDArray[np.float64]:
         """Attribute of every state by its name, as ``α``, ``free``, ``half_width``, ``K_I``."""
         return self.joined(lambda group: getattr(group, name))
 
-    def joined(self, values: Callable[[Group], NDArray], axis: int = 0) -> NDArray[np.float64]:
+    def joined(self, values: Callable[[Any], NDArray], axis: int = 0) -> NDArray[np.float64]:
         """Values of all states from those of every group, along an axis of states."""
         if len(self.groups) == 1:
             return values(self.groups[0])
@@ -131,25 +147,19 @@ class Contacts:
         """Number of each state among those of all groups, one group after the other, (states,)."""
         return np.argsort(np.concatenate([group.rows for group in self.groups]))
 
+    @property
+    def in_punch(self) -> "Contacts":
+        """The same pressures on the half-plane of an elastic punch, mirrored at Y = 0.
+
+        There σ_XY has the other sign, and so has the friction.
+        """
+        return Contacts(
+            tuple(replace(of, response=of.response.punch, g=-of.g) for of in self.groups)  # type: ignore[attr-defined]
+        )
+
     def on_surface(self, r: NDArray) -> NDArray[np.float64]:
         """σ_XX and σ_YY, 0 beside the contact, on the surface off the ends, (2, states, points)."""
-        return self.joined(lambda group: self.surface_of(group, r), 1)
-
-    def surface_of(self, group: Group, r: NDArray) -> NDArray[np.float64]:
-        """σ_XX and σ_YY of a group at r, (points,) or (rows, points): (2, rows, points)."""
-        r = off_tips(r, group.pressure.tips)
-        σ_YY = np.where(np.abs(r) < 1.0, group.pressure.σ_YY(r), 0.0)
-        ratio, H, C = group.pressure.transforms(group.g[:, None], r)
-        σ_XX = in_plane(self.response, ratio, σ_YY, H, self.response.m * C + self.strain(group, r))
-        return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
-
-    def strain(self, group: Group, r: NDArray) -> Any:
-        """Strain μ u,X over N/(2a) that layers add on the surface at r, (rows, points)."""
-        return 0.0
-
-    def inside(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY of a group at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
-        return self.response.inside(group.pressure, group.g[:, None], X, Y)
+        return self.joined(lambda group: group.surface(r), 1)
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points with Y <= 0, on the surface, too.
@@ -157,21 +167,9 @@ class Contacts:
         Points are (n,), or of each state (states, n).
         """
         X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
-
-        def of_group(group: Group) -> NDArray[np.float64]:
-            return self.stresses_of(group, *(x[group.rows] if len(x) > 1 else x for x in (X, Y)))
-
-        return self.joined(of_group, 1)
-
-    def stresses_of(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY of a group at points (1, n) or (rows, n): (3, rows, n)."""
-        on, g = Y == 0.0, group.g[:, None]
-        σ = self.inside(group, X, np.where(on, -1.0, Y))
-        columns = on.any(axis=0)
-        if columns.any():
-            σ_XX, σ_YY = self.surface_of(group, X[:, columns])
-            σ[..., columns] = np.where(on[:, columns], [σ_XX, σ_YY, g * σ_YY], σ[..., columns])
-        return σ
+        return self.joined(
+            lambda group: group.stresses(*(x[group.rows] if len(x) > 1 else x for x in (X, Y))), 1
+        )
 
     def largest(self) -> NDArray[np.float64]:
         """Largest contact pressure over N/(2a), and its place; NaN if infinite: (2, states)."""
@@ -193,30 +191,40 @@ def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
     return panels_of_slope(a, kinks, not jumps(profile) and k != round(k))
 
 
-def contacts_of(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
-    """Contacts of a body, prescribed, with free ends or sharp.
+def between_edges(body: Any, response: HalfPlane, g: NDArray) -> Contacts:
+    """Contacts between two sharp corners of a punch.
 
     Args:
-        body: see :class:`galinx.solvers.contact.solution.Contact`.
+        body: see :class:`galinx.solvers.contact.solution.SharpContact`.
         response: of the half-plane at a speed.
         g: σ_XY/σ_YY, (states,).
     """
-    if body.found:
-        return contacts(response, g, body.profile, body.compression)
-    if known := body.known_pressures(response, g):
-        return Contacts(response, tuple(_fixed(rows, g, p, body.half_width) for rows, p in known))
+    if body.flat:
+        return between_given_ends(body, response, g, [FlatPunch(response, g[:, None])])
     from .equation import UNIFORM, Equation  # SciPy's special functions, a slow import
 
-    groups, loads = [], np.broadcast_to(body.load, g.shape).tolist()
-    for i, (value, load) in enumerate(zip(g.tolist(), loads)):
-        pressure = Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
-        groups.append(_fixed(np.array([i]), g, pressure, body.half_width))
-    return Contacts(response, tuple(groups))
+    loads = np.broadcast_to(body.load, g.shape).tolist()
+    each = [
+        Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
+        for value, load in zip(g.tolist(), loads)
+    ]
+    return between_given_ends(body, response, g, each)
 
 
-def _fixed(rows: NDArray, g: NDArray, pressure: Pressure, half_width: float) -> Group:
-    """States with given ends, of a half-width [m]; frictions are those of all states."""
-    return Group(rows, g[rows], pressure, np.full(len(rows), half_width), np.zeros(len(rows)))
+def between_given_ends(
+    body: Any, response: HalfPlane, g: NDArray, pressures: Sequence[Pressure]
+) -> Contacts:
+    """Contacts from -a to a of given pressures.
+
+    Args:
+        body, response, g: as in :func:`between_edges`.
+        pressures: one for all states, or one for each.
+    """
+    groups = []
+    for rows, pressure in zip(np.array_split(np.arange(len(g)), len(pressures)), pressures):
+        half_width = np.full(len(rows), body.half_width)
+        groups.append(Group(response, rows, g[rows], pressure, half_width, np.zeros(len(rows))))
+    return Contacts(tuple(groups))
 
 
 def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:
@@ -239,10 +247,10 @@ def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contac
             "punch (not below the Rayleigh speed): no contact of finite width carries a load"
         )
     if isinstance(profile, Flat):
-        return Contacts(response, _tilted(response, g, n, profile, load))
+        return Contacts(_tilted(response, g, n, profile, load))
     if isinstance(profile, Parabolic):
-        return Contacts(response, (_parabolas(response, g, n, profile, load),))
-    return Contacts(response, tuple(_by_quadrature(response, g, n, profile, load)))
+        return Contacts((_parabolas(response, g, n, profile, load),))
+    return Contacts(tuple(_by_quadrature(response, g, n, profile, load)))
 
 
 def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
@@ -251,7 +259,7 @@ def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, 
     h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
     A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
     pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
-    return Group(np.arange(len(g)), g, pressure, h, h * (b - a))
+    return Group(response, np.arange(len(g)), g, pressure, h, h * (b - a))
 
 
 def _tilted(
@@ -277,7 +285,7 @@ def _tilted(
         if len(rows):
             column = np.s_[rows, None]
             pressure = Weighted(α[column], β[column], A[column], B[column], kind)
-            groups.append(Group(rows, g[rows], pressure, h[rows], centre[rows]))
+            groups.append(Group(response, rows, g[rows], pressure, h[rows], centre[rows]))
     return tuple(groups)
 
 
@@ -298,7 +306,8 @@ def _by_quadrature(
         check_reach(profile, m - h, m + h)
         pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
         rows = np.flatnonzero(inverse == k)
-        groups.append(Group(rows, g[rows], pressure, np.full(len(rows), h), np.full(len(rows), m)))
+        half_width, centre = np.full(len(rows), h), np.full(len(rows), m)
+        groups.append(Group(response, rows, g[rows], pressure, half_width, centre))
     return groups
 
 

@@ -1,6 +1,7 @@
 """Edges of a punch: positions under it, exponents of the pressure, and the singular contact stress."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -58,22 +59,22 @@ class EdgeExponents:
     response: HalfPlane
     g: float | NDArray[np.float64]
 
-    @property
+    @cached_property
     def _cot(self) -> Any:
         """cot(πα) = g q/(n + g n₁₂) (Eq 42)."""
         return self.g * self.response.q / (self.response.n + self.g * self.response.n12)
 
-    @property
+    @cached_property
     def α(self) -> Any:
         """Exponent of the pressure at X = a, in (-1, 0): cot(πα) = g q/n (Eq 42)."""
         return -0.5 - np.arctan(self._cot) / np.pi
 
-    @property
+    @cached_property
     def β(self) -> Any:
         """Exponent of the pressure at X = -a: β = -1 - α (Eq 43)."""
         return -0.5 + np.arctan(self._cot) / np.pi
 
-    @property
+    @cached_property
     def _sin(self) -> Any:
         """sin(πα), negative; through the cotangent, so that no digit is lost."""
         return -1.0 / np.hypot(1.0, self._cot)

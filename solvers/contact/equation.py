@@ -23,6 +23,8 @@ from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
 from ..errors import SolveError
+from ..friction.along import Along, constant
+from .along import expansion
 from .panels import TO_BEND, Panels
 from .pressure import ENDS, Expansion, Functions
 
@@ -113,6 +115,8 @@ _NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(
 
 #: A change that rounding alone may make.
 _ROUNDING = 2e-12
+#: Panels towards a kink of friction that varies along the contact, or of the punch there.
+_TO_KINK_OF_FRICTION = 12
 #: Longest panel at first where the kernel is rough, over the contact's half-width, its factor from step
 #: to step, and the number of steps.
 _COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
@@ -138,7 +142,7 @@ class Equation:
     Attributes:
         response: of the surface's solid.
         kernel: of the layers; ``UNIFORM`` without any.
-        g: σ_XY/σ_YY under the punch.
+        g: σ_XY/σ_YY under the punch, a number or an :class:`Along`.
         slope: μ v,X under the punch over N/(2a) at given r.
         kinks: places r next to which the slope is not smooth.
         adjoint: True for the adjoint equation but for its sign: -q for q, and -K(-x) for K(x).
@@ -146,36 +150,55 @@ class Equation:
 
     response: Any
     kernel: Any
-    g: float
+    g: Any
     slope: Slope
     kinks: tuple[float, ...] = ()
     adjoint: bool = False
 
+    @cached_property
+    def friction(self) -> Along:
+        """σ_XY/σ_YY over the contact."""
+        return self.g if isinstance(self.g, Along) else constant(self.g)
+
+    @property
+    def rough(self) -> bool:
+        """True if the pressure without its weight is followed by no polynomial."""
+        return bool(self.kernel.rough or self.friction.varies)
+
     @property
     def n(self) -> float:
-        """n̂ = n + g n₁₂, dimensionless."""
-        return float(self.response.n + self.g * self.response.n12)
+        """n̂ = n + g n₁₂ of one friction, dimensionless."""
+        return float(self.response.n + self.friction.mean * self.response.n12)
 
     @property
     def Q(self) -> float:
-        """Factor g q of the pressure, dimensionless."""
-        return float(self.g * self.response.q) * (-1.0 if self.adjoint else 1.0)
+        """Factor g q of the pressure with one friction, dimensionless."""
+        return float(self.friction.mean * self.response.q) * (-1.0 if self.adjoint else 1.0)
 
     def K(self, x: NDArray) -> NDArray[np.float64]:
-        """Kernel of the layers at x, (..., 1)."""
+        """Kernel of the layers at x with one friction, (..., 1)."""
+        by_kernel = self._kernels(x)
+        return by_kernel[..., 1:] + self.friction.mean * by_kernel[..., :1]
+
+    def _kernels(self, x: NDArray) -> NDArray[np.float64]:
+        """Kernels of the layers at x by which σ_XY and σ_YY tilt the surface, (..., 2)."""
         sign = -1.0 if self.adjoint else 1.0
-        by_kernel = self.kernel(sign * x)
-        return np.asarray(sign * (by_kernel[..., 3:] + self.g * by_kernel[..., 2:3]))
+        return np.asarray(sign * self.kernel(sign * x)[..., 2:])
+
+    def _cot(self, r: NDArray) -> NDArray[np.float64]:
+        """cot(πα) = g q/n̂ at r."""
+        g, sign = self.friction(r), -1.0 if self.adjoint else 1.0
+        return np.asarray(sign * g * self.response.q / (self.response.n + g * self.response.n12))
 
     @cached_property
     def α(self) -> float:
         """Exponent at X = a, that of the surface's solid, dimensionless."""
-        return float(-0.5 - np.arctan2(self.Q, self.n) / np.pi)
+        return -0.5 - float(np.arctan(self._cot(ENDS))[1]) / np.pi
 
-    @property
+    @cached_property
     def β(self) -> float:
         """Exponent at X = -a, dimensionless."""
-        return -1.0 - self.α
+        return -0.5 + float(np.arctan(self._cot(ENDS))[0]) / np.pi
 
     def pressure(self, resolution: Resolution) -> Expansion:
         """Pressure with resultant -2 at a resolution."""
@@ -198,27 +221,36 @@ class Equation:
         return Expansion(self.α, self.β, np.linalg.solve(A, b).T, Jacobi(self.α, self.β))
 
     def _by_panels(self, finest: float, slopes: Sequence[Slope], loads: Sequence[float]) -> Expansion:
-        """Pressures by their values on panels, with which the dominant part is regular:
+        """Pressures by their values on panels, with which the dominant part of τ = n̂ σ = w P is regular:
 
-            (n̂/π) ∫ w(t) (p(t) - p(r))/(t - r) dt,
+            H[τ] - cot(πα) τ = (1/π) ∫ w(t) (P(t) - P(r))/(t - r) dt + (H[w] - cot(πα) w) P(r).
 
-        for what p(r) alone contributes is what the exponents make vanish.
+        The last term vanishes for one friction. The adjoint has n̂ outside the integral.
         """
-        panels = Panels(self.α, self.β, finest, self.kinks, TO_BEND)
-        x, n = panels.x, self.n
+        friction, response = self.friction, self.response
+        kinks = tuple(sorted({*self.kinks, *friction.kinks}))
+        steps = _TO_KINK_OF_FRICTION if friction.varies else TO_BEND
+        panels = Panels(self.α, self.β, finest, kinks, steps, rough=self.kernel.rough)
+        x, t = panels.x, panels.t
         apart = panels.apart(x[:, None], x - x[:, None])
         np.fill_diagonal(apart, np.inf)
-        A = n / np.pi * panels.weights / apart
+        A = panels.weights / apart / np.pi
         A -= np.diag(A.sum(axis=1))
         for panel, D in enumerate(panels.derivative):
             own = panels.of(panel)
-            A[own, own] += n / np.pi * panels.weights[own, None] * D
-        for i, at in enumerate(x.tolist()):
-            A[i] += panels.row(self.K, at)[:, 0]
-        scale = 1.0 / panels.weight(x)
-        A = np.vstack([A * scale[:, None], panels.weights])
-        b = np.vstack([np.stack([slope(panels.t) * scale for slope in slopes], axis=-1), loads])
-        return Expansion(self.α, self.β, np.linalg.lstsq(A, b, rcond=None)[0].T, panels)
+            A[own, own] += panels.weights[own, None] * D / np.pi
+        scale, g = 1.0 / panels.weight(x), friction(t)
+        A *= scale[:, None]
+        A += np.diag(panels.hilbert_of_weight(x) - self._cot(t))
+        n = response.n + g * response.n12
+        A *= n[:, None] if self.adjoint else n
+        for i, at in enumerate(x.tolist() if self.kernel is not UNIFORM else ()):
+            by_shear, by_pressure = panels.row(self._kernels, at).T
+            A[i] += scale[i] * (by_pressure + (g[i] if self.adjoint else g) * by_shear)
+        A = np.vstack([A, panels.weights])
+        b = np.vstack([np.stack([slope(t) * scale for slope in slopes], axis=-1), loads])
+        c = np.linalg.lstsq(A, b, rcond=None)[0].T
+        return expansion(self.α, self.β, c, panels, friction)
 
 
 @dataclass(frozen=True)
@@ -283,7 +315,7 @@ def converged(
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
     before, error = None, np.inf
-    for resolution in resolutions(equation.kernel.rough):
+    for resolution in resolutions(equation.rough):
         now = at_resolution(resolution)
         if before is not None:
             error = max(now.moved(before), now.change)

@@ -4,9 +4,10 @@ Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contac
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,16 +16,15 @@ from numpy.typing import NDArray
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
-from .contacts import Contacts, Group, contacts_of
+from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
 from .ends import Punch
 from .equation import SolvedContact
-from .method import Solver
-from .on_layers import ContactsOnLayers, LayersUnderPunch, Nodes, mixture
+from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Task, solved_once
+from .solution import Contact, Solver, Task, solved_once
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import Strength, StrengthOfLayers
 
@@ -32,6 +32,8 @@ from .yielding import Strength, StrengthOfLayers
 _TOGETHER = 20_000
 #: Least distance over a from an end or a kink at which stresses are evaluated.
 _NEAREST = 1e-7
+#: Signs of σ_XX, σ_YY, σ_XY of a field mirrored at Y = 0.
+_MIRROR = np.array([1.0, 1.0, -1.0])[:, None, None]
 
 
 @dataclass(frozen=True)
@@ -44,21 +46,11 @@ class ClosedForm:
 
     solution: Callable[[Task, NDArray, NDArray | None], Any]
 
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        yield _AtSpeed(task, self.solution)
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
+        def states(g: NDArray, load: NDArray | None = None) -> Any:
+            return self.solution(task, g, load)
 
-
-@dataclass(frozen=True)
-class _AtSpeed:
-    task: Task
-    solution: Callable[[Task, NDArray, NDArray | None], Any]
-
-    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
-        return self.solution(self.task, g, load)
-
-    def record(self) -> dict[str, Any]:
-        return {}
+        return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
 class ExactSolution:
@@ -78,7 +70,7 @@ class ExactSolution:
     @cached_property
     def contacts(self) -> Contacts:
         """Pressures, half-widths and middles of all solved states."""
-        return contacts_of(self._body, self.task.response, self._g)
+        return self._body.contacts(self.task.response, self._g)
 
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
@@ -161,7 +153,7 @@ class ExactSolution:
             kinks = np.append(group.pressure.kinks, group.pressure.breaks)
             return of_field(
                 self.task.response, group.g, (group.α, group.β), group.contact_stress,
-                lambda X, Y: self.contacts.stresses_of(group, X[None], Y[None]),
+                lambda X, Y: group.stresses(X[None], Y[None]),
                 self.places.points, kinks,
             )  # fmt: skip
 
@@ -184,45 +176,74 @@ class ExactSolution:
 
     @cached_property
     def _turns(self) -> Turns | None:
-        """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
-        turns = together([self._turns_of(group) for group in self.contacts.groups])
-        return turns.of(self.contacts.order) if turns and turns.X.size else None
-
-    def _turns_of(self, group: Group) -> Turns:
-        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
-        X = np.concatenate([ENDS[ends], kinks])
-        σ_XX, σ_YY = self.contacts.surface_of(group, X)
-        between = None
-        if kinks:
-            places = np.array([-1.0, *kinks, 1.0])
-            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
-            _, between = at_and_between(places, lambda r: self.contacts.surface_of(group, r)[0], infinite)
-        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
-        return Turns(np.tile(X, (len(group.rows), 1)), σ, between)
+        return _turns_of(self.contacts)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self._stresses_of(self.contacts)
+
+    @cached_property
+    def inside_punch(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY in an elastic punch, at X and -Y of the points inside, (3, states, m)."""
+        return _MIRROR * self._stresses_of(self.contacts.in_punch)
+
+    def _stresses_of(self, contacts: Contacts) -> NDArray[np.float64]:
         points = self.places.points
         σ = np.empty((3, len(self._g), len(points)))
         for first in range(0, len(points), _TOGETHER):
             batch = slice(first, first + _TOGETHER)
-            σ[:, :, batch] = self.contacts.stresses(*points[batch].T)
+            σ[:, :, batch] = contacts.stresses(*points[batch].T)
         return σ[:, self._rows]
+
+    @property
+    def σ_ZZ(self) -> NDArray[np.float64]:
+        """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
+        return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
     def strength(self) -> Strength:
         """Yield of the states, which is searched for at places of each."""
-        task, solved_each = self.task, isinstance(self._rows, slice)
-        each = self if solved_each else ExactSolution(task, self.g)
+        return self._yield(self._each.contacts, self.task.body)
 
+    @cached_property
+    def strength_of_punch(self) -> Strength:
+        """Yield of an elastic punch, whose heights Y have the other sign."""
+        mirrored = self._yield(self._each.contacts.in_punch, self.task.body.of_punch)
+        turns = mirrored.turns and replace(mirrored.turns, σ=_MIRROR * mirrored.turns.σ)
+        return replace(mirrored, field=lambda points: _MIRROR * mirrored.field(points), turns=turns)
+
+    @property
+    def _each(self) -> "ExactSolution":
+        """The same states, none of them similar to another."""
+        return self if isinstance(self._rows, slice) else ExactSolution(self.task, self.g)
+
+    def _yield(self, contacts: Contacts, body: Contact) -> Strength:
         def field(points: NDArray) -> NDArray[np.float64]:
-            return each.contacts.stresses(points[..., 0], points[..., 1])
+            return contacts.stresses(points[..., 0], points[..., 1])
 
         return Strength(
-            field, task.body, task.response, self.g, self.local, self.half_width, each._turns,
-            _NEAREST,
+            field, body, contacts.groups[0].response, contacts.of("g"), self.local, self.half_width,
+            _turns_of(contacts), _NEAREST,
         )  # fmt: skip
+
+
+def _turns_of(contacts: Contacts) -> Turns | None:
+    """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
+    each = []
+    for group in contacts.groups:
+        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
+        X = np.concatenate([ENDS[ends], kinks])
+        σ_XX, σ_YY = group.surface(X)
+        between = None
+        if kinks:
+            places = np.array([-1.0, *kinks, 1.0])
+            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
+        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
+        each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))
+    turns = together(each)
+    return turns.of(contacts.order) if turns and turns.X.size else None
 
 
 @dataclass(frozen=True)
@@ -293,31 +314,26 @@ class _OverLayers:
         fine, coarse = zip(*each)
         return Nodes(fine), Nodes(coarse)
 
-    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Group, Group]:
+    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[OnLayers, OnLayers]:
         """States of a contact that was solved, and with fewer unknowns."""
         h, m = (
             np.full(len(rows), length * self.layers.punch.unit)
             for length in (contact.half_width, contact.centre)
         )
-        fine = Group(rows, g[rows], contact.pressure, h, m)
+        fine = OnLayers(self.task.response, rows, g[rows], contact.pressure, h, m, self.layers)
         return fine, replace(fine, pressure=contact.before)
 
-    def contacts(self, g: NDArray) -> tuple[ContactsOnLayers, ContactsOnLayers]:
+    def contacts(self, g: NDArray) -> tuple[Contacts, Contacts]:
         """Contacts with frictions (states,), and those with fewer unknowns."""
-        groups: Any
         if self.interpolated is not None:
             edges = EdgeExponents(self.task.response, g)
-            groups = [[mixture(nodes, edges)] for nodes in self._nodes]
-        else:
-            which = np.searchsorted([contact.g for contact in self.solved], g)
-            which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
-            groups = zip(
-                *(self._groups(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which))
-            )
-        fine_contacts, coarse = (
-            ContactsOnLayers(self.task.response, tuple(each), self.layers) for each in groups
-        )
-        return fine_contacts, coarse
+            fine, coarse = (Contacts((mixture(nodes, edges),)) for nodes in self._nodes)
+            return fine, coarse
+        which = np.searchsorted([contact.g for contact in self.solved], g)
+        which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
+        each = [self._groups(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+        fine, coarse = (Contacts(groups) for groups in zip(*each))
+        return fine, coarse
 
 
 class LayeredSolution(ExactSolution):
@@ -328,7 +344,7 @@ class LayeredSolution(ExactSolution):
         g: σ_XY/σ_YY, (states,).
     """
 
-    contacts: ContactsOnLayers
+    contacts: Contacts
 
     def __init__(self, at: _OverLayers, g: NDArray) -> None:
         super().__init__(at.task, g)
@@ -355,7 +371,7 @@ class LayeredSolution(ExactSolution):
         widest = max(contact.half_width for contact in self._at.solved)
         for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
             level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
-            σ.append([each.joined(partial(each.at_interface, X, level), 1) for each in self._both])
+            σ.append([each.joined(lambda group: group.at_interface(X, level), 1) for each in self._both])  # noqa: B023
             errors.append(widest * level.error * max(1.0, *(medium.modulus for medium in level.media)))
         return np.stack(σ, axis=3), np.array(errors)
 
@@ -368,7 +384,7 @@ class LayeredSolution(ExactSolution):
     def both_inside(self) -> NDArray[np.float64]:
         """Stresses inside, and with fewer unknowns, (2, 3, states, m)."""
         X, Y = self.places.points.T[:, None]
-        return np.array([each.joined(partial(each.inside, X=X, Y=Y), 1) for each in self._both])
+        return np.array([each.joined(lambda group: group.inside(X, Y), 1) for each in self._both])
 
     @property
     def inside(self) -> NDArray[np.float64]:  # type: ignore[override]
@@ -376,8 +392,8 @@ class LayeredSolution(ExactSolution):
         return self.both_inside[0]
 
     @cached_property
-    def σ_ZZ(self) -> NDArray[np.float64]:
-        """Normal stress out of the plane at points inside, (states, m)."""
+    def σ_ZZ(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
         Y = self.places.points[:, 1]
         sizes = self.half_width / self._at.layers.punch.unit
         σ_ZZ = np.empty(self.inside.shape[1:])
@@ -399,8 +415,7 @@ class LayeredSolution(ExactSolution):
         (group,) = (group for group in self.contacts.groups if state in group.rows)
         one = slice(0, 1)
         alone = replace(group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one])
-        X, Y = points.T[:, None]
-        return self.contacts.inside(alone, X, Y)[:, 0]
+        return alone.inside(*points.T[:, None])[:, 0]
 
     @property
     def estimates(self) -> "_Estimates":

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 #: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
 #: places at which the polynomial is compared first; most tops of a curve that are refined.
 _NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
-#: Samples that a polynomial goes through along an interface, where they are an eighth of its depth apart.
-_ALONG = 14
+#: Samples that a polynomial goes through along an interface, where they are an eighth of its depth apart,
+#: and in log(d/d') of two turns, where they are a quarter apart.
+ALONG = 14
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
-GRADED, FINER = np.linspace(-14.0, 14.0, 85), np.linspace(-18.0, 18.0, 109)
+GRADED, FINER = np.linspace(-14.0, 14.0, 113), np.linspace(-18.0, 18.0, 109)
 #: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
 #: which it is left out.
 _COINCIDE = 0.1
@@ -147,7 +148,7 @@ def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float6
     curves, gaps = sign * values.reshape(-1, len(X)), np.diff(X)
     # Of two samples that all but coincide one is left out: no polynomial goes through both.
     apart = np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
-    heights, places = tops(X[apart], curves[:, apart], through=_ALONG)
+    heights, places = tops(X[apart], curves[:, apart], through=ALONG)
     heights = np.column_stack([curves.max(axis=1), heights])
     places = np.column_stack([X[curves.argmax(axis=1)], places])
     best = heights.argmax(axis=1)[:, None]

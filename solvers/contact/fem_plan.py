@@ -20,7 +20,8 @@ from ..rays import NEAR
 from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS
-from .recovery import Stretch
+from .estimate import SLOWER, Rate, of_degrees
+from .recovery import MOMENTS, Polynomials, Stretch
 from .solution import Places
 
 #: Assemblers of the matrices: element matrices by tensor products, or dolfinx's own.
@@ -46,31 +47,37 @@ _LOOSEST_GRADED = 1e-4
 
 @dataclass(frozen=True)
 class PressureMoments:
-    """Moments by which a pressure over layers is recovered from nodal forces.
+    """Moments by which a pressure is recovered from nodal forces; those of a uniform solid by default.
 
     Attributes:
-        stretch: variable in which the pressure is smooth.
-        count: moments at the first degree; each degree more takes more, so that the error of a finite
-            number of moments shows in the measured error.
+        functions: functions whose sum is the pressure without its weight.
+        count: moments at the first degree.
+        a_degree: additional moments a degree: over layers, so that the error of a finite number of them
+            shows in the measured error; over graded solids fewer, where they are nearly dependent.
+        rate: rate at which intensities converge with the degree.
+        even: True where intensities of a flat punch are equal at both ends.
     """
 
-    stretch: Stretch
-    count: int
+    functions: Any = Polynomials()
+    count: int = MOMENTS
+    a_degree: int = 0
+    rate: Rate = of_degrees(2)
+    even: bool = True
 
-    @property
-    def a_degree(self) -> int:
-        """Additional moments a degree; over graded solids fewer, where moments are nearly dependent."""
-        return 1 if self.stretch.graded else 2
+    def values(self, r: NDArray, degrees: int) -> NDArray[np.float64]:
+        """Functions with which forces are tested so many degrees above the first, (len(r), moments)."""
+        return np.asarray(self.functions.values(r, self.count + degrees * self.a_degree))
 
 
-def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments | None:
-    """Moments that recover the pressure over layers; None on a solid without layers."""
+def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments:
+    """Moments that recover the pressure on a solid."""
     if not isinstance(kind, OnLayers):
-        return None
+        return PressureMoments()
     graded, top = graded_from_the_surface(solid), solid.layers[0]
     stretch = Stretch(kind.length, graded, graded and top.bottom.μ > top.solid.μ)  # type: ignore[union-attr]
     count = kind.moments(required) + _MORE_GRADED * graded + stretch.of_ends
-    return PressureMoments(stretch, count)
+    # What a thin layer adds converges unevenly: a small change says less there.
+    return PressureMoments(stretch, count, 1 if graded else 2, SLOWER, even=False)
 
 
 def no_nearer(required: Requirements, distance: float) -> Requirements:
@@ -250,7 +257,7 @@ class FemPlan:
             False where all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
         drawn: the mesh where it follows interfaces or kinks, None elsewhere.
-        tests: moments that recover the pressure over layers, None without layers.
+        tests: moments that recover the pressure.
         sweep: speeds of a fit; None where each speed is solved.
         kinks: positions over a of kinks of friction along the contact.
         shapes: number of polynomials whose sum is the punch under every contact, for free ends.
@@ -270,7 +277,7 @@ class FemPlan:
     shared_speeds: bool
     sharp: float = -0.5
     drawn: QuadMesh | None = None
-    tests: PressureMoments | None = None
+    tests: PressureMoments = PressureMoments()
     sweep: Sweep | None = None
     kinks: tuple[float, ...] = ()
     shapes: int = 0

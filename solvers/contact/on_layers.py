@@ -25,7 +25,7 @@ the surface's solid alone: with f the slope less the mean by which the pressure 
 and under the slope -∫ K(r - t) σ₀(t) dt by which σ₀ bends the layers, which no kink makes rough.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from typing import Any
@@ -39,12 +39,12 @@ from ..layers.layered import Layered, LayersAtSpeed
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
 from ..profiles.punches import Flat
 from .closed_form import FreeEnds
-from .contacts import Contacts, Group, contacts, off_tips, panels_of
+from .contacts import Group, contacts, off_tips, panels_of
 from .edges import EdgeExponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import Equation, Resolution, SolvedContact, converged
 from .panels import Panels
-from .pressure import ENDS, Expansion, Pressure, joined_largest
+from .pressure import ENDS, Expansion, Pressure
 
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
@@ -189,7 +189,7 @@ def kinked(
 #: Accuracy of a half-width at rest, over which others are given.
 _AT_REST = 1e-5
 #: Accuracy with which an edge counts as lifted off.
-_OF_ENDS = 1e-6
+OF_ENDS = 1e-6
 #: Reach of tabulated kernels over that which the largest contact so far needs.
 _KERNEL_MARGIN = 1.5
 #: Depths whose fields are kept.
@@ -275,24 +275,17 @@ class LayersUnderPunch:
             contacts.append(self.contact(value, contacts[-1].half_width if contacts else 1.0))
         return contacts
 
-    def contact(self, g: float, h: float = 1.0) -> SolvedContact:
+    def contact(self, g: float, h: float = 1.0, checked: bool = True) -> SolvedContact:
         """The contact with a friction.
 
         Args:
             g: σ_XY/σ_YY.
             h: half-width to begin with.
+            checked: the contact may not be wider than what is known of the punch.
 
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
         """
-
-        contact = self.unchecked(g, h)
-        m, h = contact.centre, contact.half_width
-        check_reach(self.punch.profile, self.punch.unit * (m - h), self.punch.unit * (m + h))
-        return contact
-
-    def unchecked(self, g: float, h: float = 1.0) -> SolvedContact:
-        """The contact with a friction, which may be wider than what is known of the punch."""
 
         def at_resolution(resolution: Resolution) -> SolvedContact:
             nonlocal h
@@ -300,7 +293,11 @@ class LayersUnderPunch:
             h = contact.half_width
             return contact
 
-        return converged(self._equation(g, 1.0), at_resolution, self.tolerance)
+        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance)
+        m, h = contact.centre, contact.half_width
+        if checked:
+            check_reach(self.punch.profile, self.punch.unit * (m - h), self.punch.unit * (m + h))
+        return contact
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
@@ -349,27 +346,6 @@ class LayersUnderPunch:
         return SolvedContact(g, pressure, h, m)
 
 
-def free_edges(
-    response: Any, g: float, profile: Any, unit: float, compression: float
-) -> tuple[bool, bool]:
-    """True where the left and the right edge of a tilted punch is free.
-
-    Args:
-        response: of the layers at a speed.
-        g: σ_XY/σ_YY.
-        profile: of the punch.
-        unit: unit of length [m].
-        compression: N/μ [m].
-
-    Raises:
-        SolveError: no contact carries the load.
-    """
-    punch = Punch(profile, unit, compression)
-    speed = LayersUnderPunch(response, response.stack(unit), _OF_ENDS, punch)
-    free_left, free_right = speed.contact(g).pressure.free.tolist()
-    return free_left, free_right
-
-
 @lru_cache(maxsize=256)
 def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> float:
     """Half-width [m] of a contact at rest without friction, to five digits, over which others are given.
@@ -387,7 +363,7 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
-    return unit * layers.unchecked(0.0).half_width
+    return unit * layers.contact(0.0, checked=False).half_width
 
 
 def _unresolved(each: Sequence[SolvedContact]) -> float:
@@ -407,6 +383,67 @@ def weights_between(nodes: NDArray, g: NDArray) -> NDArray[np.float64]:
     return barycentric(nodes, weights, g)
 
 
+@dataclass(frozen=True)
+class OnLayers(Group):
+    """States over layers whose pressure is of one kind, and their stresses.
+
+    Attributes:
+        layers: the layers, with kernels.
+    """
+
+    layers: LayersUnderPunch
+
+    def read(self, what: Any, values: "Callable[[OnLayers], NDArray]") -> NDArray[np.float64]:
+        """Values that are linear in the pressure, (..., rows, n).
+
+        Args:
+            what: a name of the values, by which they are kept.
+            values: gives them for states that were solved, (..., rows, n).
+        """
+        return values(self)
+
+    @property
+    def size(self) -> float:
+        """Half-width of the contacts over the unit of the layers."""
+        return float(self.half_width[0]) / self.layers.punch.unit
+
+    def strain(self, r: NDArray) -> NDArray[np.float64]:
+        def values(node: OnLayers) -> NDArray[np.float64]:
+            by_kernel = node.pressure.integral(self.layers.scaled(node.size), r)
+            return np.asarray(by_kernel[:, 1] + node.g[:, None] * by_kernel[:, 0])
+
+        return self.read(("strain", r.tobytes()), values)
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n), at an interface those above it: (3, rows, n)."""
+        X, Y = X[0], Y[0]
+        σ = np.empty((3, len(self.rows), len(X)))
+        for height in np.unique(Y).tolist():
+            there = height == Y
+            at_height = partial(OnLayers._at_height, X=X[there], height=height)
+            σ[..., there] = self.read(("inside", height, X[there].tobytes()), at_height)
+        return σ
+
+    def _at_height(self, X: NDArray, height: float) -> NDArray[np.float64]:
+        h, errors = self.size, self.layers.errors
+        level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
+        error = h * level.error * max(1.0, level.media[0].modulus)
+        errors[height] = max(errors.get(height, 0.0), error)
+        return self._along(X, level, 1)[[2, 0, 1]]
+
+    def at_interface(self, X: NDArray, level: Level) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,): (4, rows, n)."""
+        name = "interface", level.depth, X.tobytes()
+        return self.read(name, lambda node: node._along(X, level, 2))
+
+    def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
+        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
+        t, forces = self.pressure.points(level.depth / self.size)
+        u_X, σ_YY, σ_XY = level.read(t, forces, self.g, X, self.size)
+        media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
+        return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
+
+
 class Nodes:
     """Contacts at Chebyshev's points in g, between which values are interpolated.
 
@@ -414,11 +451,11 @@ class Nodes:
         groups: contacts, one state each.
     """
 
-    def __init__(self, groups: Sequence[Group]) -> None:
+    def __init__(self, groups: Sequence[OnLayers]) -> None:
         self.groups = groups
         self._read: dict[Any, NDArray] = {}
 
-    def read(self, what: Any, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
         """Values of all nodes, (..., nodes, n); the last ones are kept."""
         if what not in self._read:
             if len(self._read) >= _KEPT:
@@ -462,16 +499,16 @@ class Interpolated(Pressure):
         rest = self.nodes.read(("rest", r.tobytes()), lambda node: node.pressure.rest(r, near)[None])
         return np.asarray(self.weights @ rest)
 
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        rows = zip(self.weights, np.ravel(self.α).tolist(), np.ravel(self.β).tolist())
-        return joined_largest(replace(self, weights=row, α=α, β=β) for row, α, β in rows)
+    def states(self) -> Iterator[Pressure]:
+        rows = zip(self.weights, self.α[:, 0].tolist(), self.β[:, 0].tolist())
+        return (replace(self, weights=row, α=α, β=β) for row, α, β in rows)
 
 
 @dataclass(frozen=True)
-class Mixture(Group):
+class Mixture(OnLayers):
     """States interpolated between nodes."""
 
-    def read(self, what: Any, values: Callable[[Group], NDArray]) -> NDArray[np.float64]:
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
         return np.asarray(self.pressure.weights @ self.pressure.nodes.read(what, values))
 
 
@@ -486,61 +523,9 @@ def mixture(nodes: Nodes, edges: EdgeExponents) -> Mixture:
         np.concatenate([getattr(node, name) for node in nodes.groups])
         for name in ("g", "half_width", "centre")
     )
-    g = np.asarray(edges.g)
+    g, layers = np.asarray(edges.g), nodes.groups[0].layers
     weights = weights_between(g_nodes, g)
     pressure = Interpolated(nodes, weights, edges.α[:, None], edges.β[:, None])
     # Exact where all nodes have one half-width.
-    return Mixture(np.arange(len(g)), g, pressure, h[0] + weights @ (h - h[0]), weights @ m)
-
-
-@dataclass(frozen=True)
-class ContactsOnLayers(Contacts):
-    """Contacts over layers at one speed.
-
-    Attributes:
-        layers: the layers, with kernels.
-    """
-
-    layers: LayersUnderPunch
-
-    def _size(self, group: Group) -> float:
-        """Half-width of a group's contacts over the unit of the layers."""
-        return float(group.half_width[0]) / self.layers.punch.unit
-
-    def strain(self, group: Group, r: NDArray) -> NDArray[np.float64]:
-        def values(node: Group) -> NDArray[np.float64]:
-            by_kernel = node.pressure.integral(self.layers.scaled(self._size(node)), r)
-            return np.asarray(by_kernel[:, 1] + node.g[:, None] * by_kernel[:, 0])
-
-        return group.read(("strain", r.tobytes()), values)
-
-    def inside(self, group: Group, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY of a group at points (1, n), at an interface those above it: (3, rows, n)."""
-        X, Y = X[0], Y[0]
-        σ = np.empty((3, len(group.rows), len(X)))
-        for height in np.unique(Y).tolist():
-            there = height == Y
-            name = "inside", height, X[there].tobytes()
-            σ[..., there] = group.read(name, partial(self._at_height, X[there], height))
-        return σ
-
-    def _at_height(self, X: NDArray, height: float, node: Group) -> NDArray[np.float64]:
-        h = self._size(node)
-        level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
-        error = h * level.error * max(1.0, level.media[0].modulus)
-        self.layers.errors[height] = max(self.layers.errors.get(height, 0.0), error)
-        return self._along(node, level, X, 1)[[2, 0, 1]]
-
-    def at_interface(self, X: NDArray, level: Level, group: Group) -> NDArray[np.float64]:
-        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,), of a group: (4, rows, n)."""
-        return group.read(
-            ("interface", level.depth, X.tobytes()), lambda node: self._along(node, level, X, 2)
-        )
-
-    def _along(self, node: Group, level: Level, X: NDArray, sides: int) -> NDArray[np.float64]:
-        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
-        h = self._size(node)
-        t, forces = node.pressure.points(level.depth / h)
-        u_X, σ_YY, σ_XY = level.read(t, forces, node.g, X, h)
-        media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
-        return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
+    half_width = h[0] + weights @ (h - h[0])
+    return Mixture(edges.response, np.arange(len(g)), g, pressure, half_width, weights @ m, layers)

@@ -1,12 +1,13 @@
 """Functions over a contact by their values on panels in x = log((1 + t)/(1 - t)), and what follows.
 
 In x both ends of the contact [-1, 1] lie at infinity, and what goes with a power or a logarithm of the
-distance from an end is smooth. With the weight w = (1 - t)^α (1 + t)^β, α + β = -1, Cauchy's integral is
-a convolution,
+distance from an end is smooth. With the weight w = (1 - t)^α (1 + t)^β, δ = 1 + α + β, Cauchy's
+integral is a convolution,
 
-    ∫ w f/(t - z) dt = w(z) C(y),   C(y) = ∫ f e^(kξ)/(e^ξ - 1) dx,   ξ = x - y,   k = 1 + β,
+    ∫ w f/(t - z) dt = w(z) C(y),   C(y) = ∫ f [(1 + t)/(1 + z)]^δ e^(kξ)/(e^ξ - 1) dx,   ξ = x - y,
 
-y = log((1 + z)/(1 - z)), -π <= Im y < 0 below the surface. In a panel that is near y the smooth rest of
+k = -α, y = log((1 + z)/(1 - z)), -π <= Im y < 0 below the surface; δ is 0 below edges with one friction,
+and where each end has an exponent of its own it is not. In a panel that is near y the smooth rest of
 the integrand is a sum of Legendre polynomials, whose Cauchy integrals are Legendre's functions of the
 second kind.
 """
@@ -27,8 +28,8 @@ from .pressure import Functions
 NODES, _OF_SLOPES = 14, 20
 #: |x| beyond which functions are those at the ends: of pressures, of slopes.
 _REACH, _REACH_OF_SLOPES = 26.0, 40.0
-#: Longest panels up to some |x|, and of slopes over these.
-_LONGEST, _SLOPES = ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0)), 0.8
+#: Longest panels up to some |x|, and of slopes and of the weight over these.
+_LONGEST, _SLOPES, _LONGEST_OF_WEIGHT = ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0)), 0.8, 0.7
 #: Panels towards a kink: their grading, and their number where the pressure itself is infinite or has a
 #: cusp, and where only the pressure that layers add is resolved; both for slopes.
 _TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, 5, 0.5, 46
@@ -105,7 +106,7 @@ class Panels(Functions):
     """Rule on panels for integrals with the weight (1 - t)^α (1 + t)^β.
 
     Attributes:
-        α, β: exponents; their sum is -1 where a pressure has edges, and 1 where it has free ends.
+        α, β: exponents.
         finest: longest panel in t.
         kinks, steps, grading, reach: as in :func:`ends_of_panels`.
         nodes: points of a panel.
@@ -238,7 +239,8 @@ class Panels(Functions):
             f: values at the points, (n,), or (points, n) if f differs from y to y.
             y: (points,).
         """
-        k, ends = 1.0 + self.β, f[..., [0, -1]]
+        k, δ, ends = -self.α, 1.0 + self.α + self.β, f[..., [0, -1]]
+        f = f * (1.0 + np.exp(-self.x)) ** -δ
         x, rule = self.x, np.broadcast_to(f * (np.exp(k * self.x) * self.dx), (len(y), len(self.x)))
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
@@ -260,10 +262,16 @@ class Panels(Functions):
         coefficients = (of_panel * _without_pole(k, ξ)) @ _legendre_panel(self.nodes)[2].T
         np.add.at(integral, point, -2.0 * np.einsum("ik,ik->i", coefficients, Q))
         # Beyond the panels f is that of the ends: two terms of a series.
-        for end, rate, ξ, sign in ((0, k, -self.reach - y, -1.0), (1, 1.0 - k, y - self.reach, 1.0)):
+        beyond = (0, k + δ, -self.reach - y, -np.exp(δ * y)), (1, 1.0 - k, y - self.reach, 1.0)
+        for end, rate, ξ, factor in beyond:
             for power in (rate, rate + 1.0):
-                integral = integral + sign * ends[..., end] * np.exp(power * ξ) / power
-        return integral
+                integral = integral + factor * ends[..., end] * np.exp(power * ξ) / power
+        return integral * (1.0 + np.exp(-y)) ** δ
+
+    def hilbert_of_weight(self, x: NDArray) -> NDArray[np.float64]:
+        """(1/π) ⨍ w(t)/(t - t(x)) dt over w at x, (len(x),); for exponents whose sum is -1 cot(πα)."""
+        wide = Panels(self.α, self.β, _LONGEST_OF_WEIGHT, reach=2.0 * self.reach)
+        return np.asarray(wide.cauchy(np.ones(len(wide.x)), x) / np.pi)
 
     # As functions of an :class:`.pressure.Expansion`, whose coefficients are values at the points.
 

@@ -79,11 +79,8 @@ class Rule:
 
     def smooth(self, pressure: Stress, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Smooth part of a pressure, σ_YY over (1 - t)^α (1 + t)^β at :attr:`t`, (states, n)."""
-        return _smooth(pressure, np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END), α, β)
-
-
-def _smooth(pressure: Stress, r: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-    return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
+        r = np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END)
+        return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
 
 
 def of_pressure(
@@ -108,7 +105,6 @@ def of_pressure(
         breaks: ends of pieces in which the pressure is a polynomial; none for other pressures.
         layers: kernel of the layers for each state, lengths over its half-width; none without layers.
     """
-    ratio = g if callable(g) else lambda r: g[:, None]
     (α, β), kinks = exponents, np.asarray(kinks, dtype=float)
     s = _AT[np.abs(_AT[:, None] - kinks).min(axis=1, initial=1.0) > _OFF_KINKS]
     # Where a kernel has a logarithm, it has it at the places themselves.
@@ -116,15 +112,17 @@ def of_pressure(
     sizes = np.append(np.full(len(kinks) + len(rough), _SHORTEST), np.full(len(breaks), 1.0))
     rule = Rule(np.concatenate([kinks, rough, breaks]), sizes)
     loads, σ = rule.weights(α, β) * rule.smooth(pressure, α, β), pressure(s)
-    own, own_there = (response.n + ratio(r) * response.n12 for r in (s, rule.t))
+    ratio = g(np.append(s, rule.t)) if callable(g) else g[:, None]
+    ratio, there = np.split(np.broadcast_to(ratio, (len(σ), len(s) + len(rule.t))), [len(s)], axis=1)
+    own, own_there = response.n + ratio * response.n12, response.n + there * response.n12
     # (1/π) ⨍ τ(t)/(t - s) dt of τ = N̂ σ: the part of τ(s) is a logarithm.
     divided, none = 1.0 / (rule.t[:, None] - s) / np.pi, np.zeros(1)
     of_constant = np.log((1.0 - s) / (1.0 + s)) / np.pi - (rule.weights(none, none) @ divided)
     H = (own_there * loads) @ divided + own * σ * of_constant
-    defect = H - response.q * ratio(s) * σ - slope(s)
+    defect = H - response.q * ratio * σ - slope(s)
     for i, kernel in enumerate(layers):
         by_kernel = kernel(s[:, None] - rule.t)
-        defect[i] += (by_kernel[..., 3] + by_kernel[..., 2] * ratio(rule.t)[i]) @ loads[i]
+        defect[i] += (by_kernel[..., 3] + by_kernel[..., 2] * there[i]) @ loads[i]
     return np.asarray(np.abs(defect).max(axis=1) / np.abs(own * σ).max(axis=1))
 
 

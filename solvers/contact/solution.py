@@ -4,8 +4,8 @@ Lengths are over the contact's half-width a, stresses over N/(2a), N the load pe
 :class:`Contact` has the units of both in SI.
 """
 
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
@@ -21,8 +21,8 @@ from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
 from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
-from .pressure import Pressure
 from .stresses import Places, Surface
+from .yielding import SMOOTH, places_below, places_in_layers
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
 #: those of a prescribed pressure.
@@ -36,13 +36,15 @@ PUNCH, FINITE = "punch", "finite stresses"
 FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
 #: The strength at which a solid yields.
 STRENGTH = "yield strength"
+#: Stresses of an elastic punch, σ_ZZ included, and the strength at which it yields.
+IN_PUNCH, PUNCH_STRENGTH = "elastic punch", "yield strength of the punch"
 #: A solid without layers, or with some.
 UNIFORM, LAYERED = "uniform solid", "layers"
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Punch and half-plane in SI; :func:`make_contact` makes the kind that the ends of the contact are.
+    """Punch and half-plane in SI; :func:`make_contact` makes the kind by the ends and the solid.
 
     The units of results are numbers for a single load, and arrays (states,) for a load of each state.
 
@@ -61,7 +63,10 @@ class Contact:
         growth_exponent: exponent of the load by which similar contacts grow, those of a flat punch, of a
             power of |X| on a uniform solid, and under a prescribed pressure; None if other loads make
             others.
+        layered: True if the half-plane has layers.
         knots: positions X/a between which a prescribed pressure is linear; none under a punch.
+        yield_knots: positions X/a that stand for a finite pressure where the largest stress below it is
+            searched for; none where stresses are infinite.
         friction_kinks: positions X/a at which friction along the contact is not smooth, in any state.
         tips: positions from the punch's axis [m] at which stresses inside the contact are infinite.
     """
@@ -79,7 +84,9 @@ class Contact:
     flat: ClassVar[Any] = False
     finite: ClassVar[Any] = False
     growth_exponent: ClassVar[Any] = None
+    layered: ClassVar[bool] = False
     knots: ClassVar[Any] = ()
+    yield_knots: ClassVar[Any] = ()
     friction_kinks: ClassVar[Any] = ()
     tips: ClassVar[Any] = ()
 
@@ -100,17 +107,19 @@ class Contact:
         Keys are requirements, as ``FLAT``, modes, as ``PUNCH``, or words of output.quantities, as
         :data:`galinx.solvers.contact.YIELD`.
         """
-        reasons = {FLAT: "the punch is not flat"} if not self.flat else {}
+        reasons = {LAYERED: "the solid has no layers"}
+        if not self.flat:
+            reasons[FLAT] = "the punch is not flat"
         if not self.solid.knows_σ_ZZ:
             reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
         if all(strength is None for strength in self.strengths):
             reasons[STRENGTH] = "no yield_strength is given"
-        if self.layered:
-            reasons[UNIFORM] = "the solid has layers, each with a strength of its own"
-            if not self.finite:
-                reasons[YIELD] = "over layers it is known below punches with two free ends and no tip"
-        else:
-            reasons[LAYERED] = "the solid has no layers"
+        if self.solid.above is None:
+            reasons[IN_PUNCH] = "the punch is rigid"
+        elif not self.solid.above.knows_σ_ZZ:
+            reasons[IN_PUNCH] = "σ_ZZ of the punch is not known without punch.solid.stiffness_Z"
+        if self.solid.punch_strength is None:
+            reasons[PUNCH_STRENGTH] = "no punch.solid.yield_strength is given"
         return reasons
 
     @property
@@ -118,13 +127,36 @@ class Contact:
         """Yield strengths of all layers and of the solid below [Pa]; None where one is not given."""
         return (*(layer.yield_strength for layer in self.solid.layers), self.yield_strength)
 
+    @property
+    def of_punch(self) -> "Contact":
+        """Contact of the solid of an elastic punch, under the same load; for stresses and yield alone."""
+        assert self.solid.above
+        return replace(self, solid=self.solid.above, yield_strength=self.solid.punch_strength)
+
     def response(self, c: float) -> HalfPlane:
         """Response of the half-plane at a speed over its wave speed, dimensionless.
 
         Raises:
             ValueError: a wave in the half-plane is not faster than this speed.
         """
-        return self.solid.response(c, self._length)
+        return self.solid.response(c)
+
+    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
+        """Contacts over a uniform half-plane, see :class:`galinx.solvers.contact.contacts.Contacts`.
+
+        Args:
+            response: of the half-plane at a speed.
+            g: σ_XY/σ_YY, (states,).
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        raise NotImplementedError
+
+    @property
+    def yield_places(self) -> NDArray[np.float64]:
+        """Places X, Y over a at which the stresses of every state are sampled for yield, (n, 2)."""
+        return places_below(self.yield_knots)
 
     def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
@@ -133,11 +165,7 @@ class Contact:
             σ: σ_XX, σ_YY, σ_XY, (3, ..., n).
             Y: heights over a, not above 0, (n,).
         """
-        return self.solid.σ_ZZ_at(-Y * self._length, σ)
-
-    def σ_ZZ_inside(self, solution: Any) -> NDArray[np.float64]:
-        """Normal stress out of the plane at a solution's points inside, over N/(2a), (states, m)."""
-        return solution.σ_ZZ if self.layered else self.solid.σ_ZZ(*solution.inside)
+        return self.solid.σ_ZZ(*σ)
 
     def ratio(self, g: NDArray, X: NDArray) -> NDArray[np.float64]:
         """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with means g."""
@@ -156,22 +184,12 @@ class Contact:
             load: of each state [N/m], (states,); None for this contact's.
         """
         edges = self.edges(response, g)
-        free_left, free_right = self._free_ends(response, g, self.loaded(load).compression).T
+        free_left, free_right = self._free_ends(response, g, load).T
         return Exponents(edges.α + free_right, edges.β + free_left)
 
-    def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
-        """True where the left and the right end of states are free, (states, 2).
-
-        Args:
-            response, g: as in :meth:`local_exponents`.
-            compression: N/μ [m], a number or (states,).
-        """
+    def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
+        """True where the left and the right end of states are free, (states, 2)."""
         return np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
-
-    @property
-    def layered(self) -> bool:
-        """True if the half-plane has layers."""
-        return len(self.solid.depths) > 0
 
     @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:
@@ -185,20 +203,6 @@ class Contact:
             local: exponents α at X = a and β at X = -a, (states,).
         """
         return np.column_stack([local.β, local.α]) < 0.0
-
-    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
-        """Pressures over a uniform half-plane without an equation to solve, each with numbers of states.
-
-        Args:
-            response: of the half-plane at a speed.
-            g: σ_XY/σ_YY, (states,).
-        """
-        return []
-
-    @property
-    def _length(self) -> Any:
-        """Unit of length of the half-plane [m]: a where it has layers, and any where it has no length."""
-        return self.half_width if self.layered else 1.0
 
     def loaded(self, load: Any = None) -> Self:
         """Punch and half-plane under another load [N/m], a number or (states,); unchanged for None."""
@@ -265,10 +269,10 @@ class SharpContact(Contact):
     def growth_exponent(self) -> float | None:
         return 0.0 if self.flat else None
 
-    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
-        from .closed_form import FlatPunch  # SciPy's special functions, a slow import
+    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
+        from .contacts import between_edges  # SciPy's special functions, a slow import
 
-        return [(np.arange(len(g)), FlatPunch(response, g[:, None]))] if self.flat else []
+        return between_edges(self, response, g)
 
 
 @dataclass(frozen=True)
@@ -299,11 +303,12 @@ class VaryingContact(SharpContact):
         at = self.ratio(g, np.array([-1.0, 1.0]))
         return Exponents(EdgeExponents(response, at[:, 1]).α, EdgeExponents(response, at[:, 0]).β)
 
-    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
+    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .along import FlatAlong
+        from .contacts import between_given_ends
 
-        each = enumerate(g.tolist())
-        return [(np.array([row]), FlatAlong(response, self.along[value])) for row, value in each]
+        each = [FlatAlong(response, self.along[value]) for value in g.tolist()]
+        return between_given_ends(self, response, g, each)
 
 
 class PrescribedContact(SharpContact):
@@ -317,14 +322,20 @@ class PrescribedContact(SharpContact):
         return tuple(self.pressure.knots.tolist())
 
     @property
+    def yield_knots(self) -> NDArray[np.float64]:
+        return self.pressure.knots
+
+    @property
     def lacks(self) -> dict[str, str]:
         return super().lacks | {SOLVED: "the pressure is prescribed"}
 
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         return np.tile(self.pressure.values[[0, -1]] != 0.0, (len(local.α), 1))
 
-    def known_pressures(self, response: HalfPlane, g: NDArray) -> list[tuple[NDArray, Pressure]]:
-        return [(np.arange(len(g)), self.pressure)]
+    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
+        from .contacts import between_given_ends
+
+        return between_given_ends(self, response, g, [self.pressure])
 
 
 class FreeEndContact(Contact):
@@ -361,22 +372,18 @@ class FreeEndContact(Contact):
             growth = first.growth(self.load)
             if growth is not None:
                 return first.half_width * growth
-        if self.layered:
-            each = [self._at_rest(load) for load in np.ravel(self.load).tolist()]
-            return np.array(each) if np.ndim(self.load) else each[0]
-        from .contacts import contacts
-
-        g = np.zeros(np.size(self.load))
-        rest = contacts(self.solid.response(0.0), g, self.profile, self.compression).of("half_width")
+        rest = self._at_rest(np.atleast_1d(self.load))
         return rest if np.ndim(self.load) else float(rest[0])
 
-    def _at_rest(self, load: float) -> float:
-        """Half-width [m] on layers at rest, under a load N per depth [N/m]."""
-        from .on_layers import half_width_at_rest
+    def _at_rest(self, load: NDArray) -> NDArray[np.float64]:
+        """Half-widths [m] at rest and without friction, under loads N per depth [N/m], (loads,)."""
+        at_rest = self.loaded(load).contacts(self.solid.response(0.0), np.zeros(len(load)))
+        return np.asarray(at_rest.of("half_width"))
 
-        profile: Any = self.profile
-        solid: Any = self.solid
-        return half_width_at_rest(solid, profile, load / solid.μ)
+    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
+        from .contacts import contacts
+
+        return contacts(response, g, self.profile, self.compression)
 
 
 class OneFreeContact(FreeEndContact):
@@ -384,21 +391,10 @@ class OneFreeContact(FreeEndContact):
 
     ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
 
-    def _free_ends(self, response: HalfPlane, g: NDArray, compression: Any) -> NDArray[np.bool_]:
-        free = super()._free_ends(response, g, compression)
-        if not self.layered:
-            from .contacts import contacts  # SciPy's special functions, a slow import
-
-            with suppress(SolveError):  # the method that solves reports it
-                of = contacts(response, g, self.profile, compression).of
-                free = np.column_stack([of("β"), of("α")]) > 0.0
-            return free
-        from .on_layers import free_edges
-
-        for i, N in enumerate(np.broadcast_to(compression, g.shape).tolist()):
-            with suppress(SolveError):
-                free[i] = free_edges(response, float(g[i]), self.profile, self.half_width, N)
-        return free
+    def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
+        with suppress(SolveError):  # the method that solves reports it
+            return np.asarray(self.loaded(load).contacts(response, g).of("free"))
+        return super()._free_ends(response, g, load)
 
 
 class FreeContact(FreeEndContact):
@@ -415,10 +411,90 @@ class FreeContact(FreeEndContact):
         return not self.tips
 
     @property
+    def yield_knots(self) -> Any:
+        return SMOOTH if self.finite else ()
+
+    @property
     def growth_exponent(self) -> float | None:
-        # Layers have a length: their thickness over the contact's width changes with the load.
-        k = None if self.layered else exponent(self.profile)
+        k = exponent(self.profile)
         return 1.0 / k if k else None
+
+
+class OnLayers(Contact):
+    """Contact over layers, whose half-plane has a length: that of their thickness."""
+
+    solid: Any
+    profile: Any
+    layered = True
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        reasons = super().lacks | {UNIFORM: "the solid has layers, each with a strength of its own"}
+        del reasons[LAYERED]
+        reason = "over layers it is known below punches with two free ends and no tip"
+        return reasons if self.finite else {YIELD: reason} | reasons
+
+    def response(self, c: float) -> HalfPlane:
+        return self.solid.response(c, self.half_width)
+
+    @property
+    def yield_places(self) -> NDArray[np.float64]:
+        return places_in_layers(self.solid.depths / self.half_width)
+
+    def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        return self.solid.σ_ZZ_at(-Y * self.half_width, σ)
+
+
+class FreeEndOnLayers(OnLayers, FreeEndContact):
+    """Contact over layers of which the pressure determines an end: loads change more than its size."""
+
+    growth_exponent = None
+
+    def _at_rest(self, load: NDArray) -> NDArray[np.float64]:
+        from .on_layers import half_width_at_rest
+
+        μ, profile = self.solid.μ, self.profile
+        return np.array([half_width_at_rest(self.solid, profile, N / μ) for N in load.tolist()])
+
+    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
+        raise NotImplementedError("see galinx.solvers.contact.on_layers.LayersUnderPunch")
+
+
+class SharpOnLayers(OnLayers, SharpContact):
+    """Contact over layers between two sharp corners of a punch."""
+
+
+class PrescribedOnLayers(OnLayers, PrescribedContact):
+    """Prescribed pressure over layers."""
+
+
+class OneFreeOnLayers(FreeEndOnLayers, OneFreeContact):
+    """Contact over layers between a sharp corner and an end that is free where the punch lifts off."""
+
+    def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
+        from .on_layers import OF_ENDS, LayersUnderPunch, Punch
+
+        free, unit = Contact._free_ends(self, response, g, load), self.half_width
+        compressions = np.broadcast_to(self.loaded(load).compression, g.shape).tolist()
+        stack = response.stack(unit)  # type: ignore[attr-defined]
+        for i, (value, compression) in enumerate(zip(g.tolist(), compressions)):
+            punch = Punch(self.profile, unit, compression)
+            with suppress(SolveError):
+                contact = LayersUnderPunch(response, stack, OF_ENDS, punch).contact(value)
+                free[i] = contact.pressure.free
+        return free
+
+
+class FreeOnLayers(FreeEndOnLayers, FreeContact):
+    """Contact over layers between two free ends, of a convex punch."""
+
+
+_ON_LAYERS: dict[type[Contact], type[Contact]] = {
+    SharpContact: SharpOnLayers,
+    PrescribedContact: PrescribedOnLayers,
+    OneFreeContact: OneFreeOnLayers,
+    FreeContact: FreeOnLayers,
+}
 
 
 def make_contact(
@@ -429,7 +505,9 @@ def make_contact(
     yield_strength: float | None = None,
     along: Mapping[float, Along] | None = None,
 ) -> Contact:
-    """Contact of the kind that a punch, or a prescribed pressure, makes; arguments are its attributes.
+    """Contact of the kind that a punch, or a prescribed pressure, makes on a solid.
+
+    Arguments are its attributes.
 
     Where an end is free the punch determines the pressure, and a prescribed one is left out.
     """
@@ -438,6 +516,8 @@ def make_contact(
     kind: type[Contact] = PrescribedContact if pressure else SharpContact
     if has_free_end(profile):
         kind, pressure = OneFreeContact if any(profile.sharp) else FreeContact, None
+    if len(solid.depths):
+        kind = _ON_LAYERS[kind]
     return kind(solid, profile, load, pressure, yield_strength)
 
 
@@ -521,3 +601,43 @@ class Solution(Protocol):
     def surface(self) -> Surface: ...
     @property
     def inside(self) -> NDArray[np.float64]: ...
+
+
+#: σ_YY over N/(2a) at positions X over a under the punch.
+ContactStress = Callable[[NDArray], NDArray]
+
+
+class Solver(Protocol):
+    """Solver of friction states at one speed."""
+
+    def states(self, g: NDArray) -> Solution:
+        """Solve the states with values g of σ_XY/σ_YY, (states,), under the load of the task's body.
+
+        The solvers of a method whose kind has ``loads`` take a second argument, ``load``: the load of
+        each state [N/m], (states,), or None for the task's.
+
+        Raises:
+            SolveError: the states could not be solved.
+        """
+
+    def record(self) -> dict[str, Any]:
+        """Numbers of the work done, by the names of ``quantities.runs.RECORD``; may be empty."""
+
+
+class Method(Protocol):
+    """A way to solve the contact, for one plan.
+
+    The ``begin()`` of a method that has it is called once, collectively over all ranks, before speeds are
+    shared out over the ranks.
+    """
+
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
+        """A solver at one speed.
+
+        Args:
+            task: the speed.
+            g: all values of σ_XY/σ_YY that will be solved, sorted.
+
+        Raises:
+            SolveError: the equations could not be solved there.
+        """

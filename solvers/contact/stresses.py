@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .edges import from_edge, under_punch
-from .extremes import GRADED, between, highest, tops
+from .extremes import ALONG, GRADED, between, highest, tops
 from .prescribed_pressure import LinearPressure
 
 
@@ -336,7 +336,7 @@ def at_and_between(
     for sign in (1.0, -1.0):
         candidates = []
         for i, interval in enumerate(intervals.tolist()):
-            height, x = tops(GRADED, np.nan_to_num(sign * σ[:, i], nan=-np.inf))
+            height, x = tops(GRADED, np.nan_to_num(sign * σ[:, i], nan=-np.inf), through=ALONG)
             width = turns[interval + 1] - turns[interval]
             candidates.append((height, turns[interval] + width / (1.0 + np.exp(-x))))
         height, place = highest(*(np.concatenate(of, axis=1) for of in zip(*candidates)))

@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 from ..profiles import exponent
 from ..solids.half_plane import HalfPlane
 from .extremes import extreme, largest
-from .solution import Contact
 from .stresses import Surface, Turns, maximum_shear, on_surface, turns_at_ends, von_mises
 
 #: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
@@ -50,26 +49,29 @@ class Peak:
     Y: NDArray[np.float64]
 
 
-def places(body: Contact) -> NDArray[np.float64]:
-    """Places X, Y over a at which the stresses of every state are sampled, (n, 2)."""
-    if body.layered:
-        depths = np.concatenate(sampled_depths(body.solid.depths / body.half_width))
-        X, Y = np.meshgrid(np.linspace(-1.5, 1.5, 7), -depths[depths >= _SHALLOWEST])
-        return np.column_stack([X.ravel(), Y.ravel()])
-    knots = _knots(body)
-    return _on_rays() if knots is None else Levels(knots).places
+def places_below(knots: Any) -> NDArray[np.float64]:
+    """Places X, Y over a at which stresses below a pressure are sampled, (n, 2).
+
+    Args:
+        knots: rising positions over a that stand for a finite pressure, (k,); none under a punch with
+            infinite stresses.
+    """
+    return Levels(knots).places if len(knots) else _on_rays()
+
+
+def places_in_layers(interfaces: NDArray) -> NDArray[np.float64]:
+    """Places X, Y over a at which stresses in layers are sampled, (n, 2).
+
+    Args:
+        interfaces: depths of the interfaces over a, (layers,).
+    """
+    depths = np.concatenate(sampled_depths(interfaces))
+    X, Y = np.meshgrid(np.linspace(-1.5, 1.5, 7), -depths[depths >= _SHALLOWEST])
+    return np.column_stack([X.ravel(), Y.ravel()])
 
 
 #: Knots over a that stand for a smooth pressure; at the ends finite elements have no gradients.
-_SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
-
-
-def _knots(body: Contact) -> NDArray[np.float64] | None:
-    """Knots over a of a finite pressure, (k,); None under a punch with infinite stresses."""
-    if body.pressure:
-        return body.pressure.knots
-    return _SMOOTH if body.finite else None
-
+SMOOTH = np.array([-0.99, -0.5, 0.0, 0.5, 0.99])
 
 #: Depth over a to which the solid is sampled.
 _DEEPEST = 10.0
@@ -396,7 +398,7 @@ class Strength:
 
     Attributes:
         field: function that gives the stresses of the states by any method.
-        body: punch or prescribed pressure, and solid, with a yield strength for all but stresses.
+        body: :class:`galinx.solvers.contact.solution.Contact`; all but stresses need its yield strength.
         response: response of the half-plane at this speed.
         g: σ_XY/σ_YY under the punch, (states,).
         local: exponents α at X = a and β at X = -a of a punch, (states,) each.
@@ -406,7 +408,7 @@ class Strength:
     """
 
     field: Field
-    body: Contact
+    body: Any
     response: HalfPlane
     g: NDArray[np.float64]
     local: Any
@@ -470,13 +472,13 @@ class Strength:
 
     @cached_property
     def _levels(self) -> Levels | None:
-        knots = _knots(self.body)
-        return None if knots is None else Levels(knots)
+        knots = self.body.yield_knots
+        return Levels(knots) if len(knots) else None
 
     @cached_property
     def _sampled(self) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a) at :func:`places`, (3, states, n)."""
-        return self.field(places(self.body)[None])
+        """σ_XX, σ_YY, σ_XY over N/(2a) at the places where stresses are sampled, (3, states, n)."""
+        return self.field(self.body.yield_places[None])
 
     def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
         XX, YY, XY = σ
@@ -585,7 +587,7 @@ class StrengthOfLayers:
     along: NDArray[np.float64]
     g: NDArray[np.float64]
     local: object
-    body: Contact
+    body: Any
     half_width: NDArray[np.float64]
 
     @cached_property

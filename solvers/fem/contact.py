@@ -1,9 +1,8 @@
 """Rigid punches by finite elements at one speed, their pressure unknown, to the measured error.
 
-A contact is made of three things: its ends (:class:`Ends`), a mesh, which contacts share or which is
-drawn for each (:mod:`galinx.solvers.fem.own_meshes`), and the recovery of the pressure from nodal forces.
-A :class:`PunchLevel` solves contacts at one degree; a :class:`galinx.solvers.fem.solution.Solution` has
-their states.
+A :class:`PunchLevel` solves contacts at one degree. Its kinds differ in the ends of the contact: sharp
+(:class:`SharpLevel`, :class:`VaryingLevel`), free (:class:`FreeLevel`), or those of a single contact on a
+mesh drawn for it (:mod:`galinx.solvers.fem.own_meshes`).
 
 With free ends: the half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its
 width is, and the displacement prescribed under the punch is a combination of few shapes: 1 and s for a
@@ -14,6 +13,7 @@ and middle follow; of a parabola directly, of other profiles by the conditions o
 speed.
 """
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, cached_property
@@ -22,23 +22,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import VARYING
+from ..contact import FREE_ENDS, VARYING
 from ..contact.along import Splines
 from ..contact.edges import EdgeExponents
-from ..contact.fem_plan import FemPlan
 from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
     ContactFacets,
     ContactRecovery,
-    Polynomials,
-    chebyshev,
     contact_recovery,
     from_moments,
     without_zeros,
 )
 from ..contact.solution import Contact, Task
-from ..contact.stresses import Surface, Turns, turns_at_ends
 from ..errors import SolveError
 from ..profiles.punches import Flat, Parabolic
 from .discretisation import Discretisation
@@ -53,77 +49,181 @@ from .space import Space
 _NEAREST = 1e-6
 
 
-class Ends:
-    """Ends of contacts: displacements that are prescribed under a punch, and their sums that are states.
+class PunchLevel(Level):
+    """Punch at one degree, and the maps from its contact forces to its pressure.
+
+    Args:
+        work, task, space, g: as of :class:`galinx.solvers.fem.ladder.Level`.
+        fitted: the punch, where it is known from other speeds; it is solved if None.
+        recovery: maps from nodal forces that were made for another speed in the same space.
 
     Attributes:
-        single: True where a level has a single state, on a mesh of its own.
-        mirrored: True where contacts have mirror images on the same mesh.
+        twins: True where contacts have mirror images on the same mesh.
+        punch: the punch.
+        plan: plan of the finite elements.
     """
 
-    single, mirrored = False, True
+    twins = True
 
-    def heights(self, level: "PunchLevel") -> NDArray[np.float64] | None:
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, fitted: Punch | None = None,
+        recovery: ContactRecovery | None = None,
+    ) -> None:  # fmt: skip
+        super().__init__(work, task, space, g)
+        self.plan = work.plan
+        if recovery:
+            self.recovery, self.moments = recovery, recovery.moments
+        self.punch = fitted or self._solved()
+        self.fields = self.punch.fields
+
+    def _solved(self) -> Punch:
+        """The punch, solved for all states that are still to do."""
+        solver, response = self.plan.solver, self.task.response
+        punch = sliding_punch(self.space, response, solver, self.heights(), self.along())
+        self.factor = punch.factor
+        punch.prepare(self.g)
+        return punch
+
+    @abstractmethod
+    def heights(self) -> NDArray[np.float64] | None:
         """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
-        raise NotImplementedError
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
+    @abstractmethod
+    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
         """Contacts with frictions g = σ_XY/σ_YY, (states,), under the load of the body for each.
 
         Raises:
             SolveError: no contact carries the load.
         """
-        raise NotImplementedError
 
-    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Any:
+    @abstractmethod
+    def pressure(self, ends: SolvedEnds) -> Any:
         """Pressure of contacts from their nodal forces."""
-        raise NotImplementedError
 
-    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
+    @abstractmethod
+    def gauge(self, states: SolvedStates) -> Gauge:
         """Gauge of pressure and ends."""
-        raise NotImplementedError
 
-    def along(self, level: "PunchLevel") -> Callable[[float], NDArray] | None:
-        """Gives G by g where friction varies along the contact, see :class:`SlidingPunch`."""
+    def along(self) -> Callable[[float], NDArray] | None:
+        """Map from g to G where friction varies along the contact, see :class:`SlidingPunch`."""
         return None
 
-    def task(self, task: Task) -> Task:
-        """Task with the places at which stresses are measured."""
-        return task
-
-    def continuation(self, level: "PunchLevel") -> Callable[[NDArray], Any] | None:
+    def continuation(self) -> Callable[[NDArray], Any] | None:
         """Continuation of slopes to free ends, see :class:`Displacement`; None where there is none."""
         return None
 
-    def nearest(self, pressure: Any) -> float:
-        """Least distance over a from free ends and kinks at which stresses are evaluated."""
+    def nearest(self, states: SolvedStates) -> float:
         return _NEAREST
 
-    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
-        """Limits of stresses on a surface at free ends."""
-        return turns_at_ends(surface, states.local)
+    @cached_property
+    def r(self) -> NDArray[np.float64]:
+        """Positions over a of the contact nodes, (nodes,)."""
+        return self.space.chart.surface_position(self.space.contact.s)
+
+    def _tests(self, r: NDArray) -> NDArray[np.float64]:
+        """Test functions of r for nodal forces, (len(r), moments)."""
+        return self.plan.tests.values(r, self.space.degree - self.plan.degrees[self.task.number])
+
+    @cached_property
+    def moments(self) -> NDArray[np.float64]:
+        """Map from nodal forces to moments of the pressure, (nodes, moments)."""
+        return self._tests(self.r)
+
+    @cached_property
+    def recovery(self) -> ContactRecovery:  # type: ignore[override]
+        """Maps from nodal forces to moments, raw pressure and exponents."""
+        space, X = self.space, self.task.places.X
+        return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
+
+    @property
+    def slopes(self) -> Slopes:
+        """Slopes of the fields on the surface, at no place where no stress is requested."""
+        count = len(self.fields)
+        nowhere = Slopes(np.empty((2, 0, count)), np.empty((0, count)))
+        return self.stress_gauges.displacement.slopes if self.work.stresses else nowhere
+
+    def displacement_at(self, task: Task) -> Displacement:
+        return Displacement(task, self.space, self.fields, self.punch.slopes, self.continuation())
+
+    @property
+    def mirrored(self) -> bool:  # type: ignore[override]
+        """True where there is a mirror image on the same mesh."""
+        return self.task.response.mirrored and self.twins
+
+    def over_flat(self, moments: NDArray, g: NDArray, more: float = 0.0) -> Expansion:
+        """Pressure from moments, with exponents of sharp edges at frictions g, or larger ones."""
+        local = EdgeExponents(self.task.response, g)
+        return from_moments(moments, local.α + more, local.β + more, self.plan.tests.functions)
+
+    def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """Parts of the punch, their loads, (states, parts), and intensities, (states, 2, parts)."""
+        parts = self.punch.parts(g)
+        moments = self.punch.tested(parts, self.moments).swapaxes(0, 1)
+        K_I = np.stack([self.over_flat(of_part, g).K_I for of_part in moments], axis=2)
+        return parts, self.punch.loads(parts), K_I
+
+    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
+        body = self.task.body.loaded(load)
+        ends = self.solved(g, body)
+        return SolvedStates(self, body, ends, self.pressure(ends))
+
+    def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
+        """Gauges of states: of pressure and ends, and of requested stresses."""
+        states = self.states(g, load)
+        of_stresses = self.stress_gauges.of(*self.fields_of(states)) if self.work.stresses else []
+        return [self.gauge(states), *of_stresses]
+
+    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
+        """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
+
+        In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
+        under a flat punch all the same. Over layers they differ, and a single state has no flat punch
+        beside it: what the solve leaves of its forces stands for rounding there. Stresses are relative to
+        those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
+        they are not, and their rounding is as large.
+        """
+        own = self.fields_of(self.states(g, load))
+        if not self.twins or not (self.mirrored or self.plan.tests.even):
+            return [self.factor.largest_residual, *self.stress_gauges.rounding(own)]
+        X = self.measured_task.places.X
+        K_I, σ_XX = [], []
+        for sign in (1, -1) if self.mirrored else (1,):
+            flat = self.punch.states(sign * g, flat=True)
+            pressure = self.over_flat(flat.tested(self.moments), sign * g)
+            K_I.append(pressure.K_I[:, ::sign])
+            if self.work.stresses:
+                of_flat = sign * g, flat.weights, pressure.σ_YY(X)
+                σ_XX.append(self.stress_gauges.σ_XX(*of_flat)[:, ::sign])
+        if not self.mirrored:
+            K_left, K_right = K_I[0].T
+            return [float(np.abs(K_left / K_right - 1.0).max()), *self.stress_gauges.rounding(own)]
+        noise = np.abs(σ_XX[0] - σ_XX[1]) if σ_XX else None
+        of_edges = float((np.abs(K_I[0] - K_I[1]) / np.abs(K_I[0])).max())
+        return [of_edges, *self.stress_gauges.rounding(own, noise)]
+
+    def close(self) -> None:
+        self.punch.destroy()
 
 
-class SharpEnds(Ends):
+class SharpLevel(PunchLevel):
     """Sharp edges at both ends of the base of a punch that touches all along it."""
 
-    def heights(self, level: "PunchLevel") -> NDArray[np.float64] | None:
-        body = level.task.body
-        return None if body.flat else body.height(level.r)
+    def heights(self) -> NDArray[np.float64] | None:
+        body = self.task.body
+        return None if body.flat else body.height(self.r)
 
-    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
-        contact = level.punch.states(g, share=level.task.body.load / body.load)
+    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+        contact = self.punch.states(g, share=self.task.body.load / body.load)
         half_width = np.full(len(g), float(body.half_width))
         return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
 
-    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
-        return level.over_flat(ends.contact.tested(level.moments), ends.contact.g)
+    def pressure(self, ends: SolvedEnds) -> Expansion:
+        return self.over_flat(ends.contact.tested(self.moments), ends.contact.g)
 
-    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
-        moments = states.contact.tested(level.moments)
-        plan, margin = level.plan, level.task.response.margin
-        moved = plan.kind.moved_edges(plan.wanted, level.space.degree, margin)
-        return of_pressure(states.pressure, moments, moved)
+    def gauge(self, states: SolvedStates) -> Gauge:
+        plan, margin = self.plan, self.task.response.margin
+        moved = plan.kind.moved_edges(plan.wanted, self.space.degree, margin)
+        return of_pressure(states.pressure, states.contact.tested(self.moments), moved)
 
 
 #: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
@@ -132,82 +232,82 @@ class SharpEnds(Ends):
 _NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
 
 
-class VaryingEnds(SharpEnds):
+class VaryingLevel(SharpLevel):
     """Sharp edges of a flat punch with friction that varies along the contact."""
 
-    mirrored = False
+    twins = False
 
-    def along(self, level: "PunchLevel") -> Callable[[float], NDArray]:
-        nodes, along = level.space.contact, level.task.body.along  # type: ignore[attr-defined]
-        facets = ContactFacets(nodes.s, level.space.degree, level.space.chart)
-        return cache(lambda g: facets.product(along[g]))
+    @cached_property
+    def _facets(self) -> ContactFacets:
+        return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
-    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
-        return self._pressure(level, ends.contact, _NEXT)
+    def along(self) -> Callable[[float], NDArray]:
+        along = self.task.body.along  # type: ignore[attr-defined]
+        return cache(lambda g: self._facets.product(along[g]))
 
-    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
-        gauge, coarse = super().gauge(level, states), self._pressure(level, states.contact, 4.0 * _NEXT)
+    def pressure(self, ends: SolvedEnds) -> Expansion:
+        return self._splines(ends.contact, _NEXT)
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        gauge, coarse = super().gauge(states), self._splines(states.contact, 4.0 * _NEXT)
         # Without knots next to ends and kinks, splines of all degrees are off alike.
         off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
         return replace(gauge, unresolved=gauge.unresolved + off)
 
-    def _pressure(self, level: "PunchLevel", contact: ContactStates, nearest: float) -> Expansion:
+    def _splines(self, contact: ContactStates, nearest: float) -> Expansion:
         """Pressure of contacts, by splines without knots within a distance of ends and kinks."""
-        body, g, degree = level.task.body, contact.g, level.space.degree
+        body, g, degree = self.task.body, contact.g, self.space.degree
         kinks = np.array(body.friction_kinks)
         places = np.concatenate([[-1.0], kinks, [1.0]])
-        ends_of_cells = level.r[::degree]
+        ends_of_cells = self.r[::degree]
         ratio = body.ratio(g, ends_of_cells)
         steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
         of_knots = [places]
         within = (ends_of_cells[:-1, None] + np.diff(ends_of_cells)[:, None] * _INSIDE).ravel()
-        for some, least in ((ends_of_cells, nearest * np.sqrt(length)), (within, _WIDE * length)):
-            of_knots.append(some[np.abs(some[:, None] - places).min(axis=1) > least])
+        for candidates, least in ((ends_of_cells, nearest * np.sqrt(length)), (within, _WIDE * length)):
+            of_knots.append(candidates[np.abs(candidates[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
-        local, at_nodes = body.edges(level.task.response, g), splines.values(level.r)
+        local, at_nodes = body.edges(self.task.response, g), splines.values(self.r)
         # Nodal forces know of tests their interpolants only.
-        facets = ContactFacets(level.space.contact.s, degree, level.space.chart)
         return splines.fitted(
             contact.tested(at_nodes), local.α, local.β,
-            lambda r: facets.interpolated(at_nodes.T, r).T,
+            lambda r: self._facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 
 
-class FreeEnds(Ends):
-    """Free ends of smooth punches and of lifted bases, on the mesh of all contacts.
+class FreeLevel(PunchLevel):
+    """Free ends of smooth punches and of lifted bases, on the mesh of all contacts."""
 
-    Args:
-        shapes: number of polynomials whose sum is the punch under every contact.
-    """
+    @property
+    def shapes(self) -> int:
+        """Number of polynomials whose sum is the punch under every contact."""
+        return self.plan.shapes
 
-    def __init__(self, shapes: int) -> None:
-        self._shapes = shapes
+    def heights(self) -> NDArray[np.float64]:
+        return heights_of_shapes(self.r, self.shapes)
 
-    def heights(self, level: "PunchLevel") -> NDArray[np.float64]:
-        return heights_of_shapes(level.r, self._shapes)
-
-    def solved(self, level: "PunchLevel", g: NDArray, body: Contact) -> SolvedEnds:
-        (parts, loads, K), local = level.parts(g), EdgeExponents(level.task.response, g)
+    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+        (parts, loads, K), local = self.parts(g), EdgeExponents(self.task.response, g)
         solve = _SOLVES.get(type(body.profile), _smooth)
         amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
-        contact = level.punch.summed(g, parts, amplitudes)
+        contact = self.punch.summed(g, parts, amplitudes)
         return SolvedEnds(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
 
-    def pressure(self, level: "PunchLevel", ends: SolvedEnds) -> Expansion:
+    def pressure(self, ends: SolvedEnds) -> Expansion:
         contact, free = ends.contact, ends.free
-        whole = level.over_flat(contact.tested(level.moments), contact.g)
+        whole = self.over_flat(contact.tested(self.moments), contact.g)
         smooth = without_zeros(whole.c, free)
         return replace(whole, α=whole.α + free[:, 1:], β=whole.β + free[:, :1], c=smooth)
 
-    def gauge(self, level: "PunchLevel", states: SolvedStates) -> Gauge:
-        moments = states.contact.tested(level.moments)
-        gauge = of_pressure(level.over_flat(moments, states.contact.g), moments)
+    def gauge(self, states: SolvedStates) -> Gauge:
+        moments = states.contact.tested(self.moments)
+        gauge = of_pressure(self.over_flat(moments, states.contact.g), moments)
         lengths = np.column_stack([states.ends.half_width, states.ends.centre])
         groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
         return joined(gauge.word, groups, gauge.unresolved)
@@ -290,171 +390,42 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
 #: Solutions for profiles whose conditions are linear.
 _SOLVES = {Flat: _tilted, Parabolic: _parabola}
 
+#: Levels of punches on the mesh of all contacts, by the plan's mode.
+PUNCHES: dict[str, type[PunchLevel]] = {
+    "contact": SharpLevel,
+    FREE_ENDS: FreeLevel,
+    VARYING: VaryingLevel,
+}
 
-def ends_of(plan: FemPlan) -> Ends:
-    """Ends of contacts on the mesh of all of them."""
-    if plan.mode == VARYING:
-        return VaryingEnds()
-    return FreeEnds(plan.shapes) if plan.shapes else SharpEnds()
 
+class SingleLevel(PunchLevel):
+    """A single contact on a mesh of its own: its displacement and nodal forces are kept, no others."""
 
-class PunchLevel(Level):
-    """Punch at one degree, and the maps from its contact forces to its pressure.
+    twins = False
+    recovery = None  # type: ignore[assignment]
 
-    Args:
-        work, task, space, g: as of :class:`galinx.solvers.fem.ladder.Level`.
-        ends: ends of the contacts; by the plan if None.
-
-    Attributes:
-        punch: the punch.
-        plan: plan of the finite elements.
-        ends: ends of the contacts.
-        only: the single state on a mesh of its own; None on a mesh of all contacts.
-    """
-
-    punch: Punch
-
-    def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray, ends: Ends | None = None
-    ) -> None:
+    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         super().__init__(work, task, space, g)
-        self.plan = work.plan
-        self.only: SolvedEnds | None = None
-        self.ends = ends or ends_of(work.plan)
-        self._tests = tests_of(self.plan, space.degree - self.plan.degrees[task.number])
-        self._solve()
-
-    def _solve(self) -> None:
-        """Solve for the parts of the punch, and for the only state where there is one."""
-        ends, task = self.ends, self.task
-        self.punch = solved = sliding_punch(
-            self.space, task.response, self.plan.solver, ends.heights(self), ends.along(self)
-        )
-        self.factor = solved.factor
         try:
-            # The fields are the same whatever states are still to do.
-            solved.prepare(self.g)
-            self.fields = solved.fields
-            if ends.single:
-                self.only = self._summed(ends.solved(self, self.g, task.body))
+            ends = self.solved(g, task.body)
+            contact, field = ends.contact, self.fields[0].duplicate()
+            field.zeroEntries()
+            field.maxpy(contact.weights[0].tolist(), self.fields)
         finally:
-            if ends.single:
-                solved.destroy()
-
-    def _summed(self, ends: SolvedEnds) -> SolvedEnds:
-        """The only state, by its own displacement and nodal forces."""
-        field, contact = self.fields[0].duplicate(), ends.contact
-        field.zeroEntries()
-        field.maxpy(contact.weights[0].tolist(), self.fields)
+            self.punch.destroy()
         self.fields = [field]
         forces = np.tensordot(contact.weights, contact.forces, 1)
-        return replace(ends, contact=replace(contact, weights=np.ones((1, 1)), forces=forces))
-
-    @cached_property
-    def r(self) -> NDArray[np.float64]:
-        """Positions over a of the contact nodes, (nodes,)."""
-        return self.space.chart.surface_position(self.space.contact.s)
-
-    @cached_property
-    def moments(self) -> NDArray[np.float64]:
-        """Map from nodal forces to moments of the pressure, (nodes, moments)."""
-        return self._tests(self.r)
-
-    @cached_property
-    def recovery(self) -> ContactRecovery | None:  # type: ignore[override]
-        """Maps from nodal forces to moments, raw pressure and exponents; none on a mesh of its own."""
-        if self.ends.single:
-            return None
-        space, X = self.space, self.task.places.X
-        return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
-
-    def measured_task(self, task: Task) -> Task:
-        return self.ends.task(task)
+        #: The contact.
+        self.ends = replace(ends, contact=replace(contact, weights=np.ones((1, 1)), forces=forces))
 
     @property
-    def slopes(self) -> Slopes:
-        """Slopes of the fields on the surface, at no place where no stress is requested."""
-        count = len(self.fields)
-        nowhere = Slopes(np.empty((2, 0, count)), np.empty((0, count)))
-        return self.stress_gauges.displacement.slopes if self.work.stresses else nowhere
-
-    def displacement_at(self, task: Task) -> Displacement:
-        continuation = self.ends.continuation(self)
-        return Displacement(task, self.space, self.fields, continuation=continuation)
-
-    @property
-    def mirrored(self) -> bool:  # type: ignore[override]
-        """True where there is a mirror image on the same mesh."""
-        return self.task.response.mirrored and self.ends.mirrored
-
-    def over_flat(self, moments: NDArray, g: NDArray, more: float = 0.0) -> Expansion:
-        """Pressure from moments, with exponents of sharp edges at frictions g, or larger ones."""
-        local = EdgeExponents(self.task.response, g)
-        functions = self.plan.tests.stretch if self.plan.tests else Polynomials()
-        return from_moments(moments, local.α + more, local.β + more, functions)
-
-    def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """Parts of the punch, their loads, (states, parts), and intensities, (states, 2, parts)."""
-        parts = self.punch.parts(g)
-        moments = self.punch.tested(parts, self.moments).swapaxes(0, 1)
-        K_I = np.stack([self.over_flat(of_part, g).K_I for of_part in moments], axis=2)
-        return parts, self.punch.loads(parts), K_I
+    def end_exponents(self) -> tuple[float, float]:
+        """Exponents of the pressure at its left and its right free end."""
+        local = EdgeExponents(self.task.response, self.g)
+        return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        body = self.task.body.loaded(load)
-        ends = self.only or self.ends.solved(self, g, body)
-        return SolvedStates(self, body, ends, self.ends.pressure(self, ends))
-
-    def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
-        return self.ends.turns(states, surface) if states.ends.free.any() else None
-
-    def nearest(self, states: SolvedStates) -> float:
-        return self.ends.nearest(states.pressure)
-
-    def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        """Gauges of states: of pressure and ends, and of requested stresses."""
-        states = self.states(g, load)
-        of_stresses = self.stress_gauges.of(*self.fields_of(states)) if self.work.stresses else []
-        return [self.ends.gauge(self, states), *of_stresses]
-
-    def rounding(self, g: NDArray, load: Any = None) -> list[float]:
-        """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
-
-        In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
-        under a flat punch all the same. Over layers they differ, and a single state has no flat punch
-        beside it: what the solve leaves of its forces stands for rounding there. Stresses are relative to
-        those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
-        they are not, and their rounding is as large.
-        """
-        own = self.fields_of(self.states(g, load))
-        if not self.ends.mirrored or (self.task.body.layered and not self.mirrored):
-            return [self.factor.largest_residual, *self.stress_gauges.rounding(own)]
-        X = self.measured_task(self.task).places.X
-        K_I, σ_XX = [], []
-        for sign in (1, -1) if self.mirrored else (1,):
-            flat = self.punch.states(sign * g, flat=True)
-            pressure = self.over_flat(flat.tested(self.moments), sign * g)
-            K_I.append(pressure.K_I[:, ::sign])
-            if self.work.stresses:
-                of_flat = sign * g, flat.weights, pressure.σ_YY(X)
-                σ_XX.append(self.stress_gauges.σ_XX(*of_flat)[:, ::sign])
-        if not self.mirrored:
-            K_left, K_right = K_I[0].T
-            return [float(np.abs(K_left / K_right - 1.0).max()), *self.stress_gauges.rounding(own)]
-        noise = np.abs(σ_XX[0] - σ_XX[1]) if σ_XX else None
-        of_edges = float((np.abs(K_I[0] - K_I[1]) / np.abs(K_I[0])).max())
-        return [of_edges, *self.stress_gauges.rounding(own, noise)]
+        return SolvedStates(self, self.task.body.loaded(load), self.ends, self.pressure(self.ends))
 
     def close(self) -> None:
-        if self.only:
-            self.fields[0].destroy()
-        else:
-            self.punch.destroy()
-
-
-def tests_of(plan: FemPlan, more: int) -> Callable[[NDArray], NDArray]:
-    """Test functions of r for nodal forces; over layers for ``more`` degrees above the plan's."""
-    tests = plan.tests
-    if tests is None:
-        return chebyshev
-    return lambda r: tests.stretch.values(r, tests.count + more * tests.a_degree)
+        self.fields[0].destroy()

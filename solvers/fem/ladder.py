@@ -18,7 +18,7 @@ from galinx.meshes.kind import DEGREES
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, VARYING, YIELD, stresses
 from ..contact.edges import from_edge
-from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWER, SLOWEST, Rate, before, of_degrees, remaining
+from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import levels
 from ..contact.pressure import Expansion
 from ..contact.solution import Task
@@ -213,14 +213,15 @@ class Level:
         """Displacement, for stresses at the places of a task."""
         return Displacement(task, self.space, self.fields)
 
-    def measured_task(self, task: Task) -> Task:
+    @property
+    def measured_task(self) -> Task:
         """Task with the places at which stresses are measured."""
-        return task
+        return self.task
 
     @cached_property
     def stress_gauges(self) -> StressGauges:
         """Gauges of the requested stresses."""
-        return StressGauges(self.work, self.measured_task(self.task), self.displacement_at)
+        return StressGauges(self.work, self.measured_task, self.displacement_at)
 
     @cached_property
     def displacement(self) -> Displacement:
@@ -250,7 +251,7 @@ class Level:
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
         """Frictions, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
-        X = self.measured_task(self.task).places.X
+        X = self.measured_task.places.X
         return states.contact.g, states.contact.weights, states.pressure.σ_YY(X)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
@@ -555,10 +556,11 @@ class MeasuredError(Estimate):
     def _own(self, gauges: Sequence[Gauge]) -> Any:
         """Errors that a level shows by itself where the level before showed hardly more.
 
-        Over layers these may fall later: with the degree more functions recover the pressure.
+        They may fall later where more functions recover the pressure at a higher degree.
         """
         earlier, last = (gauge.unresolved for gauge in gauges[-2:])
-        return 0.0 if self._level.task.body.layered else np.where(last > _LASTS * earlier, last, 0.0)
+        more = self._work.plan.tests.a_degree
+        return 0.0 if more else np.where(last > _LASTS * earlier, last, 0.0)
 
     def _rate(self, word: str) -> Rate:
         """Usual rate of convergence, or a slower one by the decay over two degrees; one may be luck."""
@@ -566,8 +568,7 @@ class MeasuredError(Estimate):
         if word == AT_INTERFACES:
             rate = AT_DEPTHS
         elif word == INTENSITIES:
-            # What a thin layer adds converges unevenly: a small change says less there.
-            rate = SLOWER if self._level.task.body.layered else of_degrees(2)
+            rate = self._work.plan.tests.rate
         earlier = self._changes.get(self._degree - _DECAY, {}).get(word)
         if not earlier:
             return rate

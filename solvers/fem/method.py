@@ -10,29 +10,25 @@ from numpy.typing import NDArray
 
 from galinx.clock import Clock
 
-from ..contact import FREE_ENDS, OWN_PRESSURE, VARYING
+from ..contact import OWN_PRESSURE
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
-from ..contact.method import ContactStress, Solver
-from ..contact.solution import Task
-from .contact import PunchLevel
+from ..contact.solution import ContactStress, Solver, Task
+from .contact import PUNCHES
 from .discretisation import Discretisation, quiet_compiler
 from .ladder import to_tolerance
-from .own_meshes import between_kinks, over_layers
+from .own_meshes import BetweenKinks, OverLayers
 from .prescribed_pressure import FormulaLevel, PiecesLevel, WholeLevel
 from .space import Space
 from .sweep import Trained, train
 
 #: Levels of states that share a mesh, by the plan's mode.
-LEVELS: dict[str, Any] = {
-    "contact": PunchLevel,
-    FREE_ENDS: PunchLevel,
-    VARYING: PunchLevel,
+LEVELS: dict[str, Any] = PUNCHES | {
     "traction": FormulaLevel,
     OWN_PRESSURE: PiecesLevel,
     PRESCRIBED_ON_LAYERS: WholeLevel,
 }
 #: Solvers of states each of which has its own mesh, by the plan's mode.
-OWN: dict[str, Any] = {OWN_MESHES: between_kinks, FREE_ON_LAYERS: over_layers}
+OWN: dict[str, Any] = {OWN_MESHES: BetweenKinks, FREE_ON_LAYERS: OverLayers}
 
 
 class FiniteElements:
@@ -73,14 +69,15 @@ class FiniteElements:
             self._progress.say(
                 f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
             )
-            mode, work = self.work.plan.mode, self.work
-            if not solver and mode in OWN:
-                solver = stack.enter_context(OWN[mode](work, task, g))
-            elif not solver:
-                kind = LEVELS[mode]
-                solved = to_tolerance(work, task, g, lambda space, g: kind(work, task, space, g))
-                solver = stack.enter_context(closing(solved))
+            if not solver:
+                solver = stack.enter_context(closing(self._solved(task, g)))
             yield solver
+
+    def _solved(self, task: Task, g: NDArray) -> Any:
+        work, mode = self.work, self.work.plan.mode
+        if mode in OWN:
+            return OWN[mode](work, task, g)
+        return to_tolerance(work, task, g, lambda space, g: LEVELS[mode](work, task, space, g))
 
     @contextmanager
     def one_state(

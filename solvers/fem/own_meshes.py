@@ -3,22 +3,22 @@
 **Kinks.** The slope of a convex punch, or its derivative, may jump at places that depend on the state. So
 the ends are solved for first, on the mesh of all speeds, where a few polynomial shapes give the ends of
 every friction and every load, and cells need not resolve a kink (:class:`EndsLevel`). Then every state
-has a mesh with cells graded towards its kinks (:class:`EndsBetweenKinks`).
+has a mesh with cells graded towards its kinks (:class:`BetweenKinks`).
 
 **Layers** have a length, so each contact has a mesh drawn for its half-width. That is searched for by
 :mod:`galinx.solvers.contact.ends`, at a lower degree first: the load that makes a contact of the mesh's
-half-width is to be the load of the task (:class:`_Search`). Three displacements are prescribed under the
-punch: its height around a nearby middle, the change of that height where the middle moves, and a
+half-width is to be the load of the task (:class:`OverLayers`). Three displacements are prescribed under
+the punch: its height around a nearby middle, the change of that height where the middle moves, and a
 constant. Their loads and the intensities at both ends are linear in their amplitudes. So the half-width
 of a mesh has a load of its own, at which both intensities vanish, and a middle: of a parabola at once, of
-other profiles once the middle hardly moves (:class:`BalancedEnds`).
+other profiles once the middle hardly moves (:class:`BalancedLevel`).
 
 On the mesh of a contact the degree rises until the measured error is within tolerance. Where contacts of
 all loads differ in size alone, a single state of a friction stands for all of them.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass, replace
 from math import ceil, log
 from typing import Any, TypeAlias
@@ -50,9 +50,9 @@ from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between,
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.punches import Flat
-from .contact import Ends, FreeEnds, PunchLevel, without_intensity
+from .contact import FreeLevel, SingleLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
-from .ladder import Gauge, Solved, WorkDone, climb, joined, to_tolerance
+from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .solution import Solution, SolvedEnds, SolvedStates, solution_of
 from .space import Space
 
@@ -67,18 +67,78 @@ _FREE = np.ones((1, 2), dtype=bool)
 _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 
-class EndsLevel(PunchLevel):
-    """Ends of contacts under any convex punch at one degree; see :class:`PunchLevel`.
+class OwnMeshes:
+    """Contacts at one speed, each solved on its mesh when first needed; the last few are kept.
 
     Args:
-        work, task, space, g: as of :class:`PunchLevel`.
+        work: gives meshes.
+        task: the speed.
+        g: all values of σ_XY/σ_YY that will be solved.
+    """
+
+    def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
+        self._work, self._task, self._done = work, task, WorkDone()
+        self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
+        #: States by σ_XY/σ_YY and load, in the order of their last use.
+        self._kept: dict[State, SolvedStates] = {}
+
+    def states(self, g: NDArray, load: Any = None) -> Solution:
+        return solution_of(self._task, self._each, g, load)
+
+    def _each(self, g: NDArray, load: Any) -> list[SolvedStates]:
+        loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
+        return [self._state(*state) for state in zip(g.tolist(), loads)]
+
+    def _state(self, g: float, load: float) -> SolvedStates:
+        state = self._kept.pop((g, load), None)
+        if state is None:
+            task = replace(self._task, body=self._task.body.loaded(load), loads=(load,))
+            state = self._solved(np.array([g]), task)
+        self._kept[g, load] = state
+        while len(self._kept) > OWN_MESHES_KEPT:
+            self._kept.pop(next(iter(self._kept))).level.close()
+        return state
+
+    def _solved(self, g: NDArray, task: Task) -> SolvedStates:
+        """Contact with σ_XY/σ_YY g, (1,), under the one load of a task, solved to the tolerance.
+
+        Raises:
+            SolveError: no contact carries the load, or the equations could not be solved.
+        """
+        raise NotImplementedError
+
+    def _on(
+        self, mesh: Discretisation, task: Task, g: NDArray, level: Callable[[Space, NDArray], Any]
+    ) -> SolvedStates:
+        """Contact on its mesh, by a :class:`SingleLevel` whose degree is raised to the tolerance."""
+        solved = to_tolerance(mesh, task, g, level, self._done)
+        for name, value in solved.record().items():
+            self._record[name] = max(self._record.get(name, value), value)
+        return solved.on_mesh(g)[0]
+
+    def record(self) -> dict[str, Any]:
+        return self._record | vars(self._done)
+
+    def close(self) -> None:
+        """Free the kept states."""
+        for state in self._kept.values():
+            state.level.close()
+
+
+class EndsLevel(FreeLevel):
+    """Ends of contacts under any convex punch at one degree; see :class:`.contact.PunchLevel`.
+
+    Args:
+        work, task, space, g: as of :class:`.contact.PunchLevel`.
         near: middles and half-widths [m] of states by σ_XY/σ_YY and load, from previous levels.
     """
+
+    shapes = SHAPES
 
     def __init__(
         self, work: Discretisation, task: Task, space: Space, g: NDArray, near: dict[State, Lengths]
     ) -> None:
-        super().__init__(work, task, space, g, FreeEnds(SHAPES))
+        super().__init__(work, task, space, g)
         self._near = near
 
     def lengths(self, g: NDArray, load: Any = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -117,10 +177,11 @@ _AROUND_CUSP, _INNERMOST = 4, 30.0
 _OF_TIP = 0.25
 
 
-class EndsBetweenKinks(Ends):
-    """Ends of one contact, solved for before, and kinks of the punch between them.
+@dataclass(frozen=True)
+class EndsBetweenKinks:
+    """Ends of one contact, and kinks of the punch between them, towards which its mesh is graded.
 
-    Args:
+    Attributes:
         body: the sliding contact, under its load.
         lengths: middle and half-width [m].
         tolerance: of the scene.
@@ -129,24 +190,35 @@ class EndsBetweenKinks(Ends):
         SolveError: cells cannot be graded towards the kinks.
     """
 
-    single, mirrored = True, False
+    body: Contact
+    lengths: Lengths
+    tolerance: float
 
-    def __init__(self, body: Contact, lengths: Lengths, tolerance: float) -> None:
-        self._body, self._tolerance = body, tolerance
-        self._centre, self._half_width = lengths
-        at = (np.array(kinks(body.profile), dtype=float) - self._centre) / self._half_width
-        #: Positions of the kinks over the half-width; of those at which stresses are infinite; of others.
-        self._places = at[np.abs(at) < 1.0]
-        if crowded := crowded_kinks(self._places):
+    def __post_init__(self) -> None:
+        if crowded := crowded_kinks(self.places):
             raise SolveError(f'the punch has {crowded}; take methods = ["closed_form"]')
-        tip = bool(jumps(body.profile))
-        self._tips: NDArray[np.float64] = self._places if tip else np.empty(0)
-        self._kinks: NDArray[np.float64] = np.empty(0) if tip else self._places
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Positions of the kinks over the half-width."""
+        centre, half_width = self.lengths
+        at = (np.array(kinks(self.body.profile), dtype=float) - centre) / half_width
+        return at[np.abs(at) < 1.0]
+
+    @property
+    def tips(self) -> NDArray[np.float64]:
+        """Kinks at which stresses are infinite."""
+        return self.places if jumps(self.body.profile) else np.empty(0)
+
+    @property
+    def kinks(self) -> NDArray[np.float64]:
+        """Kinks at which stresses are finite."""
+        return np.empty(0) if jumps(self.body.profile) else self.places
 
     def drawn(self, plan: FemPlan) -> FemPlan:
         """Plan with a mesh whose cells are graded towards the kinks."""
         rings = _gentle(plan)
-        return replace(plan, drawn=with_kinks(rings, self._places, self._more_rings(rings, plan)))
+        return replace(plan, drawn=with_kinks(rings, self.places, self._more_rings(rings, plan)))
 
     def _more_rings(self, rings: Refinement, plan: FemPlan) -> int:
         """Number of rings around kinks beyond those around the ends.
@@ -156,83 +228,14 @@ class EndsBetweenKinks(Ends):
         evaluated farther away: if an innermost cell reached that far, no degree would resolve them at
         any tolerance.
         """
-        if cusp(self._body.profile):
+        if cusp(self.body.profile):
             return _AROUND_CUSP
-        if len(self._tips):
+        if len(self.tips):
             size = _OF_TIP * NEAR_TIP
         else:
-            order = max((exponent(self._body.profile) or 2.0) - 1.0, 1.0)
+            order = max((exponent(self.body.profile) or 2.0) - 1.0, 1.0)
             size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
         return max(0, rings_at_kinks(rings, size))
-
-    def heights(self, level: PunchLevel) -> NDArray[np.float64]:
-        X = self._centre + self._half_width * level.r
-        return np.asarray(self._body.profile.height(X) / self._body.displacement)
-
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
-        half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
-        return SolvedEnds(level.punch.states(g), half_width, centre, _FREE)
-
-    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> KinkedPressure:
-        space, contact, profile = level.space, ends.contact, self._body.profile
-        return KinkedPressure(
-            space.contact.s, space.degree, space.chart, contact.normal[0], self._places,
-            _exponents(level.task, contact.g), leaving(profile), self._tolerance, bool(jumps(profile)),
-        )  # fmt: skip
-
-    def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
-        exponents, gaps = _exponents(level.task, level.g), gaps_of(self._places)
-        return lambda X: slopes_towards_ends(X, gaps, exponents)
-
-    def nearest(self, pressure: KinkedPressure) -> float:
-        at = np.concatenate([[-1.0], self._kinks, [1.0]])
-        return max(_CELLS * float(pressure.cells_beside(at).max()), _DIGITS)
-
-    def task(self, task: Task) -> Task:
-        """Task without places next to tips, where stresses are infinite."""
-        places, tips = task.places, self._tips
-        X, points, around = places.X, places.points, places.around
-        return replace(
-            task,
-            places=replace(
-                places,
-                X=X[off_tips(X, tips)],
-                points=points[off_tips(points[:, 0], tips, points[:, 1])],
-                around=around[off_tips(around[:, 0], tips, around[:, 1])],
-            ),
-        )
-
-    def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
-        """Gauge of the pressure's moments over the load, and of the pressure over its largest.
-
-        Kinks are among the places: there it is a limit, which has less digits than what it is taken from.
-        """
-        pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
-        at_kinks = [pressure.at_kink(i) for i in range(len(self._kinks))]
-        σ = np.append(pressure.σ_YY(_ACROSS[off_tips(_ACROSS, self._tips)]), at_kinks)[None]
-        size = float(np.abs(σ).max())
-        unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
-        return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
-
-    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
-        """Limits of stresses at both ends, and under kinks where they are finite."""
-        X, pressure, strain = self._kinks, states.pressure, states.displacement.strain
-        σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
-        u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
-        g, response = float(states.contact.g[0]), states.task.response
-        under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
-
-        def in_plane(r: NDArray) -> NDArray[np.float64]:
-            r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
-            σ = pressure.σ_YY(r)
-            return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
-
-        between = None
-        if len(X):
-            places = np.array([-1.0, *X, 1.0])
-            # Nearer to ends and kinks the limits there stand for the stress.
-            _, between = at_and_between(places, in_plane, nearest=self.nearest(pressure))
-        return super().turns(states, surface).joined(Turns(X[None], under[:, None], between))
 
 
 def _gentle(plan: FemPlan) -> Refinement:
@@ -247,66 +250,186 @@ def _gentle(plan: FemPlan) -> Refinement:
     return replace(rings, levels=ceil(rings.levels * log(rings.ratio) / log(ratio)), ratio=ratio)
 
 
-def _exponents(task: Task, g: NDArray) -> tuple[float, float]:
-    """Exponents of a single state's pressure at its left and its right free end."""
-    local = EdgeExponents(task.response, g)
-    return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
+class KinkedLevel(SingleLevel):
+    """Contact between ends that were solved for before, on cells graded towards kinks of the punch.
+
+    Args:
+        work, task, space, g: as of :class:`SingleLevel`.
+        between: ends and kinks of the contact.
+    """
+
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, between: EndsBetweenKinks
+    ) -> None:
+        self._between, (self._centre, self._half_width) = between, between.lengths
+        super().__init__(work, task, space, g)
+
+    def heights(self) -> NDArray[np.float64]:
+        X, body = self._centre + self._half_width * self.r, self.task.body
+        return np.asarray(body.profile.height(X) / body.displacement)
+
+    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+        half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
+        return SolvedEnds(self.punch.states(g), half_width, centre, _FREE)
+
+    def pressure(self, ends: SolvedEnds) -> KinkedPressure:
+        space, contact, profile = self.space, ends.contact, self.task.body.profile
+        return KinkedPressure(
+            space.contact.s, space.degree, space.chart, contact.normal[0], self._between.places,
+            self.end_exponents, leaving(profile), self._between.tolerance, bool(jumps(profile)),
+        )  # fmt: skip
+
+    def continuation(self) -> Callable[[NDArray], Any]:
+        exponents, gaps = self.end_exponents, gaps_of(self._between.places)
+        return lambda X: slopes_towards_ends(X, gaps, exponents)
+
+    def nearest(self, states: SolvedStates) -> float:
+        at = np.concatenate([[-1.0], self._between.kinks, [1.0]])
+        return max(_CELLS * float(states.pressure.cells_beside(at).max()), _DIGITS)
+
+    @property
+    def measured_task(self) -> Task:
+        """Task without places next to tips, where stresses are infinite."""
+        places, tips = self.task.places, self._between.tips
+        X, points, around = places.X, places.points, places.around
+        return replace(
+            self.task,
+            places=replace(
+                places,
+                X=X[off_tips(X, tips)],
+                points=points[off_tips(points[:, 0], tips, points[:, 1])],
+                around=around[off_tips(around[:, 0], tips, around[:, 1])],
+            ),
+        )
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        """Gauge of the pressure's moments over the load, and of the pressure over its largest.
+
+        Kinks are among the places: there it is a limit, which has less digits than what it is taken from.
+        """
+        pressure, moments = states.pressure, states.contact.tested(self.moments[:, 1:6])
+        at_kinks = [pressure.at_kink(i) for i in range(len(self._between.kinks))]
+        across = _ACROSS[off_tips(_ACROSS, self._between.tips)]
+        σ = np.append(pressure.σ_YY(across), at_kinks)[None]
+        size = float(np.abs(σ).max())
+        unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
+        return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
+
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        """Limits of stresses at both ends, and under kinks where they are finite."""
+        X, pressure, strain = self._between.kinks, states.pressure, states.displacement.strain
+        σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+        u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
+        g, response = float(states.contact.g[0]), states.task.response
+        under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+
+        def in_plane(r: NDArray) -> NDArray[np.float64]:
+            r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
+            σ = pressure.σ_YY(r)
+            return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
+
+        between = None
+        if len(X):
+            places = np.array([-1.0, *X, 1.0])
+            # Nearer to ends and kinks the limits there stand for the stress.
+            _, between = at_and_between(places, in_plane, nearest=self.nearest(states))
+        at_ends = super().turns(states, surface)
+        assert at_ends
+        return at_ends.joined(Turns(X[None], under[:, None], between))
+
+
+class BetweenKinks(OwnMeshes):
+    """Contacts with kinks, whose ends are solved for first: to the tolerance, for sample states."""
+
+    def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
+        super().__init__(work, task, g)
+        near: dict[State, Lengths] = {}
+        self._ends = climb(
+            work.for_ends, task, g,
+            lambda space, g: EndsLevel(work.for_ends, task, space, g, near), done=self._done,
+        )  # fmt: skip
+
+    def _solved(self, g: NDArray, task: Task) -> SolvedStates:
+        work, load = self._work, task.body.load
+        (lengths,), unseen = self._ends.level.lengths(g, np.array([load]))
+        between = EndsBetweenKinks(task.body, tuple(lengths.tolist()), work.plan.tolerance)
+        mesh = work.on(between.drawn(work.plan), refine=lambda plan: between.drawn(on_finer_cells(plan)))
+        state = self._on(mesh, task, g, lambda space, g: KinkedLevel(mesh, task, space, g, between))
+        state.errors[INTENSITIES] += self._ends.error.of(g, load)[INTENSITIES] + unseen
+        return state
+
+    def close(self) -> None:
+        super().close()
+        self._ends.close()
 
 
 #: Growth of the load's logarithm with that of the half-width, as on a half-plane under a parabola.
 GROWTH = 2.0
 
 
-class BalancedEnds(Ends):
-    """Ends of one contact over layers, without intensities, on a mesh drawn for its half-width.
+class BalancedLevel(SingleLevel):
+    """Contact over layers without intensities, on a mesh drawn for its half-width.
 
     The contact has that half-width under a load of its own. Its half-width under the task's load is
     estimated by the growth of loads on a half-plane.
 
     Args:
+        work, task, space, g: as of :class:`SingleLevel`; the task's lengths are over the half-width.
         profile: profile of the punch.
-        half_width: half-width of the mesh [m].
         near: middle of a contact near by [m].
+
+    Attributes:
+        half_width: half-width of the mesh [m].
     """
 
-    single, mirrored = True, False
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, profile: Any, near: float
+    ) -> None:
+        self._profile, self._near, self.half_width = profile, near, float(task.body.half_width)
+        super().__init__(work, task, space, g)
 
-    def __init__(self, profile: Any, half_width: float, near: float) -> None:
-        self._profile, self._half_width, self._near = profile, half_width, near
+    @property
+    def off(self) -> float:
+        """Logarithm of the load of a contact of the mesh's half-width, over the task's."""
+        return -GROWTH * float(np.log(self.ends.half_width[0] / self.half_width))
 
-    def heights(self, level: PunchLevel) -> NDArray[np.float64]:
-        h, unit = self._half_width, level.task.body.displacement
-        X = self._near + h * level.r
+    @property
+    def lean(self) -> float:
+        """Middle of the contact over the mesh's half-width."""
+        return float(self.ends.centre[0] / self.half_width)
+
+    def heights(self) -> NDArray[np.float64]:
+        h, unit = self.half_width, self.task.body.displacement
+        X = self._near + h * self.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, level: PunchLevel, g: NDArray, body: Contact) -> SolvedEnds:
+    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
         """Contact without intensities.
 
         Raises:
             SolveError: no load makes such a contact.
         """
-        (parts, loads, K), h = level.parts(g), self._half_width
+        (parts, loads, K), h = self.parts(g), self.half_width
         amplitudes = without_intensity(loads, K)
         # Over its own load the punch's height is that over the task's load times their quotient.
         _, share, slope = amplitudes[0].tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
         half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
-        contact = level.punch.summed(g, parts, amplitudes)
+        contact = self.punch.summed(g, parts, amplitudes)
         return SolvedEnds(contact, np.full(1, half_width), np.full(1, centre), _FREE)
 
-    def pressure(self, level: PunchLevel, ends: SolvedEnds) -> Expansion:
-        return level.over_flat(ends.contact.tested(level.moments), ends.contact.g, 1.0)
+    def pressure(self, ends: SolvedEnds) -> Expansion:
+        return self.over_flat(ends.contact.tested(self.moments), ends.contact.g, 1.0)
 
-    def continuation(self, level: PunchLevel) -> Callable[[NDArray], Any]:
-        assert level.plan.tests
-        gap, exponents = min(1.0, level.plan.tests.stretch.h), _exponents(level.task, level.g)
+    def continuation(self) -> Callable[[NDArray], Any]:
+        gap, exponents = min(1.0, self.plan.tests.functions.h), self.end_exponents
         return lambda X: slopes_towards_ends(X, (gap, gap), exponents)
 
-    def gauge(self, level: PunchLevel, states: SolvedStates) -> Gauge:
+    def gauge(self, states: SolvedStates) -> Gauge:
         """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
-        pressure, moments = states.pressure, states.contact.tested(level.moments[:, 1:6])
-        h, σ = self._half_width, pressure.σ_YY(_ACROSS)
+        pressure, moments = states.pressure, states.contact.tested(self.moments[:, 1:6])
+        h, σ = self.half_width, pressure.σ_YY(_ACROSS)
         # Differences of the half-widths' logarithms are relative changes.
         lengths = np.column_stack([np.log(states.ends.half_width / h), states.ends.centre / h])
         # What the last functions add is largest where they are multiplied by most.
@@ -362,54 +485,39 @@ _APART = 1e-5
 _ERROR = 0.3
 
 
-class _Search:
-    """Search for the half-width and the middle of a contact over layers.
+class OverLayers(OwnMeshes):
+    """Contacts over layers, whose half-widths and middles are searched for on meshes that follow them."""
 
-    Args:
-        work: gives meshes.
-        task: the speed, and the load.
-        g: σ_XY/σ_YY.
-        done: takes the numbers of the work.
-    """
-
-    def __init__(self, work: Discretisation, task: Task, g: float, done: WorkDone) -> None:
-        self._work, self._task, self._g, self._done = work, task, np.array([g]), done
-        #: Middle over the half-width; logarithms of loads, by the half-width, at the last degree.
-        self._lean = 0.0
-        self._tried: dict[float, float] = {}
-
-    def solved(self, near: float) -> "OwnState":
-        """Contact solved to the tolerance.
-
-        Args:
-            near: half-width of a contact near by [m].
-
-        Raises:
-            SolveError: no contact was found, or the equations could not be solved.
-        """
-        drawn, profile = self._half_width(near), self._task.body.profile
-        state, lean, h = self._solved_on(drawn)
+    def _solved(self, g: NDArray, task: Task) -> SolvedStates:
+        # Half-widths of solved states under the load by the difference of their frictions.
+        near = [
+            (abs(other - float(g[0])), float(state.ends.half_width[0]))
+            for (other, load), state in self._kept.items()
+            if load == task.body.load
+        ]
+        #: The contact sought, its middle over the half-width, logarithms of loads by the half-width at
+        #: the last degree.
+        self._sought, self._g, self._lean, self._tried = task, g, 0.0, dict[float, float]()
+        drawn = self._half_width(min(near)[1] if near else float(task.body.half_width))
+        state, lean, h = self._contact(drawn)
         if abs(h / drawn - 1.0) > _ERROR * self._work.plan.tolerance:
-            state.solved.close()
+            state.level.close()
             drawn = h
-            state, lean, h = self._solved_on(drawn)
-        check_reach(profile, h * (lean - 1.0), h * (lean + 1.0))
-        ends = replace(state.states.ends, half_width=np.array([h]), centre=np.array([h * lean]))
-        errors = {word: value + abs(h / drawn - 1.0) for word, value in state.states.errors.items()}
-        return replace(
-            state, states=replace(state.states, body=self._task.body, ends=ends, errors=errors)
-        )
+            state, lean, h = self._contact(drawn)
+        check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
+        ends = replace(state.ends, half_width=np.array([h]), centre=np.array([h * lean]))
+        errors = {word: value + abs(h / drawn - 1.0) for word, value in state.errors.items()}
+        return replace(state, body=task.body, ends=ends, errors=errors)
 
-    def _solved_on(self, h: float) -> tuple["OwnState", float, float]:
+    def _contact(self, h: float) -> tuple[SolvedStates, float, float]:
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
-        mesh, task = self._on(h, self._work.stresses)
-        state = own_state(mesh, task, self._g, self._ends(h), self._done)
-        off, lean = _balanced(state.solved.level, h)
-        return state, lean, self._moved(h, off)
+        mesh, task, level = self._drawn(h, self._work.stresses)
+        state = self._on(mesh, task, self._g, level)
+        return state, state.level.lean, self._moved(h, state.level.off)
 
     def _half_width(self, h: float) -> float:
         """Half-width [m] of the contact that carries the load, from a half-width near by."""
-        body, settled = self._task.body, _SETTLED * self._work.plan.tolerance
+        body, settled = self._sought.body, _SETTLED * self._work.plan.tolerance
         punch = Punch(body.profile, 1.0, float(body.compression))
         for lower, error in ((_LOWER, max(_ROUGH, settled)), (0, settled)):
             # Loads of a low degree do not compare with those of a high one.
@@ -433,140 +541,20 @@ class _Search:
             lower: difference of the degree from the usual one.
             error: relative error that is allowed.
         """
-        mesh, task = self._on(h, frozenset())
+        mesh, task, solve = self._drawn(h, frozenset())
         degree = max(mesh.plan.degrees[task.number] - lower, DEGREES[0])
         moved = np.inf
         while moved**2 > error:  # the shift of the middle is accurate to its square
-            with closing(PunchLevel(mesh, task, mesh.space(degree), self._g, self._ends(h))) as level:
+            with closing(solve(mesh.space(degree), self._g)) as level:
                 self._done.count(level.factor)
-                off, lean = _balanced(level, h)
-            moved, self._lean = lean - self._lean, lean
-        self._tried[h] = off
-        return off
+                moved, self._lean = level.lean - self._lean, level.lean
+        self._tried[h] = level.off
+        return level.off
 
-    def _on(self, h: float, words: frozenset[str]) -> tuple[Discretisation, Task]:
-        """Mesh drawn for a half-width [m], and the task with lengths over it."""
-        task = scaled(self._task, h)
-        return self._work.on(drawn_for(task, self._work.plan, words), words), task
-
-    def _ends(self, h: float) -> BalancedEnds:
-        return BalancedEnds(self._task.body.profile, h, h * self._lean)
-
-
-def _balanced(level: PunchLevel, h: float) -> tuple[float, float]:
-    """Logarithm of the load of a contact of half-width h [m], over the task's, and its middle over h."""
-    ends = level.only
-    assert ends
-    return -GROWTH * float(np.log(ends.half_width[0] / h)), float(ends.centre[0] / h)
-
-
-@dataclass(frozen=True)
-class OwnState:
-    """State solved on a mesh of its own: the state, and how it was solved."""
-
-    states: SolvedStates
-    solved: Solved
-
-
-def own_state(mesh: Discretisation, task: Task, g: NDArray, ends: Ends, done: WorkDone) -> OwnState:
-    """Solve a contact on its mesh, the degree raised to the tolerance.
-
-    Args:
-        mesh: mesh of the contact.
-        task: the speed, and the load.
-        g: σ_XY/σ_YY, (1,).
-        ends: ends of the contact.
-        done: takes the numbers of the work.
-    """
-    solved = to_tolerance(mesh, task, g, lambda space, g: PunchLevel(mesh, task, space, g, ends), done)
-    (states,) = solved.on_mesh(g)
-    return OwnState(states, solved)
-
-
-class OwnMeshesAtSpeed:
-    """Contacts at one speed, each solved on its mesh when first needed; the last few are kept.
-
-    Args:
-        task: the speed.
-        solve: solves a contact of σ_XY/σ_YY for the task under one load, given the kept states by both.
-        done: has the numbers of the work.
-    """
-
-    def __init__(
-        self, task: Task, solve: Callable[[float, Task, dict[State, OwnState]], OwnState], done: WorkDone
-    ) -> None:
-        self._task, self._solve, self._done = task, solve, done
-        self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
-        #: States by σ_XY/σ_YY and load, in the order of their last use.
-        self._kept: dict[State, OwnState] = {}
-
-    def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self._task, self._solved, g, load)
-
-    def _solved(self, g: NDArray, load: Any) -> list[SolvedStates]:
-        loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
-        return [self._state(*state).states for state in zip(g.tolist(), loads)]
-
-    def _state(self, g: float, load: float) -> OwnState:
-        state = self._kept.pop((g, load), None)
-        if state is None:
-            task = replace(self._task, body=self._task.body.loaded(load), loads=(load,))
-            state = self._solve(g, task, self._kept)
-            for name, value in state.solved.record().items():
-                self._record[name] = max(self._record.get(name, value), value)
-        self._kept[g, load] = state
-        while len(self._kept) > OWN_MESHES_KEPT:
-            self._kept.pop(next(iter(self._kept))).solved.close()
-        return state
-
-    def record(self) -> dict[str, Any]:
-        return self._record | vars(self._done)
-
-    def close(self) -> None:
-        """Free the kept states."""
-        for state in self._kept.values():
-            state.solved.close()
-
-
-@contextmanager
-def over_layers(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnMeshesAtSpeed]:
-    """Contacts over layers, whose ends are searched for on meshes that follow them."""
-    done = WorkDone()
-
-    def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
-        # Half-widths of solved states under the load by the difference of their frictions.
-        near = [
-            (abs(other - g), float(state.states.ends.half_width[0]))
-            for (other, load), state in kept.items()
-            if load == alone.body.load
-        ]
-        first = min(near)[1] if near else float(alone.body.half_width)
-        return _Search(work, alone, g, done).solved(first)
-
-    with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
-        yield at
-
-
-@contextmanager
-def between_kinks(work: Discretisation, task: Task, g: NDArray) -> Iterator[OwnMeshesAtSpeed]:
-    """Contacts with kinks, whose ends are solved for first: to the tolerance, for sample states."""
-    near: dict[State, Lengths] = {}
-
-    def level(space: Space, g: NDArray) -> EndsLevel:
-        return EndsLevel(work.for_ends, task, space, g, near)
-
-    done = WorkDone()
-    with closing(climb(work.for_ends, task, g, level, done=done)) as solved:
-
-        def solve(g: float, alone: Task, kept: dict[State, OwnState]) -> OwnState:
-            of = np.array([g])
-            load = alone.body.load
-            (lengths,), unseen = solved.level.lengths(of, np.array([load]))
-            ends = EndsBetweenKinks(alone.body, tuple(lengths.tolist()), work.plan.tolerance)
-            mesh = work.on(ends.drawn(work.plan), refine=lambda plan: ends.drawn(on_finer_cells(plan)))
-            state = own_state(mesh, alone, of, ends, done)
-            state.states.errors[INTENSITIES] += solved.error.of(of, load)[INTENSITIES] + unseen
-            return state
-
-        with closing(OwnMeshesAtSpeed(task, solve, done)) as at:
-            yield at
+    def _drawn(
+        self, h: float, words: frozenset[str]
+    ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
+        """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
+        task, profile = scaled(self._sought, h), self._sought.body.profile
+        mesh = self._work.on(drawn_for(task, self._work.plan, words), words)
+        return mesh, task, lambda space, g: BalancedLevel(mesh, task, space, g, profile, h * self._lean)

@@ -116,12 +116,14 @@ class Punch:
         response: of the half-plane.
         fields: displacements over N/(2μ).
         forces: their nodal forces, see :class:`ContactStates`.
+        slopes: their slopes on the surface at the places of a task, where they were interpolated.
     """
 
     space: Space
     response: HalfPlane
     fields: list[PETSc.Vec]
     forces: NDArray[np.float64]
+    slopes: Slopes | None = None
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
         """Weights of the fields in each part, (states, parts, fields), at values g of σ_XY/σ_YY.

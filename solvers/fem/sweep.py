@@ -30,9 +30,8 @@ from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import LADDERS, MOST, Sweep, levels
 from ..contact.solution import Task
 from ..errors import SolveError
-from .contact import PunchLevel
+from .contact import PUNCHES, PunchLevel
 from .discretisation import Discretisation
-from .displacement import Displacement
 from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
 from .punch import FittedPunch, Sampled, sampled, together
 from .space import Space
@@ -101,6 +100,11 @@ class Fit:
     rational: Barycentric | None = None
 
     @property
+    def kind(self) -> type[PunchLevel]:
+        """Kind of the levels."""
+        return PUNCHES[self.work.plan.mode]
+
+    @property
     def solved(self) -> list[int]:
         """Numbers of the solved speeds."""
         return list(self.speeds)
@@ -166,8 +170,8 @@ class Fit:
             assert through
             shares = through.shares(self.sweep.z[[number]])[0]
         combined = together(self.samples, shares).scaled(*self.singular(task))
-        punch = FittedPunch(self.space, task.response, self.at, combined)
-        with closing(FittedLevel(self, task, punch)) as level:
+        punch, kind = FittedPunch(self.space, task.response, self.at, combined), self.kind
+        with closing(kind(self.work, task, self.space, self.at.nodes, punch, self.recovery)) as level:
             yield level
 
     def record(self, number: int) -> dict[str, Any]:
@@ -175,23 +179,6 @@ class Fit:
         if number in self.speeds:
             return self.speeds[number].record
         return size_of(self.space) | vars(WorkDone())
-
-
-class FittedLevel(PunchLevel):
-    """Punch at a speed to which its parts were interpolated; see :class:`PunchLevel`."""
-
-    punch: FittedPunch
-
-    def __init__(self, fit: Fit, task: Task, punch: FittedPunch) -> None:
-        self.punch, self.fields = punch, punch.fields
-        self.recovery, self.moments = fit.recovery, fit.recovery.moments
-        super().__init__(fit.work, task, fit.space, fit.at.nodes)
-
-    def _solve(self) -> None:
-        """Solve nothing."""
-
-    def displacement_at(self, task: Task) -> Displacement:
-        return Displacement(task, self.space, self.fields, self.punch.slopes)
 
 
 @dataclass(frozen=True)
@@ -410,6 +397,7 @@ class _Training:
     def _solve(self, number: int, measures: bool) -> Speed:
         """Solve a speed, with or without the measurement of its error."""
         work, task, fit = self._work, self._tasks[number], self._fit
+        kind = PUNCHES[work.plan.mode]
         self._say(f"finite elements at c = {task.response.c:g}, of the fit")
         expected: list[Gauge] = []
         if fit and fit.rational:
@@ -417,12 +405,12 @@ class _Training:
                 expected = predicted.gauges(*self._probes)
         if measures:
             solved = climb(
-                work, task, self._all, lambda space, g: PunchLevel(work, task, space, g),
+                work, task, self._all, lambda space, g: kind(work, task, space, g),
                 self._degree, DISCRETISATION,
             )  # fmt: skip
         else:
             assert fit
-            level, done = PunchLevel(work, task, fit.space, self._all), WorkDone()
+            level, done = kind(work, task, fit.space, self._all), WorkDone()
             done.count(level.factor)
             solved = Solved(level, None, size_of(fit.space) | vars(done))
         with closing(solved):

@@ -44,6 +44,23 @@ class Along:
         X = np.clip(X, -1.0, 1.0)
         return np.asarray(self.ratio(X.ravel())).reshape(X.shape)
 
+    @property
+    def varies(self) -> bool:
+        """True if it is not one number all along the contact."""
+        return True
+
+
+@dataclass(frozen=True)
+class Constant(Along):
+    """One σ_XY/σ_YY all along the contact."""
+
+    varies = False
+
+
+def constant(g: float) -> Along:
+    """Friction σ_XY/σ_YY = g all along the contact."""
+    return Constant(g, lambda X: np.full(X.shape, g))
+
 
 def tabulated(rows: Sequence[tuple[float, float]], factor: float) -> Along:
     """Friction linear between rows (X/a, f), from X/a = -1 to 1; σ_XY/σ_YY is ``factor`` times f."""

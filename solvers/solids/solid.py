@@ -28,6 +28,8 @@ class Solid(Protocol):
         ρ: density [kg/m³].
         c_s: wave speed that c refers to [m/s].
         layers: from the top down; none in a uniform solid.
+        above: solid of an elastic punch above it; None under a rigid one.
+        punch_strength: uniaxial yield strength of that solid [Pa]; None where it is not given.
     """
 
     about: ClassVar[str]
@@ -35,6 +37,8 @@ class Solid(Protocol):
     ρ: float
 
     layers: Sequence[Any] = ()
+    above: "Solid | None" = None
+    punch_strength: float | None = None
 
     @property
     def depths(self) -> NDArray[np.float64]:
@@ -99,15 +103,6 @@ class Solid(Protocol):
     @abstractmethod
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane, of one shape and unit with the others, at the surface."""
-
-    def σ_ZZ_at(self, depth: NDArray, σ: NDArray) -> NDArray[np.float64]:
-        """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
-
-        Args:
-            depth: of the points [m], (n,).
-            σ: σ_XX, σ_YY, σ_XY there, (3, ..., n).
-        """
-        return self.σ_ZZ(*σ)
 
     @abstractmethod
     def words(self) -> str:

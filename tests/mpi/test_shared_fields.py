@@ -9,8 +9,7 @@ from mpi4py import MPI
 from support import space_on
 
 from galinx import template
-from galinx.app.results import fields
-from galinx.app.results.fields import select_states, solve_states, state_field, write_fields
+from galinx.app.results.fields import Solved, solve_states, state_field, write_fields
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem.export import sample
 from galinx.solvers.fem.punch import SlidingPunch
@@ -50,9 +49,9 @@ def by_place(points, quads, data):
 def test_rank_0_writes_what_all_ranks_have(tmp_path, monkeypatch):
     path, scene = tmp_path / "state.hdf", template("tables4_5")
     # One solution for both: what rounding does next to an edge differs from run to run on two ranks.
-    with closing(solve_states(select_states(scene, [0], [5]))) as states:
-        found = fields._sampled(next(states), 2.0)
-    monkeypatch.setattr(fields, "_sampled", lambda *_: found)
+    with closing(solve_states(scene, [0], [5])) as states:
+        found = next(states).sampled(2.0)
+    monkeypatch.setattr(Solved, "sampled", lambda *_: found)
     write_fields(scene, [0], path, extent=2.0, degrees=[5])
     whole = state_field(scene, 0, extent=2.0, degree=5)
     assert path.exists() == (MPI.COMM_WORLD.rank == 0) == (whole is not None)

@@ -54,7 +54,7 @@ def test_tables_and_verdicts_have_no_colours_but_their_own(colours, monkeypatch)
     print_sheet(console, Sheet(f"t {EVIL}", [f"c {EVIL}", "d"], [[f"r {EVIL}", "1"]], [f"n {EVIL}"]))
     told = {f"k {EVIL}": 1.0}
     attributes = {"comparisons": json.dumps(told), "verdict_reasons": json.dumps([f"w {EVIL}"])}
-    print_verdict(console, attributes | {"verdict": f"v {EVIL}"}, verbose=True)
+    print_verdict(console, {}, attributes | {"verdict": f"v {EVIL}"}, verbose=True)
     said = text.getvalue()
     assert is_plain(re.sub("\x1b\\[[0-9;]*m", "", said) if colours else said)
     for first in "tcrnkwv":

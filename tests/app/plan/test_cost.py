@@ -82,6 +82,4 @@ def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
     monkeypatch.setattr(planning, "free_memory", lambda: 8e9)
     plan = make_plan(scene)
     assert plan.fem.solver == "multigrid" and not plan.warnings
-    assert any(
-        "conjugate gradients" in line and "one of a higher degree" in line for line in lines(scene, plan)
-    )
+    assert any("conjugate gradients" in line and "one of a higher degree" in line for line in lines(plan))

@@ -8,6 +8,7 @@ import pytest
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
+from galinx.solvers.contact.fem_plan import PressureMoments
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.recovery import MOMENTS, Polynomials
 from galinx.solvers.fem import ladder as error
@@ -38,8 +39,9 @@ class Work:
     def __init__(self, tolerance, errors, finer=None):
         kind, wanted = MESHES["confocal"], Requirements(tolerance)
         self.plan = SimpleNamespace(
-            kind=kind, wanted=wanted, tolerance=tolerance, degrees=(FIRST,), fixed=False, cuts=1
-        )
+            kind=kind, wanted=wanted, tolerance=tolerance, degrees=(FIRST,), fixed=False, cuts=1,
+            tests=PressureMoments(),
+        )  # fmt: skip
         self.errors, self.finer, self.said, self.solved = errors, finer, [], []
 
     def space(self, degree, cuts=1):
@@ -57,7 +59,7 @@ def solved(space, g):
 
 TASK = SimpleNamespace(
     number=0,
-    body=SimpleNamespace(alike=True, layered=False, modes=(), ratio=lambda g, X: g[:, None]),
+    body=SimpleNamespace(alike=True, modes=(), ratio=lambda g, X: g[:, None]),
     probes=lambda g: (g, None),
     response=SimpleNamespace(c=0.3, margin=1.0, n=0.75, m=0.75, n12=0.0, contraction=1j),
 )

@@ -10,7 +10,7 @@ from support import command, computed, here, scene_of
 
 import galinx
 from galinx.app.results.check import faults
-from galinx.postprocess.compare import RULES
+from galinx.postprocess.compare import RULES, checked
 from galinx.postprocess.over_time import BOTH, OF_FEM, WORKS
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.march import Radau
@@ -140,6 +140,10 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans():
     np.testing.assert_array_equal(np.isnan(by_sie), t > 0.5 + 1e-9)
     assert json.loads(result.attributes["comparisons"])[OF_BOTH] < 0.05
     np.testing.assert_allclose(lean, by_sie[: len(lean)], atol=1e-3)
+    # The line of checked numbers, which run, show, pages and notebooks have, and the warnings say so.
+    until = "only to t = 0.5 a/c_s, where the punch turns round"
+    assert until in checked(data, result.attributes) and until in result._repr_html_()
+    assert [until in text for text in json.loads(result.attributes["warnings"])].count(True) == 1
 
 
 def test_friction_by_its_law_is_followed_by_both_methods():
@@ -150,7 +154,7 @@ def test_friction_by_its_law_is_followed_by_both_methods():
     result = computed("start_from_rest", QUICK | law | more)
     data = result.data
     assert np.isfinite(data["time/sie/K_I_left"]).all() and np.ptp(data["time/ratio"][0]) > 0.3
-    assert result.attributes["verdict"] == "PASS"
+    assert result.attributes["verdict"] == "PASS" and "turn" not in checked(data, result.attributes)
     assert json.loads(result.attributes["comparisons"])[OF_BOTH] < 2e-3
     work = data["time/sie/work_of_load"] + data["time/sie/work_of_friction"]
     np.testing.assert_allclose(work, data["time/fem/energy"], rtol=0.0, atol=1e-3 * work.max())

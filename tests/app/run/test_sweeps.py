@@ -123,9 +123,9 @@ def work_done(monkeypatch):
 
     degrees, init = [], PunchLevel.__init__
 
-    def counted(self, work, task, space, g, ends=None):
-        init(self, work, task, space, g, ends)
-        degrees.extend([space.degree] * (type(self) is PunchLevel))
+    def counted(self, work, task, space, g, fitted=None, recovery=None):
+        init(self, work, task, space, g, fitted, recovery)
+        degrees.extend([space.degree] * (fitted is None))
 
     monkeypatch.setattr(PunchLevel, "__init__", counted)
     return degrees

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact.extremes import FINER, between, extreme, highest, largest, tops
+from galinx.solvers.contact.stresses import at_and_between
 
 
 @pytest.mark.parametrize("place", [-0.9, 0.0, 0.37, 0.999])
@@ -65,3 +66,16 @@ def test_places_that_coincide_by_rounding_have_no_polynomial_between_them():
     piece = 0.5 + 1e-9 / (1.0 + np.exp(-np.linspace(-18.0, 18.0, 109)))
     value, place = largest(lambda X: -((X - 0.5) ** 2), [np.linspace(-1.0, 0.5, 9), piece])
     assert value == pytest.approx(0.0, abs=1e-18) and place == pytest.approx(0.5, abs=1e-9)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("place", [-0.9, 0.0, 0.37, 0.769])
+def test_the_stress_between_turns_is_highest_between_its_samples(place, sign):
+    """(1 - X)^(2 - 2p) (1 + X)^(2 + 2p) is largest at p, over one interval and beside a turn."""
+    a, b = 2.0 - 2.0 * place, 2.0 + 2.0 * place
+    top = (1.0 - place) ** a * (1.0 + place) ** b
+    stress = lambda X: sign * (1.0 - X)[None] ** a * (1.0 + X)[None] ** b / top  # noqa: E731
+    for inner in ([], [(place - 1.0) / 2.0], [0.95]):
+        _, found = at_and_between(np.array([-1.0, *inner, 1.0]), stress)
+        at, value = found[:, 0 if sign > 0.0 else 1, 0]
+        assert value == pytest.approx(sign, rel=3e-8) and at == pytest.approx(place, abs=1e-5)

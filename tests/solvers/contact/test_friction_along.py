@@ -9,7 +9,6 @@ from random_solids import random_solid
 
 from galinx.solvers.contact.along import FlatAlong
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.contacts import contacts_of
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl
@@ -55,7 +54,7 @@ def linear(rows):
     return g
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_closed_form_against_a_quadrature_in_30_digits(seed):
     rng = np.random.default_rng(seed)
     solid = random_solid(seed) if seed else ISOTROPIC
@@ -92,7 +91,7 @@ def test_constant_friction_is_one_number(f, seed):
     contact = make_contact(
         solid, Flat(1e-3), 1.0, along={-f: tabulated([(-1, f), (0.2, f), (1, f)], -1.0)}
     )
-    contacts = contacts_of(contact, response, np.array([-f]))
+    contacts = contact.contacts(response, np.array([-f]))
     σ_XX, σ_YY = contacts.on_surface(X)
     np.testing.assert_allclose(σ_YY[0], np.nan_to_num(one.σ_YY(X)) * none, rtol=1e-12)
     np.testing.assert_allclose(σ_XX[0], one.σ_XX(X), rtol=1e-12, atol=1e-12)

@@ -14,7 +14,6 @@ from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
-from galinx.solvers.contact.method import Method
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,
@@ -25,6 +24,7 @@ from galinx.solvers.contact.solution import (
     SHARP,
     SOLVED,
     Contact,
+    Method,
 )
 from galinx.solvers.profiles import smooth
 
@@ -42,7 +42,7 @@ class MethodKind:
 
     Attributes:
         about: title in a plan.
-        made: makes a :class:`galinx.solvers.contact.method.Method` for a plan, a progress and a clock.
+        made: makes a :class:`galinx.solvers.contact.solution.Method` for a plan, a progress and a clock.
             MachineFailure says that a library is missing.
         refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
             quantity None the reason why it gives no quantity at all.

@@ -40,21 +40,6 @@ from .quantities.quantity import (
 
 
 @dataclass(frozen=True)
-class Comparison:
-    """Figure of disagreement between two results.
-
-    Attributes:
-        name: name of the rule that measured it.
-        text: its meaning in words, by which archives and reports list it.
-        value: the figure, dimensionless.
-    """
-
-    name: str
-    text: str
-    value: float
-
-
-@dataclass(frozen=True)
 class Rule:
     """Rule of comparison: the quantities compared, the figure measured, and its limit for a PASS.
 
@@ -258,20 +243,20 @@ def _depth(fem: Any, exact: Any, data: dict[str, Any], load: Any) -> float | Non
 _NO_REACH = 1e-300
 
 
-def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> list[Comparison]:
-    """Every comparison that the data of states allow, in the order of ``RULES``.
+def comparisons(data: dict[str, Any], load: Any, names: Iterable[str]) -> dict[str, float]:
+    """Figure of every rule that the data of states allow, by the rule's name, in the order of ``RULES``.
 
     Args:
         data: datasets by path.
         load: N per depth [N/m], a number or (states,).
         names: names of the rules that the quantities in the data have.
     """
-    figures, applicable = [], set(names)
+    figures, applicable = dict[str, float](), set(names)
     for name, rule in RULES.items():
         if name in applicable and all(row.path in data for row in rule.needs):
             value = rule.measure(data, load)
             if value is not None:
-                figures.append(Comparison(name, rule.text, float(value)))
+                figures[name] = float(value)
     return figures
 
 

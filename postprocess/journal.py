@@ -13,7 +13,7 @@ import os
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from galinx import files
 
-from .compare import Comparison
 from .errors import ArchiveInUse, LeftOver, refused
 
 _SUFFIX = ".part"
@@ -37,14 +36,14 @@ class Part:
     Attributes:
         rows: rows of the archive that the states fill.
         data: datasets of the states by path.
-        comparisons: figures of comparisons over these states.
+        comparisons: figures of comparisons over these states, by the rule's name.
         record: numbers by name on the computation of the speed that ends with these rows; None where no
             speed ends.
     """
 
     rows: slice
     data: dict[str, NDArray]
-    comparisons: list[Comparison]
+    comparisons: dict[str, float]
     record: dict[str, Any] | None
 
 
@@ -53,12 +52,10 @@ def joined(parts: Sequence[Part]) -> Part:
     if len(parts) == 1:
         return parts[0]
     data = {name: np.concatenate([part.data[name] for part in parts]) for name in parts[0].data}
-    worst: dict[tuple[str, str], float] = {}
-    for comparison in (figure for part in parts for figure in part.comparisons):
-        which = comparison.name, comparison.text
-        worst[which] = float(np.max([worst.get(which, comparison.value), comparison.value]))  # NaN stays
-    comparisons = [Comparison(*which, value) for which, value in worst.items()]
-    return Part(slice(parts[0].rows.start, parts[-1].rows.stop), data, comparisons, parts[-1].record)
+    worst: dict[str, float] = {}
+    for name, value in (figure for part in parts for figure in part.comparisons.items()):
+        worst[name] = float(np.max([worst.get(name, value), value]))  # NaN stays
+    return Part(slice(parts[0].rows.start, parts[-1].rows.stop), data, worst, parts[-1].record)
 
 
 class Journal:
@@ -138,7 +135,7 @@ class Journal:
             "key": self._key,
             "rows": [part.rows.start, part.rows.stop],
             "names": list(part.data),
-            "comparisons": [asdict(figure) for figure in part.comparisons],
+            "comparisons": part.comparisons,
             "record": part.record,
         }
         content = io.BytesIO()  # a disk that is full would leave NumPy's own file half open
@@ -197,6 +194,5 @@ def _load(path: Path) -> tuple[str, Part] | None:
         header = json.loads(str(arrays.pop(_HEADER)))
         rows = slice(*header["rows"])
         if path.name == _name(rows) and header["names"] == list(arrays):
-            comparisons = [Comparison(**figure) for figure in header["comparisons"]]
-            return header["key"], Part(rows, arrays, comparisons, header["record"])
+            return header["key"], Part(rows, arrays, header["comparisons"], header["record"])
     return None

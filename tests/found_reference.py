@@ -81,5 +81,5 @@ def solved(constants, g, slope, kinks, load, near):
             contact = Contact(constants, g, slope, kinks, x * scale, y * scale)
             return [contact.lift, contact.load / load - 1]
 
-        x, y = mp.findroot(off, (near[0] / near[1], 1.0), tol=1e-30)
+        x, y = mp.findroot(off, (near[0] / near[1], 1.0), tol=1e-20)
         return Contact(constants, g, slope, kinks, x * scale, y * scale)

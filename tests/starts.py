@@ -1,5 +1,7 @@
 """Motions of a punch in time by both methods, of any solid."""
 
+from functools import cache
+
 import numpy as np
 from mpi4py import MPI
 
@@ -19,6 +21,7 @@ from galinx.solvers.transient.punch import StartingPunch
 SOLID = Isotropic(1.0, 0.25, 1.0)
 
 
+@cache
 def by_integral_equation(solid, c, g, end, steps, ramp=3.0, terms=16, **options):
     """Course of a start from rest at the speed c under friction g, a number or a function of time."""
     punch = StartingPunch(solid.response(c), solid.limit(), end, steps, terms, **options)

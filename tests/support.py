@@ -92,6 +92,9 @@ KEPT = {
         "output.quantities": ["sif", "surface", "yield"], "solid.yield_strength": 6e8,
     }),
     "cylinder": ("cylinder", CLOSED_FORM | {"output.quantities": ["sif", "surface", "interior"]}),
+    "laws": ("tables4_5", CLOSED_FORM | {
+        "friction.mu_c": [0.3, 0.7], "friction.sigma0_over_load": [1e4, 4e4],
+    }),
     "coating": ("coating", SIE),
     "from rest": ("start_from_rest", SIE),
 } | {

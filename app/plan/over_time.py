@@ -221,6 +221,7 @@ class Starts:
         steady: True where they begin in steady motion, False where they begin at rest.
         tolerance: accuracy, relative to the largest value over time.
         every: time over a/c_s from one output of the surface to the next, None for none.
+        solid: what the punch slides over.
         a: half-width of the punch [m].
     """
 
@@ -230,8 +231,9 @@ class Starts:
     load: Load
     steady: bool
     tolerance: float
-    every: float | None = None
-    a: float = 1.0
+    every: float | None
+    solid: Solid
+    a: float
 
     @property
     def steps(self) -> int:
@@ -320,7 +322,7 @@ class Starts:
             "constant velocity"
         )
 
-    def words(self, solid: Solid) -> list[str]:
+    def words(self) -> list[str]:
         """Plan in words, one line for each method."""
         begin = "from steady motion on" if self.steady else "from rest"
         what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
@@ -329,7 +331,7 @@ class Starts:
         if not self.smooth:
             lines.append("no K_I over time: strokes are over before waves cross the contact")
         for c in self.drives if FEM in self.methods else ():
-            _, level = self.levels(solid, c)
+            _, level = self.levels(c)
             lines.append(
                 f"finite elements in time at c = {c:g} (over c_s): {what}, {self.steps} steps, "
                 f"degree {level.degree}, about {level.unknowns} unknowns; one of a degree less and "
@@ -337,19 +339,19 @@ class Starts:
             )
         return lines
 
-    def response(self, solid: Solid, c: float) -> HalfPlane:
+    def response(self, c: float) -> HalfPlane:
         """HalfPlane of the solid at a speed over c_s; of layers with lengths over a."""
-        return solid.response(c, self.a)
+        return self.solid.response(c, self.a)
 
-    def levels(self, solid: Solid, c: float) -> tuple[Level, Level]:
+    def levels(self, c: float) -> tuple[Level, Level]:
         """Two levels: a coarser one, which measures the error, and the one that is archived.
 
         The coarser one has half as many steps, a degree less, and cells that grow faster, so that
         waves are too short for cells from little more than half the distance on.
         """
-        digits, gap = -log10(self.tolerance), solid.limit() - c
+        digits, gap = -log10(self.tolerance), self.solid.limit() - c
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
-        depths = tuple((solid.depths / self.a).tolist())
+        depths = tuple((self.solid.depths / self.a).tolist())
         degree += (gap < _SHORT or bool(depths)) and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         slow = min(1.0, gap / _SLOW) ** 0.5
@@ -359,9 +361,9 @@ class Starts:
         growth = _GROWTH * _FINER ** (digits - 3.0)
         beyond = _HELD / self.tolerance if self.steady else 0.0
         ratio = _SHARP_RATIO if self.sharp else _RATIO
-        width, depth = self._reach(fastest(self.response(solid, c)), c)
+        width, depth = self._reach(fastest(self.response(c)), c)
         if depths:
-            slower = min(1.0, solid.slowest / solid.c_s)
+            slower = min(1.0, self.solid.slowest / self.solid.c_s)
             size, seen = (min(side * slower, _OF_LAYER * depths[0]) for side in (size, seen))
         coarse, fine = (
             Reached(
@@ -424,10 +426,18 @@ def starts(scene: Scene, states: States) -> Starts | None:
             f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
         )
     planned = Starts(
-        drives, methods, ways, load, steady, tolerance, scene.time.every, scene.body.half_width
+        drives,
+        methods,
+        ways,
+        load,
+        steady,
+        tolerance,
+        scene.time.every,
+        scene.solid,
+        scene.body.half_width,
     )
     for c in drives if FEM in methods else ():
-        if (unknowns := planned.levels(scene.solid, c)[1].unknowns) > LARGEST:
+        if (unknowns := planned.levels(c)[1].unknowns) > LARGEST:
             raise BadInput(
                 f"time.end = {planned.end:g} needs {unknowns} unknowns at c = {c:g}, as far "
                 f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "

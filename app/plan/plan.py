@@ -7,7 +7,7 @@ where an answer costs accuracy. :func:`lines` are the plan's steps in words, wit
 
 import json
 from bisect import bisect_left
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, log2
@@ -97,6 +97,8 @@ _INNER, _OUTERMOST = 0.6, 1e6
 _KNOTS, _APART = 12, 0.02
 #: Narrowest piece of a prescribed pressure, over a, within which positions have enough digits.
 _NARROWEST = 1e-9
+#: Least and largest floating-point number.
+_LEAST, _MOST = np.finfo(float).tiny, np.finfo(float).max
 #: Most sliders of a scene.
 _SLIDERS = 200
 #: Most unknowns of a speed that one rank solves faster than two ranks together.
@@ -174,12 +176,6 @@ class Plan:
     def rows(self) -> slice:
         """Rows of its states in the archive."""
         return slice(self.tasks.first, self.tasks.first + self.states)
-
-    @property
-    def different(self) -> int:
-        """Number of states that are solved: one for all loads where contacts are similar under them."""
-        loads = self.tasks.order.loads
-        return self.states // len(loads) * len(self.body.dissimilar(loads))
 
     @property
     def shared(self) -> bool:
@@ -282,9 +278,18 @@ def too_many(states: int) -> Iterator[str]:
         )
 
 
-def _faults(scene: Scene, body: Contact, methods: Collection[str], places: Places) -> Iterator[str]:
-    """Faults of outputs without an answer by the scene's methods, one sentence each."""
-    states = order(scene)
+def _faults(
+    scene: Scene, body: Contact, methods: Collection[str], places: Places, named: Collection[str]
+) -> Iterator[str]:
+    """Faults of outputs without an answer by the scene's methods, one sentence each.
+
+    Args:
+        scene, body: the scene and its contact.
+        methods: that solve the contact.
+        places: points where stresses are output.
+        named: methods that the scene names for outputs that need contact mechanics.
+    """
+    states, solve = order(scene), scene.solve
     yield from too_many(len(states))
     sliders = scene.friction.count * len(states.loads)
     if SLIDER in scene.output.quantities and sliders > _SLIDERS:
@@ -292,23 +297,28 @@ def _faults(scene: Scene, body: Contact, methods: Collection[str], places: Place
             f"the scene's lists multiply to {sliders} friction laws and loads, expected at most "
             f"{_SLIDERS} with a slider each: shorten them, or make several scenes"
         )
-    if methods:
-        for load in {min(states.loads), max(states.loads)}:
-            yield from _beyond_numbers(body.loaded(load))
+    for load in {min(states.loads), max(states.loads)} if methods else ():
+        at_load = body.loaded(load)
+        magnitudes = {"Pa": at_load.stress, "of the modulus": at_load.strain, "m": at_load.displacement}
+        if wrong := [f"{x:g} {unit}" for unit, x in magnitudes.items() if not _LEAST <= x <= _MOST]:
+            yield (
+                f"punch: load {load:g} N/m on the half-width {at_load.half_width:g} m makes "
+                f"{listed(wrong)}, expected numbers from {_LEAST:.0e} to {_MOST:.0e}"
+            )
     if scene.layers:
-        yield from _faults_of_layers(scene, body, methods)
+        yield from _faults_of_layers(scene, body, unsolved=bool(named) and not methods)
     if GIVEN_ENDS in body.lacks:
         about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
-        if scene.solve.mode == "traction":
+        if solve.mode == "traction":
             yield f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch'
-        if scene.solve.methods and not methods and _contact(scene):
+        if named and not methods:
             yield (
                 f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted "
                 'flat punches on meshes of their own: take mesh = "confocal" without degree, or add '
                 '"closed_form"'
             )
-    if FEM in scene.solve.methods and scene.solve.assembler == DOLFINX:
-        if scene.solve.own_pressure:
+    if FEM in solve.methods and solve.assembler == DOLFINX:
+        if solve.own_pressure:
             yield (
                 'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": '
                 "its pieces are put together from the deformation of condensed cells"
@@ -322,19 +332,13 @@ def _faults(scene: Scene, body: Contact, methods: Collection[str], places: Place
         yield from _faults_of_meshes(scene, body, places, alone={*methods} == {FEM})
 
 
-def _beyond_numbers(body: Contact) -> Iterator[str]:
-    """Fault of stresses, strains or displacements that no floating-point number holds."""
-    least, most = np.finfo(float).tiny, np.finfo(float).max
-    magnitudes = {"Pa": body.stress, "of the modulus": body.strain, "m": body.displacement}
-    if wrong := [f"{value:g} {unit}" for unit, value in magnitudes.items() if not least <= value <= most]:
-        yield (
-            f"punch: load {body.load:g} N/m on the half-width {body.half_width:g} m makes "
-            f"{listed(wrong)}, expected numbers from {least:.0e} to {most:.0e}"
-        )
+def _faults_of_layers(scene: Scene, body: Contact, unsolved: bool) -> Iterator[str]:
+    """Fault of outputs and methods that are not computed over layers, with all reasons.
 
-
-def _faults_of_layers(scene: Scene, body: Contact, methods: Collection[str]) -> Iterator[str]:
-    """Fault of outputs and methods that are not computed over layers, with all reasons."""
+    Args:
+        scene, body: the scene and its contact.
+        unsolved: True where none of its methods solves the contact.
+    """
     solve = scene.solve
     computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
     reasons = [
@@ -351,7 +355,7 @@ def _faults_of_layers(scene: Scene, body: Contact, methods: Collection[str]) -> 
             reasons.append(
                 f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
             )
-    if solve.methods and not methods and _contact(scene) and not reasons:
+    if unsolved and not reasons:
         about = f" with a {body.profile.words()}" * (GIVEN_ENDS in body.lacks)
         reasons.append(f"solve.methods is {json.dumps(solve.methods)}{about}")
     if reasons:
@@ -620,7 +624,7 @@ def lines(plan: Plan) -> list[str]:
         count = scene.friction.count * len(scene.punch.loads)
         result.append(f"slider: {counted(count, 'motion')} of {scene.slider.duration:g} s")
     if plan.starts:
-        result += plan.starts.words(scene.solid)  # type: ignore[arg-type]
+        result += plan.starts.words()
     for name in plan.methods:
         if name != FEM:
             result.append(f"{METHODS[name].about}: {counted(plan.states, 'state')}")
@@ -634,15 +638,17 @@ def lines(plan: Plan) -> list[str]:
 
 
 def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
+    loads = plan.tasks.order.loads  # contacts that are similar under all of them are solved once
+    solved = plan.states // len(loads) * len(plan.body.dissimilar(loads))
     if fem.mode == OWN_MESHES:
         return [
-            f"finite elements: {plan.different} states, each on a confocal mesh of its own, graded "
+            f"finite elements: {solved} states, each on a confocal mesh of its own, graded "
             f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error "
             "requires; free ends are computed once for each speed"
         ]
     if fem.mode == FREE_ON_LAYERS:
         return [
-            f"finite elements: {plan.different} states, each on meshes along the interfaces that follow "
+            f"finite elements: {solved} states, each on meshes along the interfaces that follow "
             f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
             "error requires"
         ]
@@ -726,15 +732,22 @@ def make_plan(
         BadInput: an output of the scene has no answer by the scene's methods.
     """
     order_, body = order(scene), scene.body
-    methods = _methods(scene, body)
+    contact = bool(set(scene.output.quantities) - FRICTIONS)  # an output needs contact mechanics
+    refusals = {name: kind.refusal(scene, body, None) for name, kind in METHODS.items()}
+    named = dict.fromkeys(scene.solve.methods) if contact else {}
+    methods = tuple(name for name in named if not refusals[name])
     around = body.yield_places if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     depths, positions = interface_grid(body)
     places = Places(surface_grid(), points, around, depths, positions if along is None else along)
-    for fault in _faults(scene, body, methods, places):
+    for fault in _faults(scene, body, methods, places, named):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
-    warnings += _left_out(scene, body, methods)
+    # Whoever names all methods wants those that solve it; and a uniform solid has no method of layers.
+    others = {n: why for n, why in refusals.items() if scene.layers or not METHODS[n].of_layers}
+    left_out = [name for name in named if others.get(name)]
+    if methods and not {*OWN_METHODS} <= {*named}:
+        warnings += [f"solve.methods: {name} does not solve this: {others[name]}" for name in left_out]
     friction, fem = enumerate_states(scene, done), None
     if FEM in methods:
         responses = [body.response(c) for c in order_.speeds]
@@ -748,20 +761,21 @@ def make_plan(
         )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
-    skipped = (*_skipped(scene, body, methods, quantities), *refused)
+    skipped = [
+        f"{METHODS[name].about}: {why or f'{name} is not in solve.methods'}"
+        for name, why in others.items()
+        if contact and name not in methods
+    ]
+    skipped += _skipped(scene, contact, {quantity.asked_by for quantity in quantities})
+    skipped += refused
     plan = Plan(
         scene=scene, friction=friction, body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions, skipped=skipped,
+        tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions, skipped=tuple(skipped),
         warnings=tuple(warnings), speed=first[1],
     )  # fmt: skip
     if lack := lacking(_HELD * plan.chunk * plan.numbers):
         warnings.append(f"the stresses of a single state need {lack}: ask for fewer points")
     return replace(plan, warnings=tuple(warnings))
-
-
-def _contact(scene: Scene) -> bool:
-    """True where an output needs contact mechanics."""
-    return bool(set(scene.output.quantities) - FRICTIONS)
 
 
 def _output_places(scene: Scene, places: Places) -> Places:
@@ -772,24 +786,6 @@ def _output_places(scene: Scene, places: Places) -> Places:
         X_along, depth = np.meshgrid(places.along, places.interfaces)
         points = np.concatenate([points, np.column_stack([X_along.ravel(), -depth.ravel()])])
     return Places(X, points, places.around)
-
-
-def _methods(scene: Scene, body: Contact) -> tuple[str, ...]:
-    """Methods that solve the contact; none where no output needs it."""
-    if not _contact(scene):
-        return ()
-    names = dict.fromkeys(scene.solve.methods)
-    return tuple(name for name in names if not METHODS[name].refusal(scene, body, None))
-
-
-def _left_out(scene: Scene, body: Contact, methods: tuple[str, ...]) -> Iterator[str]:
-    """Warnings about methods that the scene names, unless all, and that do not solve it."""
-    if set(OWN_METHODS) <= set(scene.solve.methods):
-        return
-    for name in dict.fromkeys(scene.solve.methods if methods else ()):
-        kind = METHODS[name]
-        if name not in methods and (scene.layers or not kind.of_layers):
-            yield f"solve.methods: {name} does not solve this: {kind.refusal(scene, body, None)}"
 
 
 def _quantities(
@@ -816,32 +812,27 @@ def _quantities(
     return tuple(computed.values()), refused
 
 
-def _skipped(
-    scene: Scene,
-    body: Contact,
-    methods: tuple[str, ...],
-    quantities: Iterable[Quantity],
-) -> list[str]:
-    """Messages about work that is not done, with the reason."""
-    if not _contact(scene):
-        if scene.time:
-            return ["contact mechanics of steady motion: only friction and time are asked for"]
-        return ["contact mechanics: only friction is asked for"]
-    skipped = [
-        f"{kind.about}: {kind.refusal(scene, body, None) or f'{name} is not in solve.methods'}"
-        for name, kind in METHODS.items()
-        if name not in methods and (scene.layers or not kind.of_layers)
-    ]
-    words = {quantity.asked_by for quantity in quantities}
-    for word, what in _PLACES.items():
-        if word not in words:
-            skipped.append(f"{what}: not in output.quantities")
-    if YIELD in words and FINITE not in body.modes:
-        skipped.append(
+def _skipped(scene: Scene, contact: bool, words: Collection[str]) -> Iterator[str]:
+    """Messages about outputs that are not computed, with the reason.
+
+    Args:
+        scene: the scene.
+        contact: True where an output needs contact mechanics.
+        words: names in output.quantities of the quantities that are computed.
+    """
+    if not contact and scene.time:
+        yield "contact mechanics of steady motion: only friction and time are asked for"
+    elif not contact:
+        yield "contact mechanics: only friction is asked for"
+    else:
+        yield from (
+            f"{of}: not in output.quantities" for word, of in _PLACES.items() if word not in words
+        )
+    if YIELD in words and FINITE not in scene.body.modes:
+        yield (
             "largest von Mises and shear stress, load at first yield: stresses are infinite at the sharp "
             "edges of a punch, and any load makes these yield"
         )
-    return skipped
 
 
 def surface_grid() -> np.ndarray:

@@ -418,11 +418,14 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
         yield from (f"{name} is not finite in states {start} ..." for name in not_finite(rows))
         yield from _otherwise(rows, start)
         load = rows.get(LOAD.path, archive.attributes["load"])
-        for comparison in compare.comparisons(rows, load, rules):
-            worst[comparison.text] = float(np.max([worst.get(comparison.text, 0.0), comparison.value]))
-            yield from _out_of_balance(comparison, start)
-    for comparison in compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules}):
-        worst[comparison.text] = comparison.value
+        for name, value in compare.comparisons(rows, load, rules).items():
+            rule = compare.RULES[name]
+            worst[rule.text] = float(np.max([worst.get(rule.text, 0.0), value]))
+            limit = compare.BALANCE.limit or 0.0
+            if rule is compare.BALANCE and not value <= limit:  # a fault whatever the verdict
+                yield f"{rule.text} in states {start} ...: {value:.1e}, at most {limit:g}"
+    in_time = compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules})
+    worst |= {compare.RULES[name].text: value for name, value in in_time.items()}
     archived = _texts(archive, "comparisons")
     if archived.keys() != worst.keys() or any(
         not np.isclose(worst[text], archived[text], rtol=_SAME, atol=0.0, equal_nan=True)
@@ -460,15 +463,6 @@ def _otherwise(data: dict[str, Any], start: int) -> Iterator[str]:
             yield f"{name} is not what {', '.join(row.needs)} give in states {start} ..."
 
 
-def _out_of_balance(comparison: compare.Comparison, start: int) -> Iterator[str]:
-    """Forces that do not balance are a fault, whatever the verdict."""
-    limit = compare.BALANCE.limit
-    assert limit is not None
-    if comparison.text == compare.BALANCE.text and not comparison.value <= limit:
-        value = f"{comparison.value:.1e}, at most {limit:g}"
-        yield f"{comparison.text} in states {start} ...: {value}"
-
-
 def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:
     """Verdict and reasons that do not follow from the archived comparisons."""
     attributes = archive.attributes
@@ -479,9 +473,7 @@ def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:
     }
     judge = Judge(scene, rules.values())
     archived = _texts(archive, "comparisons")
-    judge.see(
-        [compare.Comparison(rules[text], text, archived[text]) for text in archived if text in rules]
-    )
+    judge.see({rules[text]: archived[text] for text in archived if text in rules})
     judge.failures = list(archive.data.get(runs.FAILURES.path, ()))
     verdict, reasons = judge.verdict()
     if attributes["verdict"] != verdict:

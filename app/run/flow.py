@@ -9,7 +9,7 @@ sliders (:func:`slide`).
 import json
 import platform
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain, product
 from math import inf
@@ -21,16 +21,16 @@ from numpy.typing import NDArray
 
 from galinx import __version__
 from galinx.clock import Clock
-from galinx.postprocess.compare import RULES, Comparison, comparisons
+from galinx.postprocess.compare import RULES, comparisons
 from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.quantities import column, declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.errors import SolveError
-from galinx.solvers.friction.slider import Ride, cycle, outcome, pull
+from galinx.solvers.friction.slider import cycle, outcome, pull
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles.punches import Flat
-from galinx.solvers.solids import SOLIDS, Solid
+from galinx.solvers.solids import SOLIDS
 from galinx.solvers.transient.late_time import approach
 
 from .. import ranks
@@ -42,13 +42,15 @@ from ..plan.states import States
 from ..plan.variants import joined_positions, joined_states, lines_of, make_plans
 from ..scene.scene import Scene
 from .over_time import solve_motions
+from .share import shared_out
 from .solve import Work
 
 
 def scene_attributes(scene: Scene) -> dict[str, Any]:
     """Attributes of an archive's root that say what slides over what."""
     half_plane, solid = scene.half_plane, scene.solid
-    solid_words = _solid(half_plane.solid)
+    kind = next((name for name, law in SOLIDS.items() if law is type(half_plane.solid)), "")
+    solid_words: dict[str, Any] = {"kind": kind, **constants(half_plane.solid)}
     if half_plane.yield_strength:
         solid_words["yield_strength"] = half_plane.yield_strength
     if scene.layers:
@@ -66,11 +68,6 @@ def scene_attributes(scene: Scene) -> dict[str, Any]:
         "c_s": solid.c_s,
         "speed_limit": solid.limit() * solid.c_s,
     }
-
-
-def _solid(solid: Solid) -> dict[str, Any]:
-    kind = next((name for name, law in SOLIDS.items() if law is type(solid)), "")
-    return {"kind": kind, **constants(solid)}
 
 
 #: Libraries that numbers depend on, by the module that holds the version.
@@ -148,14 +145,13 @@ class Judge:
         self._limits = {name: rule.allowed(scene.solve.tolerance) for name, rule in rules.items()}
         self._judged: dict[str, float] = {}
 
-    def see(self, comparisons: list[Comparison]) -> None:
-        """Take a part's comparisons into account; NaN is worse than any number."""
-        for comparison in comparisons:
-            value = float(np.max([self.worst.get(comparison.text, 0.0), comparison.value]))
-            self.worst[comparison.text] = value
-            limit = self._limits.get(comparison.name)
+    def see(self, comparisons: Mapping[str, float]) -> None:
+        """Take comparisons by the rule's name into account; NaN is worse than any number."""
+        for name, value in comparisons.items():
+            text, limit = RULES[name].text, self._limits.get(name)
+            self.worst[text] = float(np.max([self.worst.get(text, 0.0), value]))
             if limit is not None:
-                self._judged[comparison.text] = limit
+                self._judged[text] = limit
 
     def verdict(self) -> tuple[str, list[str]]:
         """PASS or FAIL, with the figures; ``not judged`` where there is nothing to compare."""
@@ -236,7 +232,9 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
         last, (x, v, f) = cycle(ride, slider.drive_speed), ride.at(times)
         cycle_v, cycle_f = np.full((2, _STEPS), np.nan)
         if np.isfinite(last.period):
-            _, cycle_v, cycle_f = ride.at(_close(ride))
+            t = ride.t[ride.cycle]  # dense where the integration took small steps
+            steps = np.linspace(0.0, len(t) - 1.0, _STEPS)
+            _, cycle_v, cycle_f = ride.at(np.interp(steps, np.arange(len(t)), t))
         motions.append({
             runs.POSITION.path: x, runs.VELOCITY.path: v, runs.FRICTION.path: f,
             runs.CYCLE_VELOCITY.path: cycle_v, runs.CYCLE_FRICTION.path: cycle_f,
@@ -247,13 +245,6 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
     return {runs.TIMES.path: times} | {
         path: np.array([motion[path] for motion in motions]) for path in motions[0]
     }  # fmt: skip
-
-
-def _close(ride: Ride) -> NDArray[np.float64]:
-    """Times in the last cycle [s], (times,), dense where the integration took small steps."""
-    assert ride.cycle is not None
-    t = ride.t[ride.cycle]
-    return np.interp(np.linspace(0.0, len(t) - 1.0, _STEPS), np.arange(len(t)), t)
 
 
 def compute(
@@ -284,24 +275,51 @@ def compute(
     if sink is None or not ranks.is_root():
         sink = Memory()
     progress, clock = progress or Progress(), Clock() if clock is None else clock
+
+    def put(datasets: Mapping[str, Any]) -> None:
+        for path, values in datasets.items():
+            sink.put(path, values)
+
     with clock("friction"):
         progress.say("friction")
         plans = make_plans(scene, partial(progress.done, what="friction loops"))
         plan, states = plans[0], joined_states(plans)
-        _put_states(sink, scene, plans, states)
+        put({runs.SCENE.path: scene.text} | states.datasets | joined_positions(plans))
+        if plan.asks(stresses.BELOW) and scene.output.map:
+            put({stresses.MAP.path: np.array([count for *_, count in reversed(scene.output.map)])})
     if scene.slider:
         with clock("slider"):
             progress.say("slider")
-            for path, values in slide(scene, lambda n, of: progress.done(n, of, "sliders")).items():
-                sink.put(path, values)
+            put(slide(scene, lambda n, of: progress.done(n, of, "sliders")))
     judge = Judge(scene, plan.rules)
     if plan.starts:
-        _put_starts(sink, plan, judge, progress, clock)
+        progress.say("starts from rest")
+        motions = solve_motions(plan.starts, clock, partial(progress.done, what="starts"))
+        put(motions)
+        if ranks.is_root():
+            judge.see(comparisons(motions, plan.body.load, plan.rules))
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         _solve(sink, judge, progress, journal, plans, states, clock)
-    _put_work(sink, plans, clock)
-    return _attributes(scene, plans, judge)
+    clock.lap()
+    names = sorted(clock)  # a run that goes on does them in another order
+    put({
+        runs.DONE.path: lines_of(plans),
+        runs.SKIPPED.path: list(dict.fromkeys(chain(*(each.skipped for each in plans)))),
+        runs.STEPS.path: names,
+        runs.SECONDS.path: np.array([clock[name] for name in names], dtype=float),
+    })  # fmt: skip
+    verdict, reasons = judge.verdict()
+    warnings = [*dict.fromkeys(chain(*(each.warnings for each in plans))), *judge.validity.words()]
+    texts = {
+        "versions": libraries(), "rules": sorted(plan.rules), "verdict_reasons": reasons,
+        "comparisons": judge.worst, "warnings": warnings,
+    }  # fmt: skip
+    return {
+        "version": __version__, "machine": machine(), "scene_sha256": scene.sha256, "verdict": verdict,
+        **scene_attributes(scene),
+        **{name: json.dumps(text, ensure_ascii=False) for name, text in texts.items()},
+    }  # fmt: skip
 
 
 def _solve(
@@ -361,8 +379,6 @@ def _parts(
         if not plan.fem or not plan.fem.shared_speeds:
             yield from chain.from_iterable(map(work.parts, tasks))
             continue
-        from .share import shared_out
-
         if to_do := sorted(tasks, key=lambda task: -task.response.c):  # the fastest are the dearest
             work.begin()
         yield from shared_out(to_do, work.parts)
@@ -389,52 +405,3 @@ def _put_records(sink: Sink, plans: Sequence[Plan], records: Sequence[dict[str, 
             padded = [change + [0.0] * (longest - len(change)) for change in changes]
             sink.put(CHANGES.path, np.array(padded))
     return failures
-
-
-def _put_states(sink: Sink, scene: Scene, plans: Sequence[Plan], states: States) -> None:
-    sink.put(runs.SCENE.path, scene.text)
-    for path, values in states.datasets.items():
-        sink.put(path, values)
-    for path, positions in joined_positions(plans).items():
-        sink.put(path, positions)
-    if plans[0].asks(stresses.BELOW) and scene.output.map:
-        sink.put(stresses.MAP.path, np.array([count for *_, count in reversed(scene.output.map)]))
-
-
-def _put_starts(sink: Sink, plan: Plan, judge: Judge, progress: Progress, clock: Clock) -> None:
-    """Compute, archive and judge starts from rest; collective."""
-    assert plan.starts
-    progress.say("starts from rest")
-    datasets = solve_motions(
-        plan.starts, plan.body.solid, clock, lambda n, of: progress.done(n, of, "starts")
-    )
-    for path, values in datasets.items():
-        sink.put(path, values)
-    if ranks.is_root():
-        judge.see(comparisons(datasets, plan.body.load, plan.rules))
-
-
-def _put_work(sink: Sink, plans: Sequence[Plan], clock: Clock) -> None:
-    sink.put(runs.DONE.path, lines_of(plans))
-    sink.put(runs.SKIPPED.path, list(dict.fromkeys(chain(*(plan.skipped for plan in plans)))))
-    clock.lap()
-    names = sorted(clock)  # a run that goes on does them in another order
-    sink.put(runs.STEPS.path, names)
-    sink.put(runs.SECONDS.path, np.array([clock[name] for name in names], dtype=float))
-
-
-def _attributes(scene: Scene, plans: Sequence[Plan], judge: Judge) -> dict[str, Any]:
-    warnings = dict.fromkeys(chain(*(plan.warnings for plan in plans)))
-    verdict, reasons = judge.verdict()
-    return {
-        "version": __version__,
-        "versions": json.dumps(libraries()),
-        "machine": machine(),
-        "scene_sha256": scene.sha256,
-        **scene_attributes(scene),
-        "rules": json.dumps(sorted(plans[0].rules)),
-        "verdict": verdict,
-        "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
-        "comparisons": json.dumps(judge.worst, ensure_ascii=False),
-        "warnings": json.dumps([*warnings, *judge.validity.words()], ensure_ascii=False),
-    }

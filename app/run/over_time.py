@@ -1,18 +1,20 @@
 """Motions in time of a scene: both methods, speed by speed.
 
-Beside each motion stands the steady motion with the friction of every moment.
-Finite elements in time are in a module of their own, so that nothing else imports dolfinx.
+Beside each motion stands the steady motion with the friction of every moment. dolfinx is imported where
+finite elements begin.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.clock import Clock
+from galinx.meshes.charts import Physical
+from galinx.meshes.rings import TAGS
 from galinx.postprocess import over_time
-from galinx.postprocess.over_time import COMPARED, largest_change
+from galinx.postprocess.over_time import COMPARED, contact_numbers, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
@@ -21,14 +23,14 @@ from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Pressure
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
-from galinx.solvers.solids.solid import Solid
-from galinx.solvers.transient.history import Drive
+from galinx.solvers.transient.history import Drive, Way
 from galinx.solvers.transient.late_time import approach
-from galinx.solvers.transient.punch import ON_SURFACE, PLACES, Course, StartingPunch
+from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, PLACES, Course, StartingPunch
 
 from .. import ranks
 from ..errors import finite_elements_installed
-from ..plan.over_time import Starts
+from ..plan.over_time import Level, Starts
+from .share import shared_out
 
 _Datasets = dict[str, NDArray[np.float64]]
 #: A method and a speed.
@@ -36,7 +38,7 @@ _Job = tuple[str, float]
 
 
 def solve_motions(
-    starts: Starts, solid: Solid, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
+    starts: Starts, clock: Clock, done: Callable[[int, int], None] = lambda n, of: None
 ) -> _Datasets:
     """Motions of all starts over time: datasets by path.
 
@@ -47,42 +49,33 @@ def solve_motions(
     """
     if FEM in starts.methods:  # PETSc begins on all ranks, or waits for the others for ever
         with clock("import of dolfinx"), finite_elements_installed():
-            from . import time_fem  # noqa: F401
+            import galinx.solvers.fem.in_time  # noqa: F401
 
     def solve(job: _Job) -> Iterator[tuple[_Job, list[_Datasets]]]:
         of_method = _finite_elements if job[0] == FEM else _integral_equation
-        yield job, of_method(starts, solid, job[1], clock)
+        yield job, of_method(starts, job[1], clock)
 
     # Finite elements are the dearer ones, and the fastest of them.
     jobs = [(name, c) for name in (FEM, SIE) if name in starts.methods
             for c in sorted(starts.drives, reverse=True)]  # fmt: skip
     by_job: dict[_Job, list[_Datasets]] = {}
-    for job, motions in _shared(jobs, solve):
+    for job, motions in shared_out(jobs, solve):
         by_job[job] = motions
         done(sum(map(len, by_job.values())), len(starts.methods) * starts.count)
-    return _joined(starts, solid, by_job) if ranks.is_root() else {}
+    return _joined(starts, by_job) if ranks.is_root() else {}
 
 
-def _shared(jobs: Sequence[_Job], solve: Callable[[_Job], Iterator[Any]]) -> Iterator[Any]:
-    """Results of all jobs, on rank 0."""
-    if ranks.size() == 1:
-        return (result for job in jobs for result in solve(job))
-    from .share import shared_out
-
-    return shared_out(jobs, solve)
-
-
-def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
+def _joined(starts: Starts, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
     """Datasets by path, one row for each start."""
     t, every = starts.times(), list[_Datasets]()
     for c, drives in starts.drives.items():
         for i, drive in enumerate(drives):
             g = drive(t)
-            centres = _steady_centres(starts, solid, c, g)
+            centres = _steady_centres(starts, c, g)
             K_I = late = np.array(np.nan)  # over layers there is no formula
-            if not len(solid.depths):
-                K_I = np.array(FlatPunch(starts.response(solid, c), g[-1]).K_I)
-                late = np.array(approach(solid, c, g[-1]).within(0.01))
+            if not len(starts.solid.depths):
+                K_I = np.array(FlatPunch(starts.response(c), g[-1]).K_I)
+                late = np.array(approach(starts.solid, c, g[-1]).within(0.01))
             every.append({
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
                 rows.STEADY_CENTRE.path: centres[-1], rows.CENTRES.path: centres,
@@ -103,10 +96,10 @@ def _joined(starts: Starts, solid: Solid, by_job: dict[_Job, list[_Datasets]]) -
     return whole
 
 
-def _steady_centres(starts: Starts, solid: Solid, c: float, ratios: NDArray) -> NDArray[np.float64]:
+def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.float64]:
     """Centre of the pressure over a in steady motion at frictions σ_XY/σ_YY, (n,)."""
     different, which = np.unique(ratios, return_inverse=True)
-    response: Any = starts.response(solid, c)
+    response: Any = starts.response(c)
     if len(response.depths):
         stack, accuracy = response.stack(response.a), 0.1 * starts.tolerance
         punch = Punch(Flat(response.a), response.a, 1.0)
@@ -127,9 +120,9 @@ def _centre(pressure: Pressure) -> float:
 _STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
 
 
-def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
+def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
     """Motions at a speed up to the first turn, NaN after it."""
-    first, response, drives = starts.ways[0], starts.response(solid, c), starts.drives[c]
+    first, response, drives = starts.ways[0], starts.response(c), starts.drives[c]
     shortest = min(starts.shortest, *(drive.shortest for drive in drives))
     largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.h / largest - 1e-9))
@@ -145,7 +138,14 @@ def _integral_equation(starts: Starts, solid: Solid, c: float, clock: Clock) -> 
     with clock("integral equation in time"):
         punches = {
             way: StartingPunch(
-                response, solid.limit(), first.duration, first.steps * finer, terms, surface, way, alone
+                response,
+                starts.solid.limit(),
+                first.duration,
+                first.steps * finer,
+                terms,
+                surface,
+                way,
+                alone,
             )
             for way in {drive.way for drive in drives}
         }
@@ -186,20 +186,98 @@ def _contact(method: str, *values: NDArray) -> _Datasets:
     return {row[method].path: of for row, of in zip(COMPARED, values, strict=True)}
 
 
-def _finite_elements(starts: Starts, solid: Solid, c: float, clock: Clock) -> list[_Datasets]:
-    """Motions at a speed, with the changes from a coarser level as estimates."""
-    from .time_fem import at_level
+#: Places beside both ends of the punch, X over a.
+_ENDS = np.array([-1.0 - BESIDE, 1.0 + BESIDE])
 
-    coarse, fine = (at_level(level, starts, solid, c, clock) for level in starts.levels(solid, c))
+
+def _finite_elements(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
+    """Motions at a speed, with the changes from a coarser level as estimates."""
+    coarse, fine = (_at_level(level, starts, c, clock) for level in starts.levels(c))
     load, motions = starts.load(starts.times(2)), []
     for drive, (before, coarse_datasets), (values, datasets) in zip(starts.drives[c], coarse, fine):
         # Friction that changes faster than waves run has a steady lean that the pressure never comes to.
         lean = np.zeros(1)
         if starts.changing:
-            lean = _steady_centres(starts, solid, c, drive(starts.times()))
+            lean = _steady_centres(starts, c, drive(starts.times()))
         change = largest_change(before, [value[1::2] for value in values], load, lean)
         motions.append(
             _contact(FEM, *values) | {rows.ESTIMATE.path: np.array(change)} | datasets
             | over_time.estimated(coarse_datasets, datasets)
         )  # fmt: skip
     return motions
+
+
+def _at_level(
+    level: Level, starts: Starts, c: float, clock: Clock
+) -> list[tuple[tuple[NDArray, ...], _Datasets]]:
+    """Motions at a speed at one level of mesh, degree and steps.
+
+    Each has v₀, centre and K_I left and right over time, NaN where the pressure is not smooth; and other
+    datasets by path: works, energies, and stresses on the surface.
+    """
+    from mpi4py import MPI
+
+    from galinx.solvers.fem.dynamic import Energies, Motion
+    from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime, Watch
+    from galinx.solvers.fem.space import Space, distribute
+
+    response = starts.response(c)
+    with clock("mesh"):
+        mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
+    space = Space(*mesh, TAGS, Physical(), level.degree, starts.solid.form, clock=clock)
+    motion, motions = Motion(space, response, starts.sharp), []
+    solver = SlidingInTime(motion, clock)
+    surface = SurfaceInTime(motion, np.append(_ENDS, ON_SURFACE) if starts.every else _ENDS)
+    watching: list[Watch] = [lambda u, w, way: surface.strain(u)]
+    if starts.every and level.every == 1:
+        watching.append(Energies(motion))
+    with clock("steps in time"):
+        for drive in starts.drives[c]:
+            ways = [
+                Way(drive.way * way.direction, way.duration, way.steps // level.every)
+                for way in starts.ways
+            ]
+            run = solver.run(ways, drive, starts.load, starts.steady, watching)
+            u_X = run.watched[0][1:, : len(_ENDS)]  # on the free surface beside both ends
+            left, right = response.σ_XX(u_X, 0.0 * u_X, 0.0 * u_X).T
+            datasets = {
+                rows.WORK.path: run.work, rows.ENERGY.path: run.energy,
+                rows.ABSORBED.path: run.absorbed, rows.OF_LOAD[FEM].path: run.work_of_load,
+                rows.OF_FRICTION[FEM].path: run.work_of_friction, rows.LEFT[FEM].path: left,
+                rows.RIGHT[FEM].path: right,
+            }  # fmt: skip
+            if starts.every:
+                datasets |= _after_steps(surface, run, starts.outputs // level.every, response, drive)
+            if len(run.watched) > 1:  # changes since t = 0; the work of carrying adds up step by step
+                strain, kinetic, all_strain, all_kinetic, momentum = (
+                    run.watched[1] - run.watched[1][0]
+                )[1:].T  # fmt: skip
+                velocity = response.c * starts.directions(drive)
+                datasets |= {
+                    rows.CARRIED.path: np.cumsum(velocity * np.diff(momentum, prepend=0.0)),
+                    rows.STRAIN.path: strain, rows.KINETIC.path: kinetic,
+                    rows.RADIATED.path: all_strain - strain + all_kinetic - kinetic + run.absorbed,
+                }  # fmt: skip
+            ratios, read = drive(run.t), np.empty((3, len(run.t)))  # by the exponents of each time
+            for ratio in np.unique(ratios):
+                at, steady = ratios == ratio, FlatPunch(response, ratio)
+                numbers = contact_numbers(motion.X, run.forces[at], steady.α, steady.β, level.degree)
+                read[:, at] = numbers.centre, numbers.K_left, numbers.K_right
+            K_I = read[1:] if starts.smooth else np.nan * read[1:]
+            motions.append(((run.v0, read[0], *K_I), datasets))
+    solver.destroy()
+    return motions
+
+
+def _after_steps(
+    surface: Any, run: Any, at: NDArray, response: HalfPlane, drive: Drive
+) -> _Datasets:  # fmt: skip
+    """Stresses along the surface after steps of these numbers."""
+    ratios = drive(run.t[at - 1])
+    steady = [FlatPunch(response, ratio) for ratio in ratios]
+    σ_YY = np.array([
+        surface.pressure(forces, punch.α, punch.β) for forces, punch in zip(run.forces[at - 1], steady)
+    ])  # fmt: skip
+    σ_XY = ratios[:, None] * σ_YY
+    stresses = np.array([response.σ_XX(run.watched[0][at], σ_YY, σ_XY), σ_YY, σ_XY])
+    return over_time.stress_datasets(FEM, stresses[..., len(_ENDS) :])

@@ -14,8 +14,7 @@ from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.solvers.contact.method import Method, Solver
-from galinx.solvers.contact.solution import Contact, Places, Task
+from galinx.solvers.contact.solution import Contact, Method, Places, Solver, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
@@ -94,14 +93,14 @@ class Work:
                     for quantity in self.plan.quantities:
                         if quantity.of_data:
                             data[quantity.path] = quantity.of_data(data)
-                    compared = self._compared(data, rows, solved) if solved.any() else []
+                    compared = self._compared(data, rows, solved) if solved.any() else {}
                 first = 0
                 for run in runs:
                     own = slice(first, first := first + run.stop - run.start)
                     if last:
                         yield last
                     last = Part(run, {path: of[own] for path, of in data.items()}, compared, None)
-                    compared = []  # that of the whole batch
+                    compared = {}  # that of the whole batch
             assert last
             yield replace(last, record=self._record(task, solvers, reasons, any_solved))
 
@@ -205,7 +204,7 @@ class Work:
 
     def _compared(
         self, data: dict[str, NDArray], rows: NDArray[np.int64], solved: NDArray[np.bool_]
-    ) -> list[compare.Comparison]:
+    ) -> dict[str, float]:
         """Comparisons over the states that are solved."""
         good = {path: values[solved] for path, values in data.items()} if not solved.all() else data
         load = self.plan.body.load if self.load is None else self.load[rows[solved]]

@@ -552,10 +552,11 @@ class Output:
         return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
+@dataclass(frozen=True)
 class Section:
     """A section of a scene, and how its table is read.
 
-    Args:
+    Attributes:
         made: dataclass whose fields are keys or parameters; with models, its first field is the model, or
             the class of several models and lists of their parameters by key.
         models: classes by name, None for a section without a model.
@@ -565,47 +566,45 @@ class Section:
         defaults: of parameters, in scenes.
         or_else: alternative to a missing key, for messages.
         optional: True where a scene may do without the section, which then is None.
+        heading: of the section in a scene.
     """
 
-    #: Heading of the section in a scene.
-    heading = "[{}]"
+    made: type
+    models: Registry[Any] | None = None
+    chosen: str = ""
+    default: str = ""
+    several: bool = False
+    defaults: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    or_else: str = ""
+    optional: bool = False
+    heading: str = "[{}]"
 
-    def __init__(
-        self,
-        made: type,
-        models: Registry[Any] | None = None,
-        chosen: str = "",
-        default: str = "",
-        *,
-        several: bool = False,
-        defaults: Mapping[str, Any] | None = None,
-        or_else: str = "",
-        optional: bool = False,
-    ) -> None:
-        self._made, self._models, self._chosen, self._default = made, models, chosen, default
-        self._several, self._defaults = several, defaults or {}
-        self.or_else, self._optional = or_else, optional
-        self._model = dataclasses.fields(made)[0].name
-        every = {field.name: field.metadata.get(_METADATA) for field in dataclasses.fields(made)}
-        own = {name: entry for name, entry in every.items() if entry}
-        self._fields = {entry.name or name: name for name, entry in own.items()}
-        self._keys = {entry.name or name: entry for name, entry in own.items()}
-        if not models:
-            self._keys |= {name: self._key(p, made) for name, p in parameters(made).items()}
-            self._fields |= {name: field.name for name, field in fields(made).items()}
+    @cached_property
+    def own(self) -> dict[str, tuple[str, Key]]:
+        """The dataclass's fields that are keys, each with its key, by name in TOML."""
+        entries = {
+            field.name: field.metadata[_METADATA]
+            for field in dataclasses.fields(self.made)
+            if _METADATA in field.metadata
+        }
+        own = {entry.name or name: (name, entry) for name, entry in entries.items()}
+        if not self.models:
+            names = {name: field.name for name, field in fields(self.made).items()}
+            own |= {n: (names[n], self._key(p, self.made)) for n, p in parameters(self.made).items()}
+        return own
 
     @property
     def alternatives(self) -> dict[str, dict[str, Key]]:
         """Sets of keys that a section can have, by name of the model; a single set, named "", without."""
-        return {name: self._of(name) for name in self._models or ("",)}
+        return {name: self._of(name) for name in self.models or ("",)}
 
     def model(self, given: Mapping[str, Any]) -> str:
         """Name of the model of a section with these values, "" without models."""
-        named = given.get(self._chosen)
-        if isinstance(named, str) and named in (self._models or ()):
-            return named
-        of_keys = (self._keys[name].model for name in given if name in self._keys)
-        return next(filter(None, of_keys), self._default) if named is None else self._default
+        named = given.get(self.chosen)
+        if named is None:
+            of_keys = (self.own[name][1].model for name in given if name in self.own)
+            return next(filter(None, of_keys), self.default)
+        return named if isinstance(named, str) and named in (self.models or ()) else self.default
 
     def keys(self, given: Mapping[str, Any]) -> dict[str, Key]:
         """Keys that a section with these values can have."""
@@ -619,18 +618,18 @@ class Section:
             given: values by key, as TOML gives them.
             faults: list to which messages are added.
         """
-        if self._optional and given == {}:
+        if self.optional and given == {}:
             return None
         if not isinstance(given, dict):
             faults.append(f"{name}: found {excerpt(given)}, expected a section [{name}]")
             return None
         keys = self.keys(given)
-        if self._models and self._chosen in given:
+        if self.models and self.chosen in given:
             try:  # which other keys there are depends on it
-                keys[self._chosen].kind(given[self._chosen])
+                keys[self.chosen].kind(given[self.chosen])
             except ValueError as error:
                 own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
-                faults.append(f"{name}.{self._chosen} ({keys[self._chosen].about}): {error}{own}")
+                faults.append(f"{name}.{self.chosen} ({keys[self.chosen].about}): {error}{own}")
                 return None
         own_faults: list[str] = []
         for alone in (key for key in given if key in keys and keys[key].beside is not None):
@@ -639,11 +638,12 @@ class Section:
                 own_faults.append(f"{name}: {alone} gives f itself; take {', '.join(others)} away")
                 given = {key: value for key, value in given.items() if key in beside}
                 keys = self.keys(given)
-        own_faults += [
-            f"{name}.{short(key)}: no such key{self._other_owner(key, given) or nearest(key, [*keys])}"
-            for key in given
-            if key not in keys
-        ]
+        for key in (key for key in given if key not in keys):
+            others = [n for n, model in (self.models or {}).items() if key in parameters(model)]
+            hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} has it'
+            own_faults.append(
+                f"{name}.{short(key)}: no such key{hint if others else nearest(key, [*keys])}"
+            )
         values: dict[str, Any] = {}
         for key, entry in sorted(keys.items(), key=lambda pair: not pair[1].stands_for):
             parameter = entry.stands_for
@@ -675,35 +675,30 @@ class Section:
         return None
 
     def _build(self, name: str, values: dict[str, Any]) -> Any:
-        given = {field: values[key] for key, field in self._fields.items() if key in values}
-        if not self._models:
-            return self._made(**given)
-        model = self._models[name]
+        given = {field: values[key] for key, (field, _) in self.own.items() if key in values}
+        if not self.models:
+            return self.made(**given)
+        model = self.models[name]
         own = {key: values[key] for key in parameters(model)}
-        if self._several:  # a table is the same for all laws
+        if self.several:  # a table is the same for all laws
             of_laws = {key: own[key] if p.single else (own[key],) for key, p in parameters(model).items()}
-            return self._made(law=model, parameters=of_laws, vary=values["vary"], **given)
-        return self._made(**{self._model: build_model(model, own)}, **given)
-
-    def _other_owner(self, key: str, given: Mapping[str, Any]) -> str:
-        """End of a message on a key that only other models have, which names them; "" for any other."""
-        models = self._models.items() if self._models else ()
-        others = [name for name, model in models if key in parameters(model)]
-        return f' of {self._chosen} = "{self.model(given)}"; {", ".join(others)} has it' if others else ""
+            return self.made(law=model, parameters=of_laws, vary=values["vary"], **given)
+        return self.made(**{dataclasses.fields(self.made)[0].name: build_model(model, own)}, **given)
 
     def _of(self, model: str) -> dict[str, Key]:
         """Keys of a section with a model of that name."""
-        if self._models is None:
-            return self._keys
-        kind = self._models[model]
+        besides = {name: entry for name, (_, entry) in self.own.items()}
+        if self.models is None:
+            return besides
+        kind = self.models[model]
         own = {key: self._key(parameter, kind) for key, parameter in parameters(kind).items()}
-        chosen = Key(Choice(self._models), self._models.noun, self._default)
-        besides = {key: entry for key, entry in self._keys.items() if entry.stands_for in ("", *own)}
-        keys = {**own, self._chosen: chosen, **besides}
-        if self._several:  # a parameter that is a table itself cannot vary
+        chosen = Key(Choice(self.models), self.models.noun, self.default)
+        besides = {key: entry for key, entry in besides.items() if entry.stands_for in ("", *own)}
+        keys = {**own, self.chosen: chosen, **besides}
+        if self.several:  # a parameter that is a table itself cannot vary
             single = {
                 name: [parameter.key for parameter in parameters(kind).values() if parameter.single]
-                for name, kind in self._models.items()
+                for name, kind in self.models.items()
             }
             every = tuple(dict.fromkeys(chain(*single.values())))
             keys["vary"] = Key(
@@ -724,9 +719,9 @@ class Section:
         elif parameter.count:
             value = List(Number(parameter.unit), count=parameter.count)
         else:
-            value = (Numbers if self._several else Number)(parameter.unit, parameter.range)
-        default = self._defaults.get(parameter.key, fields(model)[parameter.key].default)
-        if self._several and parameter.single:  # a tuple of what laws have
+            value = (Numbers if self.several else Number)(parameter.unit, parameter.range)
+        default = self.defaults.get(parameter.key, fields(model)[parameter.key].default)
+        if self.several and parameter.single:  # a tuple of what laws have
             if isinstance(value, Choice):
                 value = List(value, "a text or a list of texts", alone=True)
             if default is not REQUIRED:
@@ -736,11 +731,6 @@ class Section:
 
 class LayerSections(Section):
     """Any number of tables [[layer]]."""
-
-    heading = "[[{}]]"
-
-    def __init__(self) -> None:
-        super().__init__(LayerTable, SOLIDS, "kind", "isotropic", or_else=", or material, or properties")
 
     def read(self, name: str, given: Any, faults: list[str]) -> tuple[Layer, ...]:
         """The layers from the top down; their faults are added to ``faults``."""
@@ -764,7 +754,7 @@ class LayerSections(Section):
             return self._tabulated(name, given, faults)
         table, bottom = super().read(name, given, faults), None
         if table and table.to is not None:
-            own = {key: v for key, v in given.items() if key not in self._keys or key == "thickness"}
+            own = {key: v for key, v in given.items() if key not in self.own or key == "thickness"}
             lower = super().read(f"{name}.to", own | table.to, faults)
             table, bottom = lower and table, lower and lower.solid
         try:
@@ -803,7 +793,9 @@ SWEPT = ("solid", "layer", "punch", "punch.solid", "friction")
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Section] = {
     "solid": Section(HalfPlane, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
-    "layer": LayerSections(),
+    "layer": LayerSections(
+        LayerTable, SOLIDS, "kind", "isotropic", or_else=", or material, or properties", heading="[[{}]]"
+    ),
     "punch": Section(Punch, PROFILES, "profile", "flat", defaults={"half_width": 1e-3}),
     "punch.solid": Section(
         ElasticPunch, SOLIDS, "kind", "isotropic", or_else=", or punch.solid.material", optional=True
@@ -822,11 +814,11 @@ def schema() -> dict[str, Any]:
     properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
     properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
     properties["punch"]["properties"]["solid"] = properties.pop("punch.solid")
-    properties["layer"] = {
-        "type": "array",
-        "items": _layer_schema(properties["layer"]),
-        "maxItems": MOST_LAYERS,
-    }
+    layer = properties["layer"]  # constants of its own, a material, or rows by depth
+    constants = ["thickness", *layer.pop("required", [])]
+    enough = [{"required": keys} for keys in (["thickness", "material"], constants, ["properties"])]
+    items = layer | {"anyOf": enough}
+    properties["layer"] = {"type": "array", "items": items, "maxItems": MOST_LAYERS}
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "galinx scene",
@@ -855,13 +847,6 @@ def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, An
     elif needed:
         section["required"] = needed
     return section
-
-
-def _layer_schema(table: dict[str, Any]) -> dict[str, Any]:
-    """JSON schema of a layer: constants of its own, a material, or rows by depth."""
-    needed = table.pop("required", [])
-    enough = [["thickness", "material"], ["thickness", *needed], ["properties"]]
-    return table | {"anyOf": [{"required": keys} for keys in enough]}
 
 
 def entry(key: Key, several: bool = False) -> dict[str, Any]:

@@ -84,7 +84,7 @@ def judged(text: str) -> Judged:
     data = Memory()
     compute(scene, data)
     tolerance, load = scene.solve.tolerance, scene.punch.load
-    found = {one.name: one.value for one in compare.comparisons(data, load, compare.RULES)}
+    found = compare.comparisons(data, load, compare.RULES)
     wrong = [name for name, value in found.items() if _is_wrong(name, value, tolerance)]
     ratios = {}
     for name, (truths, others) in TRUTHS.items():

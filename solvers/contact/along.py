@@ -170,9 +170,8 @@ class ExpansionAlong(Expansion):
         return np.ones_like(g), self.friction(t)
 
     def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        return (self.integral(kernel, r)[:, 1] + replace(self, c=self._shear).integral(kernel, r)[:, 0])[
-            None
-        ]
+        of_shear = replace(self, c=self._shear).integral(kernel, r)[:, 0]
+        return (self.integral(kernel, r)[:, 1] + of_shear)[None]
 
     @property
     def resultant_ratio(self) -> float:

@@ -4,9 +4,10 @@ Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contac
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,11 @@ from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
 from .ends import Punch
 from .equation import SolvedContact
-from .method import Solver
 from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Contact, Task, solved_once
+from .solution import Contact, Solver, Task, solved_once
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import Strength, StrengthOfLayers
 
@@ -46,21 +46,11 @@ class ClosedForm:
 
     solution: Callable[[Task, NDArray, NDArray | None], Any]
 
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        yield _AtSpeed(task, self.solution)
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
+        def states(g: NDArray, load: NDArray | None = None) -> Any:
+            return self.solution(task, g, load)
 
-
-@dataclass(frozen=True)
-class _AtSpeed:
-    task: Task
-    solution: Callable[[Task, NDArray, NDArray | None], Any]
-
-    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
-        return self.solution(self.task, g, load)
-
-    def record(self) -> dict[str, Any]:
-        return {}
+        return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
 class ExactSolution:

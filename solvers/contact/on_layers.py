@@ -25,7 +25,7 @@ the surface's solid alone: with f the slope less the mean by which the pressure 
 and under the slope -∫ K(r - t) σ₀(t) dt by which σ₀ bends the layers, which no kink makes rough.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from typing import Any
@@ -44,7 +44,7 @@ from .edges import EdgeExponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .equation import Equation, Resolution, SolvedContact, converged
 from .panels import Panels
-from .pressure import ENDS, Expansion, Pressure, joined_largest
+from .pressure import ENDS, Expansion, Pressure
 
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
 _PANEL, _LONGEST = 16.0, 0.7
@@ -189,7 +189,7 @@ def kinked(
 #: Accuracy of a half-width at rest, over which others are given.
 _AT_REST = 1e-5
 #: Accuracy with which an edge counts as lifted off.
-_OF_ENDS = 1e-6
+OF_ENDS = 1e-6
 #: Reach of tabulated kernels over that which the largest contact so far needs.
 _KERNEL_MARGIN = 1.5
 #: Depths whose fields are kept.
@@ -275,24 +275,17 @@ class LayersUnderPunch:
             contacts.append(self.contact(value, contacts[-1].half_width if contacts else 1.0))
         return contacts
 
-    def contact(self, g: float, h: float = 1.0) -> SolvedContact:
+    def contact(self, g: float, h: float = 1.0, checked: bool = True) -> SolvedContact:
         """The contact with a friction.
 
         Args:
             g: σ_XY/σ_YY.
             h: half-width to begin with.
+            checked: the contact may not be wider than what is known of the punch.
 
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
         """
-
-        contact = self.unchecked(g, h)
-        m, h = contact.centre, contact.half_width
-        check_reach(self.punch.profile, self.punch.unit * (m - h), self.punch.unit * (m + h))
-        return contact
-
-    def unchecked(self, g: float, h: float = 1.0) -> SolvedContact:
-        """The contact with a friction, which may be wider than what is known of the punch."""
 
         def at_resolution(resolution: Resolution) -> SolvedContact:
             nonlocal h
@@ -300,7 +293,11 @@ class LayersUnderPunch:
             h = contact.half_width
             return contact
 
-        return converged(self._equation(g, 1.0), at_resolution, self.tolerance)
+        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance)
+        m, h = contact.centre, contact.half_width
+        if checked:
+            check_reach(self.punch.profile, self.punch.unit * (m - h), self.punch.unit * (m + h))
+        return contact
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         return Equation(self.response, self.scaled(h), g, slope)
@@ -349,27 +346,6 @@ class LayersUnderPunch:
         return SolvedContact(g, pressure, h, m)
 
 
-def free_edges(
-    response: Any, g: float, profile: Any, unit: float, compression: float
-) -> tuple[bool, bool]:
-    """True where the left and the right edge of a tilted punch is free.
-
-    Args:
-        response: of the layers at a speed.
-        g: σ_XY/σ_YY.
-        profile: of the punch.
-        unit: unit of length [m].
-        compression: N/μ [m].
-
-    Raises:
-        SolveError: no contact carries the load.
-    """
-    punch = Punch(profile, unit, compression)
-    speed = LayersUnderPunch(response, response.stack(unit), _OF_ENDS, punch)
-    free_left, free_right = speed.contact(g).pressure.free.tolist()
-    return free_left, free_right
-
-
 @lru_cache(maxsize=256)
 def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> float:
     """Half-width [m] of a contact at rest without friction, to five digits, over which others are given.
@@ -387,7 +363,7 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
-    return unit * layers.unchecked(0.0).half_width
+    return unit * layers.contact(0.0, checked=False).half_width
 
 
 def _unresolved(each: Sequence[SolvedContact]) -> float:
@@ -523,9 +499,9 @@ class Interpolated(Pressure):
         rest = self.nodes.read(("rest", r.tobytes()), lambda node: node.pressure.rest(r, near)[None])
         return np.asarray(self.weights @ rest)
 
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        rows = zip(self.weights, np.ravel(self.α).tolist(), np.ravel(self.β).tolist())
-        return joined_largest(replace(self, weights=row, α=α, β=β) for row, α, β in rows)
+    def states(self) -> Iterator[Pressure]:
+        rows = zip(self.weights, self.α[:, 0].tolist(), self.β[:, 0].tolist())
+        return (replace(self, weights=row, α=α, β=β) for row, α, β in rows)
 
 
 @dataclass(frozen=True)

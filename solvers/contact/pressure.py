@@ -4,7 +4,7 @@ What all pressures have in common is their value, their intensities and the sear
 Methods differ in how they find the factor.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -82,12 +82,23 @@ class Pressure:
         """True if the pressure vanishes at both ends and has no tip, in all states."""
         return bool(np.all(self.free)) and not len(self.tips)
 
+    def states(self) -> Iterator["Pressure"]:
+        """Pressures of all states, each alone."""
+        yield self
+
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place, NaN where it is infinite, (states,) each."""
+        """Largest pressure over N/(2a) and its place, NaN where it is infinite, (states,) each."""
+        value, place = np.array([pressure._largest() for pressure in self.states()]).T
+        return value, place
+
+    def _largest(self) -> tuple[float, float]:
+        """Largest pressure of a single state, and its place; it is not smooth at its kinks."""
         if not self.finite:
-            return np.full(1, np.nan), np.full(1, np.nan)
-        top, at = largest_of(lambda r: -self.σ_YY(r), self.kinks)
-        return np.array([top]), np.array([at])
+            return np.nan, np.nan
+        turns = np.array([-1.0, *np.sort(self.kinks), 1.0])
+        at_kinks = zip((-self.σ_YY(turns[1:-1])).tolist(), turns[1:-1].tolist())
+        pieces = [*between(turns, FINER)]
+        return max(largest(lambda r: -self.σ_YY(r), pieces, ends=False), *at_kinks, (-np.inf, np.nan))
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the whole surface; NaN at an end where it is infinite."""
@@ -101,7 +112,7 @@ class Pressure:
         return g, self.hilbert(r), 0.0
 
     def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, Any]:
-        """σ_XY/σ_YY at t, as a number of each state, (states,), times a function of t; g is the states'."""
+        """σ_XY/σ_YY at t: a number of each state, (states,), times a function of t; g: the states'."""
         return g, 1.0
 
     def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
@@ -178,13 +189,10 @@ class Expansion(Pressure):
     def series(self, r: NDArray) -> NDArray[np.float64]:
         return np.asarray(self.functions.sum(self.c, r))
 
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a) and its place, NaN where it is infinite, (states,) each."""
+    def states(self) -> Iterator[Pressure]:
         c = np.atleast_2d(self.c)
-        exponents = (
-            np.broadcast_to(np.ravel(exponent), len(c)).tolist() for exponent in (self.α, self.β)
-        )
-        return joined_largest(replace(self, α=α, β=β, c=row) for α, β, row in zip(*exponents, c))
+        α, β = (np.broadcast_to(np.ravel(exponent), len(c)).tolist() for exponent in (self.α, self.β))
+        return (replace(self, α=α[i], β=β[i], c=row) for i, row in enumerate(c))
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return np.asarray(self.functions.rest(self.c, r, near))
@@ -213,23 +221,3 @@ class Expansion(Pressure):
             length: misplacement of each edge over a.
         """
         return np.asarray(self.functions.moved_edges(self, r, length))
-
-
-def joined_largest(each: Iterable[Pressure]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest pressures over N/(2a) and places of several states, one after the other, (states,) each."""
-    value, place = np.concatenate([Pressure.largest(pressure) for pressure in each], axis=1)
-    return value, place
-
-
-def largest_of(
-    pressure: Callable[[NDArray], NDArray], kinks: Sequence[float] | NDArray
-) -> tuple[float, float]:
-    """Largest pressure of a state under a punch, and its place.
-
-    Args:
-        pressure: at r in (-1, 1), (points,); 0 at both ends.
-        kinks: places at which it is not smooth.
-    """
-    turns = np.array([-1.0, *np.sort(kinks), 1.0])
-    at_kinks = zip(pressure(turns[1:-1]).tolist(), turns[1:-1].tolist())
-    return max(largest(pressure, [*between(turns, FINER)], ends=False), *at_kinks, (-np.inf, np.nan))

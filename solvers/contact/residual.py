@@ -79,11 +79,8 @@ class Rule:
 
     def smooth(self, pressure: Stress, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Smooth part of a pressure, σ_YY over (1 - t)^α (1 + t)^β at :attr:`t`, (states, n)."""
-        return _smooth(pressure, np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END), α, β)
-
-
-def _smooth(pressure: Stress, r: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-    return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
+        r = np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END)
+        return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
 
 
 def of_pressure(

@@ -4,8 +4,8 @@ Lengths are over the contact's half-width a, stresses over N/(2a), N the load pe
 :class:`Contact` has the units of both in SI.
 """
 
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
@@ -472,13 +472,16 @@ class OneFreeOnLayers(FreeEndOnLayers, OneFreeContact):
     """Contact over layers between a sharp corner and an end that is free where the punch lifts off."""
 
     def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
-        from .on_layers import free_edges
+        from .on_layers import OF_ENDS, LayersUnderPunch, Punch
 
-        free = Contact._free_ends(self, response, g, load)
-        loads = np.broadcast_to(self.loaded(load).compression, g.shape).tolist()
-        for i, N in enumerate(loads):
+        free, unit = Contact._free_ends(self, response, g, load), self.half_width
+        compressions = np.broadcast_to(self.loaded(load).compression, g.shape).tolist()
+        stack = response.stack(unit)  # type: ignore[attr-defined]
+        for i, (value, compression) in enumerate(zip(g.tolist(), compressions)):
+            punch = Punch(self.profile, unit, compression)
             with suppress(SolveError):
-                free[i] = free_edges(response, float(g[i]), self.profile, self.half_width, N)
+                contact = LayersUnderPunch(response, stack, OF_ENDS, punch).contact(value)
+                free[i] = contact.pressure.free
         return free
 
 
@@ -598,3 +601,43 @@ class Solution(Protocol):
     def surface(self) -> Surface: ...
     @property
     def inside(self) -> NDArray[np.float64]: ...
+
+
+#: σ_YY over N/(2a) at positions X over a under the punch.
+ContactStress = Callable[[NDArray], NDArray]
+
+
+class Solver(Protocol):
+    """Solver of friction states at one speed."""
+
+    def states(self, g: NDArray) -> Solution:
+        """Solve the states with values g of σ_XY/σ_YY, (states,), under the load of the task's body.
+
+        The solvers of a method whose kind has ``loads`` take a second argument, ``load``: the load of
+        each state [N/m], (states,), or None for the task's.
+
+        Raises:
+            SolveError: the states could not be solved.
+        """
+
+    def record(self) -> dict[str, Any]:
+        """Numbers of the work done, by the names of ``quantities.runs.RECORD``; may be empty."""
+
+
+class Method(Protocol):
+    """A way to solve the contact, for one plan.
+
+    The ``begin()`` of a method that has it is called once, collectively over all ranks, before speeds are
+    shared out over the ranks.
+    """
+
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
+        """A solver at one speed.
+
+        Args:
+            task: the speed.
+            g: all values of σ_XY/σ_YY that will be solved, sorted.
+
+        Raises:
+            SolveError: the equations could not be solved there.
+        """

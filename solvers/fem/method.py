@@ -12,8 +12,7 @@ from galinx.clock import Clock
 
 from ..contact import OWN_PRESSURE
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
-from ..contact.method import ContactStress, Solver
-from ..contact.solution import Task
+from ..contact.solution import ContactStress, Solver, Task
 from .contact import PUNCHES
 from .discretisation import Discretisation, quiet_compiler
 from .ladder import to_tolerance

@@ -442,6 +442,7 @@ class Layered(Solid):
         return self.surface.σ_ZZ(σ_XX, σ_YY, σ_XY)
 
     def σ_ZZ_at(self, depth: NDArray, σ: NDArray) -> NDArray[np.float64]:
+        """σ_ZZ at depths [m], (n,), in the unit of the stresses σ_XX, σ_YY, σ_XY there, (3, ..., n)."""
         values = np.empty(σ.shape[1:])
         for each in np.unique(depth).tolist():
             there = each == depth

@@ -104,15 +104,6 @@ class Solid(Protocol):
     def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane, of one shape and unit with the others, at the surface."""
 
-    def σ_ZZ_at(self, depth: NDArray, σ: NDArray) -> NDArray[np.float64]:
-        """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
-
-        Args:
-            depth: of the points [m], (n,).
-            σ: σ_XX, σ_YY, σ_XY there, (3, ..., n).
-        """
-        return self.σ_ZZ(*σ)
-
     @abstractmethod
     def words(self) -> str:
         """The solid in a sentence's middle, with units."""

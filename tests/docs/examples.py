@@ -1,11 +1,13 @@
 """Examples of the pages: commands, Python and other blocks found, and what runs them."""
 
 import hashlib
+import io
 import re
 import shlex
 import shutil
 import subprocess
-from contextlib import chdir
+import sys
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 from support import HOME, THOROUGH, clean_environment, here
@@ -23,8 +25,6 @@ _COMMAND = re.compile(r"\s*(\w+=\S+ |for .*; do )*\./run\.sh\b")
 _INDENTED = re.compile(r"(?<=\n\n)(?: {4}.*\n)+")
 _NAMED = re.compile(r"# ([\w-]+\.(?:py|toml))\n")
 _STATUS = re.compile(r"#.*\bstatus (\d)\b")
-#: No windows.
-SILENT = {"MPLBACKEND": "Agg"}
 #: The page whose commands are all started as a user does. Of the others those are that ask for ranks,
 #: bring models, which would stay registered, or need a shell; what is left runs in this process.
 STARTED = "README.md"
@@ -121,10 +121,10 @@ def _run(command, cwd):
     words = words_of(command)
     of_shell = not command.startswith("./run.sh") or {">", "|"} & set(words)
     if not of_shell and cwd.name != STARTED and words and words[0] not in _ON_ITS_OWN:
-        done = here(*words, cwd=cwd, **SILENT)
+        done = here(*words, cwd=cwd)
         return done.returncode, done.stdout + done.stderr
     done = subprocess.run(
-        ["bash", "-c", command], cwd=cwd, env=clean_environment() | SILENT, text=True,
+        ["bash", "-c", command], cwd=cwd, env=clean_environment(), text=True,
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=200,
     )  # fmt: skip
     return done.returncode, done.stdout
@@ -196,12 +196,22 @@ def _quoted(words, page):
 def run_python(page, folder):
     """Run the Python blocks of a page as one program; its output."""
     program = "\n".join(blocks(page, "python"))
-    if not program:
-        return ""
-    done = subprocess.run(
+    if ".register(" not in program:
+        return run_program(program, folder)
+    done = subprocess.run(  # models would stay registered in this process
         ["/usr/bin/python3", "-c", program], cwd=folder, text=True, timeout=200,
-        env=clean_environment() | SILENT | {"PYTHONPATH": str(HOME), "OMP_NUM_THREADS": "1"},
+        env=clean_environment() | {"PYTHONPATH": str(HOME), "OMP_NUM_THREADS": "1"},
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
     assert done.returncode == 0, f"{page.name}: {done.stdout}"
     return done.stdout
+
+
+def run_program(program, folder):
+    """Run a program in this process, which saves the imports; its output."""
+    said = io.StringIO()
+    with chdir(folder), redirect_stdout(said), redirect_stderr(said):
+        exec(compile(program, "example", "exec"), {"__name__": "__main__"})
+    if plt := sys.modules.get("matplotlib.pyplot"):
+        plt.close("all")
+    return said.getvalue()

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from urllib.parse import unquote, urlsplit
 
 import pytest
-from examples import DOCS, SILENT
+from examples import DOCS
 from support import HOME, clean_environment
 
 
@@ -73,7 +73,7 @@ def test_the_site_is_built_and_its_links_hold(tmp_path):
     site = tmp_path / "site"
     done = subprocess.run(
         [mkdocs, "build", "--strict", "-f", HOME / "mkdocs.yml", "-d", site],
-        cwd=tmp_path, capture_output=True, text=True, env=clean_environment() | SILENT,
+        cwd=tmp_path, capture_output=True, text=True, env=clean_environment(),
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "WARNING" not in done.stderr, done.stderr

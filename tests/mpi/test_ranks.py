@@ -1,4 +1,4 @@
-"""Run on one rank with the other tests and again under mpirun on two."""
+"""Shared over two ranks, what one rank computes alone."""
 
 import numpy as np
 import pytest

@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import HOME, THOROUGH
+from support import THOROUGH, scene_of
 
 from galinx import template
 from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import Memory, compute
 from galinx.app.scene.library import templates
-from galinx.app.scene.read import parse
 from galinx.solvers.fem.ladder import ROUNDING
 
 #: What ranks agree on they agree on at every tolerance.
@@ -25,13 +24,10 @@ OF_UNITS = ("K_I", "normal", "tangential", "v0", "first_yield_load")
 PLACES = 1e-6
 
 #: A hard coating that is graded, by finite elements alone, with stresses at its interface.
-SCENES["graded coating"] = parse(
-    (HOME / "scenes" / "coating.toml")
-    .read_text()
-    .replace('rho = "1200 kg/m^3"', 'rho = "1200 kg/m^3"\nto = { E = "3 GPa" }')
-    .replace('methods = ["sie"]', 'methods = ["fem"]\ntolerance = 1e-3')
-    .replace('["friction", "sif", "surface", "interfaces"]', '["sif", "interfaces"]')
-)
+SCENES["graded coating"] = scene_of("coating", {
+    "layer[0].to": {"E": "3 GPa"}, "solve.methods": ["fem"], "solve.tolerance": 1e-3,
+    "output.quantities": ["sif", "interfaces"],
+})  # fmt: skip
 
 
 def kinds():

@@ -1,4 +1,4 @@
-"""Run on one rank with the other tests and again under mpirun on two."""
+"""Whole fields, sampled by two ranks together."""
 
 from contextlib import closing
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from support import THOROUGH
 
-from galinx.postprocess.compare import Comparison
 from galinx.postprocess.errors import LeftOver
 from galinx.postprocess.journal import Journal, Part
 
@@ -24,8 +23,7 @@ def part(start, stop):
         "whole": np.arange(n) > 1,
         "unknown": np.full((n, 2), np.nan),
     }
-    found = Comparison("balance", "forces", 1e-9 * stop)
-    return Part(slice(start, stop), data, [found], {"speed": start})
+    return Part(slice(start, stop), data, {"balance": 1e-9 * stop}, {"speed": start})
 
 
 #: What a killed run leaves; the last is only half full.

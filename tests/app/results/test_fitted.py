@@ -126,6 +126,12 @@ def test_tables_of_all_conventions_are_one_measurement(tmp_path):
         ("slip [mm],force,load\n0,1,1\n1,1,1\n", "expected both in N, or both in N/m"),
         ("slip [mm],force [N],load [N]\n0,1,1\n1,1,0\n2,1,1\n", "line 3: found no load"),
         ("slip [mm],f\n", "three or more rows"),
+        ("a,b\n1,2\n", r'expected "slip \[mm\],f", "time \[s\],position \[mm\],f", or with "force'),
+        ("slip,f\n0,0\n1,x\n2,1\n", "line 3, f: found 'x', expected a finite number"),
+        ("slip,f\n0,0\n2,1\n1,1\n", "line 4: expected three or more rows in which the slip grows"),
+        ("time,position,f\n0,1,0\n1,1,0\n2,1,0\n", "found one position in all rows, expected a motion"),
+        ("slip [s],f\n0,0\n1,1\n2,1\n", "line 1, slip: found '1 s'"),
+        ("", "is empty"),
     ],
 )  # fmt: skip
 def test_faults_of_tables_are_told(tmp_path, text, said):

@@ -7,7 +7,6 @@ from support import computed
 from galinx import template
 from galinx.app.run import flow
 from galinx.app.run.flow import Memory, compute
-from galinx.postprocess.compare import Comparison
 from galinx.postprocess.journal import Journal, Part, joined
 
 SPEEDS = 170
@@ -61,9 +60,9 @@ def test_parts_of_many_speeds_are_written_and_kept_together(alone, tmp_path, mon
 def test_parts_join_in_order_and_the_worst_of_a_comparison_stays():
     def part(first, value, record=None):
         rows, values = slice(first, first + 2), np.array([first, first + 1.0])
-        return Part(rows, {"states/f": values}, [Comparison("a", "as", value)], record)
+        return Part(rows, {"states/f": values}, {"a": value}, record)
 
     whole = joined([part(4, 1.0), part(6, np.nan), part(8, 3.0, {"speed": 1})])
     assert whole.rows == slice(4, 10) and whole.data["states/f"].tolist() == [4, 5, 6, 7, 8, 9]
-    assert len(whole.comparisons) == 1 and np.isnan(whole.comparisons[0].value)
+    assert [*whole.comparisons] == ["a"] and np.isnan(whole.comparisons["a"])
     assert whole.record == {"speed": 1}

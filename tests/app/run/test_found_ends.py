@@ -11,16 +11,12 @@ from support import THOROUGH, computed
 
 import galinx
 from galinx import PROFILES, parameter
-from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import Refinement, with_kinks
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
-
-PARABOLA = {"punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm"}
-WEDGE = {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005}
 
 
 def scene(
@@ -117,7 +113,7 @@ def test_a_tilted_punch_through_lift_off():
 
 
 KINKED = {
-    "wedge": WEDGE,
+    "wedge": {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005},
     "power": {"punch.profile": "power", "punch.half_width": None, "punch.exponent": 3.0,
               "punch.coefficient": 1e3},
     "rounded": {"punch.profile": "rounded_flat", "punch.half_width": None,
@@ -289,18 +285,3 @@ def test_the_error_of_the_pressure_at_a_cusp_is_in_the_estimate(exponent, tolera
     largest = [result.data[f"states/{method}/largest_pressure"][0] for method in ("fem", "closed_form")]
     error = abs(largest[0] / largest[1] - 1.0)
     assert error <= result.data["states/fem/estimate"][0] <= tolerance
-
-
-def test_what_cannot_be_is_refused():
-    with pytest.raises(BadInput, match=r"mesh = .confocal. without degree"):
-        make_plan(galinx.template("tables4_5", WEDGE | {"solve.methods": ["fem"], "solve.degree": 6}))
-    with pytest.raises(BadInput, match="whose contact ends where the pressure says"):
-        make_plan(galinx.template("tables4_5", PARABOLA | {"solve.mode": "traction"}))
-    shape = [[-1e-3, 1e-6], [0.0, 0.0], [1e-3, 2e-6], [2e-3, 1e-6], [3e-3, 9e-6]]
-    table = {"punch.profile": "table", "punch.half_width": None, "punch.shape": shape}
-    with pytest.raises(BadInput, match=r"not convex at X = 0\.001 m.*two contacts"):
-        galinx.template("tables4_5", table)
-    steep = make_plan(galinx.template("tables4_5", WEDGE | {"punch.slope": 1.5}))
-    assert any("punch.slope = 1.5" in text for text in steep.warnings)
-    plan = make_plan(galinx.template("tables4_5", WEDGE | {"solve.mesh": "graded"}))
-    assert any("such a contact needs meshes of its own" in text for text in plan.skipped)

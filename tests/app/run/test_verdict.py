@@ -36,13 +36,3 @@ def test_exponents_that_cannot_be_fitted_are_no_fault(tmp_path):
     assert not any(np.isnan(value) for value in result.comparisons.values())
     result.save(tmp_path / "a.h5")
     assert here("check", tmp_path / "a.h5").returncode == 0
-
-
-def test_a_pressure_that_does_not_carry_the_load_is_whole(tmp_path):
-    changes = ONE | {"solve.mode": "traction", "solve.pressure": [[-1, -1], [1, -0.5]]}
-    result = computed("tables4_5", changes)
-    assert result.verdict == "PASS"
-    np.testing.assert_allclose(result.data["states/fem/normal_force"], -55.3e3 * 0.75, rtol=1e-12)
-    result.save(tmp_path / "a.h5")
-    done = here("check", tmp_path / "a.h5")
-    assert done.returncode == 0, done.stdout

@@ -17,6 +17,10 @@ _HUMP = [[-1, -1], [0, -1], [0.05, -4], [0.1, -1], [1, -1]]
 _LAW = {"time.friction": "law"}
 _POINT = {"output.quantities": ["interior"], "output.points": [[0.0, -0.5]]}
 _MANY = {"from": 1, "to": 2, "number": 500}
+_LONG = {"from": 0.01, "to": 0.9, "number": 1000}
+_PRODUCT = ("friction.mu_c", "friction.delta", "motion.X_over_L", "motion.c")
+_RATE = {"model": "rate_and_state", "reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01,
+         "b": 0.015, "critical_slip": 1e-7}  # fmt: skip
 _NO_WIDTH = {"punch.half_width": None}
 _WEDGE = _NO_WIDTH | {"punch.profile": "wedge", "punch.slope": 0.005}
 _PARABOLA = _NO_WIDTH | {"punch.profile": "parabolic", "punch.radius": "20 mm"}
@@ -70,6 +74,11 @@ FAULTS = {
         ({"friction.vary": 3}, "found 3, expected tables [[friction.vary]]"),
         ({"friction.vary": [{"mu_c": _MANY, "delta": _MANY}]},
          "vary: found 250000 laws, expected at most 100000"),
+        ({"friction.mu_c": 0.1, "friction.sigma0_over_load": 6e4, "friction.integrator": "rk4"}, "exact"),
+        (CLOSED | dict.fromkeys(_PRODUCT, _LONG), "3e+12 states…shorten"),
+        ({"friction": _RATE, "motion.c": 0}, "friction: found the speed 0 m/s"),
+        ({"friction": {"model": "table", "shape": [[1e-6, 0.1], [2e-6, 0.2]]}},
+         "friction: shape: found the slips"),
         ({"motion.c": -0.1}, "motion.c"),
         ({"motion.c": 0.95}, "Rayleigh speed c_R = 0.919402"),
         ({"motion.speed": "1 m/s"}, "exclude each other"),

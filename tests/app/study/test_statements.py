@@ -152,124 +152,81 @@ def test_all_statements_with_what_decides_them(data):
         assert re.search(in_order, found[number].numbers), (number, found[number].numbers, expected)
 
 
-# Results that say the opposite.
-
-
-def _loops(data, **law):
+def loops(data, **law):
+    """Friction along the three strokes of a law, to be changed."""
     row = data["loops/of_state"][state_of(data, SLOW, "FM1", 0.2, **law)]
     return data["loops/f"][row].reshape(3, -1)
 
 
-def _law(name, value):
-    return {"mu_c": value} if name == "mu_c" else {"mu_c": 0.5, name: value}
-
-
-def _swap_loops(data, name, one, other):
-    a, b = (_loops(data, **_law(name, value)) for value in (one, other))
-    a[:], b[:] = b.copy(), a.copy()
-
-
-def _surface(data, what, **state):
+def surface(data, what, **state):
+    """A stress of a state, to be changed."""
     state = {"c": SLOW, "motion": "FM1", "X": 0.2} | state
     return data[f"surface/closed_form/sigma_{what}"][state_of(data, **state)]
 
 
-def _faster(data):
-    data["states/f"][data["states/c"] == FAST] += 1e-6
+def put(target, values):
+    target[...] = np.array(values)
 
 
-def _slow_to_settle(data):
-    _loops(data, mu_c=0.1)[0] *= 0.9
+def scale(target, factor):
+    target *= factor
 
 
-def _never_apart(data):
-    loops = _loops(data, mu_c=0.7)
-    loops[2] = loops[0]
+def swap(one, other):
+    one[...], other[...] = other.copy(), one.copy()
 
 
-def _without_a_turn(data):
-    for δ in EXPONENTS:
-        loops = _loops(data, mu_c=0.5, delta=δ)
-        loops[2] = loops[0]
+def turn(*arrays):
+    for one in arrays:
+        put(one, one[..., ::-1])
 
 
-def _slight_on_the_axis(data):
-    for X, share in ((0.2, 0.1), (0.5, 1.0), (1.0, -0.5)):
-        one, other = (_surface(data, "YY", X=X, motion=motion) for motion in ("FM1", "BM1"))
-        other[:] = one + share * (1.0 if X < 1.0 else one)
+def mirror(data):
+    turn(*(data[f"surface/closed_form/sigma_{what}"] for what in ("XX", "YY")))
 
 
-def _backwards(data):
-    loops = _loops(data)
-    loops[1] = loops[1][::-1].copy()
-
-
-def _far_from_slow(data):
-    _surface(data, "YY", c=FAST)[:] *= 1.2
-
-
-def _other_end(data):
-    σ = _surface(data, "XX", motion="BM1", X=0.5)
-    σ[:] = σ[::-1].copy()
-
-
-def _late_difference(data):
-    _surface(data, "XX", motion="FM2", X=1.0)[:] *= 1.5
-
-
-def _speeds_swapped(data):
-    for X in (0.2, 0.5, 0.8, 1.0):
-        slow, fast = (_surface(data, "XX", c=c, X=X) for c in (SLOW, FAST))
-        slow[:], fast[:] = fast.copy(), slow.copy()
-
-
-def _places_swapped(data):
-    for μ in LEVELS:
-        for what in ("XX", "YY"):
-            early, late = (_surface(data, what, X=X, mu_c=μ) for X in (0.2, 0.8))
-            early[:], late[:] = late.copy(), early.copy()
-
-
-def _mirrored(data):
-    for what in ("XX", "YY"):
-        path = f"surface/closed_form/sigma_{what}"
-        data[path] = data[path][:, ::-1].copy()
-
-
-def _forward(data):
-    path = column("f")
-    for c in (SLOW, FAST):
-        data[path][state_of(data, c, "FM2", 0.2, mu_c=0.5, sigma0_over_load=12500.0)] *= -1.0
-
-
-def _alike(data):
-    law = {"motion": "FM2", "mu_c": 0.5, "sigma0_over_load": 50000.0}
-    _surface(data, "XX", c=FAST, **law)[:] = _surface(data, "XX", **law)
-
-
-def _unequal(data):
-    data["states/closed_form/K_I_right"] *= 1.001
-
-
-def _less_there(data):
-    _surface(data, "XX", c=FAST, X=1.0)[:] *= 0.5
-
-
-@pytest.mark.parametrize(
-    ("number", "change"),
-    [
-        ("1", _faster), ("2", _slow_to_settle), ("3", _never_apart),
-        ("4", lambda data: _swap_loops(data, "sigma0_over_load", 12500.0, 50000.0)),
-        ("5a", lambda data: _swap_loops(data, "delta", 0.8, 1.5)),
-        ("5b", _without_a_turn), ("6a", _slight_on_the_axis), ("6b", _backwards), ("7", _far_from_slow),
-        ("8", _other_end), ("9", _late_difference), ("10", _speeds_swapped), ("11", _places_swapped),
-        ("12a", _mirrored), ("12b", _mirrored), ("13", _forward), ("14", _alike), ("15", _mirrored),
-        ("16", _unequal), ("17", _less_there),
+LAST = {"motion": "FM2", "mu_c": 0.5, "sigma0_over_load": 50000.0}
+#: By the number of a statement: results that say the opposite.
+OPPOSITE = {
+    "1": lambda d: put(d["states/f"], d["states/f"] + 1e-6 * (d["states/c"] == FAST)),
+    "2": lambda d: scale(loops(d, mu_c=0.1)[0], 0.9),
+    "3": lambda d: put(loops(d, mu_c=0.7)[2], loops(d, mu_c=0.7)[0]),
+    "4": lambda d: swap(*(loops(d, mu_c=0.5, sigma0_over_load=λ) for λ in STIFFNESSES[::2])),
+    "5a": lambda d: swap(*(loops(d, mu_c=0.5, delta=δ) for δ in EXPONENTS[::3])),
+    "5b": lambda d: [put(loop[2], loop[0]) for δ in EXPONENTS for loop in [loops(d, mu_c=0.5, delta=δ)]],
+    "6a": lambda d: [
+        put(surface(d, "YY", X=X, motion="BM1"), factor * surface(d, "YY", X=X) + more)
+        for X, factor, more in ((0.2, 1.0, 0.1), (0.5, 1.0, 1.0), (1.0, 0.5, 0.0))
     ],
-)  # fmt: skip
-def test_other_results_turn_a_statement_round(data, number, change):
+    "6b": lambda d: turn(loops(d)[1]),
+    "7": lambda d: scale(surface(d, "YY", c=FAST), 1.2),
+    "8": lambda d: turn(surface(d, "XX", motion="BM1", X=0.5)),
+    "9": lambda d: scale(surface(d, "XX", motion="FM2", X=1.0), 1.5),
+    "10": lambda d: [
+        swap(*(surface(d, "XX", c=c, X=X) for c in (SLOW, FAST))) for X in (0.2, 0.5, 0.8, 1.0)
+    ],
+    "11": lambda d: [
+        swap(*(surface(d, what, X=X, mu_c=μ) for X in (0.2, 0.8)))
+        for μ in LEVELS
+        for what in ("XX", "YY")
+    ],
+    "12a": mirror,
+    "12b": mirror,
+    "13": lambda d: np.negative.at(
+        d[column("f")],
+        [state_of(d, c, "FM2", 0.2, mu_c=0.5, sigma0_over_load=12500.0) for c in (SLOW, FAST)],
+    ),
+    "14": lambda d: put(surface(d, "XX", c=FAST, **LAST), surface(d, "XX", **LAST)),
+    "15": mirror,
+    "16": lambda d: scale(d["states/closed_form/K_I_right"], 1.001),
+    "17": lambda d: scale(surface(d, "XX", c=FAST, X=1.0), 0.5),
+}
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_other_results_turn_a_statement_round(data, number):
     before = decided(data)[number]
-    change(data)
+    OPPOSITE[number](data)
     after = decided(data)[number]
     assert before.holds == (number not in DOES_NOT)
     assert after.holds != before.holds, after.words

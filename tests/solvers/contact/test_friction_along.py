@@ -54,7 +54,7 @@ def linear(rows):
     return g
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_closed_form_against_a_quadrature_in_30_digits(seed):
     rng = np.random.default_rng(seed)
     solid = random_solid(seed) if seed else ISOTROPIC

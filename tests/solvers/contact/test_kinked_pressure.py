@@ -1,4 +1,4 @@
-"""Pressure at kinks, from the nodal forces of a pressure that is given."""
+"""Pressure at kinks: limits of values a little farther away, and from nodal forces of a known one."""
 
 from itertools import pairwise
 from types import SimpleNamespace
@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from galinx.solvers.approximation import lagrange
-from galinx.solvers.contact.recovery import KinkedPressure
+from galinx.solvers.contact.recovery import (
+    FARTHER,
+    ContactFacets,
+    KinkedPressure,
+    error_at_kink,
+    farthest_at_kink,
+    towards_kink,
+)
 
 #: A chart in which surface coordinates are positions.
 AS_DRAWN = SimpleNamespace(
@@ -35,6 +42,14 @@ def nodes_and_forces(ends, degree, σ_YY):
         nodes = slice(i * degree, (i + 1) * degree + 1)
         forces[nodes] += basis.T @ (σ_YY(start + size * (t + 1.0) / 2.0) * w) * size / 2.0
     return s, forces
+
+
+def test_a_product_with_a_function_has_the_nodal_forces_of_the_product():
+    ends, degree = facets(0.3, 4), 5
+    s, forces = nodes_and_forces(ends, degree, lambda r: r**3 - 2.0)
+    _, expected = nodes_and_forces(ends, degree, lambda r: (1.0 + r) * (r**3 - 2.0))
+    found = ContactFacets(s, degree, AS_DRAWN).product(lambda r: 1.0 + r) @ forces
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13)
 
 
 @pytest.mark.parametrize("degree", [6, 9])
@@ -104,3 +119,58 @@ def test_the_largest_pressure_may_be_on_either_side_of_a_node_of_two_facets(seed
     pressure = KinkedPressure(s, 8, chart, forces, np.empty(0), (1.0, 1.0))
     p = -pressure.σ_YY(np.linspace(-0.99, 0.99, 200001))
     assert pressure.largest()[0] >= p.max() - 1e-8
+
+
+GAP = 0.7
+
+
+def limit(values, exponent, farthest, farther=1.0):
+    series = towards_kink(GAP, exponent, farthest, farther)
+    return series.limit(values(series.samples))
+
+
+@pytest.mark.parametrize("exponent", [0.25, 0.5, 0.9, 1.0])
+def test_a_limit_is_that_of_a_smooth_function_and_another_times_a_power_or_a_logarithm(exponent):
+    def values(d):
+        rest = d**exponent * np.log(d) ** (exponent == 1.0)
+        return 2.0 - d + 3.0 * d**2 + (1.5 + d - d**2 * (exponent < 1.0)) * rest
+
+    assert limit(values, exponent, 1e-2) == pytest.approx(2.0, rel=1e-10)
+
+
+@pytest.mark.parametrize("exponent", [0.25, 0.5, 0.9, 1.0])
+@pytest.mark.parametrize("opposite", [1.0, -1.0])
+def test_what_a_limit_leaves_out_is_in_its_error(exponent, opposite):
+    """Also where both sides are wrong by as much, and do not differ."""
+
+    def varies(d):
+        rest = d**exponent * np.log(d) ** (exponent == 1.0)
+        return np.exp(4.0 * d) * (np.cos(9.0 * d) + np.sin(5.0 * d + 1.0) * rest) - 1.0
+
+    farthest = farthest_at_kink(1e-6)
+    sides = lambda d: 3.0 + varies(d), lambda d: 3.0 + opposite * varies(d)
+    usual, farther = (
+        np.array([limit(side, exponent, farthest, by) for side in sides]) for by in (1.0, FARTHER)
+    )
+    true = np.abs(usual - 3.0).max()
+    assert 1e-12 < true <= error_at_kink(usual, farther) <= 30.0 * true
+
+
+def test_two_limits_that_differ_are_wrong_by_half_of_that():
+    limits = np.array([1.0, 3.0])
+    assert error_at_kink(limits, limits) == 1.0
+
+
+def under_a_kink(r, kink):
+    """Pressure with two free ends and d log d next to a kink, where it is -2√(1 - kink²)."""
+    d = np.abs(r - kink)
+    return -np.sqrt(1.0 - r**2) * (2.0 + (r - kink) * np.log(np.maximum(d, 1e-300)))
+
+
+@pytest.mark.parametrize("kink", [0.88, -0.88])
+def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side(kink):
+    s, forces = nodes_and_forces(facets(kink, 16), 8, lambda r: under_a_kink(r, kink))
+    pressure = KinkedPressure(s, 8, AS_DRAWN, forces, np.array([kink]), (0.5, 0.5), 1.0, 1e-8)
+    exact = -2.0 * np.sqrt(1.0 - kink**2)
+    assert pressure.at_kink(0) == pytest.approx(exact, abs=1e-8)
+    assert abs(pressure.at_kink(0) - exact) <= pressure.left_at_kinks <= 1e-8

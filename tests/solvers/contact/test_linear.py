@@ -53,8 +53,7 @@ def exact_inside(name, κ, c, g, X, Y):
     return [float(σ) for σ in field(frame, mp.mpf(g), -Φ.imag, Φ.real, -d.imag, d.real)]
 
 
-@pytest.mark.parametrize("c", SPEEDS)
-@pytest.mark.parametrize("name", PRESSURES)
+@pytest.mark.parametrize("name, c", [*(("triangle", c) for c in SPEEDS), ("spike", 0.6), ("jumps", 0.9)])
 def test_stresses_inside_are_those_of_the_integrals(name, c):
     solution = LoadedHalfPlane(MovingFrame(2.2, c), -0.66, pressure_of(name))
     with mp.workdps(40):

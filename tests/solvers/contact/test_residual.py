@@ -32,11 +32,10 @@ def contact(request):
 def left(contact, pressure=None, inside=None):
     found, slope, kinks = contact
     exponents, pressure = (found.of("α"), found.of("β")), pressure or found.groups[0].contact_stress
-    of_pressure = residual.of_pressure(found.response, found.g, exponents, slope, pressure, kinks)
+    response, g = found.groups[0].response, found.of("g")
+    of_pressure = residual.of_pressure(response, g, exponents, slope, pressure, kinks)
     field = inside or found.stresses
-    return of_pressure, residual.of_field(
-        found.response, found.g, exponents, pressure, field, POINTS, kinks
-    )
+    return of_pressure, residual.of_field(response, g, exponents, pressure, field, POINTS, kinks)
 
 
 def test_exact_answers_leave_nothing(contact):

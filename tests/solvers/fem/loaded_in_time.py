@@ -92,7 +92,6 @@ class LoadedInTime:
         self,
         steps: int,
         σ_YY: Traction,
-        g: float,
         load: Callable[[float], float],
         knots: tuple[float, ...] = (),
     ) -> SurfaceMotion:
@@ -101,11 +100,10 @@ class LoadedInTime:
         Args:
             steps: number of steps.
             σ_YY: full pressure on the contact over N/(2a).
-            g: σ_XY/σ_YY.
             load: share of the pressure at a time, smooth from t = 0 on, where it may jump.
             knots: positions X over a between which the pressure is smooth.
         """
-        h, f, motion = self._h, self._forces(σ_YY, g, knots), self._motion
+        h, f, motion = self._h, self._forces(σ_YY, knots), self._motion
 
         def stage(u: NDArray, w: NDArray, at: float) -> NDArray[np.float64]:
             b = motion.momentum(w) + γ * h * (load(at) * f - motion.stiffness(u))
@@ -135,12 +133,12 @@ class LoadedInTime:
         x[self._free] = factor.solve(b[self._free])
         return x
 
-    def _forces(self, σ_YY: Traction, g: float, knots: tuple[float, ...]) -> NDArray[np.float64]:
+    def _forces(self, σ_YY: Traction, knots: tuple[float, ...]) -> NDArray[np.float64]:
         space = self._motion.space
         facets, ends = space.surface_facets(("contact",)), space.contact.s[[0, -1]]
         by_node = consistent_forces(facets.s, space.chart, ends, σ_YY, knots).ravel()
         f = np.zeros((self._motion.size // 2, 2))
-        np.add.at(f, facets.nodes.ravel(), np.column_stack([g * by_node, by_node]))
+        np.add.at(f[:, 1], facets.nodes.ravel(), by_node)
         return f.ravel()
 
     def destroy(self) -> None:

@@ -1,15 +1,16 @@
-"""Factors: singular, short of memory, freed."""
+"""Factors of symmetric and unsymmetric matrices."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.sparse import diags, identity, kron
 from support import small_punch
 
 from galinx.clock import Clock
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem import linear
-from galinx.solvers.fem.linear import LinearSolver
+from galinx.solvers.fem.linear import ArraySolver, LinearSolver
 
 
 @pytest.mark.parametrize("entry", [0.0, float("nan")])
@@ -92,3 +93,21 @@ def test_factors_are_freed():
         sizes.append(resident())
     # Unfreed, each would leave two megabytes.
     assert sizes[-1] - sizes[9] < 15e6
+
+
+N = 150
+
+
+def unsymmetric():
+    """Of a wave that is carried along, on a square of points."""
+    line = diags([-1.5, 2.1, -0.5], [-1, 0, 1], shape=(N, N))
+    return (kron(line, identity(N)) + kron(identity(N), line)).tocsr()
+
+
+def test_an_unsymmetric_matrix_has_one_and_many_right_hand_sides():
+    A, b = unsymmetric(), np.random.default_rng(0).normal(size=(N * N, 3))
+    factor = ArraySolver(A, Clock())
+    found = factor.solve(b)
+    np.testing.assert_allclose(A @ found, b, atol=1e-10)
+    np.testing.assert_allclose(factor.solve(b[:, 1]), found[:, 1], rtol=1e-12, atol=1e-12)
+    factor.destroy()

@@ -67,50 +67,20 @@ def test_a_rate_alone_is_integrated(seed):
         assert curve[0] == z and not np.array_equal(curve, closest)
 
 
-def _power(rng, low, high):
-    return float(10.0 ** rng.uniform(low, high))
-
-
-def wide(name, rng):
-    """Parameters over all of their range by keys, and the slip within which friction changes [m]."""
-    μ, k = _power(rng, -3.0, 1.0), _power(rng, 2.0, 9.0)
-    curve = {
-        "mu_c": μ, "mu_s": _power(rng, -3.0, 1.0), "stribeck_velocity": _power(rng, -6.0, 2.0),
-        "stribeck_exponent": _power(rng, -1.0, 1.0),
-    }  # fmt: skip
-    bristles = curve | {"sigma0_over_load": k, "sigma1_over_load": _power(rng, -2.0, 3.0)}
-    bristles |= {"sigma2_over_load": _power(rng, -2.0, 2.0)}
-    springs = [(_power(rng, 2.0, 9.0), _power(rng, -4.0, 1.0)) for _ in range(int(rng.integers(1, 6)))]
-    slip = max(limit / stiffness for stiffness, limit in springs)
-    return {
-        "bouc_wen": lambda: (
-            {"mu_c": μ, "yield_displacement": 1.0 / k, "exponent": _power(rng, 0.0, 1.7),
-             "gamma": rng.uniform(0.0, 0.999)}, 1.0 / k),
-        "coulomb": lambda: ({"mu_c": μ}, 1.0),
-        "dahl": lambda: ({"mu_c": μ, "sigma0_over_load": k, "delta": _power(rng, 0.0, 1.0)}, μ / k),
-        "elasto_plastic": lambda: (bristles | {"breakaway_ratio": rng.uniform(0.001, 0.999)}, μ / k),
-        "gms": lambda: (
-            curve | {"elements": tuple(springs), "attraction_rate": _power(rng, -3.0, 2.0)}, slip),
-        "lugre": lambda: (bristles, μ / k),
-        "maxwell_slip": lambda: ({"elements": tuple(springs)}, slip),
-        "rate_and_state": lambda: (
-            {"reference_friction": _power(rng, -2.0, 0.0), "reference_speed": _power(rng, -9.0, 0.0),
-             "a": _power(rng, -1.5, 0.0), "b": _power(rng, -3.0, -0.5), "critical_slip": 1.0 / k,
-             "evolution": str(rng.choice(["ageing", "slip"])), "state0": _power(rng, -6.0, 6.0)},
-            1.0 / k),
-        "stribeck": lambda: (curve | {"sigma2_over_load": _power(rng, -2.0, 2.0)}, 1.0),
-        "table": lambda: (random.parameters("table", rng), random.LENGTH),
-    }[name]()  # fmt: skip
-
-
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("seed", range(SETS))
 def test_laws_far_from_usual_sizes_are_their_equations(name, seed):
     """Of any stiffness, at any speed, along strokes of a hundredth to ten times what friction needs."""
     rng = np.random.default_rng([seed, 77, *name.encode()])
-    parameters, slip = wide(name, rng)
+    parameters = random.parameters(name, rng, wide=True)
+    slip = random.slip_of(parameters)
     strokes = [
-        (int(rng.choice([-1, 1])), _power(rng, -7.0, 1.0), slip * _power(rng, -2.0, 1.0), rest)
+        (
+            int(rng.choice([-1, 1])),
+            random.power(rng, -7.0, 1.0),
+            slip * random.power(rng, -2.0, 1.0),
+            rest,
+        )
         for rest in (0.0, 2.0, 0.0, 0.3)
     ]
     f, done = follow(build_model(LAWS[name], parameters), strokes)
@@ -125,54 +95,38 @@ def of(name, **parameters):
     return build_model(LAWS[name], parameters)
 
 
-def both(one, other, rng, count=20, one_speed=False):
-    """The largest difference of f and of work over a length between two laws on random motions."""
-    worst = 0.0
-    for _ in range(count):
-        strokes = random.strokes(rng, one_speed=one_speed)
-        (f, done), (g, wanted) = follow(one, strokes), follow(other, strokes)
-        worst = max(worst, np.abs(f - g).max(), np.abs(done - wanted).max() / random.LENGTH)
-    return worst
-
-
 CURVE = {"mu_c": 0.4, "mu_s": 0.4, "stribeck_velocity": 1e-3}
-
-
-def test_lugre_without_damping_and_with_a_constant_curve_is_dahl():
-    rng = np.random.default_rng(1)
-    lugre = of("lugre", sigma0_over_load=3e4, **CURVE)
-    assert both(of("dahl", mu_c=0.4, sigma0_over_load=3e4), lugre, rng) <= 1e-12
-    damped = of("lugre", sigma0_over_load=3e4, sigma1_over_load=30.0, **CURVE)
-    assert both(lugre, damped, rng) > 1e-3
-
-
-def test_stribeck_with_a_constant_curve_is_coulomb():
-    rng = np.random.default_rng(2)
-    assert both(of("coulomb", mu_c=0.4), of("stribeck", **CURVE), rng) <= 1e-12
-    assert both(of("coulomb", mu_c=0.4), of("stribeck", **CURVE | {"mu_s": 0.6}), rng) > 1e-3
-
-
-def test_bouc_wen_of_the_first_power_is_known():
-    """γ = 0 is Dahl's law; γ = 1/2 unloads on a straight line, then builds up as an exponential."""
-    rng = np.random.default_rng(3)
-    dahl = of("dahl", mu_c=0.4, sigma0_over_load=0.4 / 3e-5)
-    assert both(dahl, of("bouc_wen", mu_c=0.4, yield_displacement=3e-5, gamma=0.0), rng) <= 1e-12
-    law, d = of("bouc_wen", mu_c=0.4, yield_displacement=3e-5), np.array([1e-5, 2.4e-5, 6e-5])
-    found = law.exact(np.array([-0.8]), 1, 0.0, d)[:, 0]
-    wanted = [-0.8 + 1.0 / 3.0, 0.0, 1.0 - np.exp(-1.2)]
-    np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-15)
-
-
 ELEMENTS = ((1e4, 0.1), (4e3, 0.15), (5e4, 0.15))
 
 
-def test_generalised_maxwell_slip_with_infinite_attraction_is_maxwell_slip():
-    rng = np.random.default_rng(4)
-    maxwell = of("maxwell_slip", elements=ELEMENTS)
-    gms = of("gms", elements=ELEMENTS, attraction_rate=1e15, **CURVE)
-    assert both(maxwell, gms, rng) <= 1e-12
-    slow = of("gms", elements=ELEMENTS, attraction_rate=10.0, **CURVE | {"mu_s": 0.6})
-    assert both(maxwell, slow, rng) > 1e-3
+@pytest.mark.parametrize(
+    "name, own, limit, those, changed",
+    [
+        ("dahl", {"mu_c": 0.4, "sigma0_over_load": 3e4}, "lugre",
+         {"sigma0_over_load": 3e4, **CURVE}, {"sigma1_over_load": 30.0}),
+        ("coulomb", {"mu_c": 0.4}, "stribeck", CURVE, {"mu_s": 0.6}),
+        ("dahl", {"mu_c": 0.4, "sigma0_over_load": 0.4 / 3e-5}, "bouc_wen",
+         {"mu_c": 0.4, "yield_displacement": 3e-5, "gamma": 0.0}, {"gamma": 0.5}),
+        ("maxwell_slip", {"elements": ELEMENTS}, "gms",
+         {"elements": ELEMENTS, "attraction_rate": 1e15, **CURVE},
+         {"attraction_rate": 10.0, "mu_s": 0.6}),
+    ],
+)  # fmt: skip
+def test_laws_that_are_limits_of_others(name, own, limit, those, changed):
+    """Without damping, with a constant curve, at infinite attraction: f and work on random motions."""
+    rng = np.random.default_rng(1)
+
+    def off(changes):
+        worst = 0.0
+        for _ in range(20):
+            strokes = random.strokes(rng)
+            (f, done), (g, wanted) = (
+                follow(law, strokes) for law in (of(name, **own), of(limit, **those | changes))
+            )
+            worst = max(worst, np.abs(f - g).max(), np.abs(done - wanted).max() / random.LENGTH)
+        return worst
+
+    assert off({}) <= 1e-12 and off(changed) > 1e-3
 
 
 def test_generalised_maxwell_slip_at_vanishing_speed_is_maxwell_slip():

@@ -34,23 +34,14 @@ def there_and_back(law, z, x, V=1e-3):
     return float(law.friction(out, 1, V)), float(law.friction(home, 1, V)), home
 
 
-@pytest.mark.parametrize("name", random.RATE_INDEPENDENT)
+@pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("seed", SETS)
-def test_laws_without_time_are_independent_of_the_rate(name, seed):
+def test_laws_say_whether_they_depend_on_the_speed(name, seed):
     law, rng = drawn(name, seed)
-    assert not law.depends_on_speed
-    way = rng.uniform(-1.0, 1.0, 6) * random.LENGTH
-    at = [moved(law, law.rest(), way, V) for V in (1e-5, 3.0)]
-    np.testing.assert_array_equal(at[0], at[1])
-
-
-@pytest.mark.parametrize("name", ["lugre", "stribeck", "gms", "elasto_plastic", "rate_and_state"])
-def test_laws_of_the_speed_depend_on_it(name):
-    law, _ = drawn(name, 0)
-    assert law.depends_on_speed
-    way = [20.0 * random.LENGTH]
+    way = [20.0 * random.LENGTH, *(rng.uniform(-1.0, 1.0, 5) * random.LENGTH), 20.0 * random.LENGTH]
     f = [law.friction(moved(law, law.rest(), way, V), 1, V) for V in (1e-4, 2e-2)]
-    assert abs(f[0] - f[1]) > 1e-3
+    assert law.depends_on_speed == (name not in random.RATE_INDEPENDENT) == (abs(f[0] - f[1]) > 1e-4)
+    assert law.depends_on_speed or f[0] == f[1]
 
 
 @pytest.mark.parametrize("seed", SETS)
@@ -134,6 +125,21 @@ def test_work_and_slope_are_those_of_the_friction(name, seed):
     if slope is not None:
         differences = np.diff(law.friction(after, 1, V))[0] / h
         assert float(slope) == pytest.approx(differences, rel=1e-4, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", [name for name in ALL if name != "table"])
+@pytest.mark.parametrize("seed", SETS)
+def test_rates_are_those_of_the_states(name, seed):
+    """In slip by differences, and in time that times the speed; directions of slip do not change."""
+    law, rng = drawn(name, seed)
+    z, V = moved(law, law.rest(), [random.LENGTH, -rng.uniform(0.0, 0.4) * random.LENGTH]), 1e-3
+    h = 1e-6 * random.LENGTH
+    first, then = exactly(law, z, 1, V, h, np.array([0.0, h]))
+    settled = law.settle(first, 1, V)
+    changing = slice(len(z) // (2 if name == "gms" else 1))
+    rate = law.rate(settled, 1, V)
+    np.testing.assert_allclose(rate[changing], ((then - first) / h)[changing], rtol=1e-4, atol=1e-2)
+    np.testing.assert_allclose(law.flow(settled, 1, V), V * rate, rtol=1e-14)
 
 
 @pytest.mark.parametrize("name", [name for name in ALL if LAWS[name].broadcasts])

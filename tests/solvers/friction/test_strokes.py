@@ -7,7 +7,7 @@ import random_laws as random
 
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.dahl import Dahl
-from galinx.solvers.friction.motion import friction_along
+from galinx.solvers.friction.motion import Partial, friction_along, last_cycle, legs
 from galinx.solvers.parameters import build_model, parameters
 
 STROKES = ["forward", "backward", "forward"]
@@ -25,6 +25,20 @@ def test_backward_strokes_travel_from_L_to_0():
     forward, backward, _ = friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8])
     assert list(forward.X_over_L) == [0.2, 0.8] and list(backward.X_over_L) == [0.8, 0.2]
     assert backward.f[0] > backward.f[1]
+
+
+@pytest.mark.parametrize(
+    "strokes, first",
+    [
+        (STROKES, 1),
+        (["forward", "backward", Partial(0.4)], None),
+        (["forward", Partial(0.2), Partial(0.7), Partial(0.2)], 2),
+        (["forward"], None),
+        (["backward", "backward", "backward"], None),
+    ],
+)
+def test_the_last_closed_cycle_is_the_shortest_one_that_ends_the_motion(strokes, first):
+    assert last_cycle(legs(strokes)) == first
 
 
 def test_both_integrators_agree_on_all_strokes():

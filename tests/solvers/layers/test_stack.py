@@ -1,16 +1,19 @@
-"""Stiffness of layered and graded half-planes, and what it says of the speed."""
+"""Layered and graded half-planes: stiffness, stresses inside and at interfaces, speeds of waves."""
 
 import mpmath as mp
 import numpy as np
 import pytest
-from layers_cases import COAT, SUBSTRATE, constants, random_stack
-from layers_reference import admittance, graded_admittance
+from layers_cases import COAT, SUBSTRATE, constants, converged_pressure, equation, random_stack
+from layers_reference import admittance, graded_admittance, system
+from loaded import under
 from random_solids import orthotropic
+from scipy.linalg import expm
 from support import THOROUGH
 
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.kernel import spherical_bessel, transform
-from galinx.solvers.layers.layered import Layer, Layered, weakest
+from galinx.solvers.layers.kernel import Level, spherical_bessel, transform
+from galinx.solvers.layers.layered import Layer, Layered, dispersion, weakest
 from galinx.solvers.layers.stiffness import inverse, least
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -25,7 +28,7 @@ def in_digits(solid, c):
 def test_stiffness_of_random_stacks_is_that_of_the_reference(seed):
     solid, c = random_stack(seed)
     stack = solid.response(c).stack(1.0)
-    k = 10.0 ** np.random.default_rng(seed).uniform(-1.5, 0.7, 3) / np.min(
+    k = 10.0 ** np.random.default_rng(seed).uniform(-1.5, 0.7, 2) / np.min(
         [one.H for one in stack.layers]
     )
     found = solid.μ**-1 * 1j * inverse(stack.stiffness(k))
@@ -193,3 +196,99 @@ def test_what_gives_way_below_is_not_followed_further():
     alone = np.array([stack.min_stiffness(one)[0] for one in k[:, None]])
     assert np.array_equal(found, alone)
     assert (found > 0.0).any() and (found < 0.0).any()
+
+
+X = np.linspace(-3.0, 3.0, 25)
+
+
+@pytest.mark.parametrize("depth", [0.02, 0.3, 0.5, 0.7, 2.0])
+def test_layers_of_one_solid_have_the_field_of_the_half_plane(depth):
+    solid = Layered((Layer(0.3, COAT), Layer(0.4, COAT)), COAT)
+    one = equation(solid, 0.9, -0.4)
+    pressure = converged_pressure(one, 1e-10).pressure
+    exact = under(FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), -0.4)).inside(X, -depth + 0.0 * X)
+    level = Level(one.kernel.stack, depth, 4.0, 1e-9)
+    u_X, σ_YY, σ_XY = level.read(*pressure.points(depth), -0.4, X)
+    σ_XX = level.media[1].response.σ_XX(u_X, σ_YY, σ_XY)
+    assert np.abs(np.array([σ_XX, σ_YY, σ_XY]) - exact).max() <= 1e-9 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_field_is_that_of_the_reference(graded):
+    """At some wavenumbers, at an interface and inside the substrate."""
+    middle = Layer(0.4, SUBSTRATE, COAT) if graded else Layer(0.4, SUBSTRATE)
+    solid = Layered((Layer(0.3, COAT), middle), COAT)
+    c = 0.5 * solid.limit()
+    stack, V2 = solid.response(c).stack(1.0), mp.mpf(c * solid.c_s) ** 2
+    mp.mp.dps = 40
+    for k in (0.5, 3.0):
+        tops = (
+            [layer_system(middle.at(s), V2, k) for s in (np.arange(200) + 0.5) / 200] if graded else None
+        )
+        exact = carried(solid, V2, mp.mpf(k), tops)
+        for depth, rows in exact.items():
+            level = Level(stack, depth, 4.0, 1e-9)
+            got = level._of(np.array([k]))[0]
+            off = np.abs(got - rows).max() / np.abs(rows).max()
+            assert off <= (2e-5 if graded else 1e-12)
+
+
+def layer_system(solid, V2, k):
+    return system(constants(solid), mp.mpf(solid.ρ), V2, mp.mpf(k))
+
+
+def carried(solid, V2, k, slices):
+    """u,X, σ_YY, σ_XY by σ_XY and σ_YY on top, at the lower interface and 0.5 below it, (6,) each."""
+    below = layer_system(solid.substrate, V2, k)
+    values, vectors = mp.eig(below)
+    chosen = [n for n in range(4) if mp.re(values[n]) > 0]
+    field = mp.matrix([[vectors[row, n] for n in chosen] for row in range(4)])
+    deep = mp.expm(below * -0.5) * field
+    top = field
+    middle = solid.layers[1]
+    if slices is None:
+        top = mp.expm(layer_system(middle.solid, V2, k) * middle.thickness) * top
+    else:
+        step = middle.thickness / len(slices)
+        of_slices = [expm(np.array(one.tolist(), dtype=complex) * step) for one in slices]
+        top = mp.matrix(np.linalg.multi_dot(of_slices).tolist()) * top
+    top = mp.expm(layer_system(solid.layers[0].solid, V2, k) * solid.layers[0].thickness) * top
+    by_top = top[2:, :] ** -1
+    μ, found = mp.mpf(solid.μ), {}
+    for depth, one in ((0.7, field), (1.2, deep)):
+        here = one * by_top
+        rows = [mp.mpc(0, 1) * k * here[0, :] * μ, here[3, :], here[2, :]]
+        found[depth] = np.array([complex(row[j]) for row in rows for j in range(2)])
+    return found
+
+
+def curve(solid, k):
+    return dispersion(lambda c: solid.response(c).stack(1.0), 1.0, k, 1e-8)
+
+
+def test_waves_along_one_solid_have_one_speed():
+    solid = Layered((Layer(0.7, COAT),), COAT)
+    assert curve(solid, np.array([0.1, 1.0, 10.0])) == pytest.approx(COAT.limit(), rel=1e-7)
+
+
+def test_long_waves_see_the_substrate_and_short_ones_the_coating():
+    solid = Layered((Layer(1.0, SUBSTRATE),), Isotropic(2.6, 0.25, 1.0))
+    found = curve(solid, np.array([1e-4, 50.0]))
+    ends = [(2.6 / 2.5) ** 0.5 * SUBSTRATE.limit(), SUBSTRATE.limit()]
+    assert found == pytest.approx(ends, rel=1e-3)
+
+
+def test_stiff_coatings_make_waves_faster_until_none_is_left():
+    """Beyond the shear speed of the substrate the wave would leak."""
+    solid = Layered((Layer(1.0, COAT),), SUBSTRATE)
+    found = curve(solid, np.geomspace(0.03, 30.0, 9)) * COAT.c_s
+    known = found[np.isfinite(found)]
+    assert 2 <= len(known) < 9 and np.all(np.diff(known) > 0.0)
+    assert SUBSTRATE.limit() < known[0] < known[-1] < SUBSTRATE.c_s
+
+
+def test_the_limit_is_the_least_speed_of_all_waves():
+    solid = heavy()
+    found = curve(solid, np.geomspace(1.0, 6.0, 41))
+    assert np.nanmin(found) == pytest.approx(solid.limit(), rel=1e-4)
+    assert np.nanmin(found) >= solid.limit() * (1.0 - 1e-7)

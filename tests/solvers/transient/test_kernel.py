@@ -39,7 +39,7 @@ def by_definition(slow, c, x, s):
     return total / (2.0 * np.pi)
 
 
-@pytest.mark.parametrize("ν", [0.1, 0.25, 0.3, 0.45])
+@pytest.mark.parametrize("ν", [0.1, 0.45])
 @pytest.mark.parametrize("c", [0.0, 0.6, -0.6])
 @pytest.mark.parametrize("s", [1.0 + 0.0j, 0.9 + 12.0j, 6.0 + 0.5j])
 def test_kernels_are_the_transform_of_their_symbols(ν, c, s):
@@ -82,7 +82,7 @@ def of_any_solid(stiff, c, x, s):
     return total / (2.0 * np.pi)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_kernels_of_any_solid_are_the_transform_of_their_symbols(seed):
     rng, solid = np.random.default_rng(seed), random_solid(seed)
     limit = solid.limit()

@@ -104,7 +104,7 @@ def test_early_pressure_is_that_of_a_plane_wave():
     """p = ρ c_d v̇₀ where no wave from the ends has come, so that v₀ = (c_s/c_d) ∫ load dt + O(t²)."""
     slow, ratios = SOLID.response(0.0).k, []
     for end in (0.02, 0.04):
-        found = by_integral_equation(SOLID, 0.0, 0.0, end, 10, ramp=end, terms=24)
+        found = by_integral_equation(SOLID, 0.0, 0.0, end, 4, ramp=end, terms=24)
         # Half of the end is ∫ load dt over the ramp.
         ratios.append(found.v0[-1] / (slow**0.5 * end / 2.0))
     assert abs(2.0 * ratios[0] - ratios[1] - 1.0) < 1e-3
@@ -113,7 +113,7 @@ def test_early_pressure_is_that_of_a_plane_wave():
 
 def test_frictionless_start_at_rest_is_symmetric():
     solid = Isotropic(1.0, 0.3, 1.0)
-    found = by_integral_equation(solid, 0.0, 0.0, 4.0, 20)
+    found = by_integral_equation(solid, 0.0, 0.0, 4.0, 8)
     assert np.abs(found.centre).max() < 1e-12 and not found.work_of_friction.any()
     np.testing.assert_allclose(found.K_left, found.K_right, rtol=0.0, atol=1e-11)
     forces = ByFiniteElements(solid, 0.0, 2.0, 10, degree=4, innermost=1e-2).run(0.0).forces
@@ -122,8 +122,8 @@ def test_frictionless_start_at_rest_is_symmetric():
 
 def test_integral_equation_knows_the_mirror_image():
     """What moves the other way with friction reversed is the same from the other side."""
-    forward = by_integral_equation(SOLID, 0.5, -0.6, 4.0, 20)
-    backward = by_integral_equation(SOLID, 0.5, 0.6, 4.0, 20, way=-1)
+    forward = by_integral_equation(SOLID, 0.5, -0.6, 4.0, 8)
+    backward = by_integral_equation(SOLID, 0.5, 0.6, 4.0, 8, way=-1)
     np.testing.assert_allclose(backward.v0, forward.v0, rtol=0.0, atol=1e-12)
     np.testing.assert_allclose((backward.centre + forward.centre) * forward.load, 0.0, atol=1e-12)
     np.testing.assert_allclose(backward.K_left, forward.K_right, rtol=0.0, atol=1e-12)
@@ -131,8 +131,9 @@ def test_integral_equation_knows_the_mirror_image():
 
 def test_quadrature_has_its_order():
     """Steps of a half leave a 2⁵th at least, up to what K_I and rounding leave."""
-    best, coarse, fine = (by_integral_equation(SOLID, 0.6, -0.4, 4.0, n).v0 for n in (40, 5, 10))
-    errors = [np.abs(one - best[k - 1 :: k]).max() for one, k in ((coarse, 8), (fine, 4))]
+    runs = (by_integral_equation(SOLID, 0.6, -0.4, 4.0, n, checked=True).v0 for n in (20, 5, 10))
+    best, coarse, fine = runs
+    errors = [np.abs(one - best[k - 1 :: k]).max() for one, k in ((coarse, 4), (fine, 2))]
     assert errors[0] / errors[1] > 2.0**3.5
 
 
@@ -203,16 +204,10 @@ def test_finite_elements_see_no_interface_between_equal_solids():
     np.testing.assert_allclose(other, one, atol=1e-10 * np.abs(one).max())
 
 
-@pytest.mark.parametrize(
-    "solid, share, g",
-    [
-        (SOLID, 0.5, -0.4),
-        pytest.param(random_solid(2), 0.5, -0.4, marks=pytest.mark.skipif(not THOROUGH, reason="long")),
-    ],
-)
-def test_what_is_left_falls_like_1_over_t(solid, share, g):
+@pytest.mark.parametrize("solid, g", [(SOLID, -0.4), (random_solid(2), 0.4)])
+def test_what_is_left_falls_like_1_over_t(solid, g):
     """The first term of a series with t log t in the next: two times tell it without most of that."""
-    c = share * solid.limit()
+    c = 0.5 * solid.limit()
     steady, told, left = FlatPunch(solid.response(c), g), approach(solid, c, g), []
     sides = steady.σ_XX(np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
     for end in (40.0, 80.0):
@@ -224,15 +219,8 @@ def test_what_is_left_falls_like_1_over_t(solid, share, g):
     found = 2.0 * left[1][:3] * 78.0 - left[0][:3] * 38.0
     np.testing.assert_allclose(found, [told.centre, told.K_left, told.K_right], rtol=0.05)
     assert np.abs(2.0 * left[1] - left[0])[3:].max() < 5e-3 * np.abs(sides).max()
-
-
-def test_stress_beside_the_contact_of_any_solid_comes_to_that_of_steady_motion():
-    solid, c, g = random_solid(2), 0.25, 0.4
-    one, two = (by_integral_equation(solid, c, g, end, 40, 4.0, 14) for end in (40.0, 80.0))
-    expected = FlatPunch(solid.response(c), g).σ_XX(np.array([-1.0 - BESIDE, 1.0 + BESIDE]))
-    for side, exact in zip(("σ_XX_left", "σ_XX_right"), expected):
-        early, late = getattr(one, side)[-1], getattr(two, side)[-1]
-        assert abs(2.0 * late - early - exact) < 5e-3 * np.abs(expected).max()
+    t, slowest = told.within(0.01), max(map(abs, (told.centre, told.K_left, told.K_right)))
+    assert slowest / t + told.at_rest / t**2 == pytest.approx(0.01, rel=1e-12)
 
 
 def test_at_rest_it_falls_like_the_square():

@@ -412,7 +412,7 @@ def _names(paths: list[str]) -> list[str]:
 
 
 def _usual_methods(rows: list[Any]) -> tuple[list[str], bool]:
-    """Methods that give most of a section's datasets, where none is given by all; whether there are any."""
+    """Methods that give most datasets of a section, none if all give some; whether there are any."""
     from galinx.postprocess.quantities.quantity import METHODS
 
     of_path: dict[str, list[str]] = {}

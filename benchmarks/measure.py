@@ -70,7 +70,6 @@ FINE = {"solve.tolerance": 1e-9}
 #: One speed, one friction, K_I or what stands in its place, by finite elements at 1e-6.
 ALIKE = {"motion.c": 0.6, "motion.X_over_L": 0.8, "motion.strokes": ["forward"], "solve.tolerance": 1e-6}
 ALIKE |= {"output.quantities": ["friction", "sif"], "solve.methods": ["closed_form", "fem"]}
-LUGRE = {"friction.model": "lugre", "friction.mu_s": 0.9, "friction.stribeck_velocity": "1 mm/s"}
 CYLINDER = {"punch.profile": "parabolic", "punch.radius": "20 mm"}
 LOADS = {"punch.load": {"from": "1 N/mm", "to": "50 N/mm", "number": 1000}}
 FIBRES = {"solid.material": "carbon-epoxy", "solid.angle": 30, "motion.c": 0.2}
@@ -99,9 +98,6 @@ OTHERS = [
     Case("cylinder on a coating, both", "coating", STACK | BOTH | CYLINDER),
     Case("start from rest to t = 20, both", "start_from_rest", {"time.end": 20.0}),
     Case("friction: Dahl", "fig2", LOOP),
-    Case("friction: LuGre", "fig2", LUGRE | LOOP),
-    Case("friction: Maxwell slip", "minor_loops", LOOP),
-    Case("friction: rate and state", "velocity_steps", LOOP),
     Case("stick-slip, 30 s", "slider"),
 ]
 
@@ -119,10 +115,7 @@ CASES = [
     Case("the same, 2 ranks", "tables4_5", SIXTEEN, ranks=2),
     Case("16 speeds x 1 002 states, 1e-9", "tables4_5", SIXTEEN | FINE),
     Case("the same, 1e-9, 2 ranks", "tables4_5", SIXTEEN | FINE, ranks=2),
-    Case("1 speed x 102 states", "tables4_5", SPEEDS | {"motion.c": 0.6}),
     Case("256 speeds x 102 states", "tables4_5", SPEEDS),
-    Case("the same, 256 speeds, 2 ranks", "tables4_5", SPEEDS, ranks=2),
-    Case("2 speeds x 50 001 states", "tables4_5", positions(16667)),
     Case("friction alone", "fig6"),
     Case("closed form alone", "tables4_5", {"solve.methods": ["closed_form"]}),
 ]

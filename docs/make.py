@@ -25,12 +25,10 @@ Written by `docs/make.py` from the program; `./run.sh COMMAND --help`, or `-h`, 
 `./run.sh` without a command reproduces the study, like `./run.sh paper -o results`. Paths are relative to
 the folder you are in. Exit status:
 
-| status | meaning |
-|---|---|
-| 0 | good |
-| 1 | the verdict is FAIL, or an archive contradicts itself |
-| 2 | bad input: the message says which key, option or part of an archive, and what was expected |
-| 3 | failure of program or machine, or interrupted |
+- 0: good
+- 1: the verdict is FAIL, or an archive contradicts itself
+- 2: bad input: the message says which key, option or part of an archive, and what was expected
+- 3: failure of program or machine, or interrupted
 
 SIGINT (Ctrl-C), SIGTERM, SIGHUP and a killed rank end a command at once, with status 3 and one message.
 `--resume` goes on with what a run has finished.
@@ -41,20 +39,16 @@ command reads is never replaced; `--log` only appends.
 
 `run.sh` knows more words than the commands:
 
-| word | what it does |
-|---|---|
-| `./run.sh test` | run all tests, those on two ranks included |
-| `./run.sh bench` | measure run time against error, see [Benchmarks](benchmarks.md) |
-| `./run.sh bench accuracy` | compute the tables of [Verification](verification.md) again |
-| `./run.sh docs` | write these reference pages and build all pages as HTML into `site/` |
-| `./run.sh -n RANKS COMMAND …` | run a command on MPI ranks of this machine, up to 16 a core |
+- `./run.sh test`: run all tests, those on two ranks included
+- `./run.sh bench`: measure run time against error, see [Benchmarks](benchmarks.md)
+- `./run.sh bench accuracy`: compute the tables of [Verification](verification.md) again
+- `./run.sh docs`: write these reference pages and build all pages as HTML into `site/`
+- `./run.sh -n RANKS COMMAND …`: run a command on MPI ranks of this machine, up to 16 a core
 
 Before the command stand
 
-| option | meaning |
-|---|---|
-| `-x FILE.py` | run a file that registers [models of your own](howto_extend.md); may be repeated |
-| `--version` | print the version |
+- `-x FILE.py`: run a file that registers [models of your own](howto_extend.md); may be repeated
+- `--version`: print the version
 
 With the folder `bin` on `PATH` the same command is called `galinx`. An installed `galinx` knows the
 commands and these options, not the words above; `mpirun -n RANKS galinx COMMAND …` runs it on ranks.
@@ -262,9 +256,11 @@ def archive_page() -> str:
         ]
         (word, *others) = {row.asked_by for row in rows}
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
+        given, often = _usual_methods(rows)
         told = [f"With `{word}` among `output.quantities`."] * bool(word and not others)
         told += [f"Shape: {over}."] * (count > 1)
-        table = _list(_datasets(rows, bool(others), over))
+        told += [f"METHOD is {' or '.join(given)}, if not said otherwise."] * often
+        table = _list(_datasets(rows, bool(others), over, given))
         parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
     rules: dict[str, list[str]] = {}
     for rule in RULES.values():
@@ -415,10 +411,25 @@ def _names(paths: list[str]) -> list[str]:
     return [path.rpartition("/")[2] if path.rpartition("/")[0] == last else path for last, path in pairs]
 
 
-def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]:
+def _usual_methods(rows: list[Any]) -> tuple[list[str], bool]:
+    """Methods that give most datasets of a section, none if all give some; whether there are any."""
+    from galinx.postprocess.quantities.quantity import METHODS
+
+    of_path: dict[str, list[str]] = {}
+    for row in rows:
+        method = _method(row)
+        of_path.setdefault(row.path.replace(f"/{method}/", "/METHOD/"), []).append(f"`{method}`")
+    counts = Counter(tuple(methods) for methods in of_path.values() if len(methods) > 1)
+    if len(counts) == 0 or any(len(methods) == len(METHODS) for methods in counts):
+        return [], False
+    return list(counts.most_common(1)[0][0]), True
+
+
+def _datasets(rows: list[Any], asked: bool, usual: str, given: list[str]) -> list[tuple[str, ...]]:
     """Rows of datasets: one for all methods, and for those whose meanings differ in a word.
 
-    ``asked``: with the word of output.quantities that asks for them; ``usual``: shape that is left out.
+    ``asked``: with the word of output.quantities that asks for them; ``usual``: shape, and ``given``:
+    methods, that are left out.
     """
     from galinx.app.methods import MODES
     from galinx.postprocess.quantities.quantity import ANYWHERE, METHODS, NUMBER, TEXT, WHOLE
@@ -436,7 +447,9 @@ def _datasets(rows: list[Any], asked: bool, usual: str) -> list[tuple[str, ...]]
         nan = any(r.nan_allowed == ANYWHERE for r in same)
         over, unit = " × ".join(row.over), row.unit if row.unit not in ("none", "1") else ""
         values = (over if over != usual else "", kinds[row.type], unit, "NaN" * nan)
-        words = [f"`{m}`" for m in methods if len(METHODS) > len(same) > 1]
+        words = [f"`{m}`" for m in methods if len(same) > 1]
+        if len(same) == len(METHODS) or words == given:
+            words = []
         # Modes of the scene are code; others are words, of which one is an older name.
         words += [f"`{row.mode}`" if row.mode in MODES else row.mode.replace("found", "free")]
         words += [f"`{row.asked_by}`"] * bool(row.asked_by and asked)

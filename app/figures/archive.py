@@ -14,7 +14,7 @@ from galinx.texts import number
 from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
-from . import friction, motion, numerics, stresses, sweep
+from . import flutter, friction, motion, numerics, stresses, sweep
 from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
@@ -23,6 +23,8 @@ from .style import Look
 
 #: Name that stands for all figures, and a choice that leaves everything open.
 ALL, PLAIN = "all", Choice()
+#: Figures that take long, which are drawn only where they are named.
+_BY_NAME = FILM, "flutter"
 #: Frames that a film has at least.
 _LEAST_FRAMES = 4
 
@@ -145,6 +147,7 @@ FIGURES = {
     "pressures": _Figure(motion.pressures, _holds(*motion.PRESSURES)),
     "stresses": _Figure(motion.stresses, motion.has_surface),
     "energies": _Figure(motion.energies, _holds(*motion.ENERGIES)),
+    "flutter": _Figure(flutter.flutter, flutter.has_flutter),
     "degrees": _Figure(numerics.degrees, _holds(*numerics.DEGREES)),
     "mesh": _Figure(numerics.mesh, lambda of: bool(make_plan(of.scene).fem)),
     FILM: _Figure(film, lambda of: _has_strokes(of) or motion.has_film(of), _STRESSES),
@@ -212,7 +215,7 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
     usual = [name for name in available if FIGURES[name].usual(plain)]
     offered = available if whole or choice.given else usual or available[:1]
     selected = list(named) or [
-        name for name in offered if name != FILM and choice.given <= FIGURES[name].follows
+        name for name in offered if name not in _BY_NAME and choice.given <= FIGURES[name].follows
     ]
     if measured := choice.measured:
         selected = [name for name in selected if measured.lies_in(name, choice.quantities)]

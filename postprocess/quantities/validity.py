@@ -55,7 +55,7 @@ def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, 
     def end(side: str, at: str, i: int) -> Quantity:
         return Quantity(
             f"states/closed_form/{name}_{side}", "1",
-            f"{reach} from {at}, the distance under the punch within which {what}, over the half-width",
+            f"{reach} from {at}, the distance within which {what}, over the half-width",
             (STATE,), lambda s, _: s.strained_within(strain)[:, i], CLOSED_FORM, PUNCH,
             range=_NOT_NEGATIVE, scale=OVER_A,
         )  # fmt: skip
@@ -66,11 +66,11 @@ def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, 
 #: The slip velocity is V (1 + u,X).
 SLIP_REVERSED = _within(
     "slip_reversed", "reach of reversed slip", 1.0,
-    "slip has turned round at the load: 1 + u,X is negative",
+    "1 + u,X is negative at the load",
 )  # fmt: skip
 STRAIN = _within(
     "large_strain", "reach of large strain", LARGE_STRAIN,
-    "the strain u,X on the surface is beyond 5 % at the load",
+    "u,X is beyond 5 % at the load",
 )  # fmt: skip
 
 

@@ -35,7 +35,7 @@ from .quantity import (
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
 _INFINITE = "NaN where infinite: with friction, at a jump of the pressure"
-_BEYOND = "NaN beyond 10 a: no solid carries that"
+_BEYOND = "NaN beyond 10 a"
 
 
 def _both(
@@ -116,20 +116,19 @@ FIRST_LOAD = _both(
 )  # fmt: skip
 REACH_LEFT = _both(
     "yield_reach_left", "1",
-    "reach of yield from X = -a, the largest distance on its side of the middle at which the von Mises "
-    f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
+    "reach of yield from X = -a, the largest distance on its side of the middle, at the load, over the "
+    f"half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 REACH_RIGHT = _both(
     "yield_reach_right", "1",
-    "reach of yield from X = a, the largest distance on its side of the middle at which the von Mises "
-    f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
+    "reach of yield from X = a, the largest distance on its side of the middle, at the load, over the "
+    f"half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
-    "depth of yield, the largest at which the von Mises stress reaches the yield strength at the load, "
-    f"over the half-width; {_BEYOND}",
+    f"depth of yield, the largest at the load, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.depth, compared="depth of yield", requires=(STRENGTH, UNIFORM),
     scale=OVER_A,
 )  # fmt: skip

@@ -38,7 +38,7 @@ class Page(HTMLParser):
 
 
 #: What prose writes with one letter, by page; the glossary has each once.
-SYMBOLS = re.compile(r"^\| ([^|\\]+?) \|", re.MULTILINE)
+SYMBOLS = re.compile(r"^- ([^:]+):", re.MULTILINE)
 
 
 def test_no_symbol_and_no_word_stands_twice_in_the_glossary():

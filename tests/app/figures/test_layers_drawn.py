@@ -101,3 +101,17 @@ def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():
         found = np.interp(line.get_xdata(), 1e3 * (m[state] + h[state] * X), stress)
         np.testing.assert_allclose(line.get_ydata(), found, rtol=1e-9)
         assert len(line.get_xdata()) > 50
+
+
+def test_flutter_is_drawn_over_the_angle_of_a_solid_with_axes():
+    """Along and across the fibres both signs have one threshold; turned by -θ they change places."""
+    changes = {"solid.material": "carbon-epoxy", "solve.methods": ["closed_form"], "output.map": None}
+    result = galinx.compute(
+        galinx.template("cylinder", changes | {"output.quantities": ["sif"], "motion.c": [0.0]})
+    )
+    (drawing,) = result.drawings(figures=("flutter",))
+    values = [line.get_ydata() for line in drawing.figure.axes[0].lines]
+    positive, negative = (y for y in values if len(y) == 37)
+    np.testing.assert_allclose(positive, negative[::-1], rtol=1e-6)
+    np.testing.assert_allclose([positive[18], positive[0]], [2.689, 0.372], atol=1e-3)
+    assert "flutter" not in [drawn.name for drawn in result.drawings(figures=("all",))]

@@ -1,0 +1,103 @@
+"""Flutter of layers by wavelength: the friction from which on waves of one length grow on a rigid flat.
+
+Waves e^(ik(X - Ct)) with k < 0 have in each layer two fields that decay downwards, u,Y = G₁ u,X, and two
+that decay upwards, G₂. With E₁ = e^(-ikG₁H), E₂ = e^(ikG₂H) and tractions Z u,X on the layer's lower face
+those on its upper face are (L₁ + δ) u,X with
+
+    r = (L₂ - Z)⁻¹ (Z - L₁),   W = E₂ r E₁,   δ = (L₂ - L₁) W (1 + W)⁻¹.
+
+The threshold is that of :mod:`galinx.solvers.solids.flutter`, with the stiffness of the surface at this
+wavenumber. Waves shorter than a layer do not come to the threshold of its solid: echoes of its lower face
+let them grow at less friction, at a rate that does not rise with the wavenumber. That of the solid itself
+is where the rate has no bound. Where a wave without friction runs in a slow layer, the threshold is 0.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..solids.admittance import Admittance
+from ..solids.flutter import Side, thresholds
+from ..solids.half_plane import exponential
+from ..solids.solid import Solid
+from .layered import Layered
+from .stiffness import inverse
+
+#: Distance of speeds from the real axis over their size, which selects waves that carry energy away; a
+#: threshold below which it is 0.
+_OFF_AXIS, _ZERO = 1e-9, 1e-6
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A layer or the substrate: its admittance, modulus, wave speed, and thickness in the waves' unit."""
+
+    admittance: Admittance
+    μ: float
+    c_s: float
+    H: float
+
+
+@dataclass(frozen=True)
+class LayeredSide(Side):
+    """Layers below an interface, seen by waves of one length; units are those of the uppermost solid.
+
+    Attributes:
+        parts: layers from the top down, thickness times the wavenumber for H, and the substrate.
+    """
+
+    parts: tuple[_Part, ...] = ()
+
+    @classmethod
+    def of_length(cls, solid: Layered, length: float) -> "LayeredSide":
+        """Layers seen by waves of a length [m].
+
+        Raises:
+            ValueError: a layer is graded.
+        """
+        if any(layer.bottom is not None for layer in solid.layers):
+            raise ValueError("found a graded layer, expected uniform ones")
+        parts = tuple(
+            _Part(
+                Admittance.of(part.solid.response(0.0)), part.solid.μ / solid.μ,
+                part.solid.c_s / solid.c_s, 2.0 * np.pi * part.thickness / length,
+            )
+            for part in solid.parts
+        )  # fmt: skip
+        return cls(parts[0].admittance, parts=parts)
+
+    @property
+    def meeting(self) -> NDArray[np.float64]:
+        speeds = np.concatenate([part.c_s * part.admittance.meeting for part in self.parts])
+        return np.concatenate([-speeds, speeds])
+
+    def stiffness(self, C: NDArray) -> NDArray[np.complex128]:
+        C = np.where(np.imag(C) == 0.0, C * (1.0 - 1j * _OFF_AXIS * np.sign(np.real(C))), C)
+        *layers, last = self.parts
+        L = last.μ * last.admittance.waves(C / last.c_s).L
+        for part in reversed(layers):
+            down = part.admittance.waves(C / part.c_s)
+            up = part.admittance.waves(C.conj() / part.c_s).conjugate
+            kH, one = np.full(len(C), part.H), np.eye(2)
+            L_down, L_up = part.μ * down.L, part.μ * up.L
+            W = exponential(up, -kH) @ inverse(L_up - L) @ (L - L_down) @ exponential(down, kH)
+            L = L_down + (L_up - L_down) @ W @ inverse(one + W)
+        return np.array([L[:, 0, 0], L[:, 1, 0], L[:, 0, 0] * L[:, 1, 1] - L[:, 0, 1] * L[:, 1, 0]])
+
+
+def thresholds_by_length(solid: Solid, length: NDArray) -> NDArray[np.float64]:
+    """Flutter thresholds of uniform layers for σ_XY/σ_YY > 0 and < 0, infinite for none, (2, n).
+
+    Args:
+        solid: the layers.
+        length: of the waves [m], (n,).
+
+    Raises:
+        ValueError: a layer is graded.
+    """
+    assert isinstance(solid, Layered)
+    with np.errstate(all="ignore"):
+        each = [thresholds(LayeredSide.of_length(solid, value)) for value in length.tolist()]
+    g = np.transpose(each)
+    return np.where(g < _ZERO, 0.0, g)

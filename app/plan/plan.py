@@ -102,7 +102,8 @@ class Plan:
 
     Attributes:
         scene: the scene, or the variant.
-        friction: of all its states.
+        done: called with the number of laws whose friction is computed, and with that of all laws.
+        followed: friction of all its states, None where nothing of the plan depends on it.
         body: contact of punch and solid, under the first of the loads.
         places: points where stresses are output.
         methods: names of the methods that solve the contact, none for friction alone.
@@ -116,7 +117,8 @@ class Plan:
     """
 
     scene: Scene
-    friction: States
+    done: Callable[[int, int], None]
+    followed: States | None
     body: Contact
     places: Places
     methods: tuple[str, ...]
@@ -136,7 +138,12 @@ class Plan:
     @property
     def states(self) -> int:
         """Number of states."""
-        return len(self.friction)
+        return len(self.tasks.order)
+
+    @cached_property
+    def friction(self) -> States:
+        """Friction of all its states."""
+        return self.followed or enumerate_states(self.scene, self.done)
 
     @property
     def rows(self) -> slice:
@@ -472,7 +479,7 @@ def make_plan(
     along: np.ndarray | None = None,
     first: tuple[int, int] = (0, 0),
 ) -> Plan:
-    """Plan of a scene's work; none of it is done yet but friction.
+    """Plan of a scene's work; none of it is done yet but friction, where the plan depends on that.
 
     Args:
         scene: the scene, the first variant of one with swept numbers.
@@ -500,12 +507,12 @@ def make_plan(
     left_out = [name for name in named if others.get(name)]
     if methods and not {*OWN_METHODS} <= {*named}:
         warnings += [f"solve.methods: {name} does not solve this: {others[name]}" for name in left_out]
-    friction, fem = enumerate_states(scene, done), None
-    if FEM in methods:
+    friction, fem = enumerate_states(scene, done) if FEM in methods or scene.time else None, None
+    if friction and FEM in methods:
         responses = [body.response(c) for c in order_.speeds]
         fem = elements.plan_fem(scene, responses, _output_places(scene, places), friction.g)
         warnings += elements.warnings_of(fem)
-    motions = starts(scene, friction)
+    motions = starts(scene, friction) if friction else None
     if motions and motions.until_turn:
         warnings.append(
             f"time: the integral equation computes motions {motions.until_turn}; what two methods agree "
@@ -521,9 +528,9 @@ def make_plan(
     skipped += _skipped(scene, contact, {quantity.asked_by for quantity in quantities})
     skipped += refused
     plan = Plan(
-        scene=scene, friction=friction, body=body, places=places, methods=methods, quantities=quantities,
-        tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions, skipped=tuple(skipped),
-        warnings=tuple(warnings), speed=first[1],
+        scene=scene, done=done, followed=friction, body=body, places=places, methods=methods,
+        quantities=quantities, tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions,
+        skipped=tuple(skipped), warnings=tuple(warnings), speed=first[1],
     )  # fmt: skip
     if lack := elements.lacking(_HELD * plan.chunk * plan.numbers):
         warnings.append(f"the stresses of a single state need {lack}: ask for fewer points")

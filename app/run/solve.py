@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import LOCAL
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.solvers.contact.solution import Contact, Method, Places, Solver, Task
+from galinx.solvers.contact.solution import Contact, Method, Solver, Task
 from galinx.solvers.errors import SolveError
 
 from ..methods import METHODS
@@ -22,15 +23,6 @@ from ..plan.plan import Plan
 
 #: Clock's step for the evaluation of a method's solutions, by method.
 _STEPS = {"fem": "recovery", "closed_form": "closed form"}
-
-
-@dataclass(frozen=True)
-class Edges:
-    """Friction and the local analysis of the punch's edges, all that needs no solution of states."""
-
-    local: Any
-    g: NDArray[np.float64]
-    places: Places
 
 
 @dataclass(frozen=True)
@@ -147,7 +139,8 @@ class Work:
         solved = np.ones(len(g), dtype=bool)
         with self.clock(_STEPS["closed_form"]):
             local = task.body.local_exponents(task.response, g, load)
-            data = self._of(LOCAL, Edges(local, g, task.places), task.body.loaded(load))
+            known = SimpleNamespace(local=local, g=g, places=task.places)  # without a solution of states
+            data = self._of(LOCAL, known, task.body.loaded(load))
         for name in self.methods:
             if name not in solvers:
                 data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)

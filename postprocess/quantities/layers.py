@@ -20,6 +20,7 @@ from .quantity import (
     STATE,
     X_OVER_A,
     Quantity,
+    entry,
 )
 from .stresses import estimate
 
@@ -47,14 +48,6 @@ _PARTS = {
 }
 
 
-def _along(method: str, i: int, name: str, what: str) -> Quantity:
-    return Quantity(
-        f"interfaces/{method}/{name}", "N/(2a)", f"{what} each interface", (STATE, INTERFACE, ALONG),
-        lambda s, _: s.interfaces[i], method, asked_by=AT_INTERFACES,
-        compared=("stresses at interfaces",) * (method == FEM),
-    )  # fmt: skip
-
-
 def _extreme(
     method: str, i: int, name: str, what: str, which_end: tuple[str, str, float]
 ) -> tuple[Quantity, Quantity]:
@@ -78,9 +71,16 @@ def _extreme(
 
 #: σ_YY, σ_XY, σ_XX above and below, by method.
 INTERFACES = {
-    method: tuple(_along(method, i, *part) for i, part in enumerate(_PARTS.items()))
+    method: tuple(
+        Quantity(
+            f"interfaces/{method}/{name}", "N/(2a)", f"{what} each interface", (STATE, INTERFACE, ALONG),
+            entry(lambda s: s.interfaces, i), method, asked_by=AT_INTERFACES,
+            compared=("stresses at interfaces",) * (method == FEM),
+        )
+        for i, (name, what) in enumerate(_PARTS.items())
+    )
     for method in (SIE, FEM)
-}
+}  # fmt: skip
 #: Extremes of the stresses at interfaces, by method.
 INTERFACE_EXTREMES = {
     method: tuple(

@@ -108,6 +108,11 @@ class Quantity:
         return self.of is not None or self.of_data is not None
 
 
+def entry(of: Callable[[Any], NDArray], *index: Any) -> Callable[[Any, Any], NDArray]:
+    """Function that reads an entry of a solution's array, as ``of`` of a quantity."""
+    return lambda solution, _: of(solution)[index]
+
+
 def by_method(
     path: str, unit: str, about: str, over: tuple[str, ...],
     of: Callable[[Any, Any], NDArray] | None, own: Mapping[str, Mapping[str, Any]], **options: Any,

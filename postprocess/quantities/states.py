@@ -28,6 +28,7 @@ from .quantity import (
     X_OVER_A,
     Quantity,
     by_method,
+    entry,
 )
 
 _CONTACT, _NOT_NEGATIVE = "contact", Range(at_least=0.0)
@@ -63,14 +64,12 @@ SPEED_LIMIT = Quantity(
     (STATE,), range=_NOT_NEGATIVE,
 )  # fmt: skip
 
-ALPHA = Quantity(
-    "states/alpha", "1", "exponent of the pressure at X = a, local analysis", (STATE,),
-    lambda s, _: s.local.α, LOCAL, PUNCH,
-)  # fmt: skip
-BETA = Quantity(
-    "states/beta", "1", "exponent of the pressure at X = -a, local analysis", (STATE,),
-    lambda s, _: s.local.β, LOCAL, PUNCH,
-)  # fmt: skip
+#: Exponents of the pressure at X = a and X = -a, by name.
+_EXPONENTS = {"alpha": "exponent of the pressure at X = a", "beta": "exponent of the pressure at X = -a"}
+ALPHA, BETA = (
+    Quantity(f"states/{name}", "1", f"{about}, local analysis", (STATE,), of, LOCAL, PUNCH)
+    for (name, about), of in zip(_EXPONENTS.items(), (lambda s, _: s.local.α, lambda s, _: s.local.β))
+)
 
 K_I_BOTH = Quantity(
     "states/closed_form/K_I", "1",
@@ -93,15 +92,13 @@ def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
 
 K_I_LEFT, K_I_RIGHT = _intensity("left", "X = -a", 0), _intensity("right", "X = a", 1)
 
-FITTED_ALPHA = Quantity(
-    "states/fem/alpha", "1", "exponent of the pressure at X = a, fitted from the raw pressure", (STATE,),
-    lambda s, _: s.exponents[:, 0], FEM, _CONTACT, nan_allowed=ANYWHERE, compared=("exponents",),
-    requires=(PUNCH,),
-)  # fmt: skip
-FITTED_BETA = Quantity(
-    "states/fem/beta", "1", "exponent of the pressure at X = -a, fitted from the raw pressure", (STATE,),
-    lambda s, _: s.exponents[:, 1], FEM, _CONTACT, nan_allowed=ANYWHERE, compared=("exponents",),
-    requires=(PUNCH,),
+FITTED_ALPHA, FITTED_BETA = (
+    Quantity(
+        f"states/fem/{name}", "1", f"{about}, fitted from the raw pressure", (STATE,),
+        entry(lambda s: s.exponents, ..., i), FEM, _CONTACT, nan_allowed=ANYWHERE,
+        compared=("exponents",), requires=(PUNCH,),
+    )
+    for i, (name, about) in enumerate(_EXPONENTS.items())
 )  # fmt: skip
 NORMAL_FORCE = Quantity(
     "states/fem/normal_force", "N/m", "resultant of the nodal normal forces under the punch", (STATE,),

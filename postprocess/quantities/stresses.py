@@ -27,6 +27,7 @@ from .quantity import (
     X_OVER_A,
     Quantity,
     by_method,
+    entry,
 )
 
 SURFACE_X = Quantity(
@@ -151,14 +152,6 @@ MAP = Quantity(
 )  # fmt: skip
 
 
-def _component(method: str, source: str, i: int, ij: str, what: str) -> Quantity:
-    return Quantity(
-        f"interior/{method}/sigma_{ij}", "N/(2a)", f"{what} inside, {source}", (STATE, INSIDE),
-        lambda s, _: s.inside[i], method, asked_by=BELOW,
-        compared=("stresses inside", "stresses inside over layers") * (method == FEM),
-    )  # fmt: skip
-
-
 _COMPONENTS = {
     "XX": "in-plane normal stress along X", "YY": "normal stress along Y", "XY": "shear stress",
 }  # fmt: skip
@@ -167,36 +160,32 @@ _SOURCES = {
 }  # fmt: skip
 #: σ_XX, σ_YY, σ_XY inside, by method.
 STRESSES_INSIDE = {
-    method: tuple(_component(method, source, i, *ij) for i, ij in enumerate(_COMPONENTS.items()))
+    method: tuple(
+        Quantity(
+            f"interior/{method}/sigma_{ij}", "N/(2a)", f"{what} inside, {source}", (STATE, INSIDE),
+            entry(lambda s: s.inside, i), method, asked_by=BELOW,
+            compared=("stresses inside", "stresses inside over layers") * (method == FEM),
+        )
+        for i, (ij, what) in enumerate(_COMPONENTS.items())
+    )
     for method, source in _SOURCES.items()
-}
+}  # fmt: skip
 
-
-def _invariant(
-    method: str, name: str, about: str, of: Callable[[Any, Any], NDArray], *requires: str
-) -> Quantity:
-    return Quantity(
-        f"interior/{method}/{name}", "N/(2a)", f"{about} inside", (STATE, INSIDE), of, method,
-        asked_by=BELOW, requires=requires,
-    )  # fmt: skip
-
-
+#: Names of invariants, their meaning, how they are read, and what they require.
+_INVARIANTS: tuple[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...]], ...] = (
+    ("sigma_1", "larger principal stress in the plane", lambda s, _: principal(*s.inside)[0], ()),
+    ("sigma_2", "smaller principal stress in the plane", lambda s, _: principal(*s.inside)[1], ()),
+    ("von_mises", "von Mises stress, sigma_ZZ included",
+     lambda s, _: von_mises(s.inside[0], s.inside[1], s.inside[2], s.σ_ZZ), (OUT_OF_PLANE,)),
+)  # fmt: skip
 #: Principal stresses and von Mises inside, by method.
 INVARIANTS_INSIDE = {
-    method: (
-        _invariant(
-            method, "sigma_1", "larger principal stress in the plane",
-            lambda s, _: principal(*s.inside)[0],
-        ),
-        _invariant(
-            method, "sigma_2", "smaller principal stress in the plane",
-            lambda s, _: principal(*s.inside)[1],
-        ),
-        _invariant(
-            method, "von_mises", "von Mises stress, sigma_ZZ included",
-            lambda s, _: von_mises(s.inside[0], s.inside[1], s.inside[2], s.σ_ZZ),
-            OUT_OF_PLANE,
-        ),
+    method: tuple(
+        Quantity(
+            f"interior/{method}/{name}", "N/(2a)", f"{about} inside", (STATE, INSIDE), of, method,
+            asked_by=BELOW, requires=requires,
+        )
+        for name, about, of, requires in _INVARIANTS
     )
     for method in _METHODS
 }  # fmt: skip

@@ -16,6 +16,7 @@ from .quantity import (
     X_OVER_A,
     Quantity,
     by_method,
+    entry,
 )
 
 _NOT_NEGATIVE = Range(at_least=0.0)
@@ -34,33 +35,29 @@ CROSSINGS = Quantity(
 SIGNS = ("positive", "negative")
 
 
-def _flutter(sign: str, g: str) -> Quantity:
-    return Quantity(
-        f"states/flutter_{sign}", "1",
-        f"flutter threshold for {g}, the |sigma_XY/sigma_YY| from which on waves along an interface with "
-        "Coulomb friction grow, the shorter the faster; NaN for none",
-        (STATE,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
-    )  # fmt: skip
-
-
 #: Flutter thresholds by the sign of σ_XY/σ_YY.
 FLUTTER = {
-    sign: _flutter(sign, g) for sign, g in zip(SIGNS, ("sigma_XY/sigma_YY > 0", "sigma_XY/sigma_YY < 0"))
-}
+    sign: Quantity(
+        f"states/flutter_{sign}", "1",
+        f"flutter threshold for sigma_XY/sigma_YY {compared} 0, the |sigma_XY/sigma_YY| from which on "
+        "waves along an interface with Coulomb friction grow, the shorter the faster; NaN for none",
+        (STATE,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+    )
+    for sign, compared in zip(SIGNS, "><")
+}  # fmt: skip
 
 
-def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, Quantity]:
+def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, ...]:
     """Quantities of a distance from X = -a and from X = a."""
-
-    def end(side: str, at: str, i: int) -> Quantity:
-        return Quantity(
+    return tuple(
+        Quantity(
             f"states/closed_form/{name}_{side}", "1",
             f"{reach} from {at}, the distance within which {what}, over the half-width",
-            (STATE,), lambda s, _: s.strained_within(strain)[:, i], CLOSED_FORM, PUNCH,
+            (STATE,), entry(lambda s: s.strained_within(strain), ..., i), CLOSED_FORM, PUNCH,
             range=_NOT_NEGATIVE, scale=OVER_A,
-        )  # fmt: skip
-
-    return end("left", "X = -a", 0), end("right", "X = a", 1)
+        )
+        for i, (side, at) in enumerate({"left": "X = -a", "right": "X = a"}.items())
+    )  # fmt: skip
 
 
 #: The slip velocity is V (1 + u,X).

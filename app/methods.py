@@ -17,6 +17,7 @@ from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIB
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,
+    IN_PUNCH,
     ONE_FREE,
     PRESCRIBED,
     PUNCH,
@@ -111,7 +112,7 @@ _PRESCRIBED = {SOLVED: "the pressure is prescribed"}
 _LACKING = {
     TRACTION: _PRESCRIBED,
     OWN_PRESSURE: _PRESCRIBED | {FLAT: "the pressure is prescribed"},
-    OWN_MESHES: _RECOVERED,
+    OWN_MESHES: _RECOVERED | {IN_PUNCH: "under kinks the closed form alone has the punch's stresses"},
     FREE_ON_LAYERS: _RECOVERED,
 }
 

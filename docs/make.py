@@ -77,15 +77,14 @@ sigma0_over_load = "25000 1/m"
 c = 0.3                          # over the shear wave speed
 ```
 
-- A number is in the unit of its row; a row without a unit is dimensionless. A text carries its own unit:
-  `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, with `*`, `/` and whole powers `^`. `"5 %"` is 0.05. A unit
-  of another dimension is an error.
+- After a key stand its unit, limits and, in brackets, its default. A number is in that unit, or
+  dimensionless. A text carries its own: `"193 GPa"`, `"1.5 mm/s"`, `"7.86 g/mm^3"`, with `*`, `/` and
+  whole powers `^`. `"5 %"` is 0.05. A unit of another dimension is an error.
 - `c` or `speed`, `load`, `X_over_L` and the parameters of a friction law may be lists or ranges. Each
   combination is a state, numbered from 0, on all `strokes`. `c` changes most slowly, then the load, the
   law's parameters in the order of their rows, stroke, position.
-- Any other number of [solid], [[layer]], [punch], [punch.solid] and [friction] may be a list or a range,
-  too: `radius = ["2 mm", "5 mm"]`. All combinations come into one archive; the last number
-  changes fastest.
+- So may any other number of [solid], [[layer]], [punch], [punch.solid] and [friction]: `radius = ["2 mm",
+  "5 mm"]`. All combinations come into one archive; the last number changes fastest.
 - A range includes both ends, which may carry units: `{from = 0, to = 0.9, number = 10}` is 0, 0.1, … 0.9.
   With `spacing = "log"` the ratios are equal: `{from = 0.01, to = 1, number = 3, spacing = "log"}` is
   0.01, 0.1, 1.
@@ -106,8 +105,7 @@ sigma0_over_load = ["12500 1/m", "25000 1/m"]
   [Extend galinx](howto_extend.md) adds others.
 - Texts are in quotes. Rows of numbers are written `[[1, 2], [3, 4]]`; a scene in a file may name a CSV
   file of them, `"rows.csv"`.
-- A key may be left out unless its row says "required"; its default is in brackets. An unknown key is an
-  error.
+- A key may be left out unless its row says "required". An unknown key is an error.
 - Results call strokes FM1, … (forward) and BM1, … (backward).
 - `title`, before the sections, is shown above tables and figures.
 
@@ -119,8 +117,8 @@ _ARCHIVE = """\
 
 Written by `docs/make.py` from the table of quantities, `postprocess/quantities/`.
 
-A run writes one HDF5 file. Every numerical dataset carries a checksum, every dataset `units` ("1" for
-dimensionless) and `long_name`. [Read archives](howto_read_archive.md) shows how to read them:
+A run writes one HDF5 file. Every dataset has `units` ("1" for dimensionless) and `long_name`, every
+numerical one a checksum. [Read archives](howto_read_archive.md) shows how to read them:
 
     ./run.sh run scenes/tables4_5.toml -o out.h5
 
@@ -133,15 +131,15 @@ with h5py.File("out.h5") as file:
 ```
 
 - METHOD is `closed_form`, `sie` (integral equation) or `fem` (finite elements).
-- Brackets hold the shape, if it is not that of the section; the unit, if there is one; NaN, if there may
-  be no answer; after "with" the methods, if not all give the dataset, words of `solve.mode` and
-  `output.quantities`, and what else it needs: sharp edges (punch) or free ends, a pressure of your own,
-  friction along the contact, finite stresses, one method, fitted speeds.
+- Brackets hold the shape, if not that of the section; the unit; NaN, if there may be no answer; after
+  "with" the methods, if not all give the dataset, words of `solve.mode` and `output.quantities`, and
+  what else it needs: sharp edges (punch), free ends, a pressure of your own, friction along the contact,
+  finite stresses, one method, fitted speeds.
 - Words with a slash between them follow the order of the names in their row.
 - The place of the largest or smallest value NAME is `NAME_X_over_a` along the surface and, where it may
-  lie inside, `NAME_Y_over_a` outwards, over the half-width. The tables leave these out.
-- A parameter of a friction law is `/states/KEY`. A swept number of another section is
-  `/states/SECTION.KEY`, as `/states/solid.E`. Both have the SI unit of [their row](scene.md#friction).
+  lie inside, `NAME_Y_over_a` outwards, over the half-width. The lists leave these out.
+- A parameter of a friction law is `/states/KEY`, another swept number `/states/SECTION.KEY`, as
+  `/states/solid.E`; both in the SI unit of [their row](scene.md#friction).
 - [Your own quantities](howto_extend.md#a-quantity) come beside these.
 """
 
@@ -155,8 +153,8 @@ A fault of an archive ends every command with one message and status 2.
 2. Names, types, shapes, units and attributes must be those of this page, and values in their range.
    Numbers are finite unless this page, `run/failures` or `comparisons` says otherwise.
 
-`check` repeats the friction, the comparisons and the verdict. For archives of its own version it computes
-again, and compares finite elements with closed forms to 1 %:
+`check` repeats the friction, the comparisons and the verdict; a contradiction ends it with status 1. For
+archives of its own version it computes again, and compares finite elements with closed forms to 1 %:
 
 - closed forms of all states under flat punches, of 24 under other smooth ones, of 6 under those with
   kinks (of 3 where stresses are largest),
@@ -164,8 +162,7 @@ again, and compares finite elements with closed forms to 1 %:
 - indentations, sizes of linear systems, warnings.
 
 It does not check `run/seconds`, `run/fem`, `sigma_YY_raw`, places of largest stresses by finite elements,
-stresses over layers by these alone, motions in time and of sliders. A contradiction ends it with
-status 1.
+stresses over layers by these alone, motions in time and of sliders.
 
 [Versions](howto_read_archive.md#from-another-version) of the layout: archives of version 1 are not read.
 """
@@ -178,9 +175,9 @@ _ATTRIBUTES = """\
 _COMPARISONS = """\
 ## Comparisons
 
-The attribute `comparisons` has the largest value over all states by these texts, which go on with what a
-difference is relative to. The verdict is FAIL where one exceeds its limit. T is `solve.tolerance`. Texts
-with [brackets] stand for two comparisons. `show -v` prints values and limits.
+The attribute `comparisons` has the largest value over all states of each comparison that was made;
+`show -v` prints values and limits. The verdict is FAIL where one exceeds its limit. With T for
+`solve.tolerance`, differences between methods and estimated errors are at most T, but for these:
 
 """
 
@@ -207,7 +204,7 @@ def commands_page() -> str:
     counts = Counter(record for records in options.values() for record in records)
     shared = {names: text for (names, text), count in counts.items() if count > 1 and names[:2] != "-o"}
     rows = [(f"`{names}`", text) for names, text in shared.items()]
-    parts = [_COMMANDS, "## Shared options\n", _table(("option", "meaning"), rows)]
+    parts = [_COMMANDS, "## Shared options\n", _list(rows)]
     for name, command in cli.commands.items():
         context = contexts[name]
         about, _, example = (command.help or "").partition("Example:")
@@ -221,7 +218,7 @@ def commands_page() -> str:
             parts.append(fill(f"[Shared options](#shared-options): {words}.", 106) + "\n")
         own = [(f"`{names}`", text) for names, text in options[name] if shared.get(names) != text]
         if own:
-            parts.append(_table(("option", "meaning"), own))
+            parts.append(_list(own))
     return "\n".join(parts)
 
 
@@ -238,6 +235,10 @@ def scene_page() -> str:
     return "\n".join(parts)
 
 
+#: Values of attributes that go without saying.
+_PLAIN_VALUES = "a text", "a number", "a finite number", "true"
+
+
 def archive_page() -> str:
     """Every attribute and dataset of an archive, and every comparison."""
     from galinx.postprocess.compare import RULES
@@ -245,8 +246,11 @@ def archive_page() -> str:
     from galinx.postprocess.schema import ATTRIBUTES
 
     parts, known = [_ARCHIVE, _WHOLE], table()
-    told = [(f"`{name}`", row.about, row.expected) for name, row in ATTRIBUTES.items()]
-    parts.append(_ATTRIBUTES + _table(("attribute", "what", "value"), told))
+    told = [
+        (f"`{name}`", row.about + f" [{row.expected}]" * (row.expected not in _PLAIN_VALUES))
+        for name, row in ATTRIBUTES.items()
+    ]
+    parts.append(_ATTRIBUTES + _list(told))
     for group in dict.fromkeys(path.partition("/")[0] for path in ("scene/text", *known)):
         rows = [
             row
@@ -260,15 +264,14 @@ def archive_page() -> str:
         (over, count), *_ = Counter(" × ".join(row.over) for row in rows).most_common()
         told = [f"With `{word}` among `output.quantities`."] * bool(word and not others)
         told += [f"Shape: {over}."] * (count > 1)
-        table = _table(("dataset", "what"), _datasets(rows, bool(others), over))
+        table = _list(_datasets(rows, bool(others), over))
         parts += filter(None, (f"## /{group}\n", " ".join(told) + "\n" * bool(told), table))
     rules: dict[str, list[str]] = {}
     for rule in RULES.values():
-        rules.setdefault(_limit(rule), []).append(rule.text)
+        rules.setdefault(_limit(rule), []).append(rule.text.partition(", ")[0])
     parts.append(_COMPARISONS.rstrip("\n") + "\n")
-    for limit, texts in rules.items():
-        listed = "".join(f"- {text}\n" for text in dict.fromkeys(t.split(", ")[0] for t in _both(texts)))
-        parts.append(f"{limit[0].upper()}{limit[1:]}:\n\n{listed}")
+    others = [(limit, "; ".join(dict.fromkeys(_both(texts)))) for limit, texts in rules.items()]
+    parts.append("".join(f"- {limit}: {texts}\n" for limit, texts in others if limit != "at most T"))
     return "\n".join(parts)
 
 
@@ -304,14 +307,12 @@ def _section(section: Any) -> list[str]:
     from galinx.registry import Registry
     from galinx.solvers.parameters import parameters
 
-    heads = ("key", "value", "meaning")
-
     def rows(keys: dict[str, Any]) -> list[tuple[str, ...]]:
         return [_row(key, known) for key, known in keys.items()]
 
     alternatives = section.alternatives
     if "" in alternatives:
-        return [_table(heads, rows(alternatives[""]))]
+        return [_list(rows(alternatives[""]))]
     keys = next(iter(alternatives.values()))
     chosen, models = next(
         (key, known.kind.options)
@@ -325,14 +326,14 @@ def _section(section: Any) -> list[str]:
         same = common.keys() & next(iter(SECTIONS["solid"].alternatives.values())).keys()
         words = ", ".join(f"`{key}`" for key in common if key in same)
         constants = f"{words} and constants are those of [[solid]](#solid); required{section.or_else}.\n"
-        return [constants, _table(heads, rows({k: v for k, v in common.items() if k not in same}))]
-    parts = [_table(heads, rows(common))]
+        return [constants, _list(rows({k: v for k, v in common.items() if k not in same}))]
+    parts = [_list(rows(common))]
     merged: dict[tuple[str, ...], list[str]] = {}
     for model, keys in alternatives.items():
         for row in rows({k: v for k, v in keys.items() if k in own[model] or v.stands_for}):
             merged.setdefault(row, []).append(f"`{model}`")
     shared = [
-        (row[0], "all" if len(of) == len(alternatives) else ", ".join(of), *row[1:])
+        (row[0], "" if len(of) == len(alternatives) else "of " + ", ".join(of), *row[1:])
         for row, of in merged.items()
     ]
     abouts = {model: models[model].about for model in alternatives}
@@ -348,7 +349,7 @@ def _section(section: Any) -> list[str]:
     return [
         *parts,
         f"{named}Keys of each `{chosen}`:\n",
-        _table((heads[0], chosen, *heads[1:]), shared),
+        _list(shared),
     ]
 
 
@@ -370,7 +371,8 @@ def _row(key: str, known: Any) -> tuple[str, ...]:
     allowed = "[materials](#materials)" if of_library else _allowed(described)
     meaning = "; ".join(filter(None, (known.about, known.note)))
     value = _value(known.kind)
-    values = ", ".join(filter(None, ("" if value == "a text" else value, allowed)))
+    plain = value == "a text" or (value == "number" and bool(allowed))
+    values = ", ".join(filter(None, ("" if plain else value.replace("number [", "["), allowed)))
     return f"`{key}`", values + default, meaning
 
 
@@ -525,12 +527,9 @@ def _plain(text: str) -> str:
     return " ".join(text.split())
 
 
-def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
-    """A table, without the columns that are empty in all rows."""
-    full = [i for i in range(len(heads)) if any(row[i] for row in rows)]
-    heads, rows = tuple(heads[i] for i in full), [tuple(row[i] for i in full) for row in rows]
-    lines = [heads, ("---",) * len(heads)] + [[c.replace("|", "\\|") for c in row] for row in rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+def _list(rows: list[tuple[str, ...]]) -> str:
+    """A list with a line for each row, whose last column is what the others mean."""
+    return "".join(f"- {', '.join(filter(None, row[:-1]))}: {row[-1]}\n" for row in rows)
 
 
 if __name__ == "__main__":

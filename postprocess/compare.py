@@ -430,10 +430,19 @@ RULES: Registry[Rule] = Registry(
         "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
         **_both("stresses inside", _inside, "stresses inside{}, relative to themselves or the largest",
                 at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True),
+        "stresses in the punch": against(
+            CLOSED_FORM, _inside, "stresses in the elastic punch, relative to themselves or the largest",
+            {method: of_all[:3] for method, of_all in at.STRESSES_IN_PUNCH.items()},
+            beside=(at.INSIDE_X, at.INSIDE_Y),
+        ),
         "estimate inside": _estimate(at.ESTIMATE_INSIDE[FEM], "stresses inside"),
         "largest stresses": against(
             CLOSED_FORM, _relative, "largest von Mises and shear stress, relative",
             to.VON_MISES, to.SHEAR, own_pressure=True,
+        ),
+        "largest stresses of the punch": against(
+            CLOSED_FORM, _relative, "largest von Mises stress of the elastic punch, relative",
+            to.PUNCH_VON_MISES,
         ),
         "largest stresses over layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress{_SIE}, relative", to.VON_MISES

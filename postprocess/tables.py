@@ -158,6 +158,11 @@ _EXPONENTS = _Spec("exponent β, left", of.BETA), _Spec("exponent α, right", of
 _INDENTATION = _Spec("indentation v₀", of.INDENTATION)
 #: Pull under the punch, which no punch exerts.
 _PULL = _Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X)
+_OF_PUNCH = (
+    _Spec("largest von Mises in the punch", yielding.PUNCH_VON_MISES),
+    _Spec("at X", yielding.PUNCH_VON_MISES_X), _Spec("at Y", yielding.PUNCH_VON_MISES_Y),
+    _Spec("load at first yield of the punch", yielding.PUNCH_FIRST_LOAD),
+)  # fmt: skip
 #: What says where answers hold, and more of yield, in a table of its own.
 _LIMITS = (
     _Spec("largest shear in the plane", yielding.SHEAR), _Spec("at X", yielding.SHEAR_X),
@@ -205,6 +210,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
     results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
+    results += _columns(data, units, _OF_PUNCH) + _yields_first(data, units)
     depth = _columns(data, units, [_Spec("depth of yield", yielding.DEPTH)])
     results += [column for column in depth if np.nanmax(column.values)]
     if any(np.any(column.values) for column in intensities):
@@ -342,6 +348,17 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
         return []
     loads = _columns(data, units, [_Spec("load at first yield", yielding.FIRST_LOAD)])
     return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
+
+
+def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Column of the body that yields first of two elastic ones; none where that was not computed."""
+    of_plate, of_punch = (preferred(data, row) for row in (yielding.VON_MISES, yielding.PUNCH_VON_MISES))
+    strengths = units.contact.yield_strength, units.contact.solid.punch_strength
+    if not of_plate or not of_punch or not all(strengths):
+        return []
+    plate, punch = (data[row.path] / Y for row, Y in zip((of_plate, of_punch), strengths))
+    words = ["" if isnan(a) else "plate" if a > b else "punch" for a, b in zip(plate, punch)]
+    return [Column("yields first", words, "none", "yields_first")]
 
 
 def layout(

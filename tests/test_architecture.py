@@ -45,8 +45,7 @@ FILES = {
 #: What the mechanics outside solvers/fem/ is made of.
 PURE = {
     "solvers", "registry", "texts", "numpy", "scipy", "math", "abc", "dataclasses", "functools",
-    "collections",
-    "contextlib", "itertools", "typing", "warnings",
+    "collections", "contextlib", "itertools", "types", "typing", "warnings",
 }  # fmt: skip
 #: What finite elements are compared with, and may not use: but the mode that prescribes the closed form's
 #: pressure has that.

@@ -90,6 +90,7 @@ class Map:
         extend: ends of the bar at which colours are clipped.
         lines: draw lines of equal numbers.
         level: number along which a white line is drawn; 0 for none.
+        above: numbers at -Y, (rows, columns), and their level; None for nothing above Y = 0.
         equal: both axes have one scale.
     """
 
@@ -103,6 +104,7 @@ class Map:
     extend: str = "neither"
     lines: bool = False
     level: float = 0.0
+    above: tuple[NDArray, float] | None = None
     equal: bool = True
 
 
@@ -436,22 +438,25 @@ def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:
 def _draw_map(axis: Axes, shown: Map) -> None:
     X, Y = shown.X, shown.Y
     half_X, half_Y = (abs(z[-1] - z[0]) / max(len(z) - 1, 1) / 2.0 for z in (X, Y))
-    extent = (X[0] - half_X, X[-1] + half_X, Y[0] - half_Y, Y[-1] + half_Y)
+    along, heights = (X[0] - half_X, X[-1] + half_X), np.array([Y[0] - half_Y, Y[-1] + half_Y])
     if shown.least:
         scale: dict[str, Any] = {"norm": colors.LogNorm(shown.least, max(shown.limit, 2.0 * shown.least))}
     else:
         scale = {"vmin": -shown.limit if shown.signed else 0.0, "vmax": shown.limit}
     colours = "cividis" if shown.least else "RdBu_r" if shown.signed else "viridis"
-    axis.imshow(
-        np.maximum(shown.values, shown.least) if shown.least else shown.values, extent=extent,
-        origin="lower", interpolation="bilinear", aspect="auto", cmap=colours, **scale,
-    )  # fmt: skip
-    if shown.lines:
-        levels = MaxNLocator(9).tick_values(-shown.limit if shown.signed else 0.0, shown.limit)
-        axis.contour(X, Y, shown.values, levels, colors="black", linewidths=0.3)
-    if shown.values.max() > shown.level > 0.0:
-        axis.contour(X, Y, shown.values, [shown.level], colors="white", linewidths=1.0)
-    axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], max(Y[-1], 0.0) if shown.equal else Y[-1]))
+    bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
+    for side, values, level in bodies:
+        axis.imshow(
+            np.maximum(values, shown.least) if shown.least else values, extent=(*along, *side * heights),
+            origin="lower", interpolation="bilinear", aspect="auto", cmap=colours, **scale,
+        )  # fmt: skip
+        if shown.lines:
+            levels = MaxNLocator(9).tick_values(-shown.limit if shown.signed else 0.0, shown.limit)
+            axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
+        if values.max() > level > 0.0:
+            axis.contour(X, side * Y, values, [level], colors="white", linewidths=1.0)
+    top = -Y[0] if shown.above else max(Y[-1], 0.0) if shown.equal else Y[-1]
+    axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], top))
 
 
 def _legend(figure: Figure, handles: Sequence[Line2D]) -> float:

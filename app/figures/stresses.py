@@ -480,6 +480,8 @@ _MAPS = {
 #: Columns of states, and the share of values that have colours of their own: those at the edges of the
 #: punch would leave none for the rest.
 _STATES, _SHARE = 2, 0.985
+#: What names of quantities in an elastic punch begin with.
+_PUNCH = "punch_"
 
 
 class Fields:
@@ -488,7 +490,10 @@ class Fields:
     def __init__(self, of: Archive, method: str | None = None) -> None:
         self._of, data = of, of.data
         self._shape = tuple(data[stresses.MAP.path].tolist())
-        self._quantities = of.by_method(STATE, INSIDE, method=method)
+        every = of.by_method(STATE, INSIDE, method=method)
+        punch = {name: rows for name, rows in every.items() if name.startswith(_PUNCH)}
+        self._quantities = {name: rows for name, rows in every.items() if name not in punch}
+        self._in_punch = {row.path: row for rows in punch.values() for row in rows.values()}
         self.methods = [m for m in METHODS if any(m in rows for rows in self._quantities.values())]
         X, Y = (self._on_grid(data[row.path]) for row in (stresses.INSIDE_X, stresses.INSIDE_Y))
         #: Positions over a along both axes.
@@ -508,6 +513,23 @@ class Fields:
         if name == "max_shear":
             return maximum_shear(XX, YY, XY)
         return von_mises(XX, YY, XY, self._of.scene.solid.σ_ZZ(XX, YY, XY))
+
+    def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
+        """One quantity of a state in an elastic punch at -Y, and its strength; None without."""
+        names = ("sigma_XX", "sigma_YY", "sigma_XY") if name == "max_shear" else (name,)
+        rows = [self._in_punch.get(f"interior/{method}/{_PUNCH}{part}") for part in names]
+        each = [self._scaled(row, state) for row in rows if row]
+        if len(each) < len(names):
+            return None
+        level = self._level(name, self._of.scene.solid.punch_strength)
+        return (maximum_shear(*each) if len(each) > 1 else each[0]), level
+
+    def _level(self, name: str, strength: float | None) -> float:
+        """Yield strength [Pa] in the figure's units where a map shows von Mises stresses, 0 for none."""
+        of = self._of
+        if name != "von_mises" or not strength or of.scene.layers or of.units.stress.unit == "N/(2a)":
+            return 0.0
+        return strength * float(of.units.scale("Pa").factor)
 
     def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
         """One quantity of states, (states, rows, columns), and the largest with its own colour."""
@@ -530,10 +552,7 @@ class Fields:
             options: further attributes of the map.
         """
         of, ((a, b),) = self._of, places_of(self._of, [state])
-        strength, scale = of.scene.half_plane.yield_strength, of.units.stress
-        level = 0.0
-        if name == "von_mises" and strength and not of.scene.layers and scale.unit != "N/(2a)":
-            level = strength * float(of.units.scale("Pa").factor)
+        level = self._level(name, of.scene.half_plane.yield_strength)
         shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
         x = position_name(of, "")
         return Panel(
@@ -561,7 +580,7 @@ def inside(of: Archive) -> Drawing:
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
-    dashes, panels, off, yields = _interfaces(of), [], 0.0, False
+    dashes, panels, off, yields, both = _interfaces(of), [], 0.0, False, False
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
         clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
@@ -573,10 +592,13 @@ def inside(of: Archive) -> Drawing:
             off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
         for k, state in enumerate(states):
             label = fields.label(name) if k == len(states) - 1 else ""
-            options = {"extend": extend, "lines": alone, "label": label}
+            above = fields.above(name, method, state)
+            options = {"extend": extend, "lines": alone, "label": label, "above": above}
             panel = fields.panel(name, every[k], state, limit, **options)
             assert panel.map
-            yields |= bool(0.0 < panel.map.level < panel.map.values.max())
+            bodies = [(panel.map.values, panel.map.level), *([above] if above else ())]
+            yields |= any(0.0 < level < field.max() for field, level in bodies)
+            both |= above is not None
             panels.append(replace(
                 panel, x=panel.x if not wide or n == len(names) - 1 else None,
                 y=panel.y if k == 0 else None, dashes=dashes,
@@ -584,17 +606,18 @@ def inside(of: Archive) -> Drawing:
             ))  # fmt: skip
     maps = [panel.map for panel in panels if panel.map]
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
-    panels = [replace(panel, xlim=xlim, ylim=(ylim, 0.0)) for panel in panels]
+    panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
     figure = render(panels, size, columns)
     fixed = [name for name in labels.parameters if name not in labels.varied(states)]
     caption = (
-        f"Stresses inside below the punch (black bar), {METHODS[method]}, at "
+        f"Stresses inside {'both bodies, above the contact' if both else 'below the punch'} (black bar)"
+        f"{' the punch as a half-plane' * both}, {METHODS[method]}, at "
         f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
         "bar its colours are clipped."
     )
     caption += " Dashed lines are the interfaces." * bool(dashes)
-    caption += " Within the white line the solid would yield." * yields
+    caption += f" Within the white line {'a body' if both else 'the solid'} would yield." * yields
     if off:
         caption += (
             f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."

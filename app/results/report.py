@@ -236,8 +236,9 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     load = " to ".join(
         engineering(N, "N/m") for N in sorted({min(scene.punch.loads), max(scene.punch.loads)})
     )
+    kind = "an elastic" if scene.elastic_punch else "a rigid"
     text = (
-        f"{count} friction state{'s' * (count > 1)} of a rigid {scene.punch.profile.words()}, load "
+        f"{count} friction state{'s' * (count > 1)} of {kind} {scene.punch.profile.words()}, load "
         f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
         f"wave speed {c_s:.4g} m/s, on a half-plane with {solid.words()}."
     )

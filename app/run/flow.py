@@ -57,6 +57,8 @@ def scene_attributes(scene: Scene) -> dict[str, Any]:
         solid_words |= {f"layer {i}": layer.words() for i, layer in enumerate(scene.layers, 1)}
     if punch := scene.elastic_punch:
         solid_words["punch"] = punch.solid.words() + f", at {punch.speed:g} m/s over the contact"
+        if punch.yield_strength:
+            solid_words["punch yield_strength"] = punch.yield_strength
     return {
         "title": scene.title,
         "material": half_plane.material or "",

@@ -339,9 +339,8 @@ def _fill_in_materials(tree: dict[str, Any]) -> None:
     """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
     if "solid" in tree:
         tree["solid"] = _with_constants(tree["solid"])
-    if isinstance(own := tree.get("punch.solid"), dict):  # nothing asks where the punch yields
-        every = _with_constants(own)
-        tree["punch.solid"] = {k: v for k, v in every.items() if k != "yield_strength" or k in own}
+    if "punch.solid" in tree:
+        tree["punch.solid"] = _with_constants(tree["punch.solid"])
     if isinstance(tree.get("layer"), list):
         tree["layer"] = [_with_constants(table) for table in tree["layer"]]
 

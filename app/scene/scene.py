@@ -95,7 +95,7 @@ class Scene:
         """The elastic solid, with its layers, or with that of an elastic punch."""
         below = self.half_plane.solid
         if punch := self.elastic_punch:
-            return Pair(below, punch.solid, punch.speed)
+            return Pair(below, punch.solid, punch.speed, punch.yield_strength)
         return Layered(self.layers, below) if self.layers else below
 
     @cached_property

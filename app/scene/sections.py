@@ -132,7 +132,7 @@ class HalfPlane:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticPunch:
-    """[punch.solid]: the solid of an elastic punch, and its speed over the contact [m/s].
+    """[punch.solid]: the solid of an elastic punch, its speed over the contact [m/s], and strength [Pa].
 
     Raises:
         ValueError: the speed is not below that of the wave along the solid's surface.
@@ -144,6 +144,7 @@ class ElasticPunch:
         Number("m/s", _NOT_NEGATIVE), "speed of the punch's solid over the contact", 0.0,
         "at rest in the frame of the contact it slides; with a speed of its own it rolls",
     )  # fmt: skip
+    yield_strength: float | None = _yield_strength()
 
     def __post_init__(self) -> None:
         limit = self.solid.limit() * self.solid.c_s

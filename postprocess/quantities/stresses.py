@@ -1,13 +1,14 @@
 """Quantities of stresses on the surface and inside."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import BELOW, ON_SURFACE, VARYING
-from galinx.solvers.contact.solution import OUT_OF_PLANE
+from galinx.solvers.contact.solution import IN_PUNCH, OUT_OF_PLANE
 from galinx.solvers.contact.stresses import extreme_in_plane, principal, von_mises
 from galinx.solvers.parameters import Range
 
@@ -199,5 +200,32 @@ INVARIANTS_INSIDE = {
     )
     for method in _METHODS
 }  # fmt: skip
+
+
+def _component_in_punch(i: int, solution: Any, _: Any) -> NDArray[np.float64]:
+    return np.asarray(solution.inside_punch[i])
+
+
+def _in_punch(method: str) -> Iterator[Quantity]:
+    """Quantities of the stresses in an elastic punch: components, and von Mises."""
+
+    def quantity(name: str, what: str, of: Callable[[Any, Any], NDArray], *rules: str) -> Quantity:
+        return Quantity(
+            f"interior/{method}/punch_{name}", "N/(2a)",
+            f"{what} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of, method,
+            asked_by=BELOW, requires=(IN_PUNCH,), compared=rules * (method == FEM),
+        )  # fmt: skip
+
+    def of_von_mises(s: Any, body: Any) -> NDArray[np.float64]:
+        XX, YY, XY = s.inside_punch
+        return von_mises(XX, YY, XY, body.of_punch.solid.σ_ZZ(XX, YY, XY))
+
+    for i, (ij, what) in enumerate(_COMPONENTS.items()):
+        yield quantity(f"sigma_{ij}", what, partial(_component_in_punch, i), "stresses in the punch")
+    yield quantity("von_mises", "von Mises stress, sigma_ZZ included,", of_von_mises)
+
+
+#: σ_XX, σ_YY, σ_XY and von Mises in an elastic punch, by method.
+STRESSES_IN_PUNCH = {method: tuple(_in_punch(method)) for method in (CLOSED_FORM, FEM)}
 
 QUANTITIES.add_all(globals())

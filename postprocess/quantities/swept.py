@@ -66,10 +66,10 @@ def _keys(solids: tuple[type, ...], profiles: tuple[type, ...]) -> Iterator[tupl
     exponent = Parameter("exponent", "exponent of the grading", "", "k")
     length = Parameter("pre_sliding", "pre-sliding displacement L", "m", "L")
     constants = {p.key: p for kind in solids for p in parameters(kind).values() if _single(p)}
+    constants["yield_strength"] = strength
     speed = Parameter("speed", "speed of the punch's solid over the contact", "m/s", "V")
     for key, p in (constants | {"speed": speed}).items():
         yield f"punch.solid.{key}", f"{p.symbol or key}'", p
-    constants["yield_strength"] = strength
     for key, p in constants.items():
         yield f"solid.{key}", p.symbol or key, p
     for i in range(MOST_LAYERS):

@@ -6,7 +6,16 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
-from galinx.solvers.contact.solution import FINITE, LAYERED, POWER, PUNCH, STRENGTH, UNIFORM
+from galinx.solvers.contact.solution import (
+    FINITE,
+    IN_PUNCH,
+    LAYERED,
+    POWER,
+    PUNCH,
+    PUNCH_STRENGTH,
+    STRENGTH,
+    UNIFORM,
+)
 from galinx.solvers.contact.yielding import Peak
 from galinx.solvers.parameters import Range
 
@@ -25,7 +34,7 @@ from .quantity import (
 )
 
 _NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
-_INFINITE = "NaN where it is infinite: with friction, where the pressure ends in a jump"
+_INFINITE = "NaN where infinite: with friction, at a jump of the pressure"
 _BEYOND = "NaN beyond 10 a: no solid carries that"
 
 
@@ -45,7 +54,13 @@ def _both(
 
 
 def _largest(
-    name: str, stress: str, of: Callable[[Any], Peak], direction: str = "", **options: Any
+    name: str,
+    stress: str,
+    of: Callable[[Any], Peak],
+    direction: str = "",
+    heights: Range = _BELOW,
+    compared: str = "largest stresses",
+    **options: Any,
 ) -> tuple[dict[str, Quantity], ...]:
     """Quantities of the largest stress, and of both coordinates of its place."""
     about, place = (
@@ -54,8 +69,8 @@ def _largest(
     )
     return (
         _both(
-            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE,
-            "largest stresses", **options,
+            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE, compared,
+            **options,
         ),
         _both(
             f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
@@ -63,7 +78,7 @@ def _largest(
         ),
         _both(
             f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
-            lambda s, _: of(s).Y, FINITE, range=_BELOW, scale=OVER_A, **options,
+            lambda s, _: of(s).Y, FINITE, range=heights, scale=OVER_A, **options,
         ),
     )  # fmt: skip
 
@@ -78,6 +93,21 @@ VON_MISES, VON_MISES_X, VON_MISES_Y = _largest(
 SHEAR, SHEAR_X, SHEAR_Y = _largest(
     "max_shear", "shear stress", lambda s: s.strength.shear, direction=" in the plane"
 )
+
+
+def _in_punch(s: Any) -> Peak:
+    peak = s.strength_of_punch.von_mises
+    return Peak(peak.value, peak.X, 0.0 - peak.Y)
+
+
+PUNCH_VON_MISES, PUNCH_VON_MISES_X, PUNCH_VON_MISES_Y = _largest(
+    "punch_von_mises", "von Mises stress in the elastic punch", _in_punch, heights=_NOT_NEGATIVE,
+    requires=(IN_PUNCH,), compared="largest stresses of the punch",
+)  # fmt: skip
+PUNCH_FIRST_LOAD = _both(
+    "punch_first_yield_load", "N/m", "load at first yield of the elastic punch, N per depth",
+    lambda s, _: s.strength_of_punch.first_load, FINITE, requires=(POWER, IN_PUNCH, PUNCH_STRENGTH),
+)  # fmt: skip
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
@@ -92,7 +122,8 @@ REACH_LEFT = _both(
 )  # fmt: skip
 REACH_RIGHT = _both(
     "yield_reach_right", "1",
-    f"reach of yield from X = a, the same there, over the half-width; {_BEYOND}",
+    "reach of yield from X = a, the largest distance on its side of the middle at which the von Mises "
+    f"stress reaches the yield strength at the load, over the half-width; {_BEYOND}",
     lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone", scale=OVER_A,
 )  # fmt: skip
 DEPTH = _both(

@@ -14,7 +14,7 @@ The ends of a contact with two free ends and any convex profile P meet two condi
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -146,6 +146,16 @@ class Contacts:
     def order(self) -> NDArray[np.int64]:
         """Number of each state among those of all groups, one group after the other, (states,)."""
         return np.argsort(np.concatenate([group.rows for group in self.groups]))
+
+    @property
+    def in_punch(self) -> "Contacts":
+        """The same pressures on the half-plane of an elastic punch, mirrored at Y = 0.
+
+        There σ_XY has the other sign, and so has the friction.
+        """
+        return Contacts(
+            tuple(replace(of, response=of.response.punch, g=-of.g) for of in self.groups)  # type: ignore[attr-defined]
+        )
 
     def on_surface(self, r: NDArray) -> NDArray[np.float64]:
         """σ_XX and σ_YY, 0 beside the contact, on the surface off the ends, (2, states, points)."""

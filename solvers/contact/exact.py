@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..profiles import jumps, kinks
+from ..solids.half_plane import HalfPlane
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .contacts import Contacts, Group
@@ -25,9 +26,12 @@ from .pressure import ENDS
 from .residual import of_contact, of_field
 from .solution import Solver, Task, solved_once
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .yielding import InSolid
 
 #: Most points inside whose potentials are held in memory at a time.
 _TOGETHER = 20_000
+#: Signs of σ_XX, σ_YY, σ_XY of a field mirrored at Y = 0.
+_MIRROR = np.array([1.0, 1.0, -1.0])[:, None, None]
 
 
 @dataclass(frozen=True)
@@ -182,30 +186,24 @@ class ExactSolution:
 
     @cached_property
     def _turns(self) -> Turns | None:
-        """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
-        turns = together([self._turns_of(group) for group in self.contacts.groups])
-        return turns.of(self.contacts.order) if turns and turns.X.size else None
-
-    def _turns_of(self, group: Group) -> Turns:
-        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
-        X = np.concatenate([ENDS[ends], kinks])
-        σ_XX, σ_YY = group.surface(X)
-        between = None
-        if kinks:
-            places = np.array([-1.0, *kinks, 1.0])
-            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
-            _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)
-        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
-        return Turns(np.tile(X, (len(group.rows), 1)), σ, between)
+        return _turns_of(self.contacts)
 
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        return self._stresses_of(self.contacts)
+
+    @cached_property
+    def inside_punch(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY in an elastic punch, at X and -Y of the points inside, (3, states, m)."""
+        return _MIRROR * self._stresses_of(self.contacts.in_punch)
+
+    def _stresses_of(self, contacts: Contacts) -> NDArray[np.float64]:
         points = self.places.points
         σ = np.empty((3, len(self._g), len(points)))
         for first in range(0, len(points), _TOGETHER):
             batch = slice(first, first + _TOGETHER)
-            σ[:, :, batch] = self.contacts.stresses(*points[batch].T)
+            σ[:, :, batch] = contacts.stresses(*points[batch].T)
         return σ[:, self._rows]
 
     @property
@@ -218,8 +216,28 @@ class ExactSolution:
         """Yield of the states."""
         return self.task.body.strength(self)
 
+    @cached_property
+    def strength_of_punch(self) -> Any:
+        """Yield of an elastic punch, whose heights Y have the other sign."""
+        contacts = self._each.contacts.in_punch
+        turns, response = _turns_of(contacts), contacts.groups[0].response
+
+        def stresses(points: NDArray) -> NDArray[np.float64]:
+            return _MIRROR * contacts.stresses(points[..., 0], points[..., 1])
+
+        mirrored = turns and replace(turns, σ=_MIRROR * turns.σ)
+        punch = InSolid(
+            response, contacts.of("g"), self.local, self.half_width, stresses, mirrored, self.nearest
+        )
+        return self.task.body.of_punch.strength(punch)
+
     #: Least distance over a from an end or a kink at which stresses are evaluated.
     nearest = 1e-7
+
+    @property
+    def response(self) -> HalfPlane:
+        """Half-plane at the states' speed."""
+        return self.task.response
 
     @cached_property
     def _each(self) -> "ExactSolution":
@@ -234,6 +252,24 @@ class ExactSolution:
     def stresses(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points with Y <= 0, (1 or states, n, 2)."""
         return self._each.contacts.stresses(points[..., 0], points[..., 1])
+
+
+def _turns_of(contacts: Contacts) -> Turns | None:
+    """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
+    each = []
+    for group in contacts.groups:
+        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
+        X = np.concatenate([ENDS[ends], kinks])
+        σ_XX, σ_YY = group.surface(X)
+        between = None
+        if kinks:
+            places = np.array([-1.0, *kinks, 1.0])
+            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
+        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
+        each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))
+    turns = together(each)
+    return turns.of(contacts.order) if turns and turns.X.size else None
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ smooth function, and a smooth function times a power of the distance or its loga
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache
 from typing import Any
 
@@ -39,7 +39,7 @@ from ..approximation import lagrange
 from .edges import under_punch
 from .estimate import SAFETY
 from .extremes import between, largest
-from .panels import Panels
+from .panels import Panels, panels_of_slope
 from .pressure import Expansion, Functions, Pressure
 
 #: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
@@ -720,3 +720,75 @@ class KinkedPressure(Pressure):
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) of the piecewise polynomial at positions over a, (n,)."""
         return self._facets.stress(self._density, r)
+
+
+@dataclass(frozen=True)
+class StressesBelow:
+    """Stresses of a uniform half-plane below the recovered pressure of one state, without kinks.
+
+    With the weight w = (1 - z)^(α - i) (1 + z)^(β - j), whose exponents add up to -1, Cauchy's integral
+    is that of the smooth factor times (1 - t)^i (1 + t)^j, see :mod:`galinx.solvers.contact.panels`.
+
+    Attributes:
+        half_plane: the half-plane.
+        g: σ_XY/σ_YY on its surface.
+        pressure: of several states.
+        row: number of the state among these.
+        α, β: exponents of its pressure at the right and the left end.
+    """
+
+    half_plane: Any
+    g: float
+    pressure: Pressure
+    row: int
+    α: float
+    β: float
+
+    @cached_property
+    def _panels(self) -> Panels:
+        panels = panels_of_slope(-self._weight[0], (), False)
+        return replace(panels, β=self._weight[1])
+
+    @property
+    def _weight(self) -> tuple[float, float]:
+        return self.α - (self.α > 0.0), self.β - (self.β > 0.0)
+
+    @cached_property
+    def _factor(self) -> NDArray[np.float64]:
+        """Pressure over the weight at the panels' points, (n,)."""
+        t, (α, β) = self._panels.t, self._weight
+        inner = np.clip(t, -self.pressure.near, self.pressure.near)
+        factor = np.atleast_2d(self.pressure.series(inner))[self.row]
+        # 1 - t = 2/(1 + e^x) has all its digits next to an end.
+        right, left = (2.0 / (1.0 + np.exp(sign * self._panels.x)) for sign in (1.0, -1.0))
+        return np.asarray(factor * right ** (self.α - α) * left ** (self.β - β))
+
+    def _cauchy(self, z: NDArray, y: NDArray) -> NDArray[Any]:
+        """(1/π) ∫ σ_YY/(t - z) dt, (n,)."""
+        α, β = self._weight
+        return (1.0 - z) ** α * (1.0 + z) ** β * self._panels.cauchy(self._factor, y) / np.pi
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
+        flat = np.ravel(z).astype(complex)
+        y = np.log((1.0 + flat) / (1.0 - flat))
+        return self._cauchy(flat, y.real - 1j * (-y.imag % (2.0 * np.pi))).reshape(np.shape(z))
+
+    def __call__(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a), (3, n), at points over a with Y <= 0, (n, 2)."""
+        (X, Y), of = points.T, self.half_plane
+        σ, on = np.empty((3, len(points))), Y == 0.0
+        if not on.all():
+            σ[:, ~on] = of.inside(self, self.g, X[~on], Y[~on])
+        r = np.where(np.abs(np.abs(X[on]) - 1.0) < _AT_END, np.sign(X[on]) * (1.0 - _AT_END), X[on])
+        under = under_punch(r)
+        σ_YY, H = np.zeros(len(r)), np.empty(len(r))
+        σ_YY[under] = np.atleast_2d(self.pressure.σ_YY(r[under]))[self.row]
+        H[under] = self._cauchy(r[under], np.log1p(r[under]) - np.log1p(-r[under]))
+        H[~under] = self.at(r[~under] - 0.0j).real
+        σ[:, on] = of.σ_XX(of.strain(self.g, σ_YY, H), σ_YY, self.g * σ_YY), σ_YY, self.g * σ_YY
+        return σ
+
+
+#: Distance over a from an end at which stresses of the end itself are evaluated.
+_AT_END = 1e-15

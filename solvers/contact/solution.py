@@ -36,6 +36,8 @@ PUNCH, FINITE = "punch", "finite stresses"
 FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
 #: The strength at which a solid yields.
 STRENGTH = "yield strength"
+#: Stresses of an elastic punch, σ_ZZ included, and the strength at which it yields.
+IN_PUNCH, PUNCH_STRENGTH = "elastic punch", "yield strength of the punch"
 #: A solid without layers, or with some.
 UNIFORM, LAYERED = "uniform solid", "layers"
 
@@ -112,12 +114,24 @@ class Contact:
             reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
         if all(strength is None for strength in self.strengths):
             reasons[STRENGTH] = "no yield_strength is given"
+        if self.solid.above is None:
+            reasons[IN_PUNCH] = "the punch is rigid"
+        elif not self.solid.above.knows_σ_ZZ:
+            reasons[IN_PUNCH] = "σ_ZZ of the punch is not known without punch.solid.stiffness_Z"
+        if self.solid.punch_strength is None:
+            reasons[PUNCH_STRENGTH] = "no punch.solid.yield_strength is given"
         return reasons
 
     @property
     def strengths(self) -> tuple[float | None, ...]:
         """Yield strengths of all layers and of the solid below [Pa]; None where one is not given."""
         return (*(layer.yield_strength for layer in self.solid.layers), self.yield_strength)
+
+    @property
+    def of_punch(self) -> "Contact":
+        """Contact of the solid of an elastic punch, under the same load; for stresses and yield alone."""
+        assert self.solid.above
+        return replace(self, solid=self.solid.above, yield_strength=self.solid.punch_strength)
 
     def response(self, c: float) -> HalfPlane:
         """Response of the half-plane at a speed over its wave speed, dimensionless.

@@ -15,11 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.edges import Exponents
+from ..contact.recovery import StressesBelow
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
 from ..contact.stresses import Places, Surface, Turns, together
+from ..contact.yielding import InSolid
+from ..solids.half_plane import HalfPlane
 from .displacement import Displacement
 from .punch import ContactStates
+
+#: Least distance over a from an end or a kink at which stresses of an elastic punch are evaluated.
+_NEAREST = 1e-7
 
 
 @dataclass(frozen=True)
@@ -241,6 +247,44 @@ class Solution:
     def nearest(self) -> float:
         """Least distance over a from an end or a kink at which stresses are accurate."""
         return max(states.level.nearest(states) for states in self.solved)
+
+    @property
+    def response(self) -> HalfPlane:
+        """Half-plane at the states' speed."""
+        return self.task.response
+
+    @cached_property
+    def _punch(self) -> list[StressesBelow]:
+        """Stresses of each solved state in an elastic punch, mirrored at Y = 0, below its pressure."""
+        punch = self.task.response.punch  # type: ignore[attr-defined]
+        return [
+            StressesBelow(punch, -g, states.pressure, i, α, β)
+            for states in self.solved
+            for i, (g, α, β) in enumerate(zip(states.contact.g, states.local.α, states.local.β))
+        ]
+
+    def _stresses_of_punch(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
+        if len(points) == 1:
+            σ = np.stack([of(points[0]) for of in self._punch], axis=1)[:, self.rows]
+        else:
+            σ = np.stack([self._punch[row](own) for row, own in zip(self.rows, points)], axis=1)
+        return σ * [[[1.0]], [[1.0]], [[-1.0]]]
+
+    @cached_property
+    def inside_punch(self) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY in an elastic punch, at X and -Y of the points inside, (3, states, m)."""
+        return self._stresses_of_punch(self.places.points[None])
+
+    @cached_property
+    def strength_of_punch(self) -> Any:
+        """Yield of an elastic punch, whose heights Y have the other sign."""
+        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self._punch[0].half_plane
+        turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
+        punch = InSolid(
+            response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST
+        )
+        return self.body.of_punch.strength(punch)
 
     def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (n, 2), of one state, (3, n)."""

@@ -85,6 +85,7 @@ class Pair(Solid):
         plate: uniform solid.
         punch: uniform solid, in the frame of the scene.
         speed: of the punch's solid over the contact [m/s]; 0 slides, a speed near the plate's rolls.
+        punch_strength: uniaxial yield strength of the punch's solid [Pa]; None where it is not given.
     """
 
     about: ClassVar[str] = "a plate under an elastic punch"
@@ -92,6 +93,11 @@ class Pair(Solid):
     plate: Solid
     punch: Solid
     speed: float
+    punch_strength: float | None = None
+
+    @property
+    def above(self) -> Solid:  # type: ignore[override]
+        return self.punch
 
     @property
     def plane(self) -> str:  # type: ignore[override]

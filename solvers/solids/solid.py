@@ -28,6 +28,8 @@ class Solid(Protocol):
         ρ: density [kg/m³].
         c_s: wave speed that c refers to [m/s].
         layers: from the top down; none in a uniform solid.
+        above: solid of an elastic punch above it; None under a rigid one.
+        punch_strength: uniaxial yield strength of that solid [Pa]; None where it is not given.
     """
 
     about: ClassVar[str]
@@ -35,6 +37,8 @@ class Solid(Protocol):
     ρ: float
 
     layers: Sequence[Any] = ()
+    above: "Solid | None" = None
+    punch_strength: float | None = None
 
     @property
     def depths(self) -> NDArray[np.float64]:

@@ -1,0 +1,38 @@
+"""Results that say what an elastic punch bears: columns, archive, comparisons."""
+
+import json
+
+import numpy as np
+import pytest
+
+from galinx.app.results.result import compute, template
+
+
+def test_a_scene_says_which_body_yields_first():
+    changes = {"motion.c": [0.0, 0.8], "output.quantities": ["yield"], "solve.methods": ["closed_form"]}
+    result = compute(template("elastic_punch", changes))
+    columns = {column.name: column.texts() for column in result.table()}
+    assert columns["yields_first"] == ["punch", "plate"]
+    own = "punch_von_mises", "punch_von_mises_Y", "punch_first_yield_load"
+    assert {f"closed_form_{name}" for name in own} <= columns.keys()
+    assert json.loads(result.attributes["solid"])["punch yield_strength"] == 235e6
+    assert (result.data["states/closed_form/punch_von_mises_Y_over_a"] >= 0.0).all()
+
+
+@pytest.mark.parametrize("profile", ["parabolic", "flat"])
+def test_stresses_below_the_pressure_of_finite_elements_are_those_of_the_closed_form(profile):
+    punch = {"parabolic": {}, "flat": {"punch.radius": None, "punch.half_width": "0.2 mm"}}[profile]
+    output = {"output.points": [[0.2, -0.3], [-1.1, -0.05], [0.0, -4.0]], "solve.tolerance": 1e-4}
+    quantities = ["interior", *["yield"] * (profile == "parabolic")]
+    changes = {"motion.c": [0.4], "output.quantities": quantities, "punch.profile": profile}
+    result = compute(template("elastic_punch", changes | punch | output))
+    assert result.verdict == "PASS"
+    assert (
+        result.comparisons["stresses in the elastic punch, relative to themselves or the largest"] < 1e-6
+    )
+    for name in ("punch_von_mises", "punch_sigma_XY"):
+        of_fem, exact = (result.data[f"interior/{of}/{name}"] for of in ("fem", "closed_form"))
+        np.testing.assert_allclose(of_fem, exact, rtol=1e-5)
+    if profile == "parabolic":
+        loads = (result.data[f"states/{of}/punch_first_yield_load"] for of in ("fem", "closed_form"))
+        np.testing.assert_allclose(*loads, rtol=1e-5)

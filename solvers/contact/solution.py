@@ -561,9 +561,10 @@ class Task:
         Returns:
             Frictions, and loads [N/m], None for the task's, (states,) each.
         """
-        if self.body.alike:
+        loads = self.body.dissimilar(self.loads)
+        ends = sorted({min(loads), max(loads)})
+        if len(ends) == 1:
             return g, None
-        ends = sorted({min(self.loads), max(self.loads)})
         return np.tile(g, len(ends)), np.repeat(ends, len(g))
 
 
@@ -584,10 +585,11 @@ def solved_once(
         Frictions and loads of the states to solve for, None for the task's load; the number of each state
         among these, a slice where they are the same; and its half-width over that of the solved state.
     """
-    if load is None or not task.body.alike:
+    growth = None if load is None else task.body.growth(load)
+    if growth is None:
         return g, load, slice(None), 1.0
     different, rows = np.unique(g, return_inverse=True)
-    return different, None, rows, task.body.growth(load)
+    return different, None, rows, growth
 
 
 class Solution(Protocol):

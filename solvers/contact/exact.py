@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..profiles import jumps, kinks
-from ..solids.half_plane import HalfPlane
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .contacts import Contacts, Group
@@ -24,8 +23,8 @@ from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Solver, Task, solved_once
-from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .solution import Solution, Solver, Task, solved_once
+from .stresses import Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import InSolid
 
 #: Most points inside whose potentials are held in memory at a time.
@@ -60,7 +59,7 @@ class _AtSpeed:
         return {}
 
 
-class ExactSolution:
+class ExactSolution(Solution):
     """States of contacts on a uniform half-plane; similar ones are solved once.
 
     Args:
@@ -71,6 +70,7 @@ class ExactSolution:
 
     def __init__(self, task: Task, g: NDArray, load: NDArray | None = None) -> None:
         self.task, self.g = replace(task, body=task.body.loaded(load)), g
+        self.body = self.task.body
         self._g, of_solved, self._rows, self._growth = solved_once(task, g, load)
         self._body = task.body.loaded(of_solved)
 
@@ -81,11 +81,6 @@ class ExactSolution:
 
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
-
-    @property
-    def places(self) -> Places:
-        """Places at which stresses are evaluated."""
-        return self.task.places
 
     @cached_property
     def local(self) -> Exponents:
@@ -212,11 +207,6 @@ class ExactSolution:
         return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
-    def strength(self) -> Any:
-        """Yield of the states."""
-        return self.task.body.strength(self)
-
-    @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
         contacts = self._each.contacts.in_punch
@@ -233,11 +223,6 @@ class ExactSolution:
 
     #: Least distance over a from an end or a kink at which stresses are evaluated.
     nearest = 1e-7
-
-    @property
-    def response(self) -> HalfPlane:
-        """Half-plane at the states' speed."""
-        return self.task.response
 
     @cached_property
     def _each(self) -> "ExactSolution":

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact import solution
 from ..contact.edges import Exponents
 from ..contact.recovery import StressesBelow
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
-from ..contact.stresses import Places, Surface, Turns, together
+from ..contact.stresses import Surface, Turns, together
 from ..contact.yielding import InSolid
-from ..solids.half_plane import HalfPlane
 from .displacement import Displacement
 from .punch import ContactStates
 
@@ -132,7 +132,7 @@ def _of_all(name: str, axis: int = 0) -> Any:
 
 
 @dataclass(frozen=True)
-class Solution:
+class Solution(solution.Solution):
     """Contacts with several frictions and loads, or a prescribed pressure.
 
     Attributes:
@@ -217,11 +217,6 @@ class Solution:
         turns = together([surface.turns for surface in each if surface.turns])
         return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
 
-    @property
-    def places(self) -> Places:
-        """Places at which stresses are evaluated."""
-        return self.task.places
-
     @cached_property
     def interfaces(self) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
@@ -233,11 +228,6 @@ class Solution:
         Y = self.places.points[:, 1]
         return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
 
-    @cached_property
-    def strength(self) -> Any:
-        """Yield of the states."""
-        return self.body.strength(self)
-
     @property
     def yield_turns(self) -> Turns | None:
         """Limits of stresses at ends and kinks, where an end is free."""
@@ -247,11 +237,6 @@ class Solution:
     def nearest(self) -> float:
         """Least distance over a from an end or a kink at which stresses are accurate."""
         return max(states.level.nearest(states) for states in self.solved)
-
-    @property
-    def response(self) -> HalfPlane:
-        """Half-plane at the states' speed."""
-        return self.task.response
 
     @cached_property
     def _punch(self) -> list[StressesBelow]:

@@ -1,10 +1,11 @@
 """Uniform half-planes under any contact pressure: stresses by its Hilbert transform and potential."""
 
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+
+from galinx.solvers.contact.yielding import InSolid
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,4 @@ def under(punch):
 
 def yield_of(body, stresses, response, g, local=None):
     """Yield of states with frictions g, (states,), by the stresses at points, as a solution has it."""
-    solution = SimpleNamespace(
-        stresses=stresses, task=SimpleNamespace(response=response), g=g, local=local,
-        half_width=body.half_width, yield_turns=None, nearest=1.0,
-    )  # fmt: skip
-    return body.strength(solution)
+    return body.strength(InSolid(response, g, local, body.half_width, stresses))

@@ -23,8 +23,9 @@ from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import InPunch, Solver, Task, solved_once
-from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .solution import Solution, Solver, Task, solved_once
+from .stresses import Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .yielding import InSolid
 
 #: Most points inside whose potentials are held in memory at a time.
 _TOGETHER = 20_000
@@ -58,7 +59,7 @@ class _AtSpeed:
         return {}
 
 
-class ExactSolution:
+class ExactSolution(Solution):
     """States of contacts on a uniform half-plane; similar ones are solved once.
 
     Args:
@@ -69,6 +70,7 @@ class ExactSolution:
 
     def __init__(self, task: Task, g: NDArray, load: NDArray | None = None) -> None:
         self.task, self.g = replace(task, body=task.body.loaded(load)), g
+        self.body = self.task.body
         self._g, of_solved, self._rows, self._growth = solved_once(task, g, load)
         self._body = task.body.loaded(of_solved)
 
@@ -79,11 +81,6 @@ class ExactSolution:
 
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
-
-    @property
-    def places(self) -> Places:
-        """Places at which stresses are evaluated."""
-        return self.task.places
 
     @cached_property
     def local(self) -> Exponents:
@@ -210,21 +207,19 @@ class ExactSolution:
         return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
-    def strength(self) -> Any:
-        """Yield of the states."""
-        return self.task.body.strength(self)
-
-    @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
         contacts = self._each.contacts.in_punch
-        turns = _turns_of(contacts)
+        turns, response = _turns_of(contacts), contacts.groups[0].response
 
         def stresses(points: NDArray) -> NDArray[np.float64]:
             return _MIRROR * contacts.stresses(points[..., 0], points[..., 1])
 
-        turns = turns and replace(turns, σ=_MIRROR * turns.σ)
-        return self.task.body.of_punch.strength(InPunch(self, stresses, turns, self.nearest))
+        mirrored = turns and replace(turns, σ=_MIRROR * turns.σ)
+        punch = InSolid(
+            response, contacts.of("g"), self.local, self.half_width, stresses, mirrored, self.nearest
+        )
+        return self.task.body.of_punch.strength(punch)
 
     #: Least distance over a from an end or a kink at which stresses are evaluated.
     nearest = 1e-7

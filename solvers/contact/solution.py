@@ -21,7 +21,7 @@ from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
 from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
-from .stresses import Places, Surface
+from .stresses import Places
 from .yielding import SMOOTH, Strength, StrengthOfLayers, places_below, places_in_layers
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
@@ -561,9 +561,10 @@ class Task:
         Returns:
             Frictions, and loads [N/m], None for the task's, (states,) each.
         """
-        if self.body.alike:
+        loads = self.body.dissimilar(self.loads)
+        ends = sorted({min(loads), max(loads)})
+        if len(ends) == 1:
             return g, None
-        ends = sorted({min(self.loads), max(self.loads)})
         return np.tile(g, len(ends)), np.repeat(ends, len(g))
 
 
@@ -584,70 +585,48 @@ def solved_once(
         Frictions and loads of the states to solve for, None for the task's load; the number of each state
         among these, a slice where they are the same; and its half-width over that of the solved state.
     """
-    if load is None or not task.body.alike:
+    growth = None if load is None else task.body.growth(load)
+    if growth is None:
         return g, load, slice(None), 1.0
     different, rows = np.unique(g, return_inverse=True)
-    return different, None, rows, task.body.growth(load)
+    return different, None, rows, growth
 
 
-class Solution(Protocol):
+class Solution:
     """Friction states at one speed, from any method; an attribute is computed when it is first used.
 
     Attributes:
+        task: the speed.
+        body: contact of punch and solid, under the load of each state.
         g: σ_XY/σ_YY under the punch, (states,).
         local: the local analysis of the punch's edges: exponents α at X = a and β at X = -a, (states,).
+        half_width: of each state's contact [m], (states,).
         surface: stresses on the surface.
-        inside: σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, m).
+        inside, σ_ZZ: σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, m), and that out of the
+            plane, (states, m).
         stresses: σ_XX, σ_YY, σ_XY, (3, states, n), at points over a with Y <= 0, (1 or states, n, 2), on
             a uniform solid; over layers ``inside_of`` a state's number at points (n, 2), (3, n).
         yield_turns: limits of stresses where they vary like a power of the distance; None for none.
         nearest: least distance over a from these at which ``stresses`` are accurate.
     """
 
-    @property
-    def g(self) -> NDArray[np.float64]: ...
-    @property
-    def local(self) -> Any: ...
-    @property
-    def surface(self) -> Surface: ...
-    @property
-    def inside(self) -> NDArray[np.float64]: ...
-    def stresses(self, points: NDArray) -> NDArray[np.float64]: ...
-
-
-@dataclass(frozen=True)
-class InPunch:
-    """States of an elastic punch, mirrored at Y = 0, for its yield: its half-plane under the pressure.
-
-    Attributes:
-        plate: the solution.
-        stresses, yield_turns, nearest: as of :class:`Solution`, in the mirrored punch.
-    """
-
-    plate: Any
-    stresses: Callable[[NDArray], NDArray]
-    yield_turns: Any
-    nearest: float
+    task: Task
+    body: Contact
 
     @property
-    def task(self) -> Task:
-        """The speed, with the response of the punch."""
-        return replace(self.plate.task, response=self.plate.task.response.punch)
+    def places(self) -> Places:
+        """Places at which stresses are evaluated."""
+        return self.task.places
 
     @property
-    def g(self) -> NDArray[np.float64]:
-        """σ_XY/σ_YY, of the other sign, (states,)."""
-        return -np.asarray(self.plate.g)
+    def response(self) -> HalfPlane:
+        """Half-plane at the states' speed."""
+        return self.task.response
 
-    @property
-    def local(self) -> Any:
-        """Exponents at the edges."""
-        return self.plate.local
-
-    @property
-    def half_width(self) -> NDArray[np.float64]:
-        """Half-widths of the contacts [m], (states,)."""
-        return np.asarray(self.plate.half_width)
+    @cached_property
+    def strength(self) -> Any:
+        """Yield of the states."""
+        return self.body.strength(self)
 
 
 #: σ_YY over N/(2a) at positions X over a under the punch.

@@ -26,8 +26,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..profiles import exponent
+from ..solids.half_plane import HalfPlane
 from .extremes import extreme, largest
-from .stresses import maximum_shear, on_surface, turns_at_ends, von_mises
+from .stresses import Turns, maximum_shear, on_surface, turns_at_ends, von_mises
 
 #: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
 Stress = Callable[[NDArray], NDArray]
@@ -386,6 +387,27 @@ _HARDLY = 1.0 - 1e-9
 
 
 @dataclass(frozen=True)
+class InSolid:
+    """Stresses of states in one uniform solid: all of a solution that its yield asks for.
+
+    Attributes:
+        response: half-plane of the solid.
+        g: σ_XY/σ_YY on it, (states,).
+        local: exponents α at X = a and β at X = -a of a punch, (states,) each.
+        half_width: of each state's contact [m], (states,).
+        stresses, yield_turns, nearest: see :class:`galinx.solvers.contact.solution.Solution`.
+    """
+
+    response: HalfPlane
+    g: NDArray[np.float64]
+    local: Any
+    half_width: Any
+    stresses: Callable[[NDArray], NDArray]
+    yield_turns: Turns | None = None
+    nearest: float = 1.0
+
+
+@dataclass(frozen=True)
 class Strength:
     """Yield of states at one speed on a uniform solid.
 
@@ -401,7 +423,7 @@ class Strength:
     def infinite(self) -> NDArray[np.bool_]:
         """True for states whose stress is infinite where the pressure ends in a jump, (states,)."""
         jump = self.body.pressure is not None and bool(self.body.pressure.values[[0, -1]].any())
-        strain = self.solution.task.response.strain(self.solution.g, 0.0, 1.0)
+        strain = self.solution.response.strain(self.solution.g, 0.0, 1.0)
         return (strain != 0.0) & jump
 
     @property

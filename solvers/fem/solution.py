@@ -14,11 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact import solution
 from ..contact.edges import Exponents
 from ..contact.recovery import StressesBelow
 from ..contact.residual import of_contact
-from ..contact.solution import Contact, InPunch, Task, solved_once
-from ..contact.stresses import Places, Surface, Turns, together
+from ..contact.solution import Contact, Task, solved_once
+from ..contact.stresses import Surface, Turns, together
+from ..contact.yielding import InSolid
 from .displacement import Displacement
 from .punch import ContactStates
 
@@ -130,7 +132,7 @@ def _of_all(name: str, axis: int = 0) -> Any:
 
 
 @dataclass(frozen=True)
-class Solution:
+class Solution(solution.Solution):
     """Contacts with several frictions and loads, or a prescribed pressure.
 
     Attributes:
@@ -215,11 +217,6 @@ class Solution:
         turns = together([surface.turns for surface in each if surface.turns])
         return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
 
-    @property
-    def places(self) -> Places:
-        """Places at which stresses are evaluated."""
-        return self.task.places
-
     @cached_property
     def interfaces(self) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
@@ -231,10 +228,15 @@ class Solution:
         Y = self.places.points[:, 1]
         return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
 
-    @cached_property
-    def strength(self) -> Any:
-        """Yield of the states."""
-        return self.body.strength(self)
+    @property
+    def yield_turns(self) -> Turns | None:
+        """Limits of stresses at ends and kinks, where an end is free."""
+        return self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
+
+    @property
+    def nearest(self) -> float:
+        """Least distance over a from an end or a kink at which stresses are accurate."""
+        return max(states.level.nearest(states) for states in self.solved)
 
     @cached_property
     def _punch(self) -> list[StressesBelow]:
@@ -262,19 +264,12 @@ class Solution:
     @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
-        each = np.tile([-1.0, 1.0], (len(self.rows), 1))
+        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self._punch[0].half_plane
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
-        return self.body.of_punch.strength(InPunch(self, self._stresses_of_punch, turns, _NEAREST))
-
-    @property
-    def yield_turns(self) -> Turns | None:
-        """Limits of stresses at ends and kinks, where an end is free."""
-        return self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
-
-    @property
-    def nearest(self) -> float:
-        """Least distance over a from an end or a kink at which stresses are accurate."""
-        return max(states.level.nearest(states) for states in self.solved)
+        punch = InSolid(
+            response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST
+        )
+        return self.body.of_punch.strength(punch)
 
     def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (n, 2), of one state, (3, n)."""

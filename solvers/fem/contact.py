@@ -42,7 +42,7 @@ from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, joined, of_pressure
 from .punch import LEAST, ContactStates, Punch, sliding_punch
-from .solution import SolvedEnds, SolvedStates
+from .solution import SolvedStates
 from .space import Space
 
 #: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
@@ -97,7 +97,7 @@ class PunchLevel(Level):
         """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
 
     @abstractmethod
-    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
         """Contacts with frictions g = σ_XY/σ_YY, (states,), under the load of the body for each.
 
         Raises:
@@ -105,7 +105,7 @@ class PunchLevel(Level):
         """
 
     @abstractmethod
-    def pressure(self, ends: SolvedEnds) -> Any:
+    def pressure(self, contact: ContactStates) -> Any:
         """Pressure of contacts from their nodal forces."""
 
     @abstractmethod
@@ -172,8 +172,8 @@ class PunchLevel(Level):
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         body = self.task.body.loaded(load)
-        ends = self.solved(g, body)
-        return SolvedStates(self, body, ends, self.pressure(ends))
+        contact = self.solved(g, body)
+        return SolvedStates(self, body, contact, self.pressure(contact))
 
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""
@@ -220,13 +220,12 @@ class SharpLevel(PunchLevel):
         body = self.task.body
         return None if body.flat else body.height(self.r)
 
-    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
         contact = self.punch.states(g, share=self.task.body.load / body.load)
-        half_width = np.full(len(g), float(body.half_width))
-        return SolvedEnds(contact, half_width, 0.0 * half_width, np.zeros((len(g), 2), dtype=bool))
+        return contact.between(float(body.half_width), 0.0, False)
 
-    def pressure(self, ends: SolvedEnds) -> Expansion:
-        return self.over_flat(ends.contact.tested(self.moments), ends.contact.g)
+    def pressure(self, contact: ContactStates) -> Expansion:
+        return self.over_flat(contact.tested(self.moments), contact.g)
 
     def gauge(self, states: SolvedStates) -> Gauge:
         plan, margin = self.plan, self.task.response.margin
@@ -253,8 +252,8 @@ class VaryingLevel(SharpLevel):
         along = self.task.body.along  # type: ignore[attr-defined]
         return cache(lambda g: self._facets.product(along[g]))
 
-    def pressure(self, ends: SolvedEnds) -> Expansion:
-        return self._splines(ends.contact, _NEXT)
+    def pressure(self, contact: ContactStates) -> Expansion:
+        return self._splines(contact, _NEXT)
 
     def gauge(self, states: SolvedStates) -> Gauge:
         gauge, coarse = super().gauge(states), self._splines(states.contact, 4.0 * _NEXT)
@@ -298,17 +297,17 @@ class FreeLevel(PunchLevel):
     def heights(self) -> NDArray[np.float64]:
         return heights_of_shapes(self.r, self.shapes)
 
-    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
         (parts, loads, K), local = self.parts(g), EdgeExponents(self.task.response, g)
         solve = _SOLVES.get(type(body.profile), _smooth)
         amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
         if not np.all((h > 0.0) & np.isfinite(h)):
             raise SolveError("no contact of a finite half-width carries the load")
         contact = self.punch.summed(g, parts, amplitudes)
-        return SolvedEnds(replace(contact, v0=contact.v0 + lowest), h, m, free, unresolved)
+        return contact.between(h, m, free, unresolved=unresolved, v0=contact.v0 + lowest)
 
-    def pressure(self, ends: SolvedEnds) -> Expansion:
-        contact, free = ends.contact, ends.free
+    def pressure(self, contact: ContactStates) -> Expansion:
+        free = contact.free
         whole = self.over_flat(contact.tested(self.moments), contact.g)
         smooth = without_zeros(whole.c, free)
         return replace(whole, α=whole.α + free[:, 1:], β=whole.β + free[:, :1], c=smooth)
@@ -316,7 +315,7 @@ class FreeLevel(PunchLevel):
     def gauge(self, states: SolvedStates) -> Gauge:
         moments = states.contact.tested(self.moments)
         gauge = of_pressure(self.over_flat(moments, states.contact.g), moments)
-        lengths = np.column_stack([states.ends.half_width, states.ends.centre])
+        lengths = np.column_stack([states.contact.half_width, states.contact.centre])
         groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
         return joined(gauge.word, groups, gauge.unresolved)
 
@@ -415,8 +414,7 @@ class SingleLevel(PunchLevel):
     def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
         super().__init__(work, task, space, g)
         try:
-            ends = self.solved(g, task.body)
-            contact, field = ends.contact, self.fields[0].duplicate()
+            contact, field = self.solved(g, task.body), self.fields[0].duplicate()
             field.zeroEntries()
             field.maxpy(contact.weights[0].tolist(), self.fields)
         finally:
@@ -424,7 +422,7 @@ class SingleLevel(PunchLevel):
         self.fields = [field]
         forces = np.tensordot(contact.weights, contact.forces, 1)
         #: The contact.
-        self.ends = replace(ends, contact=replace(contact, weights=np.ones((1, 1)), forces=forces))
+        self.contact = replace(contact, weights=np.ones((1, 1)), forces=forces)
 
     @property
     def end_exponents(self) -> tuple[float, float]:
@@ -433,7 +431,7 @@ class SingleLevel(PunchLevel):
         return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        return SolvedStates(self, self.task.body.loaded(load), self.ends, self.pressure(self.ends))
+        return SolvedStates(self, self.task.body.loaded(load), self.contact, self.pressure(self.contact))
 
     def close(self) -> None:
         self.fields[0].destroy()

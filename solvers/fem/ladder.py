@@ -239,7 +239,7 @@ class Level:
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
         """Limits of stresses on a surface, None where there are none."""
-        return turns_at_ends(surface, states.local) if states.ends.free.any() else None
+        return turns_at_ends(surface, states.local) if states.contact.free.any() else None
 
     def nearest(self, states: SolvedStates) -> float:
         """Least distance over a from free ends and kinks at which stresses are evaluated."""
@@ -366,7 +366,7 @@ class Solved:
         """States with their estimated errors, on the one mesh."""
         states = self.level.states(g, load)
         of = self.error.of(g, None if len(self.error.loads) == 1 else states.body.load)
-        errors = {word: values + states.ends.unresolved for word, values in of.items()}
+        errors = {word: values + states.contact.unresolved for word, values in of.items()}
         return [replace(states, errors=errors, fitted=self.fitted)]
 
     def record(self) -> dict[str, Any]:

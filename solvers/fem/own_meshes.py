@@ -53,15 +53,13 @@ from ..profiles.punches import Flat
 from .contact import FreeLevel, SingleLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
-from .solution import Solution, SolvedEnds, SolvedStates, solution_of
+from .punch import ContactStates
+from .solution import Solution, SolvedStates, solution_of
 from .space import Space
 
 #: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
 State: TypeAlias = tuple[float, float]
 Lengths: TypeAlias = tuple[float, float]
-
-#: Both ends free, of a single state.
-_FREE = np.ones((1, 2), dtype=bool)
 
 #: Places under the punch at which the pressure is measured.
 _ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
@@ -268,12 +266,11 @@ class KinkedLevel(SingleLevel):
         X, body = self._centre + self._half_width * self.r, self.task.body
         return np.asarray(body.profile.height(X) / body.displacement)
 
-    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
-        half_width, centre = np.full(1, self._half_width), np.full(1, self._centre)
-        return SolvedEnds(self.punch.states(g), half_width, centre, _FREE)
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
+        return self.punch.states(g).between(self._half_width, self._centre, True)
 
-    def pressure(self, ends: SolvedEnds) -> KinkedPressure:
-        space, contact, profile = self.space, ends.contact, self.task.body.profile
+    def pressure(self, contact: ContactStates) -> KinkedPressure:
+        space, profile = self.space, self.task.body.profile
         return KinkedPressure(
             space.contact.s, space.degree, space.chart, contact.normal[0], self._between.places,
             self.end_exponents, leaving(profile), self._between.tolerance, bool(jumps(profile)),
@@ -391,19 +388,19 @@ class BalancedLevel(SingleLevel):
     @property
     def off(self) -> float:
         """Logarithm of the load of a contact of the mesh's half-width, over the task's."""
-        return -GROWTH * float(np.log(self.ends.half_width[0] / self.half_width))
+        return -GROWTH * float(np.log(self.contact.half_width[0] / self.half_width))
 
     @property
     def lean(self) -> float:
         """Middle of the contact over the mesh's half-width."""
-        return float(self.ends.centre[0] / self.half_width)
+        return float(self.contact.centre[0] / self.half_width)
 
     def heights(self) -> NDArray[np.float64]:
         h, unit = self.half_width, self.task.body.displacement
         X = self._near + h * self.r
         return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
 
-    def solved(self, g: NDArray, body: Contact) -> SolvedEnds:
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
         """Contact without intensities.
 
         Raises:
@@ -416,11 +413,10 @@ class BalancedLevel(SingleLevel):
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
         half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
-        contact = self.punch.summed(g, parts, amplitudes)
-        return SolvedEnds(contact, np.full(1, half_width), np.full(1, centre), _FREE)
+        return self.punch.summed(g, parts, amplitudes).between(half_width, centre, True)
 
-    def pressure(self, ends: SolvedEnds) -> Expansion:
-        return self.over_flat(ends.contact.tested(self.moments), ends.contact.g, 1.0)
+    def pressure(self, contact: ContactStates) -> Expansion:
+        return self.over_flat(contact.tested(self.moments), contact.g, 1.0)
 
     def continuation(self) -> Callable[[NDArray], Any]:
         gap, exponents = min(1.0, self.plan.tests.functions.h), self.end_exponents
@@ -431,7 +427,7 @@ class BalancedLevel(SingleLevel):
         pressure, moments = states.pressure, states.contact.tested(self.moments[:, 1:6])
         h, σ = self.half_width, pressure.σ_YY(_ACROSS)
         # Differences of the half-widths' logarithms are relative changes.
-        lengths = np.column_stack([np.log(states.ends.half_width / h), states.ends.centre / h])
+        lengths = np.column_stack([np.log(states.contact.half_width / h), states.contact.centre / h])
         # What the last functions add is largest where they are multiplied by most.
         factor = np.abs(pressure.series(_ACROSS)).max(axis=1)
         ends = np.abs(pressure.series(ENDS)).max(axis=1)
@@ -491,7 +487,7 @@ class OverLayers(OwnMeshes):
     def _solved(self, g: NDArray, task: Task) -> SolvedStates:
         # Half-widths of solved states under the load by the difference of their frictions.
         near = [
-            (abs(other - float(g[0])), float(state.ends.half_width[0]))
+            (abs(other - float(g[0])), float(state.contact.half_width[0]))
             for (other, load), state in self._kept.items()
             if load == task.body.load
         ]
@@ -505,9 +501,9 @@ class OverLayers(OwnMeshes):
             drawn = h
             state, lean, h = self._contact(drawn)
         check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
-        ends = replace(state.ends, half_width=np.array([h]), centre=np.array([h * lean]))
+        contact = state.contact.between(h, h * lean, True)
         errors = {word: value + abs(h / drawn - 1.0) for word, value in state.errors.items()}
-        return replace(state, body=task.body, ends=ends, errors=errors)
+        return replace(state, body=task.body, contact=contact, errors=errors)
 
     def _contact(self, h: float) -> tuple[SolvedStates, float, float]:
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""

@@ -23,7 +23,7 @@ from .displacement import Displacement
 from .fields import TOGETHER, Gradients, Slopes
 from .ladder import Level
 from .punch import ContactStates
-from .solution import SolvedEnds, SolvedStates
+from .solution import SolvedStates
 from .space import Space
 from .traction import LinearLoads, LoadedHalfPlane, Pieces
 
@@ -75,10 +75,11 @@ class LoadsLevel(Level):
         # The first field of a load has a normal resultant, the second an equal tangential one.
         units = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
         forces = np.asarray(np.kron(self.resultants[:, None, None], units), dtype=np.float64)
-        body, none = self.task.body.loaded(load), np.zeros(len(g))
+        body = self.task.body.loaded(load)
         contact = ContactStates(self.weights(g), forces, g, np.full(len(g), np.nan))
-        ends = SolvedEnds(contact, none + float(body.half_width), none, np.zeros((len(g), 2), dtype=bool))
-        return SolvedStates(self, body, ends, self.pressure(g))
+        return SolvedStates(
+            self, body, contact.between(float(body.half_width), 0.0, False), self.pressure(g)
+        )
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns | None:
         """Limits of stresses at knots, and between these."""

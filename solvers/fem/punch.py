@@ -15,7 +15,7 @@ several shapes P, a flat one first, which are the parts of the punch.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -64,14 +64,27 @@ class ContactStates:
             assembled equations, (fields, 2, nodes); of σ_YY alone, (fields, 1, nodes), where no equations
             were assembled.
         g: σ_XY/σ_YY under the punch, (states,).
-        v0: indentation over N/(2μ), (states,), relative to the surface at :data:`.line_loads.DATUM`, or
-            to a far boundary that is held.
+        v0: indentation of the punch's lowest point over N/(2μ), (states,), relative to the surface at
+            :data:`.line_loads.DATUM`, or to a far boundary that is held.
+        half_width, centre: half-width and middle of each contact [m], (states,).
+        free: True where the left and the right end are free, (states, 2).
+        unresolved: part of the punch's slope that its shapes leave out, relative, (states,) or 0.
     """
 
     weights: NDArray[np.float64]
     forces: NDArray[np.float64]
     g: NDArray[np.float64]
     v0: NDArray[np.float64]
+    half_width: Any = 1.0
+    centre: Any = 0.0
+    free: Any = False
+    unresolved: Any = 0.0
+
+    def between(self, half_width: Any, centre: Any, free: Any, **more: Any) -> "ContactStates":
+        """States with their ends, and other attributes changed; a number is that of all states."""
+        lengths = (np.broadcast_to(length, self.g.shape) for length in (half_width, centre))
+        each = dict(zip(("half_width", "centre"), lengths))
+        return replace(self, **each, free=np.broadcast_to(free, (len(self.g), 2)), **more)
 
     @cached_property
     def normal(self) -> NDArray[np.float64]:

@@ -29,31 +29,13 @@ _NEAREST = 1e-7
 
 
 @dataclass(frozen=True)
-class SolvedEnds:
-    """Contacts with their ends, as sums of a punch's parts.
-
-    Attributes:
-        contact: nodal forces, and weights of the displacement fields; v₀ of the punch's lowest point.
-        half_width, centre: half-width and middle of each contact [m], (states,).
-        free: True where the left and the right end are free, (states, 2).
-        unresolved: part of the punch's slope that its shapes leave out, relative, (states,) or 0.
-    """
-
-    contact: ContactStates
-    half_width: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    free: NDArray[np.bool_]
-    unresolved: Any = 0.0
-
-
-@dataclass(frozen=True)
 class SolvedStates:
     """States solved on one mesh; lengths over each contact's half-width, from its middle.
 
     Attributes:
         level: the solved degree, a :class:`galinx.solvers.fem.ladder.Level`.
         body: the sliding contact, under the load of each state.
-        ends: the contacts with their ends.
+        contact: nodal forces, weights of the displacement fields, and ends.
         pressure: contact pressure, a :class:`galinx.solvers.contact.pressure.Pressure`.
         errors: estimated relative errors, (states,), by word of output.quantities.
         fitted: True where the speed was fitted through others.
@@ -61,7 +43,7 @@ class SolvedStates:
 
     level: Any
     body: Contact
-    ends: SolvedEnds
+    contact: ContactStates
     pressure: Any
     errors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     fitted: bool = False
@@ -77,15 +59,10 @@ class SolvedStates:
         return self.level.displacement
 
     @property
-    def contact(self) -> ContactStates:
-        """Nodal forces, and weights of the displacement fields."""
-        return self.ends.contact
-
-    @property
     def local(self) -> Exponents:
         """Exponents of the pressure at the right and the left end."""
         flat = self.body.edges(self.task.response, self.contact.g)
-        return Exponents(flat.α + self.ends.free[:, 1], flat.β + self.ends.free[:, 0])
+        return Exponents(flat.α + self.contact.free[:, 1], flat.β + self.contact.free[:, 0])
 
     @cached_property
     def on_surface(self) -> Surface:
@@ -122,7 +99,7 @@ class SolvedStates:
         """Residual of the integral equation under the pressure, relative, (states,)."""
         return of_contact(
             self.task.response, self.contact.g, self.local, self.body, self.pressure.σ_YY,
-            (self.ends.centre, self.ends.half_width), self.pressure.kinks, self.pressure.breaks,
+            (self.contact.centre, self.contact.half_width), self.pressure.kinks, self.pressure.breaks,
         )  # fmt: skip
 
 
@@ -181,12 +158,12 @@ class Solution(solution.Solution):
     @cached_property
     def half_width(self) -> NDArray[np.float64]:
         """Half-width of the contact [m], (states,)."""
-        return self.growth * self._joined(lambda states: states.ends.half_width)
+        return self.growth * self._joined(lambda states: states.contact.half_width)
 
     @cached_property
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
-        return self.growth * self._joined(lambda states: states.ends.centre)
+        return self.growth * self._joined(lambda states: states.contact.centre)
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -231,7 +208,7 @@ class Solution(solution.Solution):
     @property
     def yield_turns(self) -> Turns | None:
         """Limits of stresses at ends and kinks, where an end is free."""
-        return self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
+        return self.surface.turns if any(states.contact.free.any() for states in self.solved) else None
 
     @property
     def nearest(self) -> float:

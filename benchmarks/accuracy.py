@@ -182,16 +182,14 @@ def of_archive(path: Path) -> str:
             verdicts = list(file[f"{name}/verdicts"].asstr())
             if name == "random":  # the first is of each kind of scene
                 kinds = _KIND.findall(verdicts.pop(0).partition("errors: ")[2])
-            rows.append(
-                (
-                    name,
-                    file[f"{name}/verdicts"].attrs["long_name"],
-                    "; ".join(v.removeprefix("holds: ") for v in verdicts),
-                )
-            )
-    return markdown(("row", "extremes", "result"), rows) + "\n\n" + markdown(
-        ("random scenes", "estimate over true error: of K_I and σ_YY, of K_I alone, of stresses"), kinds
-    )  # fmt: skip
+            about = file[f"{name}/verdicts"].attrs["long_name"]
+            rows.append(f"- {about}: {'; '.join(v.removeprefix('holds: ') for v in verdicts)}")
+    rows += [
+        "",
+        "Estimate over true error of K_I and σ_YY, of K_I alone, of stresses, in random scenes:",
+        "",
+    ]
+    return "\n".join([*rows, *(f"- {kind}: {figures}" for kind, figures in kinds)])
 
 
 def stacks() -> str:

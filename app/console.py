@@ -98,7 +98,7 @@ def plain_streams() -> Iterator[None]:
 
 def program() -> str:
     """Command by which the user called the program: ``./run.sh`` in the tree, ``galinx`` elsewhere."""
-    return _called() or "galinx"
+    return os.environ.get("GALINX_COMMAND") or "galinx"
 
 
 def as_called(text: str) -> str:
@@ -106,13 +106,9 @@ def as_called(text: str) -> str:
 
     An installed galinx is started on several ranks by mpirun itself.
     """
-    if not _called():
+    if not os.environ.get("GALINX_COMMAND"):
         text = re.sub(r"\./run\.sh -n (\d+)", r"mpirun -n \1 galinx", text)
     return text.replace("./run.sh", program())
-
-
-def _called() -> str:
-    return os.environ.get("GALINX_COMMAND", "")
 
 
 def on_terminal() -> bool:

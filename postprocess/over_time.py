@@ -119,16 +119,10 @@ def _both(fem: list[NDArray], sie: list[NDArray], data: Mapping[str, Any], _: An
     if not solved.any():
         return np.inf
     fem, sie = ([values[:, solved] for values in method] for method in (fem, sie))
-    return largest_change(fem, sie, data[rows.LOAD.path][solved], lean_of_steady(data)[:, solved])
-
-
-def lean_of_steady(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Centre of steady motion over a where friction changes, 0 elsewhere, (starts, times).
-
-    Where friction changes faster than waves run, the pressure never reaches this centre.
-    """
-    changing = np.ptp(data[rows.RATIOS.path], axis=-1) > 0.0
-    return np.asarray(np.where(changing[:, None], data[rows.CENTRES.path], 0.0))
+    # Where friction changes faster than waves run, the pressure never reaches its steady centre.
+    changing = np.ptp(data[rows.RATIOS.path], axis=-1, keepdims=True) > 0.0
+    lean = np.where(changing, data[rows.CENTRES.path], 0.0)
+    return largest_change(fem, sie, data[rows.LOAD.path][solved], lean[:, solved])
 
 
 #: Largest relative change of distance times time, over the second half of a motion, that counts as an
@@ -204,10 +198,6 @@ def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
     """Work less energy, over the largest work of a motion, (motions, times)."""
     done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
-
-
-def _balance(data: Mapping[str, Any], _: Any) -> float:
-    return float(np.abs(energy_imbalance(data)).max())
 
 
 def _until_turn(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
@@ -291,8 +281,8 @@ for _name, _rule in {
         SIE, _until_turn, f"works of load and friction {_AGAINST}", rows.OF_LOAD, rows.OF_FRICTION
     ),
     BALANCE: Rule(
-        "work without its energy over time, over the largest work", (*_DONE, *_HELD), _balance,
-        tolerances=1.0,
+        "work without its energy over time, over the largest work", (*_DONE, *_HELD),
+        lambda data, _: float(np.abs(energy_imbalance(data)).max()), tolerances=1.0,
     ),
     ALONG: against(SIE, _along, f"σ_XX and σ_YY along the surface {_AGAINST} {_FAR}", *SURFACE),
     OF_SURFACE: largest(
@@ -310,18 +300,3 @@ for _name, _rule in {
 
 #: Names of all rules of motions in time.
 IN_TIME = frozenset({BOTH, OF_FEM, OF_SIE, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
-
-
-def rules(both: bool, steady: bool, surface: bool, sharp: bool) -> frozenset[str]:
-    """Names of the rules that apply to finite elements in time.
-
-    Args:
-        both: True where the integral equation computes the motions, too.
-        steady: True where motions begin in steady motion.
-        surface: True where the surface is output.
-        sharp: True where waves are too sharp for cells; their estimate is output without a bound.
-    """
-    names = {OF_FEM, *(BOTH,) * both, *(WORKS, AT_ENDS) * (both and not steady)}
-    if surface:
-        names |= {BALANCE, *(ALONG,) * both, *(OF_SURFACE,) * (not sharp)}
-    return frozenset(names)

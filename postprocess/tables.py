@@ -290,18 +290,25 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     high, high_X, low, low_X = layers.INTERFACE_EXTREMES[rows.method][4:8]
     largest, lowest = np.abs(data[high.path]), np.abs(data[low.path])
     shear = units.stress.of(np.maximum(largest, lowest))
-    X = units(high_X, "")
-    assert X
-    places = X.of(np.where(lowest > largest, data[low_X.path], data[high_X.path]))
+    X = units.position.of(np.where(lowest > largest, data[low_X.path], data[high_X.path]))
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
         head = f"shear {engineering(depth, 'm')} deep" if several else "interface shear"
         name = f"interface_shear{f'_{i + 1}' * several}"
-        columns += [
-            Column(head, shear[:, i], units.stress.unit, name),
-            Column(f"at X{'/a' * units.dimensionless}", places[:, i], X.unit, f"{name}_X", place=True),
-        ]
+        columns += _placed(units, head, name, shear[:, i], X=X[:, i])
     return columns
+
+
+def _placed(units: Units, head: str, name: str, stress: Any, **places: Any) -> list[Column]:
+    """Column of a stress in the units of a result, and of its place along each axis."""
+    at = [
+        Column(
+            f"at {axis}{'/a' * units.dimensionless}", values, units.length.unit, f"{name}_{axis}",
+            place=True,
+        )
+        for axis, values in places.items()
+    ]  # fmt: skip
+    return [Column(head, stress, units.stress.unit, name), *at]
 
 
 def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -312,16 +319,13 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
         return []
     values, columns = units.stress.of(data[row.path]), []
     X, Y = (data[rows[row.method].path] for rows in (yielding.OF_LAYERS_X, yielding.OF_LAYERS_Y))
-    places = {"X": units.position.of(X), "Y": units.length.of(Y)}
+    X, Y = units.position.of(X), units.length.of(Y)
     shares = data.get(yielding.OVER_STRENGTH[row.method].path, np.full(values.shape, np.nan))
     for i in range(values.shape[1]):
         below = i == values.shape[1] - 1
         where = "below the layers" if below else f"in layer {i + 1}"
         name = f"von_mises_{'below' if below else i + 1}"
-        columns.append(Column(f"von Mises {where}", values[:, i], units.stress.unit, name))
-        for axis, at in places.items():
-            head, unit = f"at {axis}{'/a' * units.dimensionless}", units.length.unit
-            columns.append(Column(head, at[:, i], unit, f"{name}_{axis}", place=True))
+        columns += _placed(units, f"von Mises {where}", name, values[:, i], X=X[:, i], Y=Y[:, i])
         if np.isfinite(shares[:, i]).any():
             words = [_share(share) for share in shares[:, i]]
             columns.append(Column(f"yields {where}", words, "of the yield strength", f"{name}_yields"))
@@ -378,8 +382,9 @@ def layout(
         for column in columns:
             if column.place and lines and lines[-1][1].startswith("0 "):
                 continue
-            if column.place and lines:
-                lines[-1][1] += f"{' ' if ' at ' not in lines[-1][1] else ', '}{_at(column)}"
+            if column.place and lines:  # as in "at X = -52.5 µm, Y = -41.2 µm"
+                where = f"{column.head.removeprefix('at ')} = {column.words(0)}"
+                lines[-1][1] += f", {where}" if " at " in lines[-1][1] else f" at {where}"
             elif column.texts()[0]:
                 lines.append([column.head, column.words(0)])
         return Sheet(title, ["", ""], lines)
@@ -387,20 +392,11 @@ def layout(
     heads = [f"  {column.label}" if column.place else column.label for column in columns]
     if width and len(labels) <= BESIDE:
         return Sheet(title, [noun, *labels], [[head, *row] for head, row in zip(heads, texts)])
-    heads = [_folded(column) if width else column.label for column in columns]
+    heads = [column.label for column in columns]
+    for n, column in enumerate(columns if width else ()):  # in several lines over a narrow column
+        wide = max(_NARROW, *map(len, texts[n]), *map(len, column.label.split()))
+        heads[n] = textwrap.fill(column.label, wide, break_on_hyphens=False)
     return Sheet(title, [noun, *heads], [[label, *row] for label, *row in zip(labels, *texts)])
-
-
-def _folded(column: Column) -> str:
-    """Head over a narrow column, in several lines."""
-    wide = max(_NARROW, *map(len, column.texts()), *map(len, column.label.split()))
-    return textwrap.fill(column.label, wide, break_on_hyphens=False)
-
-
-def _at(column: Column) -> str:
-    """Place in words: ``at X = -52.5 µm``, and further coordinates without at."""
-    head = column.head.removeprefix("at ")
-    return f"{'at ' * head.startswith('X')}{head} = {column.words(0)}"
 
 
 def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int = 0) -> Sheet:

@@ -197,11 +197,6 @@ class Target:
         raise Occupied(f"{self.path} exists and is not {self._kind.noun}; {self._another}{or_else}")
 
 
-def as_target(path: Path | Target) -> Target:
-    """Target of a path that replaces no file; a target is returned unchanged."""
-    return path if isinstance(path, Target) else Target(path)
-
-
 class Folder:
     """Folder for several files, which is made if it does not exist.
 

@@ -118,9 +118,12 @@ class Units:
     ) -> None:  # fmt: skip
         self.dimensionless, self.beside = dimensionless, beside
         self.contact, self.data = contact, data
-        given = data.get(swept.HALF_WIDTH.path, contact.half_width)
-        ends: tuple[Any, Any] = contacts_of_states(data) or (given, 0.0)
-        self.half_width, self.middle = ends
+        self.half_width: Any = data.get(swept.HALF_WIDTH.path, contact.half_width)
+        self.middle: Any = 0.0
+        for width, middle in zip(states.HALF_WIDTH.values(), states.CENTRE.values()):
+            if width.path in data and middle.path in data:
+                self.half_width, self.middle = data[width.path], data[middle.path]
+                break
         self.c_s: Any = data.get(swept.WAVE_SPEED.path, contact.solid.c_s)
         self.load: Any = data.get(states.LOAD.path, contact.load)
 
@@ -240,14 +243,6 @@ class Units:
         root = np.allclose(exponent, -0.5, rtol=0.0, atol=1e-9)
         unit = f"{stress.unit}√m" if root else f"{stress.unit}·m^(-{symbol})"
         return Scaled(name, unit, stress.factor * (4.0 * np.pi * a) ** -exponent)
-
-
-def contacts_of_states(data: Mapping[str, Any]) -> tuple[NDArray, NDArray] | None:
-    """Half-width and middle [m] of every state's contact, (states,), where they are archived."""
-    for h, m in zip(states.HALF_WIDTH.values(), states.CENTRE.values()):
-        if h.path in data and m.path in data:
-            return data[h.path], data[m.path]
-    return None
 
 
 def engineering(value: float, unit: str, digits: int = 4) -> str:

@@ -1,11 +1,10 @@
 """Uniform half-planes under any contact pressure: stresses by its Hilbert transform and potential."""
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-
-from galinx.solvers.contact.closed_form import in_plane
 
 
 @dataclass(frozen=True)
@@ -18,7 +17,7 @@ class LoadedHalfPlane:
 
     def σ_XX(self, r):
         """In-plane stress on the surface."""
-        return in_plane(self.response, self.g, self.pressure.σ_YY(r), self.pressure.hilbert(r))
+        return self.response.in_plane(self.g, self.pressure.σ_YY(r), self.pressure.hilbert(r))
 
     def inside(self, X, Y):
         """σ_XX, σ_YY, σ_XY at points with Y < 0."""
@@ -35,3 +34,12 @@ class LoadedHalfPlane:
 def under(punch):
     """The half-plane under a flat punch."""
     return LoadedHalfPlane(punch.response, punch.g, punch)
+
+
+def yield_of(body, stresses, response, g, local=None):
+    """Yield of states with frictions g, (states,), by the stresses at points, as a solution has it."""
+    solution = SimpleNamespace(
+        stresses=stresses, task=SimpleNamespace(response=response), g=g, local=local,
+        half_width=body.half_width, yield_turns=None, nearest=1.0,
+    )  # fmt: skip
+    return body.strength(solution)

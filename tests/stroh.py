@@ -6,6 +6,7 @@ for Q; its eigenvectors (a, b) for Im p > 0 give u = 2 Re Σ a f(z), stress func
 """
 
 import mpmath as mp
+import numpy as np
 
 DIGITS = 90
 
@@ -15,14 +16,15 @@ class Stroh:
 
     Args:
         C: c11, c12, c16, c22, c26, c66 over c66.
-        c: speed over √(c66/ρ).
+        c: speed over √(c66/ρ), complex for waves that grow.
     """
 
     def __init__(self, C, c):
         mp.mp.dps = DIGITS
         self.C = c11, c12, c16, c22, c26, c66 = [mp.mpf(float(x)) for x in C]
         # Where eigenvectors coincide, a speed of 1e-30 keeps them apart and changes 60 digits on nothing.
-        self.inertia = mp.mpf(float(c)) ** 2 + mp.mpf(10) ** -50
+        c = c if isinstance(c, mp.mpf | mp.mpc) else mp.mpf(float(c))
+        self.inertia = c**2 + mp.mpf(10) ** -50
         Q = mp.matrix([[c11 - self.inertia, c16], [c16, c66 - self.inertia]])
         R, T = mp.matrix([[c16, c12], [c66, c26]]), mp.matrix([[c66, c26], [c26, c22]])
         inverse = T**-1
@@ -45,6 +47,26 @@ class Stroh:
         """n, m, n12, q of u,X = Re(Y) t - Im(Y) H[t]."""
         Y = self.Y
         return [-Y[1, 1].imag, -Y[0, 0].imag, -Y[0, 1].imag, Y[0, 1].real]
+
+
+def admittances(C, inertia, sign=1.0):
+    """A B⁻¹ in double precision, by which tractions t move the surface by u = A B⁻¹ t/(ik), (n, 2, 2).
+
+    Args:
+        C: c11, c12, c16, c22, c26, c66.
+        inertia: ρV² in their unit, complex, (n,).
+        sign: of Im p of the waves that are kept, one or (n,).
+    """
+    c11, c12, c16, c22, c26, c66 = C
+    Q = np.array([[c11, c16], [c16, c66]]) - np.asarray(inertia)[:, None, None] * np.eye(2)
+    R, inverse = np.array([[c16, c12], [c66, c26]]), np.linalg.inv([[c66, c26], [c26, c22]])
+    N = np.empty((len(Q), 4, 4), dtype=complex)
+    N[:, :2, :2], N[:, :2, 2:] = -inverse @ R.T, inverse
+    N[:, 2:, :2], N[:, 2:, 2:] = R @ inverse @ R.T - Q, -R @ inverse
+    p, vectors = np.linalg.eig(N)
+    order = np.argsort(-p.imag * np.reshape(sign, (-1, 1)), axis=1)[:, None, :2]
+    A, B = (np.take_along_axis(vectors[:, rows], order, axis=2) for rows in (slice(2), slice(2, 4)))
+    return A @ np.linalg.inv(B)
 
 
 class Punch:

@@ -76,6 +76,16 @@ def computed(name="tables4_5", changes=None):
     return galinx.compute(scene_of(name, changes))
 
 
+def section_of(solid):
+    """The section [solid] of a scene that has a solid."""
+    from galinx.solvers.parameters import values
+    from galinx.solvers.solids import SOLIDS
+
+    kind = next(name for name, known in SOLIDS.items() if known is type(solid))
+    given = {key: value for key, value in values(solid).items() if np.size(value) and value is not None}
+    return {"kind": kind} | {key: np.asarray(value).tolist() for key, value in given.items()}
+
+
 CLOSED_FORM = {"solve.methods": ["closed_form"]}
 SIE = {"solve.methods": ["sie"]}
 #: Results that many tests read, by name: a scene, and what is other in it; by the quickest methods but

@@ -15,11 +15,11 @@ from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from . import flutter, friction, motion, numerics, stresses, sweep
-from .choice import PLACE, STROKE, Archive, Choice, Drawing, not_shown, require_one_of
+from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
 from .render import MARKERS, Curve, Film, Panel, TooSmall
-from .style import Look, looks
+from .style import Look
 
 #: Name that stands for all figures, and a choice that leaves everything open.
 ALL, PLAIN = "all", Choice()
@@ -55,6 +55,8 @@ def film(of: Archive) -> Drawing:
             f"a film needs at least {_LEAST_FRAMES} states along strokes, found {len(frames)}; give "
             "motion.X_over_L more places"
         )
+    if not stresses.surface_names(of) and not stresses.map_names(of):
+        raise BadInput('a film needs stresses; add "surface" to output.quantities, or output.map')
     loop = Loops(of).of(frames[0])
     if loop is None:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
@@ -68,32 +70,21 @@ def film(of: Archive) -> Drawing:
         title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
         return [replace(base, curves=[*base.curves, dot], title=title), *beside[frame]]
 
-    left_out = not_shown(labels, frames, "--figure film --states", of.choice.states)
+    left_out = of.not_shown(frames, "--figure film --states")
     made = Film(panels, len(frames), of.size)
     return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
 
 
-def _stresses_of(of: Archive, frames: list[int]) -> list[list[Panel]]:
+def _stresses_of(of: Archive, frames: list[int]) -> list[tuple[Panel, ...]]:
     """Panels of every frame: stresses along the surface by one method, or maps where there are none or
     they are chosen."""
-    made: list[list[Panel]] = [[] for _ in frames]
     if _has(stresses.surface_names)(of):
-        method = next(iter(next(iter(stresses.stresses_along(of).values.values()))))
-        surface = stresses.stresses_along(of, method)
-        for name in surface.values:
-            ylim = stresses.limits(surface.X, surface.drawn(name)[frames])
-            for panels, i in zip(made, frames):
-                shown = [stresses.Shown(surface, i, looks(1)[0])]
-                x = stresses.position_name(of, "")
-                panels.append(stresses.surface_panel(name, shown, ylim, x=x))
-        return made
-    fields = stresses.Fields(of)
-    for name in of.choice.quantities or ("sigma_XX", "von_mises"):
-        values, limit = fields.of_states(name, fields.methods[0], frames)
-        options = {"label": fields.label(name), "level": 0.0, "equal": False}
-        for panels, i, of_state in zip(made, frames, values):
-            panels.append(fields.panel(name, of_state, i, limit, **options))
-    return made
+        surface, x = stresses.stresses_along(of).alone, stresses.position_name(of, "")
+        made = [stresses.surface_panels(surface, name, frames, x=x) for name in surface.values]
+    else:
+        fields, names_ = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
+        made = [fields.panels(name, frames, level=0.0, equal=False) for name in names_]
+    return list(zip(*made))
 
 
 def _has_strokes(of: Archive) -> bool:

@@ -324,26 +324,9 @@ def states_for_panel(
     return [name for name in names if name in varying], states
 
 
-def not_shown(labels: StateLabels, shown: Sequence[int], how: str, requested: Sequence[int] = ()) -> str:
-    """Sentence on the states that a figure does not show, and how to draw them; "" where it shows all.
-
-    Args:
-        labels: of the archive's states.
-        shown: states that the figure shows.
-        how: options that draw others.
-        requested: states that the user chose; () for all.
-    """
-    missing = sorted(set(requested or labels.all.tolist()) - set(shown))
-    if not missing:
-        return ""
-    values = [labels.absent(name, shown) for name in labels.varied()]
-    without = f" ({'; '.join(filter(None, values))})" if any(values) else ""
-    runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1)
-    ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
-    return (
-        f"{len(missing)} of {len(labels.all)} states not shown{without}: "
-        f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
-    )
+def fewer(shown: int, count: int, things: str, how: str = "") -> str:
+    """Sentence on things that a figure does not show; "" where it shows all."""
+    return f"{count - shown} of {count} {things} not shown{how}." * (shown < count)
 
 
 def _short(words: Sequence[str], comma: str = ", ") -> str:
@@ -399,6 +382,26 @@ class Archive:
     def selected(self) -> NDArray[np.int64]:
         """Chosen states, all by default."""
         return np.array(self.choice.states) if self.choice.states else self.labels.all
+
+    def not_shown(self, shown: Sequence[int], how: str) -> str:
+        """Sentence on the states that a figure leaves out, and how to draw them; "" where it shows all.
+
+        Args:
+            shown: states that the figure shows.
+            how: options that draw others.
+        """
+        labels = self.labels
+        missing = sorted(set(self.choice.states or labels.all.tolist()) - set(shown))
+        if not missing:
+            return ""
+        values = [labels.absent(name, shown) for name in labels.varied()]
+        without = f" ({'; '.join(filter(None, values))})" if any(values) else ""
+        runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1)
+        ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
+        return (
+            f"{len(missing)} of {len(labels.all)} states not shown{without}: "
+            f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
+        )
 
     @property
     def size(self) -> Size | None:

@@ -1,8 +1,8 @@
 """Friction of an archive: loops of its states, stick-slip of its sliders; and fits to measurements."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,8 @@ from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.motion import names
 
 from ..plan.states import order
-from .choice import Archive, C, Drawing, N, named, not_shown, spread
-from .render import DOTS, Curve, Panel, Size, across, handle, render
+from .choice import Archive, C, Drawing, N, fewer, named, spread
+from .render import DOTS, Curve, Panel, Size, across, note, render
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Axes of a loop.
@@ -33,42 +33,38 @@ class Loop:
     Attributes:
         label: its name in a legend.
         X_over_L, f: position over the pre-sliding displacement and friction coefficient, (n,).
-        strokes: names of their pieces, each of as many points; pieces of one name that follow each other
-            are one stroke.
+        strokes: name of each stroke, and its part of the loop.
     """
 
     label: str
     X_over_L: NDArray
     f: NDArray
-    strokes: Sequence[str]
-
-    def along(self) -> Iterator[tuple[str, NDArray, NDArray]]:
-        """Name, positions and friction coefficient of each stroke."""
-        points, first = len(self.f) // len(self.strokes), 0
-        for name, pieces in groupby(self.strokes):
-            last = first + points * len(list(pieces))
-            yield name, self.X_over_L[first:last], self.f[first:last]
-            first = last
+    strokes: Sequence[tuple[str, slice]]
 
     @property
     def varies(self) -> bool:
         """True where friction changes along a stroke."""
-        return any(np.ptp(f) > 1e-6 * np.abs(f).max() for _, _, f in self.along() if len(f))
+        strokes = [self.f[part] for _, part in self.strokes]
+        return any(np.ptp(f) > 1e-6 * np.abs(f).max() for f in strokes if len(f))
 
 
 class Loops:
     """Friction loops of an archive's states; states with the same law share theirs."""
 
     def __init__(self, of: Archive) -> None:
-        self._data, self.labels, scene = of.data, of.labels, of.scene
-        self._strokes = [leg.name for leg in scene.legs]
-        if scene.motion.path is not None:  # its pieces are strokes together up to the next turn
-            together = [list(run) for _, run in groupby(scene.legs, lambda leg: leg.s)]
-            called = names([run[0].s for run in together])
-            self._strokes = [name for name, run in zip(called, together) for _ in run]
-        _, first = np.unique(of.data[runs.LOOP_OF_STATE.path], return_index=True)
+        self.labels, legs = of.labels, of.scene.legs
+        self.rows, self._X, self._f = (
+            of.data[row.path] for row in (runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F)
+        )
+        # Legs of one stroke: each by its name, of a path those up to the next turn.
+        path = of.scene.motion.path is not None
+        runs_ = [list(run) for _, run in groupby(legs, lambda leg: leg.s if path else leg.name)]
+        called = names([run[0].s for run in runs_]) if path else [run[0].name for run in runs_]
+        ends = np.cumsum([0, *(len(self._X) // len(legs) * len(run) for run in runs_)]).tolist()
+        self._strokes = [(name, slice(*part)) for name, part in zip(called, pairwise(ends))]
+        _, first = np.unique(self.rows, return_index=True)
         #: A state on each loop.
-        self.first = np.array([state for state in first if of.data[runs.LOOP_OF_STATE.path][state] >= 0])
+        self.first = np.array([state for state in first if self.rows[state] >= 0])
         varied = self.labels.varied(self.first)
         # Loops differ with the speed only where the law depends on it.
         self.names = [name for name in (C, *self.labels.law) if name in varied]
@@ -80,16 +76,14 @@ class Loops:
             state: which.
             called: parameters that its label names; None for those that distinguish the loops.
         """
-        row = int(self._data[runs.LOOP_OF_STATE.path][state])
-        if row < 0:
+        if (row := int(self.rows[state])) < 0:
             return None
         label = self.labels.label(state, self.names if called is None else called)
-        return Loop(label, self._data[runs.LOOP_X.path], self._data[runs.LOOP_F.path][row], self._strokes)
+        return Loop(label, self._X, self._f[row], self._strokes)
 
     def panel(self, states: Sequence[int], called: Sequence[str], title: str = "") -> Panel:
         """A panel with the loops of some states, each once."""
-        rows = self._data[runs.LOOP_OF_STATE.path]
-        once = list({int(rows[state]): state for state in reversed(states)}.values())[::-1]
+        once = list({int(self.rows[state]): state for state in reversed(states)}.values())[::-1]
         loops = [loop for loop in (self.of(state, called) for state in once) if loop]
         return loop_panel(loops, len(called) == 1 and self.labels.numeric(called[0]), title)
 
@@ -103,8 +97,8 @@ class Loops:
         for name in self.names:
             others = [other for other in self.names if other != name]
             candidates = self.labels.where(self.first, **self.labels.fixed(others, self.first))
-            candidates = np.array(sorted(candidates, key=lambda state: self.labels.values(name)[state]))
-            states = [int(state) for state in spread(candidates.tolist(), _LOOPS)]
+            values = self.labels.values(name)
+            states = spread(sorted(candidates.tolist(), key=lambda state: values[state]), _LOOPS)
             shown.append(self.panel(states, [name], self.labels.label(states[0], others)))
             drawn += states
         return shown, drawn
@@ -121,14 +115,14 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
     margin = 0.06 * (high - low) or 1.0
     curves = []
     for k, (loop, look) in enumerate(zip(loops, looks(len(loops), ordered))):
-        strokes = list(loop.along())
         # Loops that are the same are drawn one in the other, the first as the widest line.
         again = sum(np.array_equal(loop.f, later.f) for later in loops[k + 1 :])
-        for n, (of_stroke, (name, X, values)) in enumerate(zip(looks(len(strokes)), strokes)):
+        arrows = () if again else (0.5 if alone else 0.25 + 0.5 * k / len(loops),)
+        for n, (of_stroke, (name, part)) in enumerate(zip(looks(len(loop.strokes)), loop.strokes)):
             own = of_stroke if alone else look._replace(line="-" if again else LINES[n % len(LINES)])
-            label = name * (len(strokes) > 1) if alone else loop.label * (n == 0)
-            arrows = () if again else (0.5 if alone else 0.25 + 0.5 * k / len(loops),)
-            curves.append(Curve(X, values, own, label, width=1.0 + 1.2 * again, arrows=arrows))
+            label = name * (len(loop.strokes) > 1) if alone else loop.label * (n == 0)
+            x, y, width = loop.X_over_L[part], loop.f[part], 1.0 + 1.2 * again
+            curves.append(Curve(x, y, own, label, width=width, arrows=arrows))
     return Panel(
         X_LABEL, F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
         ylim=(low - margin, high + margin), at_y=(0.0,),
@@ -147,7 +141,7 @@ def has_loop(of: Archive) -> bool:
 def friction(of: Archive) -> Drawing:
     """Figure of the loops that an archive's states lie on."""
     loops, choice = Loops(of), of.choice
-    labels, rows = loops.labels, of.data[runs.LOOP_OF_STATE.path]
+    labels, rows = loops.labels, loops.rows
     if choice.states:
         varied = [name for name in loops.names if name in labels.varied(choice.states)]
         shown, drawn = [loops.panel(choice.states, varied)], list(choice.states)
@@ -159,7 +153,7 @@ def friction(of: Archive) -> Drawing:
         shown = [choice.measured.over_loops(panel, lengths) for panel in shown]
     figure = loops_figure(shown, [loop for loop in map(loops.of, drawn) if loop], choice.size)
     covered = np.flatnonzero(np.isin(rows, rows[drawn])).tolist()
-    missing = not_shown(labels, covered, "--figure friction --states", choice.states)
+    missing = of.not_shown(covered, "--figure friction --states")
     caption = (
         "Friction along the strokes, in the direction of the arrows, from rest and after each turn. A "
         "closed loop dissipates its area times N L."
@@ -182,8 +176,8 @@ def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Size | No
     }
     if len(entries) > 1:
         panels = [replace(panel, own_legend=True) for panel in panels]
-    strokes = [name for name, *_ in loops[0].along()] if len(loops) > 1 and any(entries) else []
-    notes = [handle(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(strokes)]
+    strokes = [name for name, _ in loops[0].strokes] if len(loops) > 1 and any(entries) else []
+    notes = [note(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(strokes)]
     return render(panels, size, across(size.width, len(panels), 2.0), notes, high=0.78)
 
 
@@ -224,9 +218,7 @@ def slider(of: Archive) -> Drawing:
         caption += (
             " Where no loop is drawn the mass has no cycle in the end: it slides steadily or sticks."
         )
-    missing = f"{count - len(laws)} of {count} laws{several * ' and loads'} not shown." * (
-        len(laws) < count
-    )
+    missing = fewer(len(laws), count, f"laws{several * ' and loads'}")
     return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
 
 

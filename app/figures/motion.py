@@ -22,8 +22,8 @@ from galinx.solvers.contact.edges import under_punch
 from galinx.texts import number, plain
 
 from ..scene.sections import Time
-from .choice import Archive, Drawing, both, drive_label, explained, named, spread
-from .render import MARKERS, Curve, Film, Panel, Size, handle, render
+from .choice import Archive, Drawing, both, drive_label, explained, fewer, named, spread
+from .render import MARKERS, Curve, Film, Panel, Size, note, render
 from .stresses import SHOWN, Shown, Surface, limits, position_name, surface_panel
 from .style import COLUMN, GREY, Look, looks
 
@@ -68,8 +68,7 @@ def _over_a(of: Archive, words: str, row: Any) -> str:
 
 
 def _left_out(of: Archive, shown: int = 1) -> str:
-    count = len(of.data[rows.SPEED.path])
-    return f"{count - shown} of {count} starts not shown." * (count > shown)
+    return fewer(shown, len(of.data[rows.SPEED.path]), "starts")
 
 
 def time(of: Archive) -> Drawing:
@@ -140,7 +139,7 @@ def energies(of: Archive) -> Drawing:
         f"are within {off:.1e} of the largest work. Friction took {heat:.3g} {unit.replace('*', ' ')} "
         "meanwhile, of first order in the load, where all of these are of second."
     )
-    notes = [handle(_SUM, "all together", linewidth=1.8)]
+    notes = [note(_SUM, "all together", width=1.8)]
     figure = render(panels, of.size, 0, notes, high=0.68)
     return Drawing("energies", caption, figure, left_out=_left_out(of))
 

@@ -1,7 +1,5 @@
 """Mesh and convergence of an archive's finite elements."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -12,9 +10,9 @@ from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
 
 from ..plan.plan import make_plan
-from .choice import Archive, C, Drawing, spread
-from .render import DOTS, JOINED, MARKERS, Curve, Panel, Size, marked, render
-from .style import COLOURS, COLUMN, Look, looks
+from .choice import Archive, C, Drawing, fewer, spread
+from .render import DOTS, JOINED, MARKERS, Curve, Panel, Size, note, render
+from .style import COLOURS, COLUMN, GREY, Look, looks
 
 #: Speeds that can be told apart in a figure.
 _SPEEDS = 6
@@ -68,7 +66,8 @@ def degrees(of: Archive) -> Drawing:
             curves.append(
                 Curve(at, np.array([largest(row, c[i])]), look._replace(marker=marker), "", MARKERS)
             )
-    notes: list[Any] = [marked("estimated error", "_"), *[marked("true error", "x")] * (len(errors) - 1)]
+    words = "estimated error", "true error"
+    notes = [note(Look(GREY, "-", m), word, MARKERS) for (_, m), word in zip(errors, words)]
     panel = Panel(
         "polynomial degree", "relative change or error of $K_I$", curves=curves, log="y", whole=True
     )
@@ -77,9 +76,8 @@ def degrees(of: Archive) -> Drawing:
         "changes from the degree before, bars the error estimated at the last, crosses the true one, "
         "which has to lie below."
     )
-    left_out = f"{len(c) - len(shown)} of {len(c)} speeds not shown." if len(shown) < len(c) else ""
     figure = render([panel], of.size or Size(COLUMN), notes=notes, high=0.72)
-    return Drawing("degrees", caption, figure, left_out=left_out)
+    return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(c), "speeds"))
 
 
 #: Nodes nearer to each other than this share of a panel print as one.

@@ -149,21 +149,15 @@ class Panel:
     whole: bool = False
 
 
-def handle(look: Look, label: str, **style: Any) -> Line2D:
-    """Line of a legend, for which curves have this look."""
-    return Line2D([], [], **({"color": look.colour, "linestyle": look.line, "label": label} | style))
+def note(look: Look, label: str, form: str = LINE, width: float = 1.0) -> Curve:
+    """Entry of a legend that is of no curve in particular."""
+    return Curve(np.empty(0), np.empty(0), look, label, form, width)
 
 
-def lines_and_markers(lines: str, markers: str) -> list[Line2D]:
-    """Handles that say what lines and what markers are."""
-    return [handle(Look(GREY, "-", ""), f"lines: {lines}"), marked(f"markers: {markers}")]
-
-
-def marked(label: str, marker: str = "o") -> Line2D:
-    """Marker of a legend, of no curve in particular."""
-    return Line2D(
-        [], [], color=GREY, linestyle="none", marker=marker, markerfacecolor="none", label=label
-    )
+def lines_and_markers(lines: str, markers: str) -> list[Curve]:
+    """Entries of a legend that say what lines and what markers are."""
+    look = Look(GREY, "-", "o")
+    return [note(look, f"lines: {lines}"), note(look, f"markers: {markers}", MARKERS)]
 
 
 @styled
@@ -171,7 +165,7 @@ def render(
     panels: Sequence[Panel],
     size: Size | None = None,
     columns: int = 0,
-    notes: Sequence[Line2D] = (),
+    notes: Sequence[Curve] = (),
     high: float = 0.62,
 ) -> Figure:
     """Draw panels in rows.
@@ -180,7 +174,7 @@ def render(
         panels: what to draw.
         size: of the figure; a page wide if not given.
         columns: panels in a row, as many as are legible if not given.
-        notes: more handles of the legend, after those of the curves.
+        notes: more entries of the legend, after those of the curves.
         high: height of a panel over its width; a map has that of its grid.
 
     Raises:
@@ -196,7 +190,7 @@ def render(
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
         made.append(_Drawn(figure.add_axes((0.0, 0.0, 1.0, 1.0), label=str(n)), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
-    handles = [_entry(curve) for curve in named.values()] + list(notes)
+    handles = [_entry(curve) for curve in (*named.values(), *notes)]
     _arrange(figure, made, size, (rows, columns), high, _legend(figure, handles))
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
@@ -211,9 +205,12 @@ def across(width: float, count: int, least: float = 1.55) -> int:
 
 
 def _entry(curve: Curve) -> Line2D:
-    marker = {} if curve.form == LINE else {"marker": curve.look.marker, "markerfacecolor": "none"}
-    line = {"linestyle": "none"} if curve.form in (MARKERS, DOTS) else {}
-    return handle(curve.look, curve.label, linewidth=curve.width, **marker, **line)
+    look, style = curve.look, dict[str, Any](linestyle=curve.look.line)
+    if curve.form != LINE:
+        style |= {"marker": look.marker, "markerfacecolor": "none"}
+    if curve.form in (MARKERS, DOTS):
+        style["linestyle"] = "none"
+    return Line2D([], [], color=look.colour, label=curve.label, linewidth=curve.width, **style)
 
 
 def spaced(x: NDArray, turn: float, most: int = _MARKERS) -> NDArray[np.int64]:
@@ -300,35 +297,27 @@ class _Drawn:
         return Bbox.from_bounds(x + w + 0.06 / wide, y, 0.09 / wide, h)
 
     def _curve(self, curve: Curve) -> Line2D:
-        y = np.asarray(curve.y) / 10.0**self.power
+        x, y, look = np.asarray(curve.x), np.asarray(curve.y) / 10.0**self.power, curve.look
         style: dict[str, Any] = {
-            "gid": "curve",
-            "color": curve.look.colour,
-            "linewidth": curve.width,
-            "markerfacecolor": "none",
-        }
-        if curve.form == LINE:
-            return self.axis.plot(curve.x, y, linestyle=curve.look.line, **style)[0]
-        if curve.form == DOTS:
-            if curve.look.marker == ".":  # many
-                style |= {
-                    "markerfacecolor": curve.look.colour,
-                    "markeredgewidth": 0.0,
-                    "rasterized": True,
-                }
-            size = 2.0 * curve.width
-            return self.axis.plot(curve.x, y, curve.look.marker, markersize=size, **style)[0]
-        at = spaced(np.asarray(curve.x, dtype=float), curve.turn)
-        if curve.form == JOINED:
-            style |= {
-                "linewidth": 0.6 * curve.width,
-                "linestyle": curve.look.line,
-                "markevery": at.tolist(),
-            }
-            return self.axis.plot(curve.x, y, marker=curve.look.marker, **style)[0]
-        return self.axis.plot(np.asarray(curve.x)[at], y[at], curve.look.marker, **style, markersize=2.8)[
-            0
-        ]
+            "gid": "curve", "color": look.colour, "linewidth": curve.width, "markerfacecolor": "none",
+        }  # fmt: skip
+        if curve.form in (LINE, JOINED):
+            style["linestyle"] = look.line
+        else:
+            style |= {"linestyle": "none", "markersize": 2.8}
+        if curve.form != LINE:
+            style["marker"] = look.marker
+        if curve.form == MARKERS:
+            at = spaced(x.astype(float), curve.turn)
+            x, y = x[at], y[at]
+        elif curve.form == JOINED:
+            at = spaced(x.astype(float), curve.turn)
+            style |= {"linewidth": 0.6 * curve.width, "markevery": at.tolist()}
+        elif curve.form == DOTS:
+            style["markersize"] = 2.0 * curve.width
+            if look.marker == ".":  # many
+                style |= {"markerfacecolor": look.colour, "markeredgewidth": 0.0, "rasterized": True}
+        return self.axis.plot(x, y, **style)[0]
 
     def measure(self, wide: float, tall: float, beside: float) -> "_Room":
         """Choose ticks, and fold texts, for a panel so wide and so tall, with so much beside it [in]."""

@@ -38,14 +38,14 @@ from .choice import (
     StateLabels,
     both,
     explained,
+    fewer,
     named,
-    not_shown,
     require_one_of,
     short_name,
     spread,
     states_for_panel,
 )
-from .render import JOINED, LINE, MARKERS, Map, Panel, Size, TooSmall, across, handle, render, spaced
+from .render import JOINED, LINE, MARKERS, Map, Panel, Size, TooSmall, across, note, render, spaced
 from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
@@ -128,6 +128,12 @@ class Surface:
     position: str = "position on the surface $X/a$"
 
     @property
+    def alone(self) -> "Surface":
+        """Stresses by the first method alone."""
+        values = {name: dict([*by_method.items()][:1]) for name, by_method in self.values.items()}
+        return replace(self, values=values)
+
+    @property
     def methods(self) -> set[str]:
         """Methods of all stresses."""
         return {method for values in self.values.values() for method in values}
@@ -196,14 +202,17 @@ def surface_panel(
     return replace(panel, **options)
 
 
-def stresses_along(of: Archive, method: str = "") -> Surface:
-    """Stresses of an archive's states along the surface, the chosen ones or those shown by default.
+def surface_panels(
+    surface: Surface, name: str, states: Sequence[int], label: str = "", **options: Any
+) -> list[Panel]:
+    """A panel for each of some states, all with the same limits; arguments as for surface_panel."""
+    ylim, (look,) = limits(surface.X, surface.drawn(name)[list(states)]), looks(1)
+    return [surface_panel(name, [Shown(surface, i, look, label)], ylim, **options) for i in states]
 
-    Args:
-        of: the archive.
-        method: the only one; "" for those that are chosen.
-    """
-    available = of.by_method(STATE, POINT, method=method or None)
+
+def stresses_along(of: Archive) -> Surface:
+    """Stresses of an archive's states along the surface, the chosen ones or those shown by default."""
+    available = of.by_method(STATE, POINT)
     axes, values = {}, {}
     for name in of.choice.quantities or [name for name in SHOWN if name in available]:
         rows = available[require_one_of("quantity", name, available)]
@@ -258,7 +267,7 @@ def surface(of: Archive) -> Drawing:
     if same:
         caption += " Over N/(2a) they are the same under every load."
     caption += labels.all_at(every)
-    missing = not_shown(labels, every, "--figure surface --states", choice.states)
+    missing = of.not_shown(every, "--figure surface --states")
     return Drawing("surface", caption, figure, left_out=missing)
 
 
@@ -329,8 +338,7 @@ def compared(
         figure = render(panels, None, min(2, len(panels)), explained(methods))
     except TooSmall as error:
         raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
-    missing = len(pairs) - len(chosen)
-    left_out = f"{missing} of {len(pairs)} pairs of states not shown; choose by --states." * bool(missing)
+    left_out = fewer(len(chosen), len(pairs), "pairs of states", "; choose by --states")
     caption = f"Stresses along the surface: {', '.join(labels)}."
     return Drawing("compare", caption, figure, left_out=left_out)
 
@@ -374,14 +382,14 @@ def friction_along(of: Archive) -> Drawing:
     ]
     notes = [
         *explained(set(pressures)),
-        handle(Look(GREY, dotted, ""), "dotted: one friction of the same resultant"),
+        note(Look(GREY, dotted, ""), "dotted: one friction of the same resultant"),
     ]
     figure = render(panels, of.size, 0 if of.size else 3, notes, 0.8)
     caption = (
         "Friction along the contact, and the contact pressure beside that of one friction with the same "
         "resultant (dotted). At each end the pressure has the exponent of the friction there."
     )
-    missing = not_shown(labels, states, "--figure along --states", of.choice.states)
+    missing = of.not_shown(states, "--figure along --states")
     return Drawing("along", caption, figure, left_out=missing)
 
 
@@ -405,68 +413,55 @@ def interfaces(of: Archive) -> Drawing:
         names, states = states_for_panel(labels, names, states, _INTERFACE_CURVES)
     numbers = labels.ordered(states).tolist()
     styles = looks(len(numbers), len(names) == 1 and labels.numeric(names[0]))
-    depths, reach, unit = _depths(of)
-    columns = spread(range(len(depths)), max(1, int(width / _LEAST_INTERFACE)))
+    called = [labels.label(i, names) if len(numbers) > 1 else "" for i in numbers]
+    (unit, depths), a = interface_depths(of.data), of.scene.body.half_width
+    over_a = depths[0] if unit == "1" else depths[0] / a
+    factor, length = (1.0, "$a$") if of.units.dimensionless and unit == "1" else _length(of, a)
+    columns = spread(range(len(over_a)), max(1, int(width / _LEAST_INTERFACE)))
     available = of.by_method(STATE, INTERFACE, ALONG)
-    for name in choice.quantities:
-        require_one_of("quantity", name, available)
+    shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
     X, places = of.data[ALONG_X.path], places_of(of, numbers)
     panels: list[Panel] = []
-    sides_drawn, methods = 0, set[str]()
+    notes, methods = list[Any](), set[str]()
     for of_sides, words in _AT_INTERFACES.items():
-        rows = [available[name] for name in of_sides if name in (choice.quantities or available)]
-        sides_drawn = max(sides_drawn, len(rows))
+        rows = [available[name] for name in of_sides if name in shown]
         values = [{method: of.values(row) for method, row in by_method.items()} for by_method in rows]
         methods.update(*rows)
+        if len(rows) > 1:
+            notes = [note(Look(GREY, line, ""), f"{side} the interface") for side, line in _SIDES.items()]
         for i in columns if rows else ():
-            half = max(_OVER_A, _OVER_DEPTH * float(reach[i]))
+            half = max(_OVER_A, _OVER_DEPTH * float(over_a[i]))
             inside, curves = np.abs(X) <= half, []
-            for line, by_method in zip(_SIDES.values(), values):
+            for side, by_method in zip(_SIDES, values):
                 for k, (state, look, (a, b)) in enumerate(zip(numbers, styles, places)):
-                    label = labels.label(state, names) if line == "-" and len(numbers) > 1 else ""
                     at = {method: y[state, i][inside] for method, y in by_method.items()}
-                    x, turn = b + a * X[inside], k / len(numbers)
-                    curves += both(x, at, look._replace(line=line), label, turn)
-            titled = len(panels) < len(columns) and (len(depths) > 1 or not panels)
+                    label = called[k] if side == "above" else ""
+                    own, turn = look._replace(line=_SIDES[side]), k / len(numbers)
+                    curves += both(b + a * X[inside], at, own, label, turn)
+            titled = len(panels) < len(columns) and (len(over_a) > 1 or not panels)
             label = named(words, of.scaled(next(iter(rows[0].values()))).unit)
             panels.append(Panel(
                 position_name(of, "position along the interface "), label if i == columns[0] else "",
-                curves=curves, title=f"depth {number(depths[i])} {unit}" if titled else "",
+                curves=curves, title=f"depth {number(over_a[i] * factor)} {length}" if titled else "",
                 xlim=window(places, half), bands=_contacts(places), at_y=(0.0,),
             ))  # fmt: skip
-    sides = [
-        handle(Look(GREY, line, ""), f"{side} the interface")
-        for side, line in _SIDES.items()
-        if sides_drawn > 1
-    ]
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
-    figure = render(panels, choice.size, across_, sides + explained(methods))
     caption = (
         "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
         "sides share, and in-plane stress, which jumps."
     )
-    if len(columns) < len(depths):
-        caption += f" {len(columns)} of {len(depths)} interfaces are shown; a wider --size shows more."
+    if len(columns) < len(over_a):
+        caption += f" {len(columns)} of {len(over_a)} interfaces are shown; a wider --size shows more."
     caption += labels.all_at(numbers)
-    missing = not_shown(labels, numbers, "--figure interfaces --states", choice.states)
+    missing = of.not_shown(numbers, "--figure interfaces --states")
+    figure = render(panels, choice.size, across_, notes + explained(methods))
     return Drawing("interfaces", caption, figure, left_out=missing)
 
 
-def _depths(of: Archive) -> tuple[NDArray, NDArray, str]:
-    """Depths of interfaces as titles show them, their reach over a half-width, and the unit of titles."""
-    unit, of_states = interface_depths(of.data)
-    depths, a = of_states[0], of.scene.body.half_width
-    reach, in_m = (depths, depths * a) if unit == "1" else (depths / a, depths)
-    if of.units.dimensionless and unit == "1":
-        return depths, reach, "$a$"
-    factor, name = _length(of)
-    return in_m * factor, reach, name
-
-
-def _length(of: Archive) -> tuple[float, str]:
-    """Factor of lengths in m in a figure, and their unit."""
+def _length(of: Archive, of_m: float) -> tuple[Any, str]:
+    """Factor in a figure of lengths over so many m, and their unit."""
     scale = of.units.scale(CONTACT)
-    return (1e3, "mm") if of.units.dimensionless else (float(np.max(scale.factor)), scale.unit)
+    return (1e3 * of_m, "mm") if of.units.dimensionless else (np.max(scale.factor) * of_m, scale.unit)
 
 
 #: Names of the stresses that maps show by default.
@@ -477,9 +472,10 @@ _MAPS = {
     "sigma_XY": r"shear $\sigma_{XY}$",
     "max_shear": r"largest shear $\tau_{\mathrm{max}}$",
 }
-#: Columns of states, and the share of values that have colours of their own: those at the edges of the
-#: punch would leave none for the rest.
-_STATES, _SHARE = 2, 0.985
+#: Share of values that have colours of their own: those at the edges of the punch would leave none for
+#: the rest; and the clipped ends of a colour bar, by whether the least and the largest value are clipped.
+_SHARE = 0.985
+_CLIPPED = {(True, True): "both", (False, True): "max", (True, False): "min", (False, False): "neither"}
 #: What names of quantities in an elastic punch begin with.
 _PUNCH = "punch_"
 
@@ -487,10 +483,10 @@ _PUNCH = "punch_"
 class Fields:
     """Stresses inside on the grid of an archive."""
 
-    def __init__(self, of: Archive, method: str | None = None) -> None:
+    def __init__(self, of: Archive) -> None:
         self._of, data = of, of.data
         self._shape = tuple(data[stresses.MAP.path].tolist())
-        every = of.by_method(STATE, INSIDE, method=method)
+        every = of.by_method(STATE, INSIDE)
         punch = {name: rows for name, rows in every.items() if name.startswith(_PUNCH)}
         self._quantities = {name: rows for name, rows in every.items() if name not in punch}
         self._in_punch = {row.path: row for rows in punch.values() for row in rows.values()}
@@ -505,20 +501,11 @@ class Fields:
         components = {"sigma_XX", "sigma_YY", "sigma_XY"} <= self._quantities.keys()
         return [*dict.fromkeys([*self._quantities, *(_MAPS if components else ())])]
 
-    def values(self, name: str, method: str, state: int) -> NDArray:
-        """One quantity of a state, (rows, columns), in the figure's units."""
-        if name in self._quantities:
-            return self._scaled(self._quantities[name][method], state)
-        XX, YY, XY = (self._scaled(row, state) for row in stresses.STRESSES_INSIDE[method])
-        if name == "max_shear":
-            return maximum_shear(XX, YY, XY)
-        return von_mises(XX, YY, XY, self._of.scene.solid.σ_ZZ(XX, YY, XY))
-
     def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
         """One quantity of a state in an elastic punch at -Y, and its strength; None without."""
         names = ("sigma_XX", "sigma_YY", "sigma_XY") if name == "max_shear" else (name,)
         rows = [self._in_punch.get(f"interior/{method}/{_PUNCH}{part}") for part in names]
-        each = [self._scaled(row, state) for row in rows if row]
+        each = [self._values(row, [state])[0] for row in rows if row]
         if len(each) < len(names):
             return None
         level = self._level(name, self._of.scene.solid.punch_strength)
@@ -531,9 +518,22 @@ class Fields:
             return 0.0
         return strength * float(of.units.scale("Pa").factor)
 
+    def _values(self, row: Quantity, states: Sequence[int]) -> NDArray:
+        """A quantity of states in the figure's units, (states, rows, columns)."""
+        held = self._on_grid(self._of.data[row.path][list(states)])
+        return self._of.scaled(row).of(held, list(states))
+
     def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
-        """One quantity of states, (states, rows, columns), and the largest with its own colour."""
-        values = np.array([self.values(name, method, i) for i in states])
+        """One quantity of states in the figure's units, (states, rows, columns), and the largest with its
+        own colour."""
+        held = self._quantities.get(name, {}).get(method)
+        rows = [held] if held else stresses.STRESSES_INSIDE[method]
+        values, *others = (self._values(row, states) for row in rows)
+        if not held and name == "max_shear":
+            values = maximum_shear(values, *others)
+        elif not held:
+            YY, XY = others
+            values = von_mises(values, YY, XY, self._of.scene.solid.σ_ZZ(values, YY, XY))
         return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
 
     def label(self, name: str) -> str:
@@ -560,23 +560,27 @@ class Fields:
             bar=(b - a, b + a),
         )  # fmt: skip
 
-    def _scaled(self, row: Quantity, state: int) -> NDArray:
-        values = self._on_grid(self._of.data[row.path][state])
-        return self._of.scaled(row).of(values[None], [state])[0]
+    def panels(self, name: str, states: Sequence[int], **options: Any) -> list[Panel]:
+        """A panel for each of some states by the first method, all with the same colours."""
+        values, limit = self.of_states(name, self.methods[0], states)
+        options = {"label": self.label(name)} | options
+        return [self.panel(name, of_state, i, limit, **options) for i, of_state in zip(states, values)]
 
     def _on_grid(self, values: NDArray) -> NDArray:
-        return values[: np.prod(self._shape)].reshape(self._shape)
+        return values[..., : np.prod(self._shape)].reshape(*values.shape[:-1], *self._shape)
 
 
 def inside(of: Archive) -> Drawing:
     """Figure of maps of stresses at the slowest and the fastest speed."""
-    fields, labels, choice = Fields(of), of.labels, of.choice
+    fields, labels, choice, size = Fields(of), of.labels, of.choice, of.size
     names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _MAPS if name in fields.names]
-    states = list(choice.states) or _two_states(labels)
+    varied, states = labels.varied(), list(choice.states)
+    if not states:  # first and last of the parameter that varies most slowly
+        every = labels.where(labels.all, **labels.fixed(varied[1:], labels.all))
+        states = sorted({int(every[0]), int(every[-1])})
     alone, wide = len(names) == len(states) == 1, len(states) > 1
-    apart = labels.varied(states) or ([C] if C in labels.varied() or alone else [])
-    size = choice.size
+    apart = labels.varied(states) or ([C] if C in varied or alone else [])
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
@@ -584,16 +588,13 @@ def inside(of: Archive) -> Drawing:
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
         clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
-        extend = {(True, True): "both", (False, True): "max", (True, False): "min"}.get(
-            clipped, "neither"
-        )
         for other in others:
             beside = fields.of_states(name, other, states)[0]
             off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
         for k, state in enumerate(states):
             label = fields.label(name) if k == len(states) - 1 else ""
             above = fields.above(name, method, state)
-            options = {"extend": extend, "lines": alone, "label": label, "above": above}
+            options = {"extend": _CLIPPED[clipped], "lines": alone, "label": label, "above": above}
             panel = fields.panel(name, every[k], state, limit, **options)
             assert panel.map
             bodies = [(panel.map.values, panel.map.level), *([above] if above else ())]
@@ -608,7 +609,6 @@ def inside(of: Archive) -> Drawing:
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
     panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
-    figure = render(panels, size, columns)
     fixed = [name for name in labels.parameters if name not in labels.varied(states)]
     caption = (
         f"Stresses inside {'both bodies, above the contact' if both else 'below the punch'} (black bar)"
@@ -623,23 +623,17 @@ def inside(of: Archive) -> Drawing:
             f" Finite elements differ by at most {plain(f'${number(off, 2)}$')} of the largest value."
         )
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
-    return Drawing("inside", caption, figure, True, not_shown(labels, states, how, choice.states))
+    missing = of.not_shown(states, how)
+    return Drawing("inside", caption, render(panels, size, columns), True, missing)
 
 
 def _interfaces(of: Archive) -> list[float]:
     """Heights of the lower faces of layers in the figure's units; none where these differ by state."""
     unit, depths = of.scene.body.depths
-    factor = of.units.length.factor if unit == "1" else _length(of)[0]
+    factor = of.units.length.factor if unit == "1" else _length(of, 1.0)[0]
     if INTERFACE_DEPTHS.path in of.data or np.ndim(factor) or (unit != "1" and of.units.dimensionless):
         return []
     return (-factor * depths).tolist()
-
-
-def _two_states(labels: StateLabels) -> list[int]:
-    """First and last state of the parameter that varies most slowly, others at one of their values."""
-    varied = labels.varied()
-    states = labels.where(labels.all, **labels.fixed(varied[1:], labels.all))
-    return sorted({int(states[0]), int(states[-1])})[:_STATES]
 
 
 def surface_names(of: Archive) -> list[str]:

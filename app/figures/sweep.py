@@ -21,7 +21,6 @@ from .choice import (
     both,
     explained,
     named,
-    not_shown,
     require_one_of,
     short_name,
     spread,
@@ -102,7 +101,7 @@ def parameters(of: Archive) -> Drawing:
     caption = f"What follows from {plain(sweep.label)}{at}."
     if sweep.same:
         caption += f" Not drawn, being constant or the same up to a factor: {', '.join(sweep.same)}."
-    left_out = "" if maps else not_shown(of.labels, shown, "--states, --x and --by", of.choice.states)
+    left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
     return Drawing("parameters", caption, figure, left_out=left_out.strip())
@@ -144,7 +143,7 @@ class _Sweep:
             own = [labels.where(states, **{self.by: value}) for value in values]
             self.groups = [(labels.label(int(numbers[0]), [self.by]), numbers) for numbers in own]
         self.same: list[str] = []
-        drawn, more = [require_one_of("y", y, self.columns) for y in choice.y], []
+        drawn, more = [require_one_of("y", y, self.columns) for y in choice.y], list[str]()
         if not drawn:
             drawn, more = self._changing(np.concatenate([numbers for _, numbers in self.groups]))
         most = len(choice.y) or _PANELS

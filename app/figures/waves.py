@@ -20,7 +20,7 @@ from ..errors import BadInput
 from ..plan.over_time import headings
 from ..plan.states import enumerate_states
 from ..scene.scene import Scene
-from .choice import Drawing, drive_label, spread
+from .choice import Drawing, drive_label, fewer, spread
 from .render import MARKERS, Curve, Panel, Size, render
 from .style import COLUMN, GREY, looks
 
@@ -222,7 +222,5 @@ def response_drawing(computed: list[Answer]) -> Drawing:
         "straight down, to which the latter comes at high frequencies. At low ones the stiffness goes "
         "like 1/log ω: a half-plane has none of its own at rest."
     )
-    missing = f"{len(computed) - len(shown)} of {len(computed)} speeds with frictions not shown."
-    return Drawing(
-        "response", caption, render(panels, high=0.72), left_out=missing * (len(shown) < len(computed))
-    )
+    missing = fewer(len(shown), len(computed), "speeds with frictions")
+    return Drawing("response", caption, render(panels, high=0.72), left_out=missing)

@@ -4,7 +4,7 @@ An :class:`Order` is the product of speeds, loads, laws and places on the stroke
 the friction of every state, which :func:`enumerate_states` computes along the strokes.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan
@@ -22,7 +22,7 @@ from galinx.solvers.solids.solid import Solid
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene, oddities
-from ..scene.sections import ADVECTED
+from ..scene.sections import ADVECTED, Friction
 
 
 @dataclass(frozen=True)
@@ -183,15 +183,6 @@ def order(scene: Scene) -> Order:
     return Order(speeds(scene), scene.punch.loads, scene.friction.count, np.repeat(own, each))
 
 
-def laws_followed(scene: Scene) -> int:
-    """Number of laws whose friction is computed: each once, or at each speed if it depends on that."""
-    return scene.friction.count * (len(speeds(scene)) if scene.friction.law.depends_on_speed else 1)
-
-
-def _has_formula(law: FrictionLaw) -> bool:
-    return law.exact(law.rest(), 1, 1.0, np.zeros(1)) is not None
-
-
 def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda laws, of: None) -> States:
     """Friction of every state.
 
@@ -202,21 +193,23 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     Raises:
         BadInput: the integrator refuses the parameters.
     """
-    friction, order_, count, legs = scene.friction, order(scene), laws_followed(scene), scene.legs
+    friction, order_, legs = scene.friction, order(scene), scene.legs
+    of_laws = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
+    count = friction.count * len(of_laws)  # each law once, or at each speed if it depends on that
     fine = [leg.start + (leg.end - leg.start) * FINE for leg in legs]
     advance = INTEGRATORS[friction.integrator]
     advance_finely = closely if friction.integrator == "exact" else advance
     f, z, loops, at = np.empty((count, len(order_.own))), list[NDArray](), list[NDArray](), 0
     taken: dict[str, list[NDArray]] = {"dissipated": [], "breakaway": [], "slope": []}
     try:
-        for c, law, laws in _laws(scene):
-            n, V = laws or 1, c * scene.solid.c_s
-            L, many = friction.pre_sliding, laws is not None
+        for c, law, n, many in _laws(friction, of_laws):
+            V, L = c * scene.solid.c_s, friction.pre_sliding
             strokes = follow(law, legs, L, scene.places, V, advance, many)
             f[at : at + n] = _joined([stroke.f for stroke in strokes])
             inner = _joined([stroke.z for stroke in strokes], -2)
             z.append(np.broadcast_to(inner, (n, *inner.shape[-2:])))
-            most = LOOPS if laws or _has_formula(law) else INTEGRATED_LOOPS
+            formula = many or law.exact(law.rest(), 1, 1.0, np.zeros(1)) is not None
+            most = LOOPS if formula else INTEGRATED_LOOPS
             if at < most:
                 drawn = _joined([s.f for s in follow(law, legs, L, fine, V, advance_finely, many)])
                 loops.append(np.broadcast_to(drawn, (n, drawn.shape[-1]))[: most - at])
@@ -235,24 +228,19 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     loop = np.arange(count)
     loop[len(drawn_loops) :] = -1
     along = np.repeat([leg.s for leg in legs], [len(X) for X in scene.places])
+    with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
+        work, breakaway, slope = (scene.punch.load * np.concatenate(rows) for rows in taken.values())
+    first = last_cycle(legs)
+    cycle = np.full(len(work), np.nan) if first is None else work[:, first:].sum(axis=1)
+    archived = {
+        runs.LOOP_WORK.path: work, runs.LOOP_CYCLE.path: cycle,
+        runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
+    }  # fmt: skip
     return States(
         _columns(scene, order_, _of_all(order_, f)), _of_all(order_, np.concatenate(z)),
         _of_all(order_, np.tile(along, (count, 1))), _of_all(order_, np.tile(loop[:, None], f.shape[1])),
-        _joined(fine), drawn_loops,
-        _archived_work(scene, *(np.concatenate(rows) for rows in taken.values())),
+        _joined(fine), drawn_loops, archived,
     )  # fmt: skip
-
-
-def _archived_work(scene: Scene, *of_unit_load: NDArray) -> dict[str, NDArray]:
-    """Work, breakaway and slope of strokes under the load, (loops, strokes), by path as archived."""
-    with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
-        dissipated, breakaway, slope = (scene.punch.load * rows for rows in of_unit_load)
-    first = last_cycle(scene.legs)
-    cycle = np.full(len(dissipated), np.nan) if first is None else dissipated[:, first:].sum(axis=1)
-    return {
-        runs.LOOP_WORK.path: dissipated, runs.LOOP_CYCLE.path: cycle,
-        runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
-    }  # fmt: skip
 
 
 def _of_all(order: Order, values: NDArray) -> NDArray:
@@ -310,20 +298,16 @@ def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArra
     return np.where((c > 0.0) & (not scene.steady), often, np.nan)
 
 
-def _laws(scene: Scene) -> Iterator[tuple[float, FrictionLaw, int | None]]:
-    """Laws to compute at each speed over c_s; and of how many laws each stands for, None for itself."""
-    friction = scene.friction
-    of_laws = speeds(scene) if friction.law.depends_on_speed else speeds(scene)[:1]
+def _laws(friction: Friction, of_laws: Sequence[float]) -> Iterator[tuple[float, FrictionLaw, int, bool]]:
+    """Speeds over c_s, laws to compute there, of how many laws each stands for, and True for arrays."""
     together = friction.law.broadcasts and friction.integrator == "exact"
     columns = friction.columns() if together else {}
     for c in of_laws:
-        if together:
-            for first in range(0, friction.count, _TOGETHER):
-                rows = slice(first, min(first + _TOGETHER, friction.count))
-                yield c, friction.together(columns, rows), rows.stop - rows.start
-        else:
-            for law in friction.laws():
-                yield c, law, None
+        for first in range(0, friction.count, _TOGETHER) if together else ():
+            rows = slice(first, min(first + _TOGETHER, friction.count))
+            yield c, friction.together(columns, rows), rows.stop - rows.start, True
+        for law in () if together else friction.laws():
+            yield c, law, 1, False
 
 
 def _joined(parts: list[NDArray], axis: int = -1) -> NDArray:

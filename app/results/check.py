@@ -94,30 +94,29 @@ class _Part:
         return np.concatenate([self._archive.rows(row, [path])[path] for row in each])
 
 
-def _recomputed_faults(part: _Part) -> Iterator[str]:
+def _of_part(part: _Part) -> Iterator[str]:
     """Differences between archived numbers and numbers computed again, one sentence each."""
+    plan = part.plan
     if runs.RECORD["c"].path in part.data and not len(part.data[runs.FAILURES.path]):
-        yield from _of_record(part.data, part.plan)
-    for methods, selected, quantities in _recomputed(part.plan):
-        for rows, computed in _computed(part.plan, part.data, methods, selected, quantities):
-            yield from _different(part, rows, computed)
-    if part.plan.fem and not part.scene.layers:
-        selected = _spread(part.plan.states, _most(part.plan.body.profile))
+        yield from _of_record(part.data, plan)
+    most_of_all = _most(plan.body.profile) if FLAT in plan.body.lacks else _FLAT
+    for method in (CLOSED_FORM, SIE):
+        # Residuals may be rounding alone; comparisons have them.
+        own = [row for row in plan.quantities if row.of and row.method == method and row.mode != ALONE]
+        if method == CLOSED_FORM:
+            own += [row for row in plan.quantities if row.method == LOCAL]
+        largest = [row for row in own if row.asked_by == YIELD]
+        others = [row for row in own if row not in largest]
+        numbers = sum(int(np.prod(plan.shape(row))) for row in others)
+        most = min(most_of_all, max(_NUMBERS // max(numbers, 1), _YIELD))
+        for rows, few in ((others, _LAYERED if method == SIE else most), (largest, _YIELD)):
+            methods, selected = (method,) * (method in plan.methods), _spread(plan.states, few)
+            for states_, computed in _computed(part, methods, selected, rows) if rows else ():
+                yield from _different(part, states_, computed)
+    if plan.fem and not part.scene.layers:
+        selected = _spread(plan.states, _most(plan.body.profile))
         yield from _of_invariants(part, selected)
         yield from _of_finite_elements(part, selected)
-
-
-def _of_warnings(archive: Archive, scene: Scene) -> Iterator[str]:
-    """Warnings of the scene that the archive lacks, one sentence each.
-
-    Sentences are compared without their numbers, which follow the order in which states were solved.
-    """
-    judge = Judge(scene, ())
-    judge.validity.see(archive.data)
-    archived = [*map(_without_numbers, _texts(archive, "warnings"))]
-    for text in judge.validity.words():
-        if _without_numbers(text) not in archived:
-            yield f'warnings does not have "{text}"'
 
 
 #: Words of earlier archives, and those that stand for them now.
@@ -162,30 +161,6 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
             )
 
 
-def _recomputed(plan: Plan) -> Iterator[tuple[tuple[str, ...], NDArray[np.int64], list[Quantity]]]:
-    """Numbers to compute again: methods, states and quantities."""
-    count, most_of_all = plan.states, _most(plan.body.profile) if FLAT in plan.body.lacks else _FLAT
-    for method in (CLOSED_FORM, SIE):
-        # Residuals may be rounding alone; comparisons have them.
-        own = [
-            quantity
-            for quantity in plan.quantities
-            if quantity.of and quantity.method == method and quantity.mode != ALONE
-        ]
-        if method == CLOSED_FORM:
-            own += [quantity for quantity in plan.quantities if quantity.method == LOCAL]
-        methods = (method,) if method in plan.methods else ()
-        largest = [quantity for quantity in own if quantity.asked_by == YIELD]
-        others = [quantity for quantity in own if quantity not in largest]
-        numbers = sum(int(np.prod(plan.shape(quantity))) for quantity in others)
-        most = min(most_of_all, max(_NUMBERS // max(numbers, 1), _YIELD))
-        if method == SIE:
-            most = _LAYERED
-        for quantities, few in ((others, most), (largest, _YIELD)):
-            if quantities:
-                yield methods, _spread(count, few), quantities
-
-
 def _most(profile: Any) -> int:
     """Number of states at most whose slow closed form is computed again."""
     return _SMOOTH if smooth(profile) else _KINKED
@@ -208,13 +183,10 @@ def _tasks(plan: Plan, selected: NDArray[np.int64]) -> Iterator[tuple[Task, NDAr
 
 
 def _computed(
-    plan: Plan,
-    data: Mapping[str, Any],
-    methods: Sequence[str],
-    selected: NDArray[np.int64],
-    quantities: Sequence[Quantity],
+    part: _Part, methods: Sequence[str], selected: NDArray[np.int64], quantities: Sequence[Quantity]
 ) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:
     """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
+    plan, data = part.plan, part.data
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
@@ -275,7 +247,7 @@ def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[st
     }  # fmt: skip
     both = {quantity.path: other for quantity, other in twins.items() if other in part.names}
     quantities = [QUANTITIES[path] for path in both]
-    for rows, computed in _computed(plan, data, (CLOSED_FORM,), selected, quantities):
+    for rows, computed in _computed(part, (CLOSED_FORM,), selected, quantities):
         intensities = [abs(values) for path, values in computed.items() if "K_I" in path]
         for path, exact in computed.items():
             size = np.max(intensities, axis=0) if "K_I" in path else np.abs(exact)
@@ -296,14 +268,14 @@ def _of_invariants(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
     rows = (*stresses.STRESSES_INSIDE[FEM], *stresses.INVARIANTS_INSIDE[FEM])
     if any(row.path not in part.names for row in rows):
         return
-    inside = [part.held(row.path, selected) for row in stresses.STRESSES_INSIDE[FEM]]
+    body = part.plan.body
+    inside = np.array([part.held(row.path, selected) for row in stresses.STRESSES_INSIDE[FEM]])
+    Y = part.data[stresses.INSIDE_Y.path]
+    solution: Any = SimpleNamespace(inside=inside, σ_ZZ=body.σ_ZZ(inside, Y))
     for row in stresses.INVARIANTS_INSIDE[FEM]:
         assert row.of
-        expected, held = (
-            row.of(SimpleNamespace(inside=inside), part.plan.body),
-            part.held(row.path, selected),
-        )
-        if not np.allclose(held, expected, rtol=1e-9, atol=1e-12, equal_nan=True):
+        held = part.held(row.path, selected)
+        if not np.allclose(held, row.of(solution, body), rtol=1e-9, atol=1e-12, equal_nan=True):
             yield f"{row.path} is not what the components give"
 
 
@@ -333,11 +305,8 @@ def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.i
             )
 
 
-#: States checked together.
-_ROWS = 1000
-
-#: Relative difference within which numbers that are computed again agree on any machine.
-_SAME = 1e-9
+#: States checked together; relative difference within which numbers computed again agree on any machine.
+_ROWS, _SAME = 1000, 1e-9
 
 
 def faults(path: Path) -> list[str]:
@@ -355,11 +324,18 @@ def faults(path: Path) -> list[str]:
             texts += _of_plan(archive, scene, plans)
             fits = not texts
             if fits and plans[0].methods:
-                texts += _of_warnings(archive, scene)
+                judge = Judge(scene, ())
+                judge.validity.see(archive.data)
+                # Numbers in them follow the order in which states were solved.
+                archived = {*map(_without_numbers, _texts(archive, "warnings"))}
+                given = [
+                    text for text in judge.validity.words() if _without_numbers(text) not in archived
+                ]
+                texts += [f'warnings does not have "{text}"' for text in given]
             for plan in plans if fits else ():
                 part = _Part(archive, plan)
                 name = f"with {plan.scene.variant}: " if len(plans) > 1 else ""
-                texts += [name + text for text in _recomputed_faults(part)]
+                texts += [name + text for text in _of_part(part)]
         return [*texts, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
@@ -411,19 +387,24 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
     rules = json.loads(archive.attributes["rules"])
     failures = archive.data.get(runs.FAILURES.path, ())
     worst: dict[str, float] = {}
+    balance = compare.BALANCE.limit
+    assert balance is not None
     for start in range(0, len(archive.data[SPEED.path]), _ROWS):
         rows = _solved(archive.rows(slice(start, start + _ROWS)), failures)
         if not len(rows[SPEED.path]):
             continue
         yield from (f"{name} is not finite in states {start} ..." for name in not_finite(rows))
-        yield from _otherwise(rows, start)
+        for name, row in table().items():
+            if row.of_data is None or any(path not in rows for path in (name, *row.needs)):
+                continue
+            if not np.allclose(rows[name], row.of_data(rows), rtol=_SAME, atol=1e-15, equal_nan=True):
+                yield f"{name} is not what {', '.join(row.needs)} give in states {start} ..."
         load = rows.get(LOAD.path, archive.attributes["load"])
         for name, value in compare.comparisons(rows, load, rules).items():
             rule = compare.RULES[name]
             worst[rule.text] = float(np.max([worst.get(rule.text, 0.0), value]))
-            limit = compare.BALANCE.limit or 0.0
-            if rule is compare.BALANCE and not value <= limit:  # a fault whatever the verdict
-                yield f"{rule.text} in states {start} ...: {value:.1e}, at most {limit:g}"
+            if rule is compare.BALANCE and not value <= balance:  # a fault whatever the verdict
+                yield f"{rule.text} in states {start} ...: {value:.1e}, at most {balance:g}"
     in_time = compare.comparisons(archive.data, archive.attributes["load"], IN_TIME & {*rules})
     worst |= {compare.RULES[name].text: value for name, value in in_time.items()}
     archived = _texts(archive, "comparisons")
@@ -452,15 +433,6 @@ def _solved(rows: dict[str, Any], failures: Sequence[str]) -> dict[str, Any]:
         name: values[~bad] if quantities[name].over[:1] == (STATE,) else values
         for name, values in rows.items()
     }
-
-
-def _otherwise(data: dict[str, Any], start: int) -> Iterator[str]:
-    """Numbers that do not follow from the datasets from which they were computed, one sentence each."""
-    for name, row in table().items():
-        if row.of_data is None or any(path not in data for path in (name, *row.needs)):
-            continue
-        if not np.allclose(data[name], row.of_data(data), rtol=_SAME, atol=1e-15, equal_nan=True):
-            yield f"{name} is not what {', '.join(row.needs)} give in states {start} ..."
 
 
 def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:

@@ -64,6 +64,11 @@ class Comparison:
             ]
             for key in dict.fromkeys(key for table in tables for key in table)
         }
+        #: Differences from the first [%] by head, of each other result; None where there are none.
+        self._off = {
+            key: [self._difference(first, other, n) for n, other in enumerate(others, 1)]
+            for key, (first, *others) in self._rows.items()
+        }
 
     @property
     def titles(self) -> list[str]:
@@ -81,7 +86,7 @@ class Comparison:
         """One row a pair: each quantity of every result, then its difference from the first [%]."""
         columns = []
         for key, row in self._rows.items():
-            for n, (column, percent) in enumerate(zip(row, self._differences(key))):
+            for n, (column, percent) in enumerate(zip(row, [None, *self._off[key]])):
                 if column is None:
                     continue
                 head, name = ", ".join([*key, self.labels[n]]), f"{column.name}_{n + 1}"
@@ -91,17 +96,13 @@ class Comparison:
                     columns.append(Column(f"{head}, difference", percent, "%", f"{name}_difference"))
         return columns
 
-    def _differences(self, key: tuple[str, ...]) -> list[NDArray[np.float64] | None]:
-        """Difference of each result from the first [%], of places over the half-width, (pairs,).
-
-        NaN where units differ; None of the first itself, of texts, and of what one of both has not.
-        """
-        first, *others = self._rows[key]
-        return [None, *(self._difference(first, other, n) for n, other in enumerate(others, 1))]
-
     def _difference(
         self, first: Column | None, other: Column | None, n: int
     ) -> NDArray[np.float64] | None:
+        """Difference of a result from the first [%], of places over the half-width, (pairs,).
+
+        NaN where units differ; None of texts, and of what one of both has not.
+        """
         if not first or not other or not _is_number(other):
             return None
         a, b = (np.asarray(column.values, dtype=float) for column in (first, other))
@@ -132,7 +133,7 @@ class Comparison:
             if not any(column and column.path and column.path in self._by for column in columns):
                 texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
                 first = next(column for column in columns if column)
-                shown.append((first, [*zip(*texts)], self._differences(key)[1:]))
+                shown.append((first, [*zip(*texts)], self._off[key]))
         for p, title in enumerate(self.titles[:LIMIT]):
             rows = []
             for column, texts_of_pairs, percents in shown:

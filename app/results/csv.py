@@ -87,9 +87,9 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
 
 def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[_Column]:
     """Columns that number states, interfaces, loops, starts and laws; the outermost begin at start."""
-    places = np.indices(shape, sparse=True)
-    places = [places[0] + start, *places[1:]]
-    return [(_NUMBERED[name], at) for name, at in zip(over, places) if name in _NUMBERED]
+    first, *others = np.indices(shape, sparse=True)
+    numbers = zip(over, (first + start, *others))
+    return [(_NUMBERED[name], at) for name, at in numbers if name in _NUMBERED]
 
 
 def _parameters(data: dict[str, Any], units: Units, block: slice, axes: int) -> list[_Column]:

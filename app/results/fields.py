@@ -31,7 +31,8 @@ from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, finite_elements_installed, listed
 from ..methods import METHODS
-from ..plan.plan import Plan, farthest_inside, make_plan
+from ..plan.elements import farthest_inside
+from ..plan.plan import Plan, make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.variants import of_state
 from ..scene.scene import FRICTIONS, Scene
@@ -137,8 +138,9 @@ def _solved(
         task = tasks[parameters["c"]]
         task = replace(task, body=task.body.loaded(parameters.get("load")))
         degree = degrees[i] or plan.fem.degrees[task.number] + more
-        with method.one_state(task, parameters["g"], degree) as solution:
-            yield Solved(scene, number, parameters, task, degree, *solution, method.work.comm)
+        with method.one_state(task, parameters["g"], degree) as (space, fields, weights, pressure):
+            comm = method.work.comm
+            yield Solved(scene, number, parameters, task, degree, space, fields, weights, pressure, comm)
 
 
 def _refuse(scene: Scene, degrees: Sequence[int | None]) -> None:

@@ -25,7 +25,6 @@ from galinx.solvers.parameters import Parameter, parameters
 from ..console import Progress
 from ..errors import BadInput, excerpt, listed, nearest, short
 from ..scene import read as scenes
-from ..scene.units import to_si
 from ..scene.values import Choice, Number, Rows
 from ..text_table import TextTable, read_table
 
@@ -60,10 +59,6 @@ class Table:
     timed: bool
     notes: tuple[str, ...] = ()
 
-    def at_speed(self, V: float) -> "Table":
-        """Table of a slip at a speed [m/s]."""
-        return replace(self, measured=replace(self.measured, t=self.measured.t / V))
-
 
 def read(path: Path) -> Table:
     """Read a table of measured friction.
@@ -85,7 +80,8 @@ def read(path: Path) -> Table:
         if name != "n" or unit:
             columns.setdefault(kind, n)
 
-    def numbers(column: int, unit: str) -> NDArray[np.float64]:
+    def numbers(kind: str, unit: str) -> NDArray[np.float64]:
+        column = columns[kind]
         values = table.numbers(column, unit)
         if not table.units[column] and len(values):
             notes.append(
@@ -99,10 +95,22 @@ def read(path: Path) -> Table:
         raise BadInput(f"{path}, line 1: found the columns {excerpt(table.names)}, expected {_FORM}")
     if "friction" in columns:
         f = table.numbers(columns["friction"], "")
+    elif "load" not in columns:
+        raise BadInput(f"{path}, line 1: found a friction force without a load, expected {_FORM}")
     else:
-        f = _force_over_load(table, columns["force"], columns.get("load"), forces)
-    clock = numbers(columns["time"], "s") if timed else numbers(columns["slip"], "m")
-    X = numbers(columns["position"], "m") if timed else clock
+        both = columns["force"], columns["load"]
+        units = {forces[n] for n in both}
+        (unit,) = units if len(units) == 1 else ("",)
+        if not unit:
+            found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
+            raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")
+        force, load = (table.numbers(n, unit) for n in both)
+        if not load.all():
+            line = table.line(int(np.flatnonzero(load == 0.0)[0]))
+            raise BadInput(f"{path}, line {line}: found no load, expected one")
+        f = force / np.abs(load)
+    clock = numbers("time", "s") if timed else numbers("slip", "m")
+    X = numbers("position", "m") if timed else clock
     back = np.flatnonzero(np.diff(clock) <= 0.0)
     if len(clock) < 3 or len(back):
         row = int(back[0]) + 1 if len(clock) >= 3 else len(clock) - 1
@@ -125,22 +133,6 @@ def _unit_of_force(table: TextTable, column: int) -> str | None:
             table.factor(column, unit)
             return unit
     return None
-
-
-def _force_over_load(
-    table: TextTable, force: int, load: int | None, units: Sequence[str | None]
-) -> NDArray[np.float64]:
-    """Friction force over the size of the normal load."""
-    if load is None:
-        raise BadInput(f"{table.path}, line 1: found a friction force without a load, expected {_FORM}")
-    unit = units[force]
-    if unit is None or units[load] != unit:
-        found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in (force, load))
-        raise BadInput(f"{table.path}, line 1: found {found}, expected both in N, or both in N/m")
-    N = np.abs(table.numbers(load, unit))
-    if not N.all():
-        raise BadInput(f"{table.path}, line {table.line(int(np.argmin(N)))}: found no load, expected one")
-    return table.numbers(force, unit) / N
 
 
 #: Name that stands for every law.
@@ -211,7 +203,15 @@ class Fit:
         Raises:
             BadInput: the file is no scene, or no scene with this law.
         """
-        return _section(self) if path is None else _with_law(Path(path), _section(self))
+        if path is None:
+            return _section(self)
+        from ..scene.changes import with_law  # a slow import
+
+        scenes.read(path := Path(path))
+        # The file's line ends stay.
+        text = with_law(files.read(path).decode("utf-8-sig"), _section(self), str(path))
+        scenes.parse(scenes.filled(text, path.parent, str(path)), f"{path} with this law")
+        return text
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -273,8 +273,18 @@ def fit(
     names = [*LAWS] if model == ALL else [model]
     # Parameters of each law that it has, from texts and numbers.
     fixed, started = (_values(names, given or {}) for given in (fix, start))
-    tables, speedless = _at_speeds([_source(source) for source in sources], speed)
-    _resists(tables)
+    given_tables = [
+        Table("arrays", s, True) if isinstance(s, Measured) else read(Path(s)) for s in sources
+    ]
+    tables, speedless = _at_speeds(given_tables, speed)
+    for table in tables:  # friction takes work from the motion: it is positive forward
+        X, f = table.measured.X, table.measured.f
+        work = np.diff(X) * 0.5 * (f[1:] + f[:-1])
+        if np.nansum(work) < -_DRIVES * np.nansum(np.abs(work)):
+            raise BadInput(
+                f"{table.name}: found friction that drives the motion, f mostly negative where X "
+                "grows, expected it positive there; change the sign of f or of X"
+            )
     fits: list[Fit] = []
     failed: dict[str, str] = {}
     progress = progress or Progress(quiet=True)
@@ -304,26 +314,6 @@ def fit(
     return replace(best, others=tuple(others), failed=failed)
 
 
-def _source(source: str | Path | Measured) -> Table:
-    return Table("arrays", source, True) if isinstance(source, Measured) else read(Path(source))
-
-
-def _resists(tables: Iterable[Table]) -> None:
-    """Friction takes work from the motion: it is positive forward.
-
-    Raises:
-        BadInput: in a table it does work on the whole.
-    """
-    for table in tables:
-        X, f = table.measured.X, table.measured.f
-        work = np.diff(X) * 0.5 * (f[1:] + f[:-1])
-        if np.nansum(work) < -_DRIVES * np.nansum(np.abs(work)):
-            raise BadInput(
-                f"{table.name}: found friction that drives the motion, f mostly negative where X "
-                "grows, expected it positive there; change the sign of f or of X"
-            )
-
-
 def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool]:
     """Tables of slips at their speeds, others as they are; and True where a slip has no speed.
 
@@ -347,7 +337,8 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
         if speeds[-1] <= 0.0:
             raise BadInput(f"--speed: found {speeds[-1]:g} m/s, expected > 0")
     left = iter(speeds * slips if len(speeds) == 1 else speeds)
-    moving = [table if table.timed or not speeds else table.at_speed(next(left)) for table in tables]
+    clocks = [t.measured.t / (1.0 if t.timed or not speeds else next(left)) for t in tables]
+    moving = [replace(t, measured=replace(t.measured, t=clock)) for t, clock in zip(tables, clocks)]
     return tuple(moving), bool(slips and not speeds)
 
 
@@ -370,44 +361,25 @@ def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         BadInput: a key is of no law, or a value none of that parameter.
     """
-    declared = {key: one for name in names for key, one in parameters(LAWS[name]).items()}
-    values = {}
+    declared = {key: entry for name in names for key, entry in parameters(LAWS[name]).items()}
+    values: dict[str, Any] = {}
     for key, value in given.items():
         if key not in declared:
             raise BadInput(f"found {short(key)!r}, expected KEY=VALUE with {', '.join(declared)}")
+        parameter = declared[key]
         try:
-            values[key] = _value(declared[key], value)
+            if parameter.options:
+                values[key] = Choice(parameter.options)(value)
+            elif parameter.columns:
+                table = json.loads(value) if isinstance(value, str) else value
+                values[key] = Rows(parameter.columns)([list(row) for row in table])
+            else:
+                with suppress(TypeError, ValueError):  # else a text with a unit
+                    value = float(value)
+                values[key] = Number(parameter.unit, parameter.range)(value)
         except ValueError as error:
             raise BadInput(f"{key}: {error}") from None
     return values
-
-
-def _value(parameter: Parameter, value: Any) -> Any:
-    if parameter.options:
-        return Choice(parameter.options)(value)
-    if parameter.columns:
-        table = json.loads(value) if isinstance(value, str) else value
-        return Rows(parameter.columns)([list(row) for row in table])
-    with suppress(TypeError, ValueError):  # a text with a unit
-        value = float(value)
-    number = to_si(value, parameter.unit)
-    if number not in parameter.range:
-        raise ValueError(f"found {number:g}, expected {parameter.range}")
-    return number
-
-
-def _with_law(path: Path, section: str) -> str:
-    """Text of a scene with the law of a section; the file's line ends stay.
-
-    Raises:
-        BadInput: the file is no scene, or no scene with this law.
-    """
-    from ..scene.changes import with_law  # a slow import
-
-    scenes.read(path)
-    text = with_law(files.read(path).decode("utf-8-sig"), section, str(path))
-    scenes.parse(scenes.filled(text, path.parent, str(path)), f"{path} with this law")
-    return text
 
 
 def _section(one: Fit) -> str:

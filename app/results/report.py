@@ -9,7 +9,7 @@ import json
 import re
 from base64 import b64encode
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from gzip import compress
 from importlib.util import find_spec
@@ -43,14 +43,12 @@ from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_al
 from ..figures.stresses import (
     SHOWN,
     Fields,
-    Shown,
-    limits,
     map_names,
     stresses_along,
     surface_names,
-    surface_panel,
+    surface_panels,
 )
-from ..figures.style import as_hex, looks
+from ..figures.style import as_hex
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
@@ -113,7 +111,10 @@ def chart(panel: Panel) -> dict[str, Any]:
     layout: dict[str, Any] = {
         "title": {"text": plain(panel.title)} if panel.title else {},
         "xaxis": _axis(plain(panel.x or ""), panel.xlim, "x" in panel.log),
-        "yaxis": _axis(_lines(plain(panel.y or "") + unit), panel.ylim, "y" in panel.log),
+        # In lines that are no longer than a chart is high.
+        "yaxis": _axis(
+            folded(plain(panel.y or "") + unit, _LINE).replace("\n", "<br>"), panel.ylim, "y" in panel.log
+        ),
         "shapes": [_shape("y", "rect", "x", *band) for band in panel.bands]
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],
@@ -169,11 +170,6 @@ def _axis(title: str, ends: tuple[float, float] | None, logarithmic: bool) -> di
     return axis | ({"range": _numbers(ends, 6)} if ends else {})
 
 
-def _lines(title: str) -> str:
-    """Title of a vertical axis, in lines that are no longer than a chart is high."""
-    return folded(title, _LINE).replace("\n", "<br>")
-
-
 def _shape(across: str, kind: str, axis: str, low: float, high: float) -> dict[str, Any]:
     """Grey line or band all across a chart."""
     return {
@@ -203,28 +199,22 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     fields = Fields(of) if below else None
     sizes = [4 * len(surface.X) if surface else 1, fields.X.size * fields.Y.size if fields else 1]
     shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
-    varied, look = labels.varied(), looks(1)[0]
+    varied = labels.varied()
     made: dict[str, Any] = {
         "states": [f"state {i}{': ' * bool(varied)}{labels.text(i, varied)}" for i in shown],
         "of": len(labels.all), "surface": [], "maps": [],
     }  # fmt: skip
     for name in surface.values if surface else ():
         assert surface
-        ylim = limits(surface.X, surface.drawn(name)[shown])
-        method = next(iter(surface.values[name]))
-        panels = [surface_panel(name, [Shown(surface, i, look, METHODS[method])], ylim) for i in shown]
-        made["surface"].append([chart(panel) for panel in panels])
-        for drawn in made["surface"][-1]:
-            for trace in drawn["data"]:
-                trace["showlegend"] = bool(trace["name"])
+        label = METHODS[next(iter(surface.values[name]))]
+        charts = [chart(panel) for panel in surface_panels(surface, name, shown, label)]
+        for trace in (trace for drawn in charts for trace in drawn["data"]):
+            trace["showlegend"] = bool(trace["name"])
+        made["surface"].append(charts)
     for name in (name for name in ("von_mises", *SHOWN) if name in below):
         assert fields
-        values, limit = fields.of_states(name, fields.methods[0], shown)
-        label = fields.label(name)
-        panels = [
-            fields.panel(name, of_state, i, limit, label=label) for i, of_state in zip(shown, values)
-        ]
-        made["maps"].append({"label": plain(label), "charts": [chart(panel) for panel in panels]})
+        charts = [chart(panel) for panel in fields.panels(name, shown)]
+        made["maps"].append({"label": plain(fields.label(name)), "charts": charts})
     return made
 
 
@@ -267,17 +257,16 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     heads = [{"head": "state", "name": "state", "csv": "state", "digits": None}] + [
         {"head": c.label, "name": c.name or c.head, "csv": c.label, "digits": c.digits} for c in shown
     ]
-    cells = [list(range(kept)), *([_cell(value) for value in c.values[:kept]] for c in shown)]
+    cells = [list(range(kept))]
+    for column in shown:
+        values = column.values[:kept]
+        cells.append(list(values) if isinstance(values[0], str) else _numbers(values, 12))
     note = counted(count, "state")
     if same:
         note += f"; the same in all: {', '.join(f'{c.head} {c.words(0)}' for c in same if c.words(0))}"
     if kept < count:
         note += f"; the first {kept} are here, the command csv writes all"
     return {"columns": heads, "note": f"{note}.", "data": {"columns": heads, "rows": list(zip(*cells))}}
-
-
-def _cell(value: Any) -> Any:
-    return value if isinstance(value, str) else _numbers([value], 12)[0]
 
 
 #: Meanings of a report's terms; those that it does not use are left out.
@@ -301,102 +290,83 @@ TERMS = (
 )  # fmt: skip
 
 
-class Report:
-    """A report in the making.
+def picture(drawing: Drawing, png: bytes | None = None) -> dict[str, Any]:
+    """A figure as a page shows it; the figure can be saved elsewhere afterwards.
+
+    Args:
+        drawing: which.
+        png: its file's bytes; without it curves are charts, and all else is drawn for the page.
+    """
+    panels: Sequence[Panel] = getattr(drawing.figure, "panels", ())
+    charts = [chart(panel) for panel in panels if panel.curves and not panel.map]
+    source, width = "", None
+    if png is not None and not drawing.pixels:  # as wide as it would be if it were drawn for the page
+        source, charts, width = embedded(png), [], round(96.0 * drawing.figure.get_figwidth())
+    elif drawing.pixels:
+        source, charts = embedded(content(drawing.figure, "png", 160)), []
+    elif not charts:
+        source = embedded(content(drawing.figure, "svg", transparent=True), "svg+xml")
+    return {
+        "name": drawing.name, "caption": drawing.full_caption, "pixels": drawing.pixels,
+        "charts": charts, "source": source, "width": width,
+    }  # fmt: skip
+
+
+def page(
+    data: dict[str, Any], attributes: dict[str, Any], scene: Scene, pictures: Iterable[dict[str, Any]],
+    sheets: Sequence[Sheet] | None = None, dimensionless: bool = False,
+) -> str:  # fmt: skip
+    """A report as HTML.
 
     Args:
         data, attributes: datasets by path, and attributes of the root, of an archive.
         scene: of the archive.
+        pictures: figures, of :func:`picture`.
         sheets: tables of accuracy; the published ones where the archive has their states.
         dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
     """
-
-    def __init__(
-        self,
-        data: dict[str, Any],
-        attributes: dict[str, Any],
-        scene: Scene,
-        sheets: list[Sheet] | None = None,
-        dimensionless: bool = False,
-    ) -> None:
-        self._data, self._attributes, self._scene = data, attributes, scene
-        self._sheets = _published(data, scene) if sheets is None else sheets
-        self._units = Units(scene.body, data, dimensionless)
-        self._pictures: list[dict[str, Any]] = []
-
-    def add(self, drawing: Drawing, png: bytes | None = None) -> None:
-        """Add a figure; it can be saved elsewhere afterwards.
-
-        Args:
-            drawing: which.
-            png: its file's bytes; without it curves are charts, and all else is drawn for the page.
-        """
-        as_picture = png is not None or drawing.pixels
-        panels: Sequence[Panel] = () if as_picture else getattr(drawing.figure, "panels", ())
-        picture: dict[str, Any] = {
-            "name": drawing.name, "caption": drawing.full_caption, "pixels": drawing.pixels,
-            "charts": [chart(panel) for panel in panels if panel.curves and not panel.map],
-            "source": "", "width": None,
-        }  # fmt: skip
-        if png is not None and not drawing.pixels:  # as wide as it would be if it were drawn for the page
-            width = round(96.0 * drawing.figure.get_figwidth())
-            picture |= {"source": embedded(png), "width": width}
-        elif not picture["charts"]:
-            picture["source"] = (
-                embedded(content(drawing.figure, "png", 160))
-                if drawing.pixels
-                else embedded(content(drawing.figure, "svg", transparent=True), "svg+xml")
-            )
-        self._pictures.append(picture)
-
-    def text(self) -> str:
-        """The page as HTML."""
-        attributes, data, scene = self._attributes, self._data, self._scene
-        seconds = data[runs.SECONDS.path]
-        longest = max(float(seconds.max()), 1e-9)
-        large = explorer(Archive(data, scene, Choice(units=self._units)))
-        # Charts with the slider show these.
-        covered = {
-            "surface" if large and large["surface"] else "",
-            "inside" if large and large["maps"] else "",
-        }
-        pictures = [picture for picture in self._pictures if picture["name"] not in covered]
-        few = len(data[states.FRICTION.path]) <= BESIDE
-        tables = [states_sheet(data, self._units, "Every state", _WIDE)] if few else []
-        tables += [f(data, self._units, _WIDE * few) for f in (starts_sheet, limits_sheet)]
-        versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
-        content = {
-            "title": attributes["title"] or "A sliding punch",
-            "verdict": attributes["verdict"],
-            "checked": checked(data, attributes),
-            "summary": summary(data, scene),
-            "warnings": json.loads(attributes["warnings"]),
-            "reasons": json.loads(attributes["verdict_reasons"]),
-            "tables": [sheet for sheet in tables if sheet.rows],
-            "sheets": self._sheets,
-            "states": None if few else states_table(data, self._units),
-            "explorer": large,
-            "pictures": pictures,
-            "times": [
-                (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
-                for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
-            ],
-            "done": list(Counter(data[runs.DONE.path].tolist()).items()),
-            "skipped": data[runs.SKIPPED.path].tolist(),
-            "versions": f"{', '.join(map(' '.join, versions.items()))}; {attributes['machine']}; "
-            + attributes.get("created", "not archived"),
-            "scene": data[runs.SCENE.path],
-            "program": program(),
-        }
-        captions = [picture["caption"] for picture in pictures]
-        words = str(content | {"pictures": captions, "explorer": large and "σ_XX, a, c, X/L"})
-        terms = [(t, meaning) for t, meaning in TERMS if any(word in words for word in t.split(", "))]
-        environment = Environment(
-            loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
-        )
-        environment.filters["typeset"] = markup
-        page = environment.get_template("page.html")
-        return page.render(content | {"terms": terms, "plotly": _plotly()})
+    units, seconds = Units(scene.body, data, dimensionless), data[runs.SECONDS.path]
+    longest = max(float(seconds.max()), 1e-9)
+    large = explorer(Archive(data, scene, Choice(units=units)))
+    # Charts with the slider show these.
+    covered = {"surface": large and large["surface"], "inside": large and large["maps"]}
+    shown = [each for each in pictures if not covered.get(each["name"])]
+    few = len(data[states.FRICTION.path]) <= BESIDE
+    tables = [states_sheet(data, units, "Every state", _WIDE)] if few else []
+    tables += [f(data, units, _WIDE * few) for f in (starts_sheet, limits_sheet)]
+    versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
+    parts = {
+        "title": attributes["title"] or "A sliding punch",
+        "verdict": attributes["verdict"],
+        "checked": checked(data, attributes),
+        "summary": summary(data, scene),
+        "warnings": json.loads(attributes["warnings"]),
+        "reasons": json.loads(attributes["verdict_reasons"]),
+        "tables": [sheet for sheet in tables if sheet.rows],
+        "sheets": _published(data, scene) if sheets is None else sheets,
+        "states": None if few else states_table(data, units),
+        "explorer": large,
+        "pictures": shown,
+        "times": [
+            (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
+            for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
+        ],
+        "done": list(Counter(data[runs.DONE.path].tolist()).items()),
+        "skipped": data[runs.SKIPPED.path].tolist(),
+        "versions": f"{', '.join(map(' '.join, versions.items()))}; {attributes['machine']}; "
+        + attributes.get("created", "not archived"),
+        "scene": data[runs.SCENE.path],
+        "program": program(),
+    }
+    captions = [each["caption"] for each in shown]
+    words = str(parts | {"pictures": captions, "explorer": large and "σ_XX, a, c, X/L"})
+    terms = [(t, meaning) for t, meaning in TERMS if any(word in words for word in t.split(", "))]
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
+    )
+    environment.filters["typeset"] = markup
+    template = environment.get_template("page.html")
+    return template.render(parts | {"terms": terms, "plotly": _plotly()})
 
 
 def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:

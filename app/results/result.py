@@ -213,13 +213,12 @@ class Result:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from .report import Report
+        from .report import page, picture
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
-        report = Report(self.data, self.attributes, self.scene, dimensionless=dimensionless)
-        for drawing in self.drawings(dimensionless, figures=("all",)):
-            report.add(drawing)
-        target.write(report.text().encode())
+        pictures = map(picture, self.drawings(dimensionless, figures=("all",)))
+        text = page(self.data, self.attributes, self.scene, pictures, dimensionless=dimensionless)
+        target.write(text.encode())
 
     def fields(
         self,

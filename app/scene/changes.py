@@ -1,7 +1,7 @@
 """Changes of a scene's text, made where the value stands; comments and layout stay."""
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import tomlkit
@@ -97,7 +97,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         tree = tomlkit.parse(text)
         values = _keys(tree)
         keys = [*values]
-        changes = {_own_name(key, keys): value for key, value in changes.items()}
+        own = {key: _ONE_NUMBER.get(key, key) for key in changes}  # by the name that the scene has
+        changes = {own[key] if own[key] in keys else key: value for key, value in changes.items()}
         if stale := [path for path in _stale(values, changes) if path in keys]:
             changes = dict.fromkeys(stale) | dict(changes)
         for path, value in changes.items():
@@ -110,12 +111,6 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         raise BadInput(f"{name} cannot be changed: {error}") from None
     except RecursionError:
         raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
-
-
-def _own_name(key: str, keys: Collection[str]) -> str:
-    """Name by which a scene of these keys has the number of a key."""
-    other = _ONE_NUMBER.get(key, key)
-    return other if other in keys else key
 
 
 #: Keys that name a model, and the models by name.

@@ -294,12 +294,6 @@ class Friction:
         """Values of each parameter by key, for every product that is computed."""
         return [self.parameters | table for table in self.vary] or [self.parameters]
 
-    @cached_property
-    def _listed(self) -> list[tuple[Any, ...]]:
-        """Parameters of every law of the tables, each law once."""
-        every = (product(*lists.values()) for lists in self._products)
-        return list(dict.fromkeys(chain.from_iterable(every)))
-
     @property
     def values(self) -> dict[str, tuple[Any, ...]]:
         """All values that a parameter takes, by key."""
@@ -311,12 +305,13 @@ class Friction:
     @property
     def count(self) -> int:
         """Number of laws."""
-        return len(self._listed) if self.vary else prod(map(len, self.parameters.values()))
+        return len([*self._every]) if self.vary else prod(map(len, self.parameters.values()))
 
     @property
     def _every(self) -> Iterable[tuple[Any, ...]]:
-        """Parameters of every law; the last changes fastest."""
-        return self._listed if self.vary else product(*self.parameters.values())
+        """Parameters of every law, each law once; the last changes fastest."""
+        every = (product(*lists.values()) for lists in self._products)
+        return dict.fromkeys(chain.from_iterable(every)) if self.vary else next(every)
 
     def laws(self) -> Iterator[FrictionLaw]:
         """Every law by itself, in the order of :meth:`columns`.

@@ -188,7 +188,7 @@ def _draw(
     from ..figures.files import save
     from ..figures.numerics import mesh
     from ..figures.stresses import inside as draw_inside
-    from ..results.report import Report
+    from ..results.report import page, picture
     from .drawings import of_study
 
     drawings, plain = [], Choice()
@@ -198,10 +198,8 @@ def _draw(
     drawings.append(draw_inside(Archive(inside.data, inside.scene, plain)))
     drawings.append(mesh(Archive(study.data, study.scene, plain)))
     pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
-    report = Report(study.data, study.attributes, study.scene, list(sheets), dimensionless=True)
-    for drawing in drawings:
-        report.add(drawing, pixels[drawing.name])
-    return report.text()
+    pictures = [picture(drawing, pixels[drawing.name]) for drawing in drawings]
+    return page(study.data, study.attributes, study.scene, pictures, sheets, dimensionless=True)
 
 
 def _beside() -> list[Scene]:

@@ -33,7 +33,7 @@ from ..errors import UnreadableArchive, refused
 from ..quantities import declared, large, of_states, table
 from ..quantities.quantity import STATE
 from ..quantities.runs import SCENE
-from ..target import Target, as_target
+from ..target import Target
 
 
 class PatientFile(io.RawIOBase):
@@ -165,7 +165,7 @@ class Writer:
     """
 
     def __init__(self, path: Path | Target, folder: Path | None = None) -> None:
-        self._target = as_target(path)
+        self._target = path if isinstance(path, Target) else Target(path)
         self.path = self._target.path
         self._new = NewFile(self._target.place, folder)
         self._bytes = 0

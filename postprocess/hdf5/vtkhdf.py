@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from galinx.files import NewFile
 
 from ..errors import refused
-from ..target import Target, as_target
+from ..target import Target
 from .archive import PatientFile
 
 #: Layouts: of one grid, which VTK reads from 9.1 on; of a series, which it reads from 9.3 on.
@@ -85,7 +85,7 @@ def write(
         UnwritableArchive: the file system refused.
         KeyError: an array is not in ``about``.
     """
-    target, needed = as_target(path), 0
+    target, needed = path if isinstance(path, Target) else Target(path), 0
     try:
         with NewFile(target.place) as new:
             with PatientFile(new.temporary) as disk:

@@ -27,7 +27,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
 from .panels import Panels, stretched
 from .pressure import Pressure
@@ -36,28 +35,13 @@ from .pressure import Pressure
 _STEPS = 80
 
 
-def in_plane(
-    response: HalfPlane, g: Any, σ_YY: NDArray, H: NDArray, strain: Any = 0.0
-) -> NDArray[np.float64]:
-    """In-plane stress over N/(2a) on the surface.
-
-    Args:
-        response: of the surface's solid.
-        g: σ_XY/σ_YY under the punch.
-        σ_YY: contact stress over N/(2a).
-        H: its Hilbert transform.
-        strain: strain μ u,X over N/(2a) that layers add.
-    """
-    return response.σ_XX(response.strain(g, σ_YY, H) + strain, σ_YY, g * σ_YY)
-
-
 @dataclass(frozen=True)
 class FlatPunch(EdgeExponents, Pressure):
     """Pressure of a flat punch at one speed and friction, or at several frictions."""
 
     def σ_XX(self, r: ArrayLike) -> NDArray[np.float64]:
         """In-plane stress over N/(2a) on the whole surface; NaN where it is infinite (Eq 32)."""
-        return in_plane(self.response, self.g, self.σ_YY(r), self.hilbert(r))
+        return self.response.in_plane(self.g, self.σ_YY(r), self.hilbert(r))
 
     def series(self, r: NDArray) -> Any:
         """Amplitude of the contact stress over N/(2a) (Eq 55).
@@ -95,10 +79,14 @@ class FlatPunch(EdgeExponents, Pressure):
         Returns:
             Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
         """
-        by_pressure = self.response.strain(self.g, 1.0, self._cot)
-        size = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
-        log_ratio = np.log(strain) - np.log(size)  # their ratio may overflow
+        log_ratio = np.log(strain) - np.log(self._strain)  # their ratio may overflow
         return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
+
+    @cached_property
+    def _strain(self) -> Any:
+        """Amplitude of -μ u,X over N/(2a) under the punch, positive."""
+        by_pressure = self.response.strain(self.g, 1.0, self._cot)
+        return np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
 
     @staticmethod
     def _within(own: Any, other: Any, level: Any) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ from ..errors import SolveError
 from ..profiles import check_reach, cusp, jumps
 from ..profiles.punches import Flat, Parabolic
 from ..solids.half_plane import HalfPlane
-from .closed_form import FlatPunch, FreeEnds, Weighted, in_plane
+from .closed_form import FlatPunch, FreeEnds, Weighted
 from .ends import Punch, Rule, free_ends
 from .panels import Panels, panels_of_slope
 from .pressure import Pressure
@@ -90,7 +90,7 @@ class Group:
         r = off_tips(r, self.pressure.tips)
         σ_YY = np.where(np.abs(r) < 1.0, self.pressure.σ_YY(r), 0.0)
         ratio, H, C = self.pressure.transforms(self.g[:, None], r)
-        σ_XX = in_plane(self.response, ratio, σ_YY, H, self.response.m * C + self.strain(r))
+        σ_XX = self.response.in_plane(ratio, σ_YY, H, self.response.m * C + self.strain(r))
         return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
 
     def strain(self, r: NDArray) -> Any:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,14 +23,11 @@ from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
-from .solution import Contact, Solver, Task, solved_once
+from .solution import InPunch, Solver, Task, solved_once
 from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
-from .yielding import Strength, StrengthOfLayers
 
 #: Most points inside whose potentials are held in memory at a time.
 _TOGETHER = 20_000
-#: Least distance over a from an end or a kink at which stresses are evaluated.
-_NEAREST = 1e-7
 #: Signs of σ_XX, σ_YY, σ_XY of a field mirrored at Y = 0.
 _MIRROR = np.array([1.0, 1.0, -1.0])[:, None, None]
 
@@ -46,11 +42,20 @@ class ClosedForm:
 
     solution: Callable[[Task, NDArray, NDArray | None], Any]
 
-    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
-        def states(g: NDArray, load: NDArray | None = None) -> Any:
-            return self.solution(task, g, load)
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
+        return nullcontext(_AtSpeed(task, self.solution))
 
-        return nullcontext(SimpleNamespace(states=states, record=dict))
+
+@dataclass(frozen=True)
+class _AtSpeed:
+    task: Task
+    solution: Callable[[Task, NDArray, NDArray | None], Any]
+
+    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
+        return self.solution(self.task, g, load)
+
+    def record(self) -> dict[str, Any]:
+        return {}
 
 
 class ExactSolution:
@@ -122,8 +127,11 @@ class ExactSolution:
 
         Under flat punches only.
         """
-        flat = FlatPunch(self.task.response, self.g)
-        return np.column_stack(flat.strained_within(strain / self.task.body.strain))
+        return np.column_stack(self._flat.strained_within(strain / self.task.body.strain))
+
+    @cached_property
+    def _flat(self) -> FlatPunch:
+        return FlatPunch(self.task.response, self.g)
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -202,30 +210,38 @@ class ExactSolution:
         return self._body.σ_ZZ(self.inside, self.places.points[:, 1])
 
     @cached_property
-    def strength(self) -> Strength:
-        """Yield of the states, which is searched for at places of each."""
-        return self._yield(self._each.contacts, self.task.body)
+    def strength(self) -> Any:
+        """Yield of the states."""
+        return self.task.body.strength(self)
 
     @cached_property
-    def strength_of_punch(self) -> Strength:
+    def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
-        mirrored = self._yield(self._each.contacts.in_punch, self.task.body.of_punch)
-        turns = mirrored.turns and replace(mirrored.turns, σ=_MIRROR * mirrored.turns.σ)
-        return replace(mirrored, field=lambda points: _MIRROR * mirrored.field(points), turns=turns)
+        contacts = self._each.contacts.in_punch
+        turns = _turns_of(contacts)
 
-    @property
+        def stresses(points: NDArray) -> NDArray[np.float64]:
+            return _MIRROR * contacts.stresses(points[..., 0], points[..., 1])
+
+        turns = turns and replace(turns, σ=_MIRROR * turns.σ)
+        return self.task.body.of_punch.strength(InPunch(self, stresses, turns, self.nearest))
+
+    #: Least distance over a from an end or a kink at which stresses are evaluated.
+    nearest = 1e-7
+
+    @cached_property
     def _each(self) -> "ExactSolution":
-        """The same states, none of them similar to another."""
+        """The states, of which none shares its contact with a similar one."""
         return self if isinstance(self._rows, slice) else ExactSolution(self.task, self.g)
 
-    def _yield(self, contacts: Contacts, body: Contact) -> Strength:
-        def field(points: NDArray) -> NDArray[np.float64]:
-            return contacts.stresses(points[..., 0], points[..., 1])
+    @property
+    def yield_turns(self) -> Turns | None:
+        """Limits of stresses at free ends and under kinks; None where there are none."""
+        return self._each._turns
 
-        return Strength(
-            field, body, contacts.groups[0].response, contacts.of("g"), self.local, self.half_width,
-            _turns_of(contacts), _NEAREST,
-        )  # fmt: skip
+    def stresses(self, points: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY, (3, states, n), at points with Y <= 0, (1 or states, n, 2)."""
+        return self._each.contacts.stresses(points[..., 0], points[..., 1])
 
 
 def _turns_of(contacts: Contacts) -> Turns | None:
@@ -402,15 +418,7 @@ class LayeredSolution(ExactSolution):
             σ_ZZ[rows] = self._body.σ_ZZ(self.inside[:, rows], h * Y)
         return σ_ZZ
 
-    @cached_property
-    def strength(self) -> StrengthOfLayers:  # type: ignore[override]
-        """Largest von Mises stresses of all layers."""
-        return StrengthOfLayers(
-            self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
-            self._body, self.half_width,
-        )  # fmt: skip
-
-    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+    def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, all at one depth, of one state, which was solved: (3, n)."""
         (group,) = (group for group in self.contacts.groups if state in group.rows)
         one = slice(0, 1)

@@ -22,7 +22,7 @@ from . import FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
 from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
 from .stresses import Places, Surface
-from .yielding import SMOOTH, places_below, places_in_layers
+from .yielding import SMOOTH, Strength, StrengthOfLayers, places_below, places_in_layers
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
 #: those of a prescribed pressure.
@@ -157,6 +157,10 @@ class Contact:
     def yield_places(self) -> NDArray[np.float64]:
         """Places X, Y over a at which the stresses of every state are sampled for yield, (n, 2)."""
         return places_below(self.yield_knots)
+
+    def strength(self, solution: Any) -> Any:
+        """Yield of a solution's states; the loads are theirs, [N/m], (states,) or a number."""
+        return Strength(solution, self)
 
     def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
@@ -441,6 +445,9 @@ class OnLayers(Contact):
     def yield_places(self) -> NDArray[np.float64]:
         return places_in_layers(self.solid.depths / self.half_width)
 
+    def strength(self, solution: Any) -> Any:
+        return StrengthOfLayers(solution, self)
+
     def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
         return self.solid.σ_ZZ_at(-Y * self.half_width, σ)
 
@@ -591,6 +598,10 @@ class Solution(Protocol):
         local: the local analysis of the punch's edges: exponents α at X = a and β at X = -a, (states,).
         surface: stresses on the surface.
         inside: σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, m).
+        stresses: σ_XX, σ_YY, σ_XY, (3, states, n), at points over a with Y <= 0, (1 or states, n, 2), on
+            a uniform solid; over layers ``inside_of`` a state's number at points (n, 2), (3, n).
+        yield_turns: limits of stresses where they vary like a power of the distance; None for none.
+        nearest: least distance over a from these at which ``stresses`` are accurate.
     """
 
     @property
@@ -601,6 +612,42 @@ class Solution(Protocol):
     def surface(self) -> Surface: ...
     @property
     def inside(self) -> NDArray[np.float64]: ...
+    def stresses(self, points: NDArray) -> NDArray[np.float64]: ...
+
+
+@dataclass(frozen=True)
+class InPunch:
+    """States of an elastic punch, mirrored at Y = 0, for its yield: its half-plane under the pressure.
+
+    Attributes:
+        plate: the solution.
+        stresses, yield_turns, nearest: as of :class:`Solution`, in the mirrored punch.
+    """
+
+    plate: Any
+    stresses: Callable[[NDArray], NDArray]
+    yield_turns: Any
+    nearest: float
+
+    @property
+    def task(self) -> Task:
+        """The speed, with the response of the punch."""
+        return replace(self.plate.task, response=self.plate.task.response.punch)
+
+    @property
+    def g(self) -> NDArray[np.float64]:
+        """σ_XY/σ_YY, of the other sign, (states,)."""
+        return -np.asarray(self.plate.g)
+
+    @property
+    def local(self) -> Any:
+        """Exponents at the edges."""
+        return self.plate.local
+
+    @property
+    def half_width(self) -> NDArray[np.float64]:
+        """Half-widths of the contacts [m], (states,)."""
+        return np.asarray(self.plate.half_width)
 
 
 #: σ_YY over N/(2a) at positions X over a under the punch.

@@ -26,18 +26,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..profiles import exponent
-from ..solids.half_plane import HalfPlane
 from .extremes import extreme, largest
-from .stresses import Surface, Turns, maximum_shear, on_surface, turns_at_ends, von_mises
+from .stresses import maximum_shear, on_surface, turns_at_ends, von_mises
 
 #: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
 Stress = Callable[[NDArray], NDArray]
-#: Function that gives σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points over a with Y <= 0,
-#: (states or 1, n, 2).
-Field = Callable[[NDArray], NDArray]
-#: Function of the number of a state and of points over a inside the solid, (n, 2), that gives σ_XX, σ_YY,
-#: σ_XY over N/(2a) there, (3, n).
-Inside = Callable[[int, NDArray], NDArray]
 
 
 @dataclass(frozen=True)
@@ -397,37 +390,25 @@ class Strength:
     """Yield of states at one speed on a uniform solid.
 
     Attributes:
-        field: function that gives the stresses of the states by any method.
+        solution: the states, by any method, see :class:`galinx.solvers.contact.solution.Solution`.
         body: :class:`galinx.solvers.contact.solution.Contact`; all but stresses need its yield strength.
-        response: response of the half-plane at this speed.
-        g: σ_XY/σ_YY under the punch, (states,).
-        local: exponents α at X = a and β at X = -a of a punch, (states,) each.
-        half_width: half-width of each state's contact [m], (states,); None without free ends.
-        turns: limits of stresses at places where they vary like a power of the distance.
-        nearest: least distance over a from such places at which the field is accurate.
     """
 
-    field: Field
+    solution: Any
     body: Any
-    response: HalfPlane
-    g: NDArray[np.float64]
-    local: Any
-    half_width: NDArray[np.float64] | None = None
-    turns: Turns | None = None
-    nearest: float = 1.0
 
     @property
     def infinite(self) -> NDArray[np.bool_]:
         """True for states whose stress is infinite where the pressure ends in a jump, (states,)."""
         jump = self.body.pressure is not None and bool(self.body.pressure.values[[0, -1]].any())
-        return (self.response.strain(self.g, 0.0, 1.0) != 0.0) & jump
+        strain = self.solution.task.response.strain(self.solution.g, 0.0, 1.0)
+        return (strain != 0.0) & jump
 
     @property
     def strength(self) -> NDArray[np.float64]:
         """Yield strength over N/(2a), (states,); infinite where it is not given."""
-        body, a = self.body, self.half_width
-        unit = body.stress if a is None else body.load / (2.0 * a)
-        return np.broadcast_to((body.yield_strength or np.inf) / unit, np.shape(self.g))
+        body, unit = self.body, self.body.load / (2.0 * self.solution.half_width)
+        return np.broadcast_to((body.yield_strength or np.inf) / unit, np.shape(self.solution.g))
 
     @cached_property
     def von_mises(self) -> Peak:
@@ -467,8 +448,9 @@ class Strength:
 
     @cached_property
     def _zones(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        there = _known(self._von_mises_of(self._sampled)) / self.strength[:, None]
-        return zones(self._over_strength, there, np.column_stack([self.local.β, self.local.α]))
+        local, there = self.solution.local, _known(self._von_mises_of(self._sampled))
+        there = there / self.strength[:, None]
+        return zones(self._over_strength, there, np.column_stack([local.β, local.α]))
 
     @cached_property
     def _levels(self) -> Levels | None:
@@ -478,41 +460,42 @@ class Strength:
     @cached_property
     def _sampled(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY over N/(2a) at the places where stresses are sampled, (3, states, n)."""
-        return self.field(self.body.yield_places[None])
+        return self.solution.stresses(self.body.yield_places[None])
 
     def _von_mises_of(self, σ: NDArray) -> NDArray[np.float64]:
         XX, YY, XY = σ
         return von_mises(XX, YY, XY, self.body.solid.σ_ZZ(XX, YY, XY))
 
     def _over_strength(self, points: NDArray) -> NDArray[np.float64]:
-        return self._von_mises_of(self.field(points)) / self.strength[:, None]
+        return self._von_mises_of(self.solution.stresses(points)) / self.strength[:, None]
 
     @cached_property
     def _around_turns(self) -> tuple[NDArray, NDArray, NDArray] | None:
         """Places around turns of the stresses, steps between them, and stresses; None without turns."""
-        if self.turns is None:
+        turns = self.solution.yield_turns
+        if turns is None:
             return None
-        centres = np.where(np.isnan(self.turns.X), self.turns.X[:, :1], self.turns.X)
+        centres = np.where(np.isnan(turns.X), turns.X[:, :1], turns.X)
         if np.array_equal(centres, np.broadcast_to(centres[:1], centres.shape)):
             centres = centres[:1]
-        at, steps = circles(centres, self.nearest)
-        return at, steps, self.field(at)
+        at, steps = circles(centres, self.solution.nearest)
+        return at, steps, self.solution.stresses(at)
 
     def _peak(self, measure: Callable[[NDArray], NDArray]) -> Peak:
         """Peak of a measure of the stresses (3, states, n)."""
         assert self._levels
         at, steps, there = self._levels.places[None], self._levels.steps, _known(measure(self._sampled))
-        turns, around = self.turns, self._around_turns
+        turns, around = self.solution.yield_turns, self._around_turns
         if turns is None or around is None:
-            best = peak(lambda points: measure(self.field(points)), at, steps, there)
+            best = peak(lambda points: measure(self.solution.stresses(points)), at, steps, there)
         else:
             more, more_steps, σ = around
 
             def stress(points: NDArray) -> NDArray[np.float64]:
                 """Measure, NaN nearer to turns than the field is accurate."""
                 distance = np.hypot(points[..., None, 0] - turns.X[:, None], points[..., None, 1])
-                near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self.nearest * _HARDLY
-                return np.where(near, np.nan, measure(self.field(points)))
+                near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self.solution.nearest * _HARDLY
+                return np.where(near, np.nan, measure(self.solution.stresses(points)))
 
             at = np.concatenate([np.broadcast_to(at, (len(more), *at.shape[1:])), more], axis=1)
             there = np.concatenate([there, _known(measure(σ))], axis=1)
@@ -571,37 +554,28 @@ class StrengthOfLayers:
     """Largest von Mises stresses in layers, and in the solid below, of states at one speed.
 
     Attributes:
-        inside: stresses inside, by any method.
-        surface: stresses on the surface.
-        interfaces: σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, layers, n).
-        along: positions X/a along interfaces, (n,).
-        g: σ_XY/σ_YY under the punch, (states,).
-        local: exponents α at X = a and β at X = -a, (states,) each.
-        body: punch and solid, under the load of each state.
-        half_width: of each state's contact [m], (states,).
+        solution: the states, by any method, see :class:`galinx.solvers.contact.solution.Solution`.
+        body: :class:`galinx.solvers.contact.solution.Contact`, under the load of each state.
     """
 
-    inside: Inside
-    surface: Surface
-    interfaces: NDArray[np.float64]
-    along: NDArray[np.float64]
-    g: NDArray[np.float64]
-    local: object
+    solution: Any
     body: Any
-    half_width: NDArray[np.float64]
 
     @cached_property
     def peaks(self) -> Peak:
         """Largest von Mises stress over N/(2a) of every layer and the solid below, (states, parts)."""
         depths, solid = self.body.solid.depths, self.body.solid
-        of_layers = [self._on_surface()] + [Peak(*np.full((3, len(self.g)), -np.inf)) for _ in depths]
+        along, half_width = self.solution.places.along, self.solution.half_width
+        of_layers = [self._on_surface()] + [
+            Peak(*np.full((3, len(self.solution.g)), -np.inf)) for _ in depths
+        ]
         for i, depth in enumerate(depths.tolist()):
             for side in (0, 1):
-                σ_YY, σ_XY, σ_XX = self.interfaces[[0, 1, 2 + side], :, i]
+                σ_YY, σ_XY, σ_XX = self.solution.interfaces[[0, 1, 2 + side], :, i]
                 of_side = solid.beside(i)[side]  # type: ignore[attr-defined]
                 stress = von_mises(σ_XX, σ_YY, σ_XY, of_side.σ_ZZ(σ_XX, σ_YY, σ_XY))
-                value, X = (of[:, None] for of in extreme(stress, self.along, 1.0))
-                of_layers[i + side] = _higher(of_layers[i + side], value, X, -depth / self.half_width)
+                value, X = (of[:, None] for of in extreme(stress, along, 1.0))
+                of_layers[i + side] = _higher(of_layers[i + side], value, X, -depth / half_width)
         for layer, faces in enumerate(of_layers):
             searched = [self._searched(i, layer, float(value)) for i, value in enumerate(faces.value)]
             value, X, Y = np.array(searched).T
@@ -619,21 +593,21 @@ class StrengthOfLayers:
     def over_strength(self) -> NDArray[np.float64]:
         """Largest stress of every layer over its strength, NaN if not given, (states, parts)."""
         strengths = np.array([np.nan if y is None else y for y in self.body.strengths])
-        unit = self.body.load / (2.0 * self.half_width)
+        unit = self.body.load / (2.0 * self.solution.half_width)
         return self.peaks.value * np.reshape(unit, (-1, 1)) / strengths
 
     def _on_surface(self) -> Peak:
         """Largest von Mises stress on the surface."""
-        surface, solid = self.surface, self.body.solid.at(0.0)  # type: ignore[attr-defined]
+        surface, solid = self.solution.surface, self.body.solid.at(0.0)  # type: ignore[attr-defined]
         X, σ_YY = surface.places.X, np.nan_to_num(surface.σ_YY)
 
         def stress(XX: NDArray, YY: NDArray, XY: NDArray) -> NDArray[np.float64]:
             return von_mises(XX, YY, XY, solid.σ_ZZ(XX, YY, XY))
 
-        turns = turns_at_ends(surface, self.local)
+        turns = turns_at_ends(surface, self.solution.local)
         if surface.turns:
             turns = turns.joined(surface.turns)
-        curves = stress(surface.σ_XX, σ_YY, self.g[:, None] * σ_YY)
+        curves = stress(surface.σ_XX, σ_YY, self.solution.g[:, None] * σ_YY)
         samples = Peak(curves.max(axis=1), X[curves.argmax(axis=1)], np.zeros(len(curves)))
         at_turns = np.nan_to_num(stress(*turns.σ), nan=-np.inf), turns.X
         return _higher(_higher(samples, *on_surface(X, curves, turns)), *at_turns)
@@ -647,7 +621,7 @@ class StrengthOfLayers:
         """
         from scipy.optimize import minimize_scalar  # a slow import
 
-        interfaces = self.body.solid.depths / self.half_width[state]
+        interfaces = self.body.solid.depths / self.solution.half_width[state]
         depths = sampled_depths(interfaces)[layer]
         values = [self._at_depth(state, depth)[0] for depth in depths.tolist()]
         best = int(np.argmax(values))
@@ -676,6 +650,6 @@ class StrengthOfLayers:
 
     def _stress(self, state: int, X: NDArray, depth: float) -> NDArray[np.float64]:
         """Von Mises stress over N/(2a) at positions over a, (n,), and a depth over a, (n,)."""
-        σ_XX, σ_YY, σ_XY = self.inside(state, np.column_stack([X, np.full_like(X, -depth)]))
-        solid = self.body.solid.at(depth * self.half_width[state])  # type: ignore[attr-defined]
+        σ_XX, σ_YY, σ_XY = self.solution.inside_of(state, np.column_stack([X, np.full_like(X, -depth)]))
+        solid = self.body.solid.at(depth * self.solution.half_width[state])  # type: ignore[attr-defined]
         return von_mises(σ_XX, σ_YY, σ_XY, solid.σ_ZZ(σ_XX, σ_YY, σ_XY))

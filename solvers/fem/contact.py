@@ -41,12 +41,16 @@ from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, joined, of_pressure
-from .punch import ContactStates, Punch, sliding_punch
+from .punch import LEAST, ContactStates, Punch, sliding_punch
 from .solution import SolvedEnds, SolvedStates
 from .space import Space
 
 #: Least distance over a from a free end at which stresses are evaluated, besides the end itself.
 _NEAREST = 1e-6
+
+#: Residual of the contact forces at degrees that only measure the error of another, over the tolerance,
+#: and at most: next to edges stresses have some thousand times as much of it.
+_OF_TOLERANCE, _ROUGH = 1e-4, 1e-10
 
 
 class PunchLevel(Level):
@@ -78,8 +82,12 @@ class PunchLevel(Level):
 
     def _solved(self) -> Punch:
         """The punch, solved for all states that are still to do."""
-        solver, response = self.plan.solver, self.task.response
-        punch = sliding_punch(self.space, response, solver, self.heights(), self.along())
+        plan, least = self.plan, LEAST
+        if self.space.degree < plan.degrees[self.task.number]:  # it measures an error, no more
+            least = max(min(_OF_TOLERANCE * plan.tolerance, _ROUGH), LEAST)
+        punch = sliding_punch(
+            self.space, self.task.response, plan.solver, self.heights(), self.along(), least=least
+        )
         self.factor = punch.factor
         punch.prepare(self.g)
         return punch

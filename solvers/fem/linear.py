@@ -122,11 +122,16 @@ class LinearSolver:
             raise SolveError(
                 f"this PETSc has no {chosen}, only {', '.join(available())}; name another solver"
             )
+        A.setOption(PETSc.Mat.Option.SYMMETRIC, chosen != "unsymmetric")
+        #: The matrix in the form that the method takes.
+        self._operator = operator = A
+        if "baij" in A.getType():
+            self._operator = operator = A.convert("sbaij" if self.direct else "aij", out=PETSc.Mat())
         if chosen != "unsymmetric":
-            A.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-            A.setOption(PETSc.Mat.Option.SPD, definite)
+            operator.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+            operator.setOption(PETSc.Mat.Option.SPD, definite)
         if rigid is not None and not self.direct:
-            A.setNearNullSpace(_orthonormal(A, rigid))
+            operator.setNearNullSpace(_orthonormal(A, rigid))
         self.A, self.solves, self.iterations = A, 0, 0
         self.condition, self.largest_residual = 0.0, 0.0
         self._norm, self._clock = A.norm(PETSc.NormType.INFINITY), clock
@@ -145,7 +150,7 @@ class LinearSolver:
     def _set_up(self, options: Mapping[str, object]) -> None:
         self._ksp = PETSc.KSP().create(self.A.comm)
         self._ksp.setOptionsPrefix(PREFIX)
-        self._ksp.setOperators(self.A)
+        self._ksp.setOperators(self._operator)
         with defaults(options):
             self._ksp.setFromOptions()
             try:
@@ -239,7 +244,7 @@ class LinearSolver:
     def destroy(self) -> None:
         """Free PETSc's memory now; petsc4py would wait for a collective garbage collection."""
         self._free()
-        self.A.destroy()
+        self._operator.destroy(), self.A.destroy()
 
     def _free(self) -> None:
         for held in (self._mumps, self._ksp):

@@ -19,7 +19,7 @@ from .ladder import to_tolerance
 from .own_meshes import BetweenKinks, OverLayers
 from .prescribed_pressure import FormulaLevel, PiecesLevel, WholeLevel
 from .space import Space
-from .sweep import Trained, train
+from .sweep import Fit, train
 
 #: Levels of states that share a mesh, by the plan's mode.
 LEVELS: dict[str, Any] = PUNCHES | {
@@ -48,7 +48,7 @@ class FiniteElements:
         self._progress, self._tasks = progress, plan.tasks
 
     @cached_property
-    def _trained(self) -> Trained | None:
+    def _trained(self) -> Fit | None:
         """Fit through solved speeds for all others, made when first needed; None without one."""
         if self.work.plan.sweep is None:
             return None
@@ -65,7 +65,7 @@ class FiniteElements:
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         self.work.mesh(self.work.plan.cuts)
         with quiet_compiler(), ExitStack() as stack:
-            solver = stack.enter_context(self._trained.at(task, g)) if self._trained else None
+            solver = stack.enter_context(self._trained.solved_at(task, g)) if self._trained else None
             self._progress.say(
                 f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
             )

@@ -12,12 +12,6 @@ G is a number g, or, where friction varies along the contact, a matrix: through 
 to σ_YY, which times g(X) is σ_XY. All frictions and all displacements P share a space of loads t, which
 grows by what it leaves of these equations, as Arnoldi's method does. A contact with free ends is a sum of
 several shapes P, a flat one first, which are the parts of the punch.
-
-At a speed between others at which the punch was solved, its parts are interpolated. At a solved speed
-they are sampled at some frictions, between which they are polynomials in g to rounding. At another speed
-each number is a sum over the solved speeds, with the same weights for all numbers. The effect of an
-edge's singularity is divided out before and multiplied in again: a force or a slope at a distance d goes
-as d^α with an exponent that changes with speed.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -30,7 +24,6 @@ from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
-from ..approximation import Barycentric
 from ..errors import SolveError
 from ..solids.half_plane import HalfPlane
 from ..solids.pair import PairAtSpeed
@@ -179,19 +172,20 @@ class SlidingPunch(Punch):
         along: gives G by g where friction varies along the contact; None where G is g.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case, which shows whether the others need it.
+        least: relative residual of the contact forces that may remain.
     """
 
     def __init__(
         self, space: Space, response: HalfPlane, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
-        negligible: float = NEGLIGIBLE,
+        negligible: float = NEGLIGIBLE, least: float = LEAST,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
         nodes = space.contact
         A = space.assemble(response)
-        self._rows = [
-            A.createSubMatrix(PETSc.IS().createGeneral(nodes.dofs(i), comm=A.comm)) for i in (0, 1)
-        ]
+        both = np.column_stack([nodes.dofs(0), nodes.dofs(1)]).ravel()
+        #: Rows of the contact nodes, along X and Y in turn.
+        self._rows = A.createSubMatrix(PETSc.IS().createGeneral(both, comm=A.comm))
         self._first = A.getOwnershipRange()[0]
         rigid = space.rigid_motions(response)
         #: Motions of the whole body along X and Y, at this rank's rows, (rows, 2).
@@ -206,7 +200,7 @@ class SlidingPunch(Punch):
         A = space.held(A, response, ("contact", "far"))
         self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
         #: Relative residual that may remain; number of parts; true where solutions are refined.
-        self._left, self._parts, self._refines = LEAST, len(shapes), False
+        self._left, self._parts, self._refines = least, len(shapes), False
         self.fields, self.forces = self._frictionless(shaped, negligible)
         #: Orthonormal loads, (n, loads), and displacements of the last ones that have no fields yet.
         self._loads: NDArray[np.float64] = np.empty((len(nodes.s), 0))
@@ -412,14 +406,15 @@ class SlidingPunch(Punch):
         nodes = self.space.contact
         forces = np.zeros((x.shape[1], 2, len(nodes.s)))
         w = x - self._motions @ self._contact_motion(x)
-        for i, rows in enumerate(self._rows):
-            forces[:, i, nodes.owned] = times(rows, w).T
+        reactions = times(self._rows, w).T
+        for i in (0, 1):
+            forces[:, i, nodes.owned] = reactions[:, i::2]
         self.space.comm.Allreduce(MPI.IN_PLACE, forces)
         return forces
 
     def destroy(self) -> None:
         super().destroy()
-        for held in (self.factor, self._boundary, *self._rows):
+        for held in (self.factor, self._boundary, self._rows):
             held.destroy()
 
 
@@ -435,7 +430,7 @@ class ElasticPunch(SlidingPunch):
     of all that frictions require.
 
     Args:
-        space, solver, heights: as of :class:`SlidingPunch`.
+        space, solver, heights, least: as of :class:`SlidingPunch`.
         response: of the plate and the punch.
     """
 
@@ -443,7 +438,7 @@ class ElasticPunch(SlidingPunch):
 
     def __init__(
         self, space: Space, response: PairAtSpeed, solver: str = "direct",
-        heights: NDArray[np.float64] | None = None, along: None = None,
+        heights: NDArray[np.float64] | None = None, along: None = None, least: float = LEAST,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
@@ -451,7 +446,7 @@ class ElasticPunch(SlidingPunch):
         others = unit[1:]
         punch = SlidingPunch(space, response.punch, solver, others)
         each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, each)
+        super().__init__(space, response.plate, solver, each, least=least)
         self.response, self._parts = response, self._parts - len(others)
         self._moving_fields = self.fields[self._parts :]
         #: Forces in the plate by each unit of v', (n, 2, n).
@@ -485,7 +480,7 @@ class ElasticPunch(SlidingPunch):
         changes /= np.linalg.norm(changes, axis=1, keepdims=True)
         _, size, rows = np.linalg.svd(changes, full_matrices=False)
         #: Combinations of displacements and tangential forces, (basis, 2 n).
-        self._basis = rows[size > LEAST * size[0]]
+        self._basis = rows[size > self._left * size[0]]
         b = self._tangential(self._basis[:, n:].T)
         fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
         for field, moved in zip(fields, self._basis[:, :n] @ units):
@@ -501,84 +496,7 @@ class ElasticPunch(SlidingPunch):
         return np.concatenate([first, self._changes(g) @ self._basis.T], axis=2)
 
 
-def sliding_punch(space: Space, response: HalfPlane, *args: Any) -> SlidingPunch:
+def sliding_punch(space: Space, response: HalfPlane, *args: Any, **options: Any) -> SlidingPunch:
     """Punch of the arguments of :class:`SlidingPunch`, elastic where the response is that of a pair."""
     kind = ElasticPunch if isinstance(response, PairAtSpeed) else SlidingPunch
-    return kind(space, response, *args)  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
-class Sampled:
-    """Parts of a punch at a speed, or at several, at some frictions.
-
-    Attributes:
-        forces: in Y at the contact nodes, (parts, frictions, nodes); those in X are g times these.
-        slopes: of both displacements along X at places on the surface, none where they are not needed,
-            (2, parts, frictions, places).
-        fields: displacements, this rank's unknowns, none where they are not needed,
-            (parts, frictions, unknowns).
-    """
-
-    forces: NDArray[np.float64]
-    slopes: NDArray[np.float64]
-    fields: NDArray[np.float64]
-
-    def scaled(self, forces: NDArray, slopes: NDArray) -> "Sampled":
-        """Numbers times factors of nodal forces, (frictions, nodes), and slopes, (frictions, places)."""
-        return Sampled(self.forces * forces, self.slopes * slopes, self.fields)
-
-    def blocks(self) -> Iterator[NDArray[np.float64]]:
-        """Numbers that a fit needs, kind by kind for each part, (n,)."""
-        for part, forces in enumerate(self.forces):
-            yield from (forces.ravel(), self.slopes[:, part].ravel(), self.fields[part].ravel())
-
-
-def together(several: Sequence[Sampled], shares: NDArray) -> Sampled:
-    """Sum of the numbers of several speeds with weights ``shares``, (len(several),)."""
-    each = [(share, vars(sample).values()) for share, sample in zip(shares.tolist(), several) if share]
-    scaled = ([share * values for values in all_values] for share, all_values in each)
-    return Sampled(*(np.asarray(sum(of_kind)) for of_kind in zip(*scaled)))
-
-
-def sampled(punch: Punch, at: Barycentric, slopes: Slopes, with_fields: bool = False) -> Sampled:
-    """Parts of a punch at some frictions.
-
-    Args:
-        punch: the punch, solved for these frictions.
-        at: the frictions, all different, with the polynomial through values there.
-        slopes: of its fields.
-        with_fields: keep the displacements.
-    """
-    parts = punch.parts(at.nodes).swapaxes(0, 1)
-    of_slopes = np.array([slopes.of(weights) for weights in parts]).swapaxes(0, 1)
-    fields = np.array([field.array_r if with_fields else [] for field in punch.fields])
-    return Sampled(parts @ punch.forces[:, -1], of_slopes, parts @ fields)
-
-
-class FittedPunch(Punch):
-    """All states of the punch with friction at a speed to which its parts were interpolated.
-
-    Args:
-        space: the finite element space.
-        response: of the half-plane.
-        at: frictions at which the parts are known, with the polynomial through values there.
-        samples: the parts there; every part at every friction is a field.
-    """
-
-    def __init__(self, space: Space, response: HalfPlane, at: Barycentric, samples: Sampled) -> None:
-        self.space, self.response, self._at, self._count = space, response, at, len(samples.forces)
-        self.fields = [
-            PETSc.Vec().createWithArray(field.copy(), comm=space.comm)
-            for field in np.concatenate(list(samples.fields))
-        ]
-        # No equations are assembled here from which tangential forces could be read.
-        self.forces = np.concatenate(list(samples.forces))[:, None]
-        # Slopes of u and of v, part after part.
-        basis = np.array([np.concatenate(list(of)).T for of in samples.slopes])
-        #: Slopes of the fields at the places on the surface, without their rounding.
-        self.slopes = Slopes(basis, np.zeros(basis.shape[1:]))
-
-    def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
-        shares = self._at.shares(g)
-        each = np.einsum("pq,sf->spqf", np.eye(self._count), shares)
-        return each.reshape(len(g), self._count, -1)
+    return kind(space, response, *args, **options)  # type: ignore[arg-type]

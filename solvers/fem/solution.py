@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from ..contact.edges import Exponents
 from ..contact.recovery import StressesBelow
 from ..contact.residual import of_contact
-from ..contact.solution import Contact, Task, solved_once
+from ..contact.solution import Contact, InPunch, Task, solved_once
 from ..contact.stresses import Places, Surface, Turns, together
-from ..contact.yielding import Strength, StrengthOfLayers
 from .displacement import Displacement
 from .punch import ContactStates
 
@@ -233,18 +232,9 @@ class Solution:
         return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
 
     @cached_property
-    def strength(self) -> Strength | StrengthOfLayers:
+    def strength(self) -> Any:
         """Yield of the states."""
-        if self.body.layered:
-            return StrengthOfLayers(
-                self._inside, self.surface, self.interfaces, self.places.along, self.g, self.local,
-                self.body, self.half_width,
-            )  # fmt: skip
-        turns = self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
-        return Strength(
-            self._stresses, self.body, self.task.response, self.g, self.local, self.half_width, turns,
-            max(states.level.nearest(states) for states in self.solved),
-        )  # fmt: skip
+        return self.body.strength(self)
 
     @cached_property
     def _punch(self) -> list[StressesBelow]:
@@ -270,16 +260,23 @@ class Solution:
         return self._stresses_of_punch(self.places.points[None])
 
     @cached_property
-    def strength_of_punch(self) -> Strength:
+    def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
         each = np.tile([-1.0, 1.0], (len(self.rows), 1))
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
-        return Strength(
-            self._stresses_of_punch, self.body.of_punch, self._punch[0].half_plane, -self.g, self.local,
-            self.half_width, turns, _NEAREST,
-        )  # fmt: skip
+        return self.body.of_punch.strength(InPunch(self, self._stresses_of_punch, turns, _NEAREST))
 
-    def _inside(self, state: int, points: NDArray) -> NDArray[np.float64]:
+    @property
+    def yield_turns(self) -> Turns | None:
+        """Limits of stresses at ends and kinks, where an end is free."""
+        return self.surface.turns if any(states.ends.free.any() for states in self.solved) else None
+
+    @property
+    def nearest(self) -> float:
+        """Least distance over a from an end or a kink at which stresses are accurate."""
+        return max(states.level.nearest(states) for states in self.solved)
+
+    def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (n, 2), of one state, (3, n)."""
         row = self.rows[state]
         for states in self.solved:
@@ -288,13 +285,13 @@ class Solution:
             row -= len(states.contact.g)
         raise IndexError(state)
 
-    def _stresses(self, points: NDArray) -> NDArray[np.float64]:
+    def stresses(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         if len(self.solved) == 1:
             states = self.solved[0]
             return states.displacement.at(points, states.contact.weights[self.rows])
         each = np.broadcast_to(points, (len(self.rows), *points.shape[1:]))
-        return np.stack([self._inside(state, own) for state, own in enumerate(each)], axis=1)
+        return np.stack([self.inside_of(state, own) for state, own in enumerate(each)], axis=1)
 
 
 def solution_of(

@@ -1,21 +1,25 @@
 """Sweeps of many speeds for the price of a dozen: a rational fit through solved speeds gives the others.
 
-The fit is of the parts of a punch at a few frictions: nodal forces, slopes, displacements, from which its
-states of all frictions and loads follow. A single rational function serves all of these numbers
-(:class:`Fit`). The next speed is solved far from those before, or where the fit changed most, and is
-predicted by the fit first: the error of that prediction, and the change of the fit all over the sweep,
-are the error of the fit. A fitted speed has that error and the error of the discretisation
-(:class:`Trained`).
+The fit is of the parts of a punch at a few frictions: nodal forces, slopes, displacements, from which
+its states of all frictions and loads follow (:class:`FittedPunch`). At a solved speed the parts are
+sampled at some frictions, between which they are polynomials in g to rounding. At another speed each
+number is a sum over the solved speeds, with the same weights for all numbers: a single rational function
+serves all of them. The effect of an edge's singularity is divided out before and multiplied in again: a
+force or a slope at a distance d goes as d^α with an exponent that changes with speed.
+
+The next speed is solved far from those before, or where the fit changed most, and is predicted by the fit
+first: the error of that prediction, and the change of the fit all over the sweep, are the error of the
+fit. A fitted speed has that error and the error of the discretisation (:class:`Fit`).
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
+from petsc4py import PETSc
 
 from ..approximation import (
     Barycentric,
@@ -27,13 +31,15 @@ from ..approximation import (
 )
 from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.edges import EdgeExponents
-from ..contact.fem_plan import LADDERS, MOST, Sweep, levels
+from ..contact.fem_plan import LADDERS, MOST, levels
 from ..contact.solution import Task
 from ..errors import SolveError
+from ..solids.half_plane import HalfPlane
 from .contact import PUNCHES, PunchLevel
 from .discretisation import Discretisation
+from .fields import Slopes
 from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
-from .punch import FittedPunch, Sampled, sampled, together
+from .punch import Punch
 from .space import Space
 
 #: Sum of absolute shares from which a fit is rejected: a pole is near.
@@ -55,8 +61,37 @@ _REGRET = 0.08
 _ENDS = 2
 
 
-@dataclass(frozen=True)
-class Speed:
+#: Parts of a punch at some frictions, (parts, frictions, n) each: forces in Y at the contact nodes (those
+#: in X are g times these); slopes along X at places on the surface, of all u and then of all v; and
+#: displacements at this rank's unknowns. Slopes and displacements without use have n = 0.
+Sample: TypeAlias = tuple[NDArray, NDArray, NDArray]
+
+
+class FittedPunch(Punch):
+    """All states of the punch with friction at a speed to which its parts were interpolated.
+
+    Args:
+        space: the finite element space.
+        response: of the half-plane.
+        at: frictions at which the parts are known, with the polynomial through values there.
+        sample: the parts there; every part at every friction is a field.
+    """
+
+    def __init__(self, space: Space, response: HalfPlane, at: Barycentric, sample: Sample) -> None:
+        self.space, self.response, self._at, self._parts = space, response, at, len(sample[0])
+        forces, slopes, fields = (np.concatenate(list(numbers)) for numbers in sample)
+        self.fields = [PETSc.Vec().createWithArray(field.copy(), comm=space.comm) for field in fields]
+        # No equations are assembled here from which tangential forces could be read.
+        self.forces = forces[:, None]
+        basis = np.moveaxis(slopes.reshape(len(slopes), 2, slopes.shape[1] // 2), 0, 2)
+        self.slopes = Slopes(basis, np.zeros(basis.shape[1:]))
+
+    def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
+        each = np.einsum("pq,sf->spqf", np.eye(self._parts), self._at.shares(g))
+        return each.reshape(len(g), self._parts, -1)
+
+
+class Speed(NamedTuple):
     """Solved speed.
 
     Attributes:
@@ -71,54 +106,101 @@ class Speed:
 
     number: int
     degree: int
-    sample: Sampled | None
+    sample: Sample | None
     record: dict[str, Any]
     estimate: Estimate | None
     off: dict[str, float]
 
 
-@dataclass
+class HigherDegree(Exception):
+    """A speed needs a higher degree than the speeds before were solved with."""
+
+
+def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -> "Fit | None":
+    """Solve speeds until a fit through them gives the others to the tolerance.
+
+    Where that may cost too much in vain, the fit serves the solved speeds alone; None for no fit.
+
+    Args:
+        work: gives spaces.
+        tasks: all speeds.
+        say: shows the work under way.
+    """
+    degree, lost = None, 0.0
+    while True:
+        try:
+            fit = Fit(work, tasks, say, degree, lost)
+            fit.train()
+        except HigherDegree as higher:
+            degree, lost = higher.args[0], fit.spent
+            if lost <= fit.allowed:
+                continue
+        except SolveError as error:  # each speed by itself tells which, and why
+            say(f"no fit through speeds: {error}")
+            return None
+        if fit.error is None:
+            say("no fit through speeds is good enough at its cost: each is solved")
+        return fit
+
+
 class Fit:
-    """A fit through the speeds that have been solved so far.
+    """Fit through solved speeds, and its error.
+
+    Costs are counted in factorisations, which go with the fourth power of the degree or so.
+
+    Args:
+        work, tasks, say: as of :func:`train`.
+        degree: degree to begin with; the plan's if None.
+        lost: cost of the speeds that were solved before, in vain.
 
     Attributes:
-        work: gives spaces.
-        sweep: the plan's sweep.
         space: space of the last degree.
         at: frictions at which punches are sampled.
         recovery: maps from nodal forces to pressure.
         speeds: solved speeds, by number, in the order in which they were solved.
+        estimates: errors of the discretisation by the variable of the fit, where they were measured.
         rational: rational function through the samples; None for fewer than three.
+        error: error of the fit, by word of output.quantities; None where it is not good enough and serves
+            the solved speeds alone.
+        spent: cost of all solved speeds.
+        allowed: cost that may be lost.
     """
 
-    work: Discretisation
-    sweep: Sweep
-    space: Space
-    at: Barycentric
-    recovery: Any
-    speeds: dict[int, Speed] = field(default_factory=dict)
-    rational: Barycentric | None = None
+    def __init__(
+        self, work: Discretisation, tasks: list[Task], say: Callable[[str], None],
+        degree: int | None, lost: float,
+    ) -> None:  # fmt: skip
+        assert work.plan.sweep
+        self._sweep = sweep = work.plan.sweep
+        self._kind = PUNCHES[work.plan.mode]
+        self._work, self._tasks, self._say = work, tasks, say
+        self.speeds: dict[int, Speed] = {}
+        self.estimates: dict[float, Estimate] = {}
+        self.rational: Barycentric | None = None
+        self.error: dict[str, float] | None = None
+        probes = sweep.g if sweep.few else np.linspace(sweep.g[0], sweep.g[-1], PROBES)
+        self._probes = tasks[0].probes(probes)
+        # The fastest needs the highest degree: it is solved first, by every rank for itself.
+        first = int(np.argmin([task.response.margin for task in tasks]))
+        solved = self._climbed(first, degree)
+        with closing(solved):
+            level: PunchLevel = solved.level
+            self.space, self.recovery, self.at = level.space, level.recovery, self._frictions(level)
+            self._take([self._speed(first, solved, {})])
+        self._alone = [self._cost(True, of) for of in work.plan.degrees]
+        self._lost, self.allowed = lost, _REGRET * sum(self._alone)
+        self.spent = lost + self._cost(True)  # it would be solved just so by itself
 
     @property
-    def kind(self) -> type[PunchLevel]:
-        """Kind of the levels."""
-        return PUNCHES[self.work.plan.mode]
-
-    @property
-    def solved(self) -> list[int]:
-        """Numbers of the solved speeds."""
-        return list(self.speeds)
-
-    @property
-    def samples(self) -> list[Sampled]:
+    def samples(self) -> list[Sample]:
         """Samples of the solved speeds."""
         return [speed.sample for speed in self.speeds.values() if speed.sample]
 
-    def singular(self, task: Task) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _singular(self, task: Task) -> Sample:
         """Singular factors of the edges: powers of the distance with exponents of the local analysis.
 
         Returns:
-            Factors of nodal forces, (frictions, nodes), and of slopes, (frictions, places).
+            Factors of the numbers of a sample, (frictions, n) each.
         """
         s, places = self.space.contact.s, task.places.X
         d_left, d_right, _ = self.space.chart.under_punch(s - s[0], s[-1] - s)
@@ -131,32 +213,28 @@ class Fit:
             return np.asarray(np.exp(logs))
 
         slopes = power(np.abs(1.0 + places), np.abs(1.0 - places))
-        return power(d_left, d_right), slopes if self.work.stresses else slopes[:, :0]
+        both = np.tile(slopes if self._work.stresses else slopes[:, :0], 2)
+        return power(d_left, d_right), both, np.ones((len(self.at.nodes), 1))
 
-    def sampled(self, task: Task, level: PunchLevel) -> Sampled:
+    def _sampled(self, task: Task, level: PunchLevel) -> Sample:
         """Sample of a solved speed, without the singular factors of the edges."""
-        fields = bool({BELOW, YIELD, AT_INTERFACES} & self.work.stresses)
-        forces, slopes = self.singular(task)
-        return sampled(level.punch, self.at, level.slopes, fields).scaled(1.0 / forces, 1.0 / slopes)
-
-    def take(self, speeds: Sequence[Speed]) -> None:
-        """Take in solved speeds; a rational function with a pole among the speeds is replaced."""
-        self.speeds |= {speed.number: speed for speed in speeds if speed.sample}
-        z = self.sweep.z[self.solved]
-        if len(z) > 2:
-            self.rational = fit_rational(z, self.values, _NOISE)
-            if np.abs(self.rational.shares(self.sweep.z)).sum(axis=1).max() >= _LARGEST:
-                self.rational = polynomial_through(z)
+        punch, with_fields = level.punch, bool({BELOW, YIELD, AT_INTERFACES} & self._work.stresses)
+        parts = punch.parts(self.at.nodes).swapaxes(0, 1)
+        slopes = np.concatenate([parts @ of_all.T for of_all in level.slopes.basis], axis=2)
+        fields = np.array([field.array_r if with_fields else [] for field in punch.fields])
+        forces_over, slopes_over, _ = self._singular(task)
+        return parts @ punch.forces[:, -1] / forces_over, slopes / slopes_over, parts @ fields
 
     @property
-    def values(self) -> NDArray[np.float64]:
+    def _values(self) -> NDArray[np.float64]:
         """All numbers of the samples, each kind relative to its largest, (samples, numbers)."""
         blocks = []
-        for kinds in zip(*(sample.blocks() for sample in self.samples)):
-            values = np.array(kinds)
-            size = np.abs(values).max(initial=0.0)
-            if size > 0.0:
-                blocks.append(values / (size * values.shape[1] ** 0.5))
+        for kinds in zip(*self.samples):
+            for values in np.moveaxis(np.array(kinds), 1, 0):
+                size = np.abs(values).max(initial=0.0)
+                if size > 0.0:
+                    flat = values.reshape(len(values), -1)
+                    blocks.append(flat / (size * flat.shape[1] ** 0.5))
         return np.concatenate(blocks, axis=1)
 
     @contextmanager
@@ -164,181 +242,91 @@ class Fit:
         """Level of a speed by the fit, or by another rational function through the first samples."""
         number = task.number
         if rational is None and number in self.speeds:
-            shares = 1.0 * (np.array(self.solved) == number)
+            shares = 1.0 * (np.array([*self.speeds]) == number)
         else:
             through = rational or self.rational
             assert through
-            shares = through.shares(self.sweep.z[[number]])[0]
-        combined = together(self.samples, shares).scaled(*self.singular(task))
-        punch, kind = FittedPunch(self.space, task.response, self.at, combined), self.kind
-        with closing(kind(self.work, task, self.space, self.at.nodes, punch, self.recovery)) as level:
+            shares = through.shares(self._sweep.z[[number]])[0]
+        used = [(share, sample) for share, sample in zip(shares.tolist(), self.samples) if share]
+        forces, slopes, fields = (
+            np.asarray(sum(share * sample[i] for share, sample in used)) * factor
+            for i, factor in enumerate(self._singular(task))
+        )
+        punch = FittedPunch(self.space, task.response, self.at, (forces, slopes, fields))
+        with closing(
+            self._kind(self._work, task, self.space, self.at.nodes, punch, self.recovery)
+        ) as level:
             yield level
 
-    def record(self, number: int) -> dict[str, Any]:
-        """Numbers of the work at a speed; none was done where it is fitted."""
-        if number in self.speeds:
-            return self.speeds[number].record
-        return size_of(self.space) | vars(WorkDone())
-
-
-@dataclass(frozen=True)
-class Trained:
-    """Fit through solved speeds, and its error.
-
-    Attributes:
-        fit: fit through the solved speeds.
-        estimates: errors of the discretisation by the variable of the fit, rising, where they were
-            measured.
-        error: error of the fit, by word of output.quantities; None where it is not good enough and serves
-            the solved speeds alone.
-    """
-
-    fit: Fit
-    estimates: dict[float, Estimate]
-    error: dict[str, float] | None
-
     @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Any]:
+    def solved_at(self, task: Task, g: NDArray) -> Iterator[Solved | None]:
         """Punches at a speed; None where they have to be solved.
 
         They have to be where the estimated error exceeds the tolerance: solved alone it may be smaller.
         """
-        number, fit = task.number, self.fit
-        fitted, z = number not in fit.speeds, float(fit.sweep.z[number])
-        covered = min(self.estimates) <= z <= max(self.estimates)
-        known = self.error is not None or (not fitted and covered)
+        speed, z = self.speeds.get(task.number), float(self._sweep.z[task.number])
+        known = self.error is not None or (speed and min(self.estimates) <= z <= max(self.estimates))
         # Errors of the speeds measured on both sides, the larger ones, and of the fit.
-        places, each = np.array([*self.estimates]), list(self.estimates.values())
-        low, high = (each[i] for i in around(places, np.array([z]))[0])
-        of_fit = self.error if fitted and self.error else {}
+        places = np.sort([*self.estimates])
+        low, high = (self.estimates[place] for place in places[around(places, np.array([z]))[0]].tolist())
+        of_fit = {} if speed else self.error or {}
         errors = {
             word: np.maximum(values, high.errors[word]) + of_fit.get(word, 0.0)
             for word, values in low.errors.items()
         }
         error = Estimate(low.g, low.loads, errors)
         worst = max((values.max() for values in error.of(g).values()), default=0.0)
-        if known and worst <= fit.work.plan.tolerance:
-            with fit.level(task) as level:
-                yield Solved(level, error, fit.record(number), fitted)
+        if known and worst <= self._work.plan.tolerance:
+            record = speed.record if speed else size_of(self.space) | vars(WorkDone())
+            with self.level(task) as level:
+                yield Solved(level, error, record, not speed)
         else:
             yield None
 
-
-def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -> Trained | None:
-    """Solve speeds until a fit through them gives the others to the tolerance.
-
-    Where that may cost too much in vain, the fit serves the solved speeds alone; None for no fit.
-
-    Args:
-        work: gives spaces.
-        tasks: all speeds.
-        say: shows the work under way.
-    """
-    degree, lost = None, 0.0
-    while True:
-        training = _Training(work, tasks, say, degree, lost)
-        try:
-            return training.run()
-        except _HigherDegree as higher:
-            degree, lost = higher.args[0], training.spent
-            if lost > training.allowed:
-                return training.given_up()
-        except SolveError as error:  # each speed by itself tells which, and why
-            say(f"no fit through speeds: {error}")
-            return None
-
-
-class _HigherDegree(Exception):
-    """A speed needs a higher degree than the speeds before were solved with."""
-
-
-class _Training:
-    """Training of a fit; see :func:`train`.
-
-    Costs are counted in factorisations, which go with the fourth power of the degree or so.
-
-    Args:
-        work, tasks, say: as of :func:`train`.
-        degree: degree to begin with; the plan's if None.
-        lost: cost of the speeds that were solved before, in vain.
-
-    Attributes:
-        spent: cost of all solved speeds.
-        allowed: cost that may be lost.
-    """
-
-    def __init__(
-        self, work: Discretisation, tasks: list[Task], say: Callable[[str], None],
-        degree: int | None, lost: float,
-    ) -> None:  # fmt: skip
-        assert work.plan.sweep
-        self._sweep = sweep = work.plan.sweep
-        self._work, self._tasks, self._say, self._degree = work, tasks, say, degree
-        self._alone = [self._cost(True, of) for of in work.plan.degrees]
-        self.spent, self._lost, self.allowed = lost, lost, _REGRET * sum(self._alone)
-        probes = sweep.g if sweep.few else np.linspace(sweep.g[0], sweep.g[-1], PROBES)
-        self._probes = tasks[0].probes(probes)
-        self._fit: Fit | None = None
-        self._estimates: dict[float, Estimate] = {}
-
-    def run(self) -> Trained | None:
-        """Train the fit; it serves the solved speeds alone where it does not become good enough."""
+    def train(self) -> None:
+        """Solve speeds until the fit's error is known; none is where it does not become good enough."""
         tasks, tolerance = self._tasks, self._work.plan.tolerance
-        # The fastest needs the highest degree: it is solved first, by every rank for itself.
-        chosen = [int(np.argmin([task.response.margin for task in tasks]))]
-        self._take([self._solve(chosen[0], True)])
-        self.spent += self._cost(True)  # it would be solved just so by itself
         worst: list[int] = []
-        while len(chosen) < min(MOST, len(tasks) // 2):
-            numbers = self._next(worst, chosen)
+        while len(self.speeds) < min(MOST, len(tasks) // 2):
+            numbers = self._next(worst)
             if not numbers:
-                break  # there is no other speed, or it would cost too much
-            before, error = self._solved(numbers)
-            chosen, worst = [*chosen, *numbers], []
-            if len(self._estimates) > 1 and any(self._least(word) > tolerance for word in self._words):
-                break  # no speed can be fitted to the tolerance
+                return  # there is no other speed, or it would cost too much
+            before, worst = self.rational, []
+            error = self._solved(numbers)
+            if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in self._words):
+                return  # no speed can be fitted to the tolerance
             if before and self._excess(error) <= 1.0:
                 changes = {number: self._change(before, number) for number in self._changed(before)}
                 error = {word: max(of[word] for of in (error, *changes.values())) for word in error}
                 if self._excess(error) <= 1.0:
-                    error = self._seconded(error, chosen)
+                    error = self._seconded(error)
                     if self._excess(error) <= 1.0:
-                        return self._trained(error)
+                        self.error = error
+                        return
                 worst = [max(changes, key=lambda number: self._excess(changes[number]))]
-        return self.given_up()
 
-    def given_up(self) -> Trained | None:
-        """Fit that serves the solved speeds alone; None where no speed was solved."""
-        self._say("no fit through speeds is good enough at its cost: each is solved")
-        return self._trained(None) if self._fit else None
-
-    def _trained(self, error: dict[str, float] | None) -> Trained:
-        assert self._fit
-        return Trained(self._fit, dict(sorted(self._estimates.items())), error)
-
-    def _seconded(self, error: dict[str, float], chosen: list[int]) -> dict[str, float]:
+    def _seconded(self, error: dict[str, float]) -> dict[str, float]:
         """Error of a good fit, after the discretisation's error was measured at more speeds.
 
         That measurement is put off until the fit is good, lest it be in vain.
         """
-        while (missing := LADDERS - len(self._estimates)) > 0:
-            more = self._far([], chosen)[:missing]
+        while (missing := LADDERS - len(self.estimates)) > 0:
+            more = self._far([])[:missing]
             if not more:
                 break
-            _, off = self._solved(dict.fromkeys(more, True))
-            chosen += more
+            off = self._solved(dict.fromkeys(more, True))
             error = {word: max(value, off.get(word, 0.0)) for word, value in error.items()}
         return error
 
-    def _next(self, worst: list[int], chosen: list[int]) -> dict[int, bool]:
+    def _next(self, worst: list[int]) -> dict[int, bool]:
         """Numbers of the speeds to solve next: the worst one, and speeds far from all solved ones.
 
         Each maps to True where its error is to be measured: at the ends of the sweep, and elsewhere as
         far as the cost may be in vain. Speeds that would cost too much are left out.
         """
         lost, kept = self._lost, dict[int, bool]()
-        for number in self._far(worst, chosen):
-            measured = len(self._estimates) + sum(kept.values())
+        for number in self._far(worst):
+            measured = len(self.estimates) + sum(kept.values())
             for measures in (True, False):
                 more = self._cost(measures) - self._alone[number]
                 allowed = measured < LADDERS if measures else measured >= _ENDS
@@ -348,10 +336,10 @@ class _Training:
                     break
         return kept
 
-    def _far(self, numbers: list[int], chosen: list[int]) -> list[int]:
+    def _far(self, numbers: list[int]) -> list[int]:
         """Numbers of as many speeds as are solved at once: the given ones, and others far from all."""
         while len(numbers) < AT_ONCE:
-            number = leja(self._sweep.z, chosen + numbers)
+            number = leja(self._sweep.z, [*self.speeds, *numbers])
             if number is None:
                 break
             numbers = [*numbers, number]
@@ -359,74 +347,84 @@ class _Training:
 
     def _cost(self, measures: bool, degree: int | None = None) -> float:
         """Cost of a speed at a degree, the fit's if None, with or without measuring its error."""
-        degree = degree or self._degree
-        assert degree
+        degree = degree or self.space.degree
         solved = [p for p, _ in levels(degree, 1, fixed=False)] if measures else [degree]
         return float(sum(p**4 for p in solved))
 
-    def _solved(self, numbers: dict[int, bool]) -> tuple[Barycentric | None, dict[str, float]]:
+    def _solved(self, numbers: dict[int, bool]) -> dict[str, float]:
         """Solve speeds, shared out over the ranks, and take them in.
 
         Args:
             numbers: numbers of the speeds; True where the error is to be measured.
 
         Returns:
-            The previous fit; its largest error at these speeds, by word, empty where there was no fit.
+            Largest error of the previous fit at these speeds, by word, empty where there was no fit.
         """
         for number, measures in numbers.items():
             cost = self._cost(measures)
             self.spent, self._lost = self.spent + cost, self._lost + cost - self._alone[number]
-        before = self._fit.rational if self._fit else None
         speeds = by_turns(
             list(numbers), lambda number: self._solve(number, numbers[number]),
             not self._work.plan.shared_speeds,
         )  # fmt: skip
         self._take(speeds)
         off = [speed.off for speed in speeds if speed.off]
-        return before, {word: max(of[word] for of in off) for word in off[0]} if off else {}
+        return {word: max(of[word] for of in off) for word in off[0]} if off else {}
 
     def _take(self, speeds: list[Speed]) -> None:
-        assert self._fit
-        if (degree := max(speed.degree for speed in speeds)) > self._fit.space.degree:
-            raise _HigherDegree(degree)
+        """Take in solved speeds; a rational function with a pole among the speeds is replaced.
+
+        Raises:
+            HigherDegree: one needs a higher degree than the fit's.
+        """
+        if (degree := max(speed.degree for speed in speeds)) > self.space.degree:
+            raise HigherDegree(degree)
         for speed in speeds:
+            self.speeds[speed.number] = speed
             if speed.estimate:
-                self._estimates[float(self._sweep.z[speed.number])] = speed.estimate
-        self._fit.take(speeds)
+                self.estimates[float(self._sweep.z[speed.number])] = speed.estimate
+        z = self._sweep.z[[*self.speeds]]
+        if len(z) > 2:
+            self.rational = fit_rational(z, self._values, _NOISE)
+            if np.abs(self.rational.shares(self._sweep.z)).sum(axis=1).max() >= _LARGEST:
+                self.rational = polynomial_through(z)
 
     def _solve(self, number: int, measures: bool) -> Speed:
         """Solve a speed, with or without the measurement of its error."""
-        work, task, fit = self._work, self._tasks[number], self._fit
-        kind = PUNCHES[work.plan.mode]
-        self._say(f"finite elements at c = {task.response.c:g}, of the fit")
-        expected: list[Gauge] = []
-        if fit and fit.rational:
-            with fit.level(task) as predicted:
+        task, expected = self._tasks[number], list[Gauge]()
+        if self.rational:
+            with self.level(task) as predicted:
                 expected = predicted.gauges(*self._probes)
         if measures:
-            solved = climb(
-                work, task, self._all, lambda space, g: kind(work, task, space, g),
-                self._degree, DISCRETISATION,
-            )  # fmt: skip
+            solved = self._climbed(number, self.space.degree)
         else:
-            assert fit
-            level, done = kind(work, task, fit.space, self._all), WorkDone()
+            self._announce(task)
+            level, done = self._kind(self._work, task, self.space, self._all), WorkDone()
             done.count(level.factor)
-            solved = Solved(level, None, size_of(fit.space) | vars(done))
+            solved = Solved(level, None, size_of(self.space) | vars(done))
         with closing(solved):
-            level = solved.level
-            degree = level.space.degree
-            if not fit:
-                fit = self._fit = Fit(
-                    work, self._sweep, level.space, self._frictions(level), level.recovery
-                )
-                self._degree = degree
-            fits = degree <= fit.space.degree
-            off = largest_changes(level.gauges(*self._probes), expected) if fits and expected else {}
-            error = solved.error
-            estimate = Estimate(error.g, error.loads, error.errors) if error else None
-            sample = fit.sampled(task, level) if fits else None
-            return Speed(number, degree, sample, solved.record(), estimate, off)
+            fits = expected and solved.level.space.degree <= self.space.degree
+            off = largest_changes(solved.level.gauges(*self._probes), expected) if fits else {}
+            return self._speed(number, solved, off)
+
+    def _climbed(self, number: int, degree: int | None) -> Solved:
+        """Speed that is solved with the measurement of its error, from a degree on."""
+        work, task = self._work, self._tasks[number]
+        self._announce(task)
+        return climb(
+            work, task, self._all, lambda space, g: self._kind(work, task, space, g), degree,
+            DISCRETISATION,
+        )  # fmt: skip
+
+    def _announce(self, task: Task) -> None:
+        self._say(f"finite elements at c = {task.response.c:g}, of the fit")
+
+    def _speed(self, number: int, solved: Solved, off: dict[str, float]) -> Speed:
+        level, error = solved.level, solved.error
+        fits = level.space.degree <= self.space.degree
+        estimate = Estimate(error.g, error.loads, error.errors) if error else None
+        sample = self._sampled(self._tasks[number], level) if fits else None
+        return Speed(number, level.space.degree, sample, solved.record(), estimate, off)
 
     @property
     def _all(self) -> NDArray[np.float64]:
@@ -455,11 +453,11 @@ class _Training:
     @property
     def _words(self) -> list[str]:
         """Words of output.quantities whose errors are measured."""
-        return list(next(iter(self._estimates.values())).errors)
+        return list(next(iter(self.estimates.values())).errors)
 
     def _least(self, word: str) -> float:
         """Smallest error of the discretisation."""
-        return float(min(estimate.errors[word].min() for estimate in self._estimates.values()))
+        return float(min(estimate.errors[word].min() for estimate in self.estimates.values()))
 
     def _excess(self, error: dict[str, float]) -> float:
         """Largest error of the fit over its allowed value, among the words; infinite for no word."""
@@ -469,24 +467,22 @@ class _Training:
 
     def _changed(self, before: Barycentric) -> list[int]:
         """Numbers of the speeds whose fit changed most, a speed for each gap between solved ones."""
-        fit = self._fit
-        assert fit and fit.rational
-        z, solved = self._sweep.z, np.sort(self._sweep.z[fit.solved])
-        shares = fit.rational.shares(z)
+        assert self.rational
+        z, numbers = self._sweep.z, [*self.speeds]
+        shares = self.rational.shares(z)
         shares[:, : len(before.nodes)] -= before.shares(z)
-        change = np.linalg.norm(shares @ rotated(fit.values), axis=1)
-        change[fit.solved] = -1.0
-        gap = np.searchsorted(solved, z)
+        change = np.linalg.norm(shares @ rotated(self._values), axis=1)
+        change[numbers] = -1.0
+        gap = np.searchsorted(np.sort(z[numbers]), z)
         gaps = [np.flatnonzero(gap == index) for index in np.unique(gap)]
-        worst = [int(numbers[change[numbers].argmax()]) for numbers in gaps]
+        worst = [int(between[change[between].argmax()]) for between in gaps]
         return [number for number in worst if change[number] >= 0.0]
 
     def _change(self, before: Barycentric, number: int) -> dict[str, float]:
         """Largest relative change of a speed's gauges with the last samples, by word."""
-        assert self._fit
         gauges: list[list[Gauge]] = []
-        for rational in (self._fit.rational, before):
-            with self._fit.level(self._tasks[number], rational) as level:
+        for rational in (self.rational, before):
+            with self.level(self._tasks[number], rational) as level:
                 gauges.append(level.gauges(*self._probes))
         return largest_changes(*gauges)
 

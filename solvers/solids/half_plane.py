@@ -183,6 +183,13 @@ class HalfPlane:
         of = self.surface
         return of.q * σ_YY + (of.n12 + of.m * g) * H
 
+    def in_plane(self, g: Any, σ_YY: Any, H: Any, more: Any = 0.0) -> Any:
+        """In-plane stress on the surface over N/(2a), by σ_YY with the Hilbert transform H and g σ_YY.
+
+        ``more`` is the strain μ u,X over N/(2a) that layers, or friction that varies, add.
+        """
+        return self.σ_XX(self.strain(g, σ_YY, H) + more, σ_YY, g * σ_YY)
+
     @property
     def contraction(self) -> complex:
         """p of the plane X + pY midway between those of the fields; 1j in an isotropic solid at rest."""

@@ -6,7 +6,7 @@ from mpi4py import MPI
 from support import THOROUGH, scene_of
 
 from galinx import template
-from galinx.app.plan import plan as planning
+from galinx.app.plan import elements
 from galinx.app.plan.plan import make_plan
 from galinx.app.run.flow import Memory, compute
 from galinx.app.scene.library import templates
@@ -46,7 +46,7 @@ def kinds():
 def test_a_decomposed_mesh_gives_what_one_rank_gives(name, monkeypatch):
     found = []
     for alone in (True, False):
-        monkeypatch.setattr(planning, "shares_speeds", lambda *_, alone=alone: alone)
+        monkeypatch.setattr(elements, "shares_speeds", lambda *_, alone=alone: alone)
         found.append(Memory())
         compute(SCENES[name], found[-1])
     one, two = found

@@ -108,6 +108,14 @@ def test_films_are_made_of_strokes(strokes, tmp_path):
     write(strokes.data, strokes.scene, Choice(), Files(tmp_path / "film.gif"))  # made again unasked
 
 
+def test_a_film_of_states_without_stresses_is_refused():
+    """Friction along strokes alone is no film."""
+    given = {"motion.X_over_L": [0.2, 0.4, 0.6, 0.8], "output.quantities": ["friction"]}
+    run = computed("minor_loops", given)
+    with pytest.raises(BadInput, match="a film needs stresses"):
+        drawn(run, "film")
+
+
 def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
     files = Files(tmp_path / "film.mp4")
     if shutil.which("ffmpeg"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from galinx import template
-from galinx.app.plan import plan as planning
+from galinx.app.plan import elements
 from galinx.app.plan.plan import expense, lines, make_plan
 
 #: Memory of a program with its libraries on the machine of the measurements, by its last method.
@@ -30,7 +30,7 @@ LARGE = {"solve.degree": 2, "solve.cuts": 64}
 )
 def test_planned_memory_covers_what_runs_took(degree, cuts, measured, monkeypatch):
     """Largest resident sets of runs with one speed, on one rank."""
-    monkeypatch.setattr(planning, "free_memory", lambda: 64e9)
+    monkeypatch.setattr(elements, "free_memory", lambda: 64e9)
     mesh = {"solve.degree": degree, "solve.cuts": cuts, "output.quantities": ["sif"]}
     scene = template("tables4_5", mesh | {"solve.tolerance": 1e-4, "motion.c": 0.0})
     assert 0.95 * measured < PROGRAM["fem"] + told(scene)[0] < 1.6 * measured
@@ -66,20 +66,20 @@ def test_a_map_is_planned_as_what_it_takes(positions, states, methods, pressure,
 
 
 def test_a_map_that_memory_does_not_hold_is_warned_of(monkeypatch):
-    monkeypatch.setattr(planning, "free_memory", lambda: 0.5e9)
+    monkeypatch.setattr(elements, "free_memory", lambda: 0.5e9)
     changes = {"output.quantities": ["sif", "interior"], "solve.methods": EXACT}
     grid = {"output.map": {"X": [-2, 2, 2000], "Y": [-2, -0.01, 2000]}}
     assert not make_plan(template("tables4_5", changes | grid)).warnings
-    monkeypatch.setattr(planning, "free_memory", lambda: 0.2e9)
+    monkeypatch.setattr(elements, "free_memory", lambda: 0.2e9)
     (warning,) = make_plan(template("tables4_5", changes | grid)).warnings
     assert "need about 0.43 GB, of which this machine has 0.2 GB free: ask for fewer points" in warning
 
 
 def test_a_factor_is_taken_where_memory_has_room_for_it(monkeypatch):
     scene = template("tables4_5", LARGE)
-    monkeypatch.setattr(planning, "free_memory", lambda: 64e9)
+    monkeypatch.setattr(elements, "free_memory", lambda: 64e9)
     assert make_plan(scene).fem.solver == "direct"
-    monkeypatch.setattr(planning, "free_memory", lambda: 8e9)
+    monkeypatch.setattr(elements, "free_memory", lambda: 8e9)
     plan = make_plan(scene)
     assert plan.fem.solver == "multigrid" and not plan.warnings
     assert any("conjugate gradients" in line and "one of a higher degree" in line for line in lines(plan))

@@ -2,50 +2,50 @@
 
 import numpy as np
 import pytest
-from support import THOROUGH
+from support import THOROUGH, computed
 
-import galinx
-from galinx.app.scene.read import parse
 from galinx.postprocess.tables import inner_sheet, loops_sheet
 
-ISOTROPIC = 'E = "40 GPa"\nnu = 0.3\nrho = 2000'
-ORTHOTROPIC = (
-    'kind = "orthotropic"\nE1 = "40 GPa"\nE2 = "10 GPa"\nE3 = "10 GPa"\nG12 = "5 GPa"\nnu12 = 0.3\n'
-    "nu13 = 0.3\nnu23 = 0.35\nrho = 1600\nangle = {}"
-)
-DAHL = 'state = "advected"\nmodel = "dahl"\nmu_c = {}\nsigma0_over_load = {}\ndelta = {}'
-MAXWELL = 'state = "advected"\nmodel = "maxwell_slip"\nelements = [[{}, 0.2], [1000, 0.3]]'
-LUGRE = (
-    'state = "advected"\nmodel = "lugre"\nmu_c = 0.3\nmu_s = 0.5\nstribeck_velocity = 1e-3\n'
-    "sigma0_over_load = {}"
-)
+ISOTROPIC = {"E": "40 GPa", "nu": 0.3, "rho": 2000}
+ORTHOTROPIC = {
+    "kind": "orthotropic", "E1": "40 GPa", "E2": "10 GPa", "E3": "10 GPa", "G12": "5 GPa", "nu12": 0.3,
+    "nu13": 0.3, "nu23": 0.35, "rho": 1600,
+}  # fmt: skip
 
 
-def scene(friction, solid=ISOTROPIC, c=0.3, more=""):
-    return f"[solid]\n{solid}\n[friction]\n{friction}\n[motion]\nc = {c}\n{more}"
+def slid(friction, solid=ISOTROPIC, c=0.3):
+    """The result of a scene of this friction."""
+    none = dict.fromkeys(("punch", "solve", "output"))
+    return computed(changes={"solid": solid, "friction": friction, "motion": {"c": c}} | none)
+
+
+def advected(model, **parameters):
+    return {"state": "advected", "model": model} | parameters
 
 
 def random_scene(seed):
-    """A scene of a random solid, speed and friction."""
+    """A random friction, solid and speed."""
     rng = np.random.default_rng(seed)
-    solid = ORTHOTROPIC.format(rng.uniform(0.0, 180.0)) if seed % 3 == 1 else ISOTROPIC
+    solid = ORTHOTROPIC | {"angle": rng.uniform(0.0, 180.0)} if seed % 3 == 1 else ISOTROPIC
     laws = [
-        DAHL.format(rng.uniform(0.1, 0.8), 10.0 ** rng.uniform(2.0, 5.0), 1.0),
-        DAHL.format(rng.uniform(0.1, 0.8), rng.uniform(200.0, 1000.0), rng.choice([0.5, 1.5])),
-        MAXWELL.format(rng.uniform(200.0, 700.0)),
-        LUGRE.format(rng.uniform(300.0, 3e4)),
-    ]
+        advected("dahl", mu_c=rng.uniform(0.1, 0.8), sigma0_over_load=10.0 ** rng.uniform(2.0, 5.0)),
+        advected("dahl", mu_c=rng.uniform(0.1, 0.8), sigma0_over_load=rng.uniform(200.0, 1000.0),
+                 delta=float(rng.choice([0.5, 1.5]))),
+        advected("maxwell_slip", elements=[[rng.uniform(200.0, 700.0), 0.2], [1000, 0.3]]),
+        advected("lugre", mu_c=0.3, mu_s=0.5, stribeck_velocity=1e-3,
+                 sigma0_over_load=rng.uniform(300.0, 3e4)),
+    ]  # fmt: skip
     inner = np.sort(rng.uniform(-0.9, 0.9, rng.integers(0, 4)))
     f = rng.uniform(0.0, 0.9, len(inner) + 2)
     rows = [[float(X), float(y)] for X, y in zip([-1.0, *inner, 1.0], f)]
-    tabulated = f'along = {rows}\nsign = "{rng.choice(["physical", "eq25"])}"'
+    tabulated = {"along": rows, "sign": str(rng.choice(["physical", "eq25"]))}
     friction = tabulated if seed % 2 else laws[seed // 2 % len(laws)]
-    return scene(friction, solid, rng.uniform(0.0, 0.6))
+    return friction, solid, rng.uniform(0.0, 0.6)
 
 
 @pytest.mark.parametrize("seed", range(20) if THOROUGH else (1, 2, 4))
 def test_both_methods_agree_within_tolerance_and_estimate(seed):
-    result = galinx.compute(parse(random_scene(seed)))
+    result = slid(*random_scene(seed))
     data = result.data
     assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
     for side in ("left", "right"):
@@ -58,7 +58,7 @@ def test_both_methods_agree_within_tolerance_and_estimate(seed):
 
 
 def test_archive_has_friction_over_x_its_resultant_and_the_centre():
-    data = galinx.compute(parse(scene("along = [[-1, 0.2], [1, 0.5]]"))).data
+    data = slid({"along": [[-1, 0.2], [1, 0.5]]}).data
     X = data["surface/X_over_a"]
     np.testing.assert_allclose(data["surface/g"][0], np.where(np.abs(X) < 1.0, -0.35 - 0.15 * X, np.nan))
     assert data["states/f"] == pytest.approx(0.35) and data["states/g"] == pytest.approx(-0.35)
@@ -69,7 +69,7 @@ def test_archive_has_friction_over_x_its_resultant_and_the_centre():
 
 def test_friction_in_the_table_is_the_force_over_the_load():
     """By the forces at nodes; mean f stands beside it, and for one f along the contact both are that."""
-    result = galinx.compute(parse(scene("along = [[-1, 0.5], [0.2, 0.5], [1, 0.2]]")))
+    result = slid({"along": [[-1, 0.5], [0.2, 0.5], [1, 0.2]]})
     row = {column.name: column.values for column in result.table()}
     forces = (result.data[f"states/fem/{name}_force"] for name in ("tangential", "normal"))
     assert row["f"] == pytest.approx(abs(np.divide(*forces)), rel=1e-6)
@@ -78,7 +78,7 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert not loops_sheet(result.data, result.units()).rows and not inner_sheet(result.data).rows
 
 
-@pytest.mark.parametrize("row", [(0.203, 0.1), (0.2011, 0.6989)])
+@pytest.mark.parametrize("row", [[0.203, 0.1], [0.2011, 0.6989]])
 def test_kinks_near_each_other_have_cells_between_them(row):
-    result = galinx.compute(parse(scene(f"along = [[-1, 0.2], [0.2, 0.7], {list(row)}, [1, 0.5]]")))
+    result = slid({"along": [[-1, 0.2], [0.2, 0.7], row, [1, 0.5]]})
     assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]

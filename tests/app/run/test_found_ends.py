@@ -262,7 +262,7 @@ def test_smooth_punches_take_the_parabolas_way(name, seed, share, skew):
 
 def test_what_is_beyond_the_shapes_is_in_the_estimate(skew, monkeypatch):
     """With three polynomials a strongly bent punch is not itself, and the estimate says so."""
-    monkeypatch.setattr("galinx.app.plan.plan._MOST_SHAPES", 3)
+    monkeypatch.setattr("galinx.app.plan.elements._MOST_SHAPES", 3)
     punch = SMOOTH["a user's, strongly bent"]
     result = galinx.compute(scene(punch, c="0.2", output='["sif"]', mu=0.4))
     estimate = result.data["states/fem/estimate"].max()

@@ -100,38 +100,60 @@ def test_an_estimate_of_stresses_holds_what_the_far_boundary_leaves_of_places_an
     assert estimated(word=word) == pytest.approx(cells + far * (of_places + 1.8 * far), rel=1e-12)
 
 
-def climbed(work):
-    found = climb(work, TASK, G, solved)
-    return degree_of(work), found.error
-
-
 def degree_of(work):
     """Degree of the last level."""
     return work.solved[-1]
 
 
-def test_degrees_rise_until_the_tolerance_is_met_and_no_further():
-    work = Work(1e-6, lambda p: 10.0 ** (2.0 - 1.2 * p))
-    degree, error = climbed(work)
-    assert not error.excessive and degree < DEGREES[1]
-    assert work.solved == list(range(FIRST - 2, degree + 1))
-    assert degree == 8 and work.errors(8) < error.worst < 10.0 * work.errors(8)
+def unmirrored(value, rounding):
+    """Intensities at both ends differ there by what the degree leaves, as much as by rounding."""
+    made = level(value, rounding=rounding, mirrored=False)
+    made.factor.largest_residual = 1e-14
+    return made
 
 
-@pytest.mark.parametrize("ratio", [0.8, 0.95, 1.1])
-def test_a_ladder_that_does_not_converge_ends_before_the_highest_degree(ratio):
-    work = Work(1e-6, lambda p: 1e-3 * ratio**p * (-1.0) ** p)
-    degree, error = climbed(work)
-    assert error.excessive and error.of_cells
-    assert degree <= FIRST + 1
+ANY = (0.0, np.inf)
+#: The tolerance, a level by its degree; whether the tolerance is missed, and, if so, by what cells leave;
+#: least and highest of the last degree and of the estimate.
+LADDERS = {
+    "met and no further": (1e-6, lambda p: level(10.0 ** (2.0 - 1.2 * p)), False, None,
+                           (8, 8), (10.0**-7.6, 10.0**-6.6)),
+    # Slowly, and by steps of different size, of which two together tell how fast.
+    "slow, and met": (1e-5, lambda p: level(10.0 ** (-0.6 * p + 0.2 * (p % 2))), False, None,
+                      (9, DEGREES[1]), (10.0 ** (-0.6 * DEGREES[1]), 1e-5)),
+    "less shown at every degree": (
+        1e-6, lambda p: level(10.0 ** (2.0 - 1.2 * p), left=10.0 ** (2.0 - p)), False, None, (9, 9), ANY),
+    **{f"no convergence, {ratio}": (
+        1e-6, lambda p, ratio=ratio: level(1e-3 * (-ratio) ** p), True, True, (0, FIRST + 1), ANY)
+       for ratio in (0.8, 0.95, 1.1)},
+    "rounding": (1e-9, lambda p: level(1e-8 * (-1.0) ** p, rounding=1e-7), True, False, ANY, ANY),
+    # As where few functions represent a pressure, however well they are resolved.
+    "what every level shows": (1e-6, lambda p: level(10.0 ** (2.0 - 1.2 * p), left=1e-5), True, False,
+                               (0, FIRST + 1), (1e-5, 3e-5)),
+    # Without mirror images a bound on rounding is known: what it explains is rounding, unless it falls.
+    "within the bound": (1e-9, lambda p: level(1e-7 * (-1.0) ** p, rounding=1e-7, mirrored=False),
+                         True, False, (FIRST + 1, FIRST + 1), ANY),
+    "within the bound, and falls": (
+        1e-9, lambda p: level(1e-7 * (-0.4) ** p, rounding=1e-7, mirrored=False), False, None, ANY, ANY),
+}  # fmt: skip
 
 
-def test_a_ladder_that_gets_there_is_not_given_up():
-    """Slowly, and by steps of different size, of which two together tell how fast."""
-    work = Work(1e-5, lambda p: 10.0 ** (-0.6 * p + (0.2 if p % 2 else 0.0)))
-    degree, error = climbed(work)
-    assert not error.excessive and 9 <= degree <= DEGREES[1]
-    assert work.errors(degree) <= error.worst
+@pytest.mark.parametrize(
+    "tolerance, of_degree, missed, of_cells, degrees, worst", LADDERS.values(), ids=LADDERS
+)
+def test_degrees_rise_until_the_tolerance_is_met_or_cannot_be(
+    tolerance, of_degree, missed, of_cells, degrees, worst
+):
+    """What cells leave falls on finer ones, which are tried then alone."""
+    finer = Work(1e-2 * tolerance, lambda p: 0.0)
+    work = Work(tolerance, None, finer)
+    error = climb(work, TASK, G, lambda space, g: of_degree(space[1])).error
+    assert work.solved == list(range(FIRST - 2, degree_of(work) + 1))
+    assert degrees[0] <= degree_of(work) <= degrees[1]
+    assert error.excessive == missed and worst[0] <= error.worst <= worst[1]
+    assert of_cells in (None, error.of_cells)
+    to_tolerance(work, TASK, G, lambda space, g: of_degree(space[1]))
+    assert bool(finer.solved) == bool(of_cells) and bool(work.said) == (of_cells is False)
 
 
 def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_said():
@@ -148,42 +170,9 @@ def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_
     assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
 
 
-def test_cells_are_no_finer_where_rounding_is_at_fault(monkeypatch):
-    work = Work(1e-9, None)
-
-    def rounded(space, g):
-        return level(1e-8 * (-1.0) ** space[1], rounding=1e-7)
-
-    found = to_tolerance(work, TASK, G, rounded)
-    assert found.error.excessive and not found.error.of_cells
-    assert work.said
-
-
-def test_a_ladder_ends_where_only_what_every_level_shows_is_left():
-    """As where few functions represent a pressure, however well they are resolved."""
-    finer = Work(1e-8, lambda p: 0.0)
-    work = Work(1e-6, None, finer)
-
-    def unresolved(space, g):
-        return level(10.0 ** (2.0 - 1.2 * space[1]), left=1e-5)
-
-    found = to_tolerance(work, TASK, G, unresolved)
-    assert found.error.excessive and not finer.solved
-    assert 1e-5 <= found.error.worst <= 3e-5
-    assert max(work.solved) <= FIRST + 1 and work.said
-
-
 def test_what_falls_with_the_degree_in_a_solid_without_mirror_is_no_rounding():
-    """Intensities at both ends differ there by what the degree leaves, as much as by rounding."""
-
-    def solved(space, g):
-        value = 10.0 ** (2.0 - 0.5 * space[1])
-        made = level(value, rounding=value, mirrored=False)
-        made.factor.largest_residual = 1e-14
-        return made
-
     work = Work(1e-3, None)
-    error = climb(work, TASK, G, solved).error
+    error = climb(work, TASK, G, lambda space, g: unmirrored(*[10.0 ** (2.0 - 0.5 * space[1])] * 2)).error
     assert degree_of(work) > FIRST + 2 and (not error.excessive or error.of_cells)
 
 
@@ -201,27 +190,6 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
     assert found.error.excessive and not finer.solved and floor > 1e-7
     (text,) = work.said
     assert text.endswith(f"of which {floor:.1e} would remain on any cells")
-
-
-def test_a_level_that_shows_less_at_every_degree_is_not_given_up():
-    def resolved(space, g):
-        return level(10.0 ** (2.0 - 1.2 * space[1]), left=10.0 ** (2.0 - space[1]))
-
-    work = Work(1e-6, None)
-    assert not climb(work, TASK, G, resolved).error.excessive and degree_of(work) == 9
-
-
-@pytest.mark.parametrize("ratio, ends", [(1.0, True), (0.4, False)])
-def test_changes_that_a_bound_on_rounding_explains_are_rounding_unless_they_fall(ratio, ends):
-    """Without mirror images only a bound on rounding is known."""
-    work = Work(1e-9, None, Work(1e-11, lambda p: 0.0))
-
-    def noisy(space, g):
-        return level(1e-7 * ratio ** space[1] * (-1.0) ** space[1], rounding=1e-7, mirrored=False)
-
-    found = to_tolerance(work, TASK, G, noisy)
-    assert not work.finer.solved and found.error.excessive == ends
-    assert (work.solved == [FIRST - 2, FIRST - 1, FIRST, FIRST + 1]) == ends
 
 
 def test_the_pressure_and_its_moments_are_gauged():

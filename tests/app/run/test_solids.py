@@ -4,36 +4,25 @@ import json
 
 import numpy as np
 import pytest
-from support import THOROUGH, here
+from support import THOROUGH, computed, here, section_of
 
 import galinx
-from galinx.app.scene.read import parse
 from galinx.solvers.solids.plane import Orthotropic
 
+CLOSED = {"methods": ["closed_form"]}
 #: Stiffness [Pa] of fibres askew to the surface.
 SKEW = [40e9, 12e9, 15e9, 16e9, 6e9, 13e9]
 
-FRICTION = """
-[friction]
-mu_c = 0.6
-sigma0_over_load = 6e4
-"""
+FRICTION = {"mu_c": 0.6, "sigma0_over_load": 6e4}
 
 
-def scene(solid, share, tolerance, quantities=("sif",), solve="", sign="physical", output=""):
-    """A scene of an orthotropic or anisotropic solid at a share of its limit."""
-    if isinstance(solid, Orthotropic):
-        names = ("E1", "E2", "E3", "ν12", "ν13", "ν23", "G12", "ρ", "angle")
-        constants = {name.replace("ν", "nu").replace("ρ", "rho"): getattr(solid, name) for name in names}
-        kind = "orthotropic"
-    else:
-        constants, kind = {"stiffness": list(solid.constants), "rho": solid.ρ}, "anisotropic"
-    lines = "\n".join(f"{key} = {np.asarray(value).tolist()!r}" for key, value in constants.items())
-    return parse(
-        f'[solid]\nkind = "{kind}"\nplane = "{solid.plane}"\n{lines}\n{FRICTION}sign = "{sign}"\n'
-        f"[motion]\nc = {float(share * solid.limit())!r}\nX_over_L = [0.1, 0.7]\n"
-        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n{output}"
-    )
+def result_of(solid, share, tolerance, quantities=("sif",), **more):
+    """The result of a scene of an orthotropic or anisotropic solid at a share of its limit."""
+    return computed(changes={
+        "solid": section_of(solid), "friction": FRICTION, "punch": None,
+        "motion": {"c": float(share * solid.limit()), "X_over_L": [0.1, 0.7]},
+        "solve": {"tolerance": tolerance}, "output": {"quantities": list(quantities)},
+    } | more)  # fmt: skip
 
 
 def solids():
@@ -46,7 +35,7 @@ def solids():
 
 
 def check(solid, share, tolerance):
-    result = galinx.compute(scene(solid, share, tolerance))
+    result = result_of(solid, share, tolerance)
     error, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     assert error.max() <= tolerance
@@ -71,8 +60,8 @@ def test_finite_elements_reach_a_small_tolerance(solid, share):
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-7] if THOROUGH else [1e-4])
 def test_stresses_reach_the_tolerance(solid, share, tolerance):
     """Or say that they do not, where rounding leaves no more digits: of some solids seven."""
-    points = "points = [[0.0, -0.5], [0.99, -0.01], [-1.02, -0.003], [1.5, -1.0]]\n"
-    found = galinx.compute(scene(solid, share, tolerance, ("sif", "surface", "interior"), output=points))
+    points = {"output.points": [[0.0, -0.5], [0.99, -0.01], [-1.02, -0.003], [1.5, -1.0]]}
+    found = result_of(solid, share, tolerance, ("sif", "surface", "interior"), **points)
     data = found.data
     estimates = [data[f"states/fem/estimate_{name}"] for name in ("sigma_XX", "inside")]
     for true, estimate in zip((in_plane_error(data), inside_error(data)), estimates):
@@ -84,7 +73,7 @@ def test_stresses_reach_the_tolerance(solid, share, tolerance):
 def test_stresses_next_to_an_edge_show_nothing_of_how_friction_was_found():
     """What friction leaves in the contact forces does not change with the degree: no estimate sees it."""
     solid, share = ALL[7].values
-    data = galinx.compute(scene(solid, share, 1e-6, ("sif", "surface"), solve="degree = 12")).data
+    data = result_of(solid, share, 1e-6, ("sif", "surface"), **{"solve.degree": 12}).data
     assert np.all(in_plane_error(data) <= data["states/fem/estimate_sigma_XX"])
 
 
@@ -106,32 +95,35 @@ def inside_error(data):
 
 def test_the_block_is_smaller_for_a_solid_stiff_across_its_depth_and_says_so():
     upright = Orthotropic(14e9, 1e9, 1e9, 0.3, 0.3, 0.4, 0.5e9, 1500.0, 90.0)
-    data = galinx.compute(scene(upright, 0.3, 1e-2, solve='mesh = "box"')).data
+    data = result_of(upright, 0.3, 1e-2, **{"solve.mesh": "box"}).data
     error, estimate = data["states/fem/true_error"], data["states/fem/estimate"]
     assert error.max() > 0.01 and np.all(error <= estimate) and np.all(estimate <= 10.0 * error)
 
 
 @pytest.mark.parametrize("known", [False, True])
-def test_von_mises_asks_for_what_σ_ZZ_needs(known):
-    text = (
-        '[solid]\nkind = "anisotropic"\nrho = 1500\n'
-        + 'stiffness = ["10 GPa", 3e9, 1e9, "5 GPa", 0, "2 GPa"]\n'
-        + 'stiffness_Z = [1e9, "2 GPa", 0]\n' * known
-        + f'{FRICTION}[motion]\nc = 0.1\n[solve]\nmethods = ["closed_form"]\n'
-        '[output]\nquantities = ["interior"]\npoints = [[0.0, -0.5]]\n'
-    )
-    result = galinx.compute(parse(text))
-    assert ("interior/closed_form/von_mises" in result.data) == known
-    assert "interior/closed_form/sigma_1" in result.data
+@pytest.fixture(scope="module")
+def skew():
+    """Stresses inside by fibres askew to the surface, whose σ_ZZ is known, or is not."""
+    solid = {"kind": "anisotropic", "rho": 1600, "stiffness": SKEW}
+    more = {
+        "solid": solid,
+        "solve": CLOSED,
+        "output": {"quantities": ["interior"], "points": [[0, -0.5]]},
+    }
+    whole = {"friction": FRICTION, "motion": {"c": 0.3}, "punch": None} | more
+    return [computed(changes=whole | row) for row in ({}, {"solid.stiffness_Z": [1e9, 2e9, 0.0]})]
 
 
-def test_constants_that_are_lists_are_archived(tmp_path):
+def test_von_mises_asks_for_what_σ_ZZ_needs(skew):
+    for result, known in zip(skew, (False, True)):
+        assert ("interior/closed_form/von_mises" in result.data) == known
+        assert "interior/closed_form/sigma_1" in result.data
+
+
+def test_constants_that_are_lists_are_archived(skew, tmp_path):
     """And read again by every command."""
-    (tmp_path / "skew.toml").write_text(
-        f'[solid]\nkind = "anisotropic"\nstiffness = {[*map(float, SKEW)]}\nrho = 1600\n{FRICTION}'
-        '[motion]\nc = 0.3\n[solve]\nmethods = ["closed_form"]\n'
-    )
-    for words in (("run", "skew.toml"), ("check", "skew.h5"), ("show", "skew.h5")):
+    skew[0].save(tmp_path / "skew.h5")
+    for words in (("check", "skew.h5"), ("show", "skew.h5")):
         done = here(*words, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
     assert json.loads(galinx.load(tmp_path / "skew.h5").attributes["solid"])["stiffness"] == SKEW

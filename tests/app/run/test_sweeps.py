@@ -1,39 +1,39 @@
 """Many speeds of which few are solved: against speeds that are solved by themselves, and exact ones."""
 
-import json
-
 import numpy as np
 import pytest
 from random_solids import random_solid
-from support import HOME, THOROUGH, command
+from support import HOME, THOROUGH, command, scene_of, section_of
 
 import galinx
-from galinx.app.scene.read import parse
 from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.contact import stresses
-from galinx.solvers.parameters import values
-from galinx.solvers.solids import SOLIDS, Isotropic
+from galinx.solvers.solids import Isotropic
 from galinx.solvers.solids.plane import Orthotropic
 
 ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
 #: Frictions of both signs, more than are sampled themselves.
-FRICTION = "mu_c = [0.3, 0.8]\nsigma0_over_load = 2e4"
+FRICTION = {"mu_c": [0.3, 0.8], "sigma0_over_load": 2e4}
+SIF = {"output.quantities": ["sif"]}
+EVERY = {"solve.sweep": "every"}
 
 
-def scene(
-    solid, c, tolerance, quantities=("sif", "surface"), punch="", solve="", friction=FRICTION, output=""
-):
-    kind = next(name for name, known in SOLIDS.items() if known is type(solid))
-    constants = "\n".join(
-        f"{key} = {json.dumps(value)}"
-        for key, value in values(solid).items()
-        if np.size(value) and value is not None
-    )
-    return parse(
-        f'[solid]\nkind = "{kind}"\n{constants}\n[punch]\n{punch}\n[friction]\n{friction}\n[motion]\n'
-        f'c = {np.asarray(c).tolist()}\nstrokes = ["forward", "backward"]\nX_over_L = [0.2, 0.6, 0.95]\n'
-        f"[solve]\ntolerance = {tolerance}\n{solve}\n[output]\nquantities = {list(quantities)}\n{output}"
-    )
+def scene(solid, c, tolerance, *more):
+    """A scene of many speeds, with the changes ``more``."""
+    changes = {
+        "solid": section_of(solid), "punch": None, "friction": FRICTION,
+        "solve": {"tolerance": tolerance},
+        "motion": {"c": np.asarray(c).tolist(), "strokes": ["forward", "backward"],
+                   "X_over_L": [0.2, 0.6, 0.95]},
+        "output": {"quantities": ["sif", "surface"]},
+    }  # fmt: skip
+    for one in more:
+        changes |= one
+    return scene_of(changes=changes)
+
+
+def of_speeds(*given):
+    return galinx.compute(scene(*given))
 
 
 def differences(result, other):
@@ -89,31 +89,31 @@ def solved(result):
 @pytest.mark.parametrize(
     ("solid", "punch", "tolerance"),
     [
-        (ISOTROPIC, "", 1e-4),
-        *([(random_solid(3), "", 1e-3)] if THOROUGH else []),
-        (random_solid(5), "", 1e-3),
-        (ISOTROPIC, 'profile = "parabolic"\nradius = 0.1\nload = [1e4, 7e4]', 1e-4),
-        (ISOTROPIC, "tilt = 2e-4\nload = [1e4, 5e4, 2e5]", 1e-4),
+        (ISOTROPIC, None, 1e-4),
+        *([(random_solid(3), None, 1e-3)] if THOROUGH else []),
+        (random_solid(5), None, 1e-3),
+        (ISOTROPIC, {"profile": "parabolic", "radius": 0.1, "load": [1e4, 7e4]}, 1e-4),
+        (ISOTROPIC, {"tilt": 2e-4, "load": [1e4, 5e4, 2e5]}, 1e-4),
     ],
 )
 def test_a_sweep_is_what_its_speeds_are_by_themselves(solid, punch, tolerance):
     c = np.random.default_rng(7).permutation(np.linspace(0.0, 0.85, 24)) * solid.limit()
-    result = galinx.compute(scene(solid, c, tolerance, punch=punch))
+    result = of_speeds(solid, c, tolerance, {"punch": punch})
     once, told = solved(result)
     assert len(once) <= 12
     alone = [told[i] for i in np.linspace(0, len(told) - 1, 3).astype(int)]
-    other = galinx.compute(scene(solid, alone, tolerance, punch=punch))
+    other = of_speeds(solid, alone, tolerance, {"punch": punch})
     assert "states/fem/fitted" not in other.data
     check(result, other, tolerance)
 
 
 def test_a_law_whose_friction_follows_the_speed():
     c = np.linspace(0.05, 0.8, 20)
-    law = 'model = "stribeck"\nmu_c = 0.3\nmu_s = 0.9\nstribeck_velocity = 900.0'
-    result = galinx.compute(scene(ISOTROPIC, c, 1e-4, ("sif",), friction=law))
+    law = {"friction": {"model": "stribeck", "mu_c": 0.3, "mu_s": 0.9, "stribeck_velocity": 900.0}} | SIF
+    result = of_speeds(ISOTROPIC, c, 1e-4, law)
     _, told = solved(result)
     assert len(np.unique(result.data["states/g"])) == 40
-    check(result, galinx.compute(scene(ISOTROPIC, told[::4], 1e-4, ("sif",), friction=law)), 1e-4)
+    check(result, of_speeds(ISOTROPIC, told[::4], 1e-4, law), 1e-4)
 
 
 @pytest.fixture
@@ -137,13 +137,13 @@ def test_what_no_fit_tells_well_enough_is_solved(monkeypatch, work_done):
 
     monkeypatch.setattr(sweep, "FIT", 1e-12)
     c = np.linspace(0.0, 0.8, 16)
-    result = galinx.compute(scene(ISOTROPIC, c, 1e-2, ("sif",)))
+    result = of_speeds(ISOTROPIC, c, 1e-2, SIF)
     assert np.all(result.data["run/fem/factorisations"] > 0)
     assert not result.data["states/fem/fitted"].any() and result.verdict == "PASS"
-    swept = np.sum(np.array(work_done) ** 4)
+    spent = np.sum(np.array(work_done) ** 4)
     work_done.clear()
-    every = galinx.compute(scene(ISOTROPIC, c, 1e-2, ("sif",), solve='sweep = "every"'))
-    assert swept <= 1.1 * np.sum(np.array(work_done) ** 4)
+    every = of_speeds(ISOTROPIC, c, 1e-2, SIF, EVERY)
+    assert spent <= 1.1 * np.sum(np.array(work_done) ** 4)
     check(result, every, 1e-2)
 
 
@@ -153,7 +153,7 @@ def test_speeds_that_ask_for_different_degrees_cost_little_more_than_each_by_its
     c = np.linspace(0.0, 0.97, 16) * solid.limit()
     work = []
     for sweep in ("auto", "every"):
-        result = galinx.compute(scene(solid, c, 1e-4, ("sif",), solve=f'sweep = "{sweep}"'))
+        result = of_speeds(solid, c, 1e-4, SIF, {"solve.sweep": sweep})
         assert result.verdict == "PASS"
         work.append(np.sum(np.array(work_done) ** 4))
         work_done.clear()
@@ -161,8 +161,8 @@ def test_speeds_that_ask_for_different_degrees_cost_little_more_than_each_by_its
 
 
 def test_two_ranks_tell_what_one_does(tmp_path):
-    c, points = np.linspace(0.0, 0.8, 16), "points = [[0.0, -0.5], [0.9, -0.2]]"
-    text = scene(ISOTROPIC, c, 1e-2, ("sif", "surface", "interior"), output=points).text
+    asked = {"quantities": ["sif", "surface", "interior"], "points": [[0.0, -0.5], [0.9, -0.2]]}
+    text = scene(ISOTROPIC, np.linspace(0.0, 0.8, 16), 1e-2, {"output": asked}).text
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
     found = []
     for ranks in ((), ("-n", "2")):
@@ -183,11 +183,10 @@ def test_two_ranks_tell_what_one_does(tmp_path):
 @pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
 def test_all_of_256_speeds_at_once():
     c = np.linspace(0.0, 0.98, 256) * ISOTROPIC.limit()
-    friction = "mu_c = [0.1, 0.3, 0.5, 0.8, 1.2]\nsigma0_over_load = [5e3, 2e4]"
-    result = galinx.compute(scene(ISOTROPIC, c, 1e-6, friction=friction))
+    many = {"friction": {"mu_c": [0.1, 0.3, 0.5, 0.8, 1.2], "sigma0_over_load": [5e3, 2e4]}}
+    result = of_speeds(ISOTROPIC, c, 1e-6, many)
     assert len(solved(result)[0]) <= 14
-    each = scene(ISOTROPIC, c, 1e-6, friction=friction, solve='sweep = "every"')
-    check(result, galinx.compute(each), 1e-6)
+    check(result, of_speeds(ISOTROPIC, c, 1e-6, many, EVERY), 1e-6)
 
 
 @pytest.mark.parametrize("seed", range(12) if THOROUGH else [6])
@@ -196,6 +195,6 @@ def test_all_speeds_of_random_solids(seed):
     rng, solid = np.random.default_rng(seed), random_solid(seed)
     c = np.sort(rng.uniform(0.0, rng.uniform(0.5, 0.95), 32)) * solid.limit()
     tolerance = 10.0 ** rng.uniform(-6.0, -3.0)
-    result = galinx.compute(scene(solid, c, tolerance))
+    result = of_speeds(solid, c, tolerance)
     each = c if THOROUGH else c[::-6]
-    check(result, galinx.compute(scene(solid, each, tolerance, solve='sweep = "every"')), tolerance)
+    check(result, of_speeds(solid, each, tolerance, EVERY), tolerance)

@@ -2,90 +2,67 @@
 
 import numpy as np
 import pytest
+from support import computed
 
 from galinx.app.errors import BadInput
 from galinx.app.results import check
-from galinx.app.results.result import compute, load
-from galinx.app.scene.changes import changed, from_words
-from galinx.app.scene.read import parse
+from galinx.app.results.result import load
+from galinx.app.scene.changes import from_words
 from galinx.postprocess.quantities import states, swept
 from galinx.postprocess.quantities.layers import INTERFACE_EXTREMES
 from galinx.postprocess.tables import parameters
 
-FLAT = """
-[solid]
-E = "200 GPa"
-nu = 0.3
-rho = 7800
-[punch]
-profile = "flat"
-half_width = "1 mm"
-load = ["50 N/mm", "100 N/mm"]
-[friction]
-mu = [0.1, 0.3]
-[motion]
-speed = ["100 m/s", "1000 m/s"]
-[solve]
-methods = ["closed_form"]
-"""
-COATED = """
-[solid]
-material = "BK7"
-[[layer]]
-thickness = "20 um"
-E = "450 GPa"
-nu = 0.25
-rho = 5220
-[punch]
-profile = "parabolic"
-radius = "5 mm"
-load = "100 N/mm"
-[friction]
-mu = 0.2
-[motion]
-speed = "1 m/s"
-[solve]
-methods = ["sie"]
-tolerance = 1e-4
-"""
+FLAT = {
+    "solid": {"E": "200 GPa", "nu": 0.3, "rho": 7800}, "friction": {"mu": [0.1, 0.3]},
+    "punch": {"half_width": "1 mm", "load": ["50 N/mm", "100 N/mm"]}, "output": None,
+    "motion": {"speed": ["100 m/s", "1000 m/s"]}, "solve": {"methods": ["closed_form"]},
+}  # fmt: skip
+COATED = {
+    "solid": {"material": "BK7"}, "friction": {"mu": 0.2}, "motion": {"speed": "1 m/s"},
+    "layer": [{"thickness": "20 um", "E": "450 GPa", "nu": 0.25, "rho": 5220}], "output": None,
+    "punch": {"profile": "parabolic", "radius": "5 mm", "load": "100 N/mm"},
+    "solve": {"methods": ["sie"], "tolerance": 1e-4},
+}  # fmt: skip
 
 
-def _alone(text, result, state):
+def swept_by(scene, *words):
+    return computed("tables4_5", scene | from_words(words))
+
+
+def alone(scene, result, state):
     """Values of a state's swept numbers, and the result of a scene with these alone."""
     names = [path for path in parameters(result.data) if "." in path]
     values = {path.partition("/")[2]: float(result.data[path][state]) for path in names}
-    return values, compute(parse(changed(text, values)))
+    return values, computed("tables4_5", scene | values)
 
 
 def test_every_state_is_that_of_a_scene_with_single_numbers():
     half_widths = "punch.half_width={from=1e-3, to=2e-3, number=2}"
-    scene = parse(changed(FLAT, from_words(["solid.E=[100, 200, 400] GPa", half_widths])))
-    result = compute(scene)
-    count = len(result.data[states.SPEED.path])
-    each = count // len(scene.variants)
-    assert (len(scene.variants), each) == (6, 8)
+    result = swept_by(FLAT, "solid.E=[100, 200, 400] GPa", half_widths)
+    variants, count = len(result.scene.variants), len(result.data[states.SPEED.path])
+    each = count // variants
+    assert (variants, each) == (6, 8)
     for first in range(0, count, each):
-        values, alone = _alone(FLAT, result, first)
+        values, single = alone(FLAT, result, first)
         rows = slice(first, first + each)
-        for path, expected in alone.data.items():
+        for path, expected in single.data.items():
             if path.startswith(("states/", "surface/closed_form")):
                 held = result.data[path][rows]
                 same = np.array_equal(held, expected, equal_nan=expected.dtype.kind == "f")
                 assert same, (path, values)
-        half_width = alone.scene.body.half_width
+        half_width = single.scene.body.half_width
         assert (result.data[swept.HALF_WIDTH.path][rows] == half_width).all()
-        assert (result.data[swept.WAVE_SPEED.path][rows] == alone.scene.solid.c_s).all()
+        assert (result.data[swept.WAVE_SPEED.path][rows] == single.scene.solid.c_s).all()
 
 
 def test_an_archive_of_a_sweep_is_whole(tmp_path):
-    scene = parse(changed(FLAT, from_words(["solid.nu=[0.2, 0.3, 0.4]"])))
-    compute(scene).save(tmp_path / "swept.h5")
+    swept_by(FLAT, "solid.nu=[0.2, 0.3, 0.4]").save(tmp_path / "swept.h5")
     assert check.faults(tmp_path / "swept.h5") == []
     assert load(tmp_path / "swept.h5").scene.variants[2].half_plane.solid.ν == 0.4
 
 
 def test_a_number_of_one_variant_that_is_changed_is_a_fault(tmp_path):
-    result = compute(parse(changed(FLAT, from_words(["solid.nu=[0.2, 0.3]"]))))
+    result = swept_by(FLAT, "solid.nu=[0.2, 0.3]")
     result.data["states/closed_form/K_I_left"][-1] *= 1.1
     result.save(tmp_path / "swept.h5")
     faults = check.faults(tmp_path / "swept.h5")
@@ -93,18 +70,17 @@ def test_a_number_of_one_variant_that_is_changed_is_a_fault(tmp_path):
 
 
 def test_thicknesses_of_a_layer():
-    result = compute(parse(changed(COATED, from_words(["layer[0].thickness=[10, 20] um"]))))
+    result = swept_by(COATED, "layer[0].thickness=[10, 20] um")
     unit, depths = swept.interface_depths(result.data)
     assert unit == "m" and np.allclose(depths, [[10e-6], [20e-6]], rtol=1e-12)
     for state in (0, 1):
-        _, alone = _alone(COATED, result, state)
+        _, single = alone(COATED, result, state)
         for row in (states.HALF_WIDTH["sie"], *INTERFACE_EXTREMES["sie"]):
-            held, expected = result.data[row.path][state], alone.data[row.path][0]
+            held, expected = result.data[row.path][state], single.data[row.path][0]
             # The positions along interfaces are those of both thicknesses.
             assert np.allclose(held, expected, rtol=2e-3, atol=2e-2 * ("_X" in row.path)), row.path
 
 
 def test_contacts_of_another_kind_are_no_sweep():
-    tilts = from_words(["punch.tilt=['0 deg', '0.1 deg']"])
     with pytest.raises(BadInput, match="of another kind"):
-        compute(parse(changed(FLAT, tilts)))
+        swept_by(FLAT, "punch.tilt=['0 deg', '0.1 deg']")

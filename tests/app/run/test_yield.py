@@ -1,4 +1,7 @@
-"""Yield by both methods, from a scene to its archive; nothing of it unless it is asked for."""
+"""Yield by both methods, from a scene to its archive; nothing of it unless it is asked for.
+
+Of layers by dense sampling, and where they are of the solid below by what is known of that.
+"""
 
 import json
 
@@ -6,6 +9,9 @@ import numpy as np
 import pytest
 from support import computed
 
+from galinx.postprocess.quantities import layers as of_layers
+from galinx.postprocess.quantities import stresses, yielding
+from galinx.postprocess.quantities.states import HALF_WIDTH
 from galinx.solvers.contact.stresses import principal, von_mises
 
 #: Of the scene's states, the two with most and least friction; T302 yields at 205 MPa.
@@ -107,3 +113,53 @@ def test_at_rest_an_incompressible_surface_is_not_strained_and_nothing_overflows
     changes = {"solid.nu": 0.5, "motion.c": 0.0, "solve.methods": ["closed_form"]}
     data = computed("tables4_5", CHANGES | changes).data
     assert not data["states/closed_form/slip_reversed_left"].any()
+
+
+STEEL = {"E": "210 GPa", "nu": 0.3, "rho": 7850}
+TIN = {"E": "450 GPa", "nu": 0.25, "rho": 5220, "yield_strength": "4 GPa"}
+LINE = {
+    "solid": STEEL | {"yield_strength": "600 MPa"}, "friction": {"mu": [0.05, 0.2, 0.5]},
+    "punch": {"profile": "parabolic", "radius": "5 mm", "load": "100 N/mm"},
+    "motion": {"speed": "800 m/s"}, "output": None,
+}  # fmt: skip
+
+
+def coated(layer, thickness, changes=None):
+    layers = [layer | {"thickness": thickness}]
+    return computed("coating", LINE | {"solve": {"methods": ["sie"]}, "layer": layers} | (changes or {}))
+
+
+@pytest.mark.parametrize("thickness", ["4 um", "30 um", "300 um"])
+def test_layers_of_the_solid_itself_are_a_uniform_solid(thickness):
+    layered = coated(STEEL, thickness).data
+    exact = computed("coating", LINE | {"layer": None, "solve": {"methods": ["closed_form"]}}).data
+    for rows, tolerance in (
+        (yielding.VON_MISES, 2e-5), (yielding.VON_MISES_X, 2e-2), (yielding.VON_MISES_Y, 2e-2),
+    ):  # fmt: skip
+        held, expected = layered[rows["sie"].path], exact[rows["closed_form"].path]
+        assert np.allclose(held, expected, rtol=0.0, atol=tolerance), rows["sie"].path
+
+
+@pytest.mark.parametrize("thickness", ["5 um", "100 um"])
+def test_no_sample_is_larger_and_some_come_near(thickness):
+    changes = {
+        "solve.tolerance": 1e-5,
+        "output.quantities": ["friction", "sif", "surface", "interfaces", "interior", "yield"],
+        "output.map": {"X": [-2, 2, 81], "Y": [-3, -0.05, 60]},
+    }
+    data = coated(TIN, thickness, changes).data
+    depth = data[of_layers.INTERFACE_DEPTH_IN_M.path][0] / data[HALF_WIDTH["sie"].path]
+    Y = data[stresses.INSIDE_Y.path]
+    mises = next(row for row in stresses.INVARIANTS_INSIDE["sie"] if "von_mises" in row.path)
+    inside, held = data[mises.path], data[yielding.OF_LAYERS["sie"].path]
+    for state, H in enumerate(depth):
+        below = Y < -H
+        assert inside[state, below].max() <= held[state, 1] * (1.0 + 1e-5)
+        assert inside[state, ~below].max(initial=0.0) <= held[state, 0] * (1.0 + 1e-5)
+        if data[yielding.OF_LAYERS_Y["sie"].path][state, 1] < -H - 0.05:
+            assert inside[state, below].max() >= 0.995 * held[state, 1]
+    whole = held.max(axis=1)
+    assert np.array_equal(data[yielding.VON_MISES["sie"].path], whole)
+    unit = 1e5 / (2.0 * data[HALF_WIDTH["sie"].path])
+    share = held * unit[:, None] / np.array([4e9, 600e6])
+    assert np.allclose(data[yielding.OVER_STRENGTH["sie"].path], share, rtol=1e-12)

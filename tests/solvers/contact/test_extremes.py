@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from galinx.solvers.contact import stresses
 from galinx.solvers.contact.extremes import FINER, between, extreme, highest, largest, tops
 from galinx.solvers.contact.stresses import at_and_between
 
@@ -39,6 +40,21 @@ def test_a_sampled_curve_is_highest_between_its_samples():
         value, at = extreme(sign * curves[None], X, sign)
         np.testing.assert_allclose(value, [sign * np.ones(3)], rtol=1e-9)
         np.testing.assert_allclose(at, places.T, atol=1e-6)
+
+
+@pytest.mark.parametrize("place", [-2.2, -0.6, 0.37, 1.7])
+def test_curves_along_the_surface_are_highest_under_the_punch_or_beside_it(place):
+    X, none = np.linspace(-3.0, 3.0, 241), np.empty((1, 0))
+    turns = stresses.Turns(none, np.empty((3, 1, 0)), None)
+    value, at = highest(*stresses.on_surface(X, np.exp(-((X - place) ** 2))[None], turns))
+    assert value[0] == pytest.approx(1.0, abs=1e-6) and at[0] == pytest.approx(place, abs=1e-3)
+
+
+def test_turns_of_several_solutions_are_padded_to_as_many_places():
+    one, other = (stresses.Turns(np.ones((1, n)), np.ones((3, 1, n)), None) for n in (1, 3))
+    both = stresses.together([one, other])
+    np.testing.assert_array_equal(both.X, [[1.0, np.nan, np.nan], [1.0, 1.0, 1.0]])
+    np.testing.assert_array_equal(np.isnan(both.σ), np.isnan([both.X] * 3))
 
 
 def test_noise_of_samples_that_all_but_coincide_is_not_magnified():

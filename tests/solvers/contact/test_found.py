@@ -60,14 +60,17 @@ def test_without_friction_at_rest_it_is_hertz():
     np.testing.assert_allclose(found.on_surface(r)[1][0], -4.0 / np.pi * np.sqrt(1.0 - r**2), rtol=1e-12)
 
 
-def test_the_contact_grows_towards_the_rayleigh_speed():
-    """h(c)/h(0) at ν = 1/4, g = 0, from 40-digit arithmetic."""
-    h = [
-        contacts(MovingFrame(2.0, c), np.zeros(1), parabolic(1.0), LOAD).of("half_width")[0]
-        for c in (0.0, 0.3, 0.6, 0.8, 0.9)
-    ]
-    wanted = ["1.03662", "1.20082", "1.64686", "3.54087"]
-    assert [f"{x / h[0]:.5f}" for x in h[1:]] == wanted
+@dataclass(frozen=True)
+class Cosh:
+    """A smooth convex punch of a user's own."""
+
+    sharp, kinks = (False, False), ()
+
+    def slope(self, X):
+        return 0.01 * np.sinh(X / 1e-3 + 0.3)
+
+    def words(self):
+        return "cosh"
 
 
 SHAPE = (
@@ -85,6 +88,7 @@ def profiles():
     b, R = mp.mpf(1e-4), mp.mpf(0.2)
     yield "rounded", rounded(1e-4, 0.2), lambda X: mp.sign(X) * max(abs(X) - b, 0 * one) / R
     yield "table", table(SHAPE), _linear(*table(SHAPE)._knots)
+    yield "own", Cosh(), lambda X: mp.mpf(0.01) * mp.sinh(X / mp.mpf(1e-3) + mp.mpf(0.3))
 
 
 def _linear(x, s):
@@ -107,16 +111,20 @@ def test_every_profile_is_that_of_the_quadrature(name, seed):
     response, constants, g = known(list(ALL).index(name) + 5 * seed)
     found = contacts(response, np.array([g]), profile, LOAD)
     h, m = (float(found.of(key)[0]) for key in ("half_width", "centre"))
-    with mp.workdps(28 if name == "rounded" else 20):
+    with mp.workdps(30 if name in ("rounded", "own") else 20):
         exact = solved(constants, g, slope, profile.kinks, mp.mpf(LOAD), (m, h))
         assert h == pytest.approx(float(exact.h), rel=1e-11)
         assert (m - float(exact.m)) / h == pytest.approx(0.0, abs=1e-11)
-        r = [-0.97, float(exact.at[0]) + 1e-5, 0.999]
+        r = [-0.97, *(float(x) + 1e-5 for x in exact.at[:1]), 0.999]
         r = np.array([x for x in r if -1.0 < x < 1.0])
         wanted = np.array([float(exact.σ_YY(x)) for x in r])
         # Next to a tip the pressure is steep: where it is counts.
         near = 1e-9 if "power 1.5" in name or "wedge" in name else 1e-11
         np.testing.assert_allclose(found.on_surface(r)[1][0], wanted, rtol=near, atol=1e-11)
+        if name == "power 1.5":  # at a cusp the pressure is finite, and extrapolated
+            tip = float(exact.at[0])
+            found_there = found.on_surface(np.array([tip]))[1][0, 0]
+            assert found_there == pytest.approx(float(exact.σ_YY(exact.at[0])), rel=1e-6)
 
 
 def test_a_wedge_at_rest_is_that_of_the_textbook():
@@ -128,42 +136,6 @@ def test_a_wedge_at_rest_is_that_of_the_textbook():
     r = np.array([-0.99, -0.5, -1e-3, 1e-5, 0.2, 0.9])
     p = 2.0 * 0.02 / (np.pi * n) * np.arccosh(1.0 / np.abs(r)) * 2.0 * h / LOAD
     np.testing.assert_allclose(found.on_surface(r)[1][0], -p, rtol=1e-12)
-
-
-@dataclass(frozen=True)
-class Cosh:
-    """A smooth convex punch of a user's own."""
-
-    sharp = (False, False)
-
-    def slope(self, X):
-        return 0.01 * np.sinh(X / 1e-3 + 0.3)
-
-    def words(self):
-        return "cosh"
-
-
-def equations_hold(response, g, found, slope, load):
-    """v,X below the contact, the load by the field far away, and no pressure at the ends."""
-    (group,) = found.groups
-    h, m = group.half_width[0], group.centre[0]
-    r = np.array([-0.9, -0.35, 0.15, 0.6, 0.98])
-    Φ = group.pressure.at(r - 1e-13j)
-    n, Q = response.n + g * response.n12, g * response.q
-    wanted = slope(m + h * r) * 2.0 * h / load
-    np.testing.assert_allclose(n * Φ.real + Q * Φ.imag, wanted, atol=1e-10 * np.abs(wanted).max())
-    np.testing.assert_allclose(-Φ.imag, found.on_surface(r)[1][0], atol=1e-10)
-    z = np.array([-1e5j])
-    np.testing.assert_allclose(np.pi * z * group.pressure.at(z), 2.0, rtol=1e-4)
-
-
-@pytest.mark.parametrize("name", ["wedge", "power 3", "rounded", "table", "own"])
-def test_the_field_solves_the_equation(name):
-    profile = Cosh() if name == "own" else ALL[name][0]
-    for seed in (1, 2, 3):
-        response, _, g = known(seed)
-        found = contacts(response, np.array([g]), profile, LOAD)
-        equations_hold(response, g, found, profile.slope, LOAD)
 
 
 def test_quadrature_gives_the_parabola_and_its_field():

@@ -102,6 +102,22 @@ def test_the_largest_pressure_of_a_punch_whose_kinks_are_beside_the_contact():
     np.testing.assert_allclose(np.ravel(pressure.largest()), [highest, place], rtol=1e-8)
 
 
+@pytest.mark.parametrize("kink", [0.3, -0.6])
+def test_the_largest_pressure_beside_a_kink(kink):
+    """Next to the kink it rises with an infinite slope to a place a hundredth away."""
+
+    def σ_YY(r):
+        d = (r - kink) / 4.0
+        return -np.sqrt(1.0 - r**2) * (2.0 - d * np.log(np.maximum(np.abs(d), 1e-300)))
+
+    s, forces = nodes_and_forces(facets(kink, 12), 9, σ_YY)
+    pressure = KinkedPressure(s, 9, AS_DRAWN, forces, np.array([kink]), (0.5, 0.5), 1.0, 1e-8)
+    r = np.linspace(-1.0, 1.0, 400_001)
+    (value,), (place,) = pressure.largest()
+    assert value == pytest.approx(-σ_YY(r).min(), rel=1e-7)
+    assert place == pytest.approx(r[σ_YY(r).argmin()], abs=1e-3)
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_largest_pressure_may_be_on_either_side_of_a_node_of_two_facets(seed):
     """Both facets have their own place of the node, a rounding apart, and their own value there."""

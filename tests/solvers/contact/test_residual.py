@@ -58,6 +58,12 @@ def test_a_wrong_field_is_seen(contact):
     assert at_a_point.min() >= 1e-7 and at_a_depth.min() >= 1e-6
 
 
+def test_the_rule_under_the_punch_has_the_integrals_of_even_and_of_infinite_pressures():
+    X, weights = residual.places()
+    assert weights.sum() == pytest.approx(2.0, rel=1e-10)
+    assert (weights / np.sqrt((1.0 - X) * (1.0 + X))).sum() == pytest.approx(np.pi, rel=1e-5)
+
+
 def layered(graded):
     layer = Layer(0.4, Isotropic(3.0, 0.2, 2.0), Isotropic(1.5, 0.3, 1.0) if graded else None)
     return Layered((layer,), Isotropic(1.0, 0.3, 1.0))

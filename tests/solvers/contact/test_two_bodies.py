@@ -6,6 +6,7 @@ from math import pi
 import mpmath as mp
 import numpy as np
 import pytest
+from stroh import admittances
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.contacts import contacts
@@ -25,30 +26,14 @@ def _fibres(seed: int) -> object:
     )
 
 
-def _stiffness(solid):
-    if isinstance(solid, Isotropic):
-        λ = solid.E * solid.ν / ((1.0 + solid.ν) * (1.0 - 2.0 * solid.ν))
-        shear = np.diag([2.0, 2.0, 1.0]) * solid.μ
-        return shear + λ * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 0]])
-    return solid.stiffness
-
-
 def _displacement(solid, V, t, below):
     """Displacement over 1/k of the surface of a body under tractions (σ_XY, σ_YY) e^(ikX) on Y = 0.
 
     Waves e^(ik(X + pY)) that decay downwards below the surface, and upwards above it.
     """
-    (c11, c12, c16), (_, c22, c26), (_, _, c66) = _stiffness(solid)
-    Q = np.array([[c11, c16], [c16, c66]]) - solid.ρ * V**2 * np.eye(2)
-    R = np.array([[c16, c12], [c66, c26]])
-    T = np.array([[c66, c26], [c26, c22]])
-    zero, one = np.zeros((2, 2)), np.eye(2)
-    first = np.block([[zero, one], [-Q, -(R + R.T)]])
-    p, modes = np.linalg.eig(np.linalg.solve(np.block([[one, zero], [zero, T]]), first))
-    decays = (p.imag < 0.0) if below else (p.imag > 0.0)
-    A, p = modes[:2, decays], p[decays]
-    of_traction = 1j * (R.T @ A + T @ A * p)
-    return A @ np.linalg.solve(of_traction, t)
+    C = solid.response(0.0).C[np.triu_indices(3)]
+    (Y,) = admittances(C, np.array([solid.ρ * V**2 / solid.μ]), -1.0 if below else 1.0)
+    return Y @ t / (1j * solid.μ)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -124,14 +124,17 @@ def test_a_scene_has_the_same_intensities_and_stresses_by_both_assemblers():
         np.testing.assert_allclose(ordinary.data[path], own.data[path], atol=1e-9 * size, rtol=0.0)
 
 
-def test_layers_have_the_same_intensities_by_both_assemblers():
-    changes = {"solve.methods": ["fem"], "solve.tolerance": 1e-2, "output.quantities": ["sif"]}
-    for scene in ("coating", "graded"):
-        ordinary, own = (
-            computed(scene, changes | {"solve.assembler": name}).data["states/fem/K_I_left"]
-            for name in ("dolfinx", "tensor")
-        )
-        np.testing.assert_allclose(ordinary, own, rtol=1e-9)
+TO_SUBSTRATE = {"layer[0].to": {"E": "2.5 GPa", "nu": 0.25, "rho": "1000 kg/m^3"}}
+
+
+@pytest.mark.parametrize("layer", [{}, TO_SUBSTRATE], ids=["uniform", "graded"])
+def test_layers_have_the_same_intensities_by_both_assemblers(layer):
+    changes = {"solve.methods": ["fem"], "solve.tolerance": 1e-2, "output.quantities": ["sif"]} | layer
+    ordinary, own = (
+        computed("coating", changes | {"solve.assembler": name}).data["states/fem/K_I_left"]
+        for name in ("dolfinx", "tensor")
+    )
+    np.testing.assert_allclose(ordinary, own, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -2,35 +2,27 @@
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 from scipy.special import roots_jacobi
+from starts import SOLID, motion
 
-from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
 from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.dynamic import BOX, Energies, Motion, of_both
+from galinx.solvers.fem.dynamic import BOX, Energies, of_both
 from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime
-from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.history import Way, smooth
 from galinx.solvers.transient.punch import ON_SURFACE
 
-SOLID = Isotropic(1.0, 0.25, 1.0)
-
-
-def motion(c, degree=4, mesh=None, solid=SOLID, sharp=False):
-    mesh = mesh or Reached(4.3, 3.1, 1.0, 0.3, 1e-2)
-    space = Space(*distribute(mesh.drawn(), MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
-    return Motion(space, solid.response(c), sharp)
+#: A mesh of 4.3 a to either side and 3.1 a below.
+NEAR = Reached(4.3, 3.1, 1.0, 0.3, 1e-2)
 
 
 @pytest.fixture(scope="module")
 def moving():
-    return motion(0.5)
+    return motion(SOLID, 0.5, NEAR)
 
 
 @pytest.mark.parametrize("sharp", [False, True])
@@ -39,7 +31,7 @@ def moving():
 )
 def test_products_by_quadrature_are_those_of_the_matrices(solid, sharp):
     mesh = Reached(4.3, 3.1, 1.0, 0.3, 1e-2, depths=(0.7,), seen=0.5, around=(2.0, 1.0))
-    of = motion(0.5, 5, mesh, solid, sharp)
+    of = motion(solid, 0.5, mesh, 5, sharp)
     u = np.random.default_rng(0).normal(size=of.size)
     for product, expected in (
         (of.stiffness(u), of.K @ u),
@@ -88,7 +80,7 @@ def test_work_of_a_random_motion_is_its_energy():
     c, (f, more) = random.uniform(0.2, 0.8) * solid.limit(), random.uniform(0.0, 0.6, 2)
     fast, T = Admittance.of(solid.response(c)).fastest, 3.0
     mesh = Reached(3.0 + fast * T / 2.0, 1.0 + fast * T / 2.0, 1.0, 0.15, 1e-4)
-    of = motion(c, 7, mesh, solid)
+    of = motion(solid, c, mesh, 7)
     solver = SlidingInTime(of)
     run = solver.run(
         [Way(1, T, 15)], lambda t: -f - more * np.sin(t) ** 2, lambda t: float(smooth(t, 2.5)),
@@ -104,7 +96,8 @@ def test_work_of_a_random_motion_is_its_energy():
 
 def test_energy_is_kept_where_the_punch_turns_round():
     """The solid goes on as it did, only the velocities seen from the punch jump; waves are sharp then."""
-    c, of = 0.5, motion(0.5, 6, Reached(4.6, 2.6, 0.5, 0.3, 1e-3, 0.0, 0.5), sharp=True)
+    c = 0.5
+    of = motion(SOLID, c, Reached(4.6, 2.6, 0.5, 0.3, 1e-3, 0.0, 0.5), 6, sharp=True)
     ways = [Way(1, 1.0, 8), Way(-1, 0.25, 8), Way(-1, 0.25, 2)]
     solver = SlidingInTime(of)
     run = solver.run(
@@ -128,9 +121,10 @@ def test_strains_along_the_surface_are_those_of_polynomials(moving):
 
 
 def test_pressure_of_forces_is_the_one_they_are_of(moving):
-    """A polynomial with the weight of a punch, integrated with the shapes of the whole contact."""
+    """The weight of a punch times what bends between two facets, integrated with all shapes."""
     α, β, p = -0.37, -0.63, 4
     X, forces = moving.X, np.zeros(len(moving.X))
+    bend = X[p * (len(X) // p // 2)]
     nodes = (X[p * 2 : p * 3 + 1] - X[p * 2]) / (X[p * 3] - X[p * 2])
     for k in range(len(X) // p):
         left, right = X[k * p], X[k * p + p]
@@ -139,11 +133,13 @@ def test_pressure_of_forces_is_the_one_they_are_of(moving):
         r, half = (left + right) / 2.0 + (right - left) / 2.0 * x, (right - left) / 2.0
         w = w * half ** (1.0 + at_left + at_right)
         w = w * (1.0 if k == 0 else (1.0 + r) ** β) * (1.0 if right == X[-1] else (1.0 - r) ** α)
-        forces[k * p : k * p + p + 1] += (w * (1.0 - r**3)) @ lagrange(nodes, (1.0 + x) / 2.0)[0]
+        forces[k * p : k * p + p + 1] += (w * (2.0 - np.abs(r - bend))) @ lagrange(
+            nodes, (1.0 + x) / 2.0
+        )[0]
     found = SurfaceInTime(moving, ON_SURFACE).pressure(forces, α, β)
     under = np.abs(ON_SURFACE) < 1.0
     r = ON_SURFACE[under]
-    expected = (1.0 - r) ** α * (1.0 + r) ** β * (1.0 - r**3)
+    expected = (1.0 - r) ** α * (1.0 + r) ** β * (2.0 - np.abs(r - bend))
     np.testing.assert_allclose(found[under], expected, rtol=1e-6, atol=1e-8)
     assert not found[~under].any()
 
@@ -151,7 +147,7 @@ def test_pressure_of_forces_is_the_one_they_are_of(moving):
 def test_surface_of_steady_motion():
     """Held 1000 a away; by the closed form further than 0.01 a from the edges."""
     c, g = 0.5, -0.5
-    of = motion(c, 7, Reached(3.0, 2.0, 1.0, 0.5, 1e-3, 1000.0))
+    of = motion(SOLID, c, Reached(3.0, 2.0, 1.0, 0.5, 1e-3, 1000.0), 7)
     solver, along = SlidingInTime(of), SurfaceInTime(of, ON_SURFACE)
     run = solver.run(
         [Way(1, 0.2, 2)], lambda t: g, lambda t: 1.0, True, [lambda u, w, way: along.strain(u)]

@@ -8,11 +8,13 @@ from mpi4py import MPI
 from support import clean_environment, mpirun, space_on
 
 from galinx.meshes import MESHES, Requirements
+from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS, Refinement
-from galinx.solvers.contact.fem_plan import unknowns
+from galinx.solvers.contact import stresses
+from galinx.solvers.contact.fem_plan import levels, requirements, size_of, unknowns
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.fields import SurfaceTrace
-from galinx.solvers.fem.space import Space, distribute
+from galinx.solvers.fem.space import Space, consistent_forces, distribute
 
 
 def test_a_missing_boundary_part_is_named():
@@ -67,3 +69,34 @@ def test_more_ranks_than_cells():
         capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_forces_of_a_load_know_the_distances_from_both_edges(sign):
+    """Sum and moment of 1 + X and of 1 - X over the contact, on two facets that meet in its middle."""
+    s = np.array([[-1.0, -0.5, 0.0], [0.0, 0.5, 1.0]])
+    forces = consistent_forces(
+        s, Physical(), (-1.0, 1.0), lambda left, right: left if sign > 0.0 else right, ()
+    )
+    assert forces.sum() == pytest.approx(2.0, rel=1e-13)
+    assert (forces * s).sum() == pytest.approx(sign * 2.0 / 3.0, rel=1e-13)
+
+
+@pytest.mark.parametrize("mesh", ["confocal", "graded"])
+def test_sizes_by_the_refinement_alone_count_its_cells(mesh):
+    for tolerance in (1e-2, 1e-6):
+        refinement = MESHES[mesh].refinement(Requirements(tolerance))
+        cells = len(MESHES[mesh].build(refinement).cells)
+        # Of the graded mesh four more are counted than drawn.
+        assert size_of(refinement, 3) == 2 * 9 * (cells + (4 if mesh == "graded" else 0))
+
+
+def test_a_mesh_reaches_the_farthest_place_in_every_plane_of_the_solid():
+    places = stresses.Places(np.array([0.5]), np.array([[-2.0, -1.0]]))
+    for planes, farthest in (((), 5.0**0.5), ((1.0 + 1.0j,), 10.0**0.5), ((-1.0 + 1.0j,), 5.0**0.5)):
+        assert requirements(1e-6, places, -0.5, 1.0, planes).farthest == pytest.approx(farthest)
+
+
+def test_a_fixed_degree_is_measured_by_a_higher_one_and_any_other_by_lower_ones():
+    assert levels(5, 1, True) == [(6, 1), (5, 1)]
+    assert levels(5, 2, False) == [(3, 2), (4, 2), (5, 2)]

@@ -132,14 +132,15 @@ def test_work_and_slope_are_those_of_the_friction(name, seed):
 def test_rates_are_those_of_the_states(name, seed):
     """In slip by differences, and in time that times the speed; directions of slip do not change."""
     law, rng = drawn(name, seed)
-    z, V = moved(law, law.rest(), [random.LENGTH, -rng.uniform(0.0, 0.4) * random.LENGTH]), 1e-3
-    h = 1e-6 * random.LENGTH
-    first, then = exactly(law, z, 1, V, h, np.array([0.0, h]))
-    settled = law.settle(first, 1, V)
-    changing = slice(len(z) // (2 if name == "gms" else 1))
-    rate = law.rate(settled, 1, V)
-    np.testing.assert_allclose(rate[changing], ((then - first) / h)[changing], rtol=1e-4, atol=1e-2)
-    np.testing.assert_allclose(law.flow(settled, 1, V), V * rate, rtol=1e-14)
+    V, h = 1e-3, 1e-6 * random.LENGTH
+    back = moved(law, law.rest(), [random.LENGTH, -rng.uniform(0.0, 0.4) * random.LENGTH])
+    for z in (back, moved(law, back, [random.LENGTH])):  # before the elements slip, and after it
+        first, then = exactly(law, z, 1, V, h, np.array([0.0, h]))
+        settled = law.settle(first, 1, V)
+        changing = slice(len(z) // (2 if name == "gms" else 1))
+        rate = law.rate(settled, 1, V)
+        np.testing.assert_allclose(rate[changing], ((then - first) / h)[changing], rtol=1e-4, atol=1e-2)
+        np.testing.assert_allclose(law.flow(settled, 1, V), V * rate, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", [name for name in ALL if LAWS[name].broadcasts])

@@ -22,6 +22,7 @@ from galinx.solvers.contact.equation import (
     jacobi,
 )
 from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
+from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.layers.layered import Layer, Layered
@@ -156,6 +157,17 @@ def test_frictions_between_are_interpolated_within_the_tolerance():
             equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11
         ).pressure.series(ENDS)
         assert np.abs(ends[i] / exact - 1.0).max() <= 1e-8
+
+
+def test_panels_have_the_hilbert_transform_of_polynomials():
+    """Of one pressure by values on panels and by Jacobi's polynomials, under the punch and beside it."""
+    α, β, X = -0.45, -0.55, np.array([-3.0, -1.2, -0.99, -0.3, 0.2, 0.8, 1.5])
+    panels, polynomials = Panels(α, β, 0.1), Jacobi(α, β)
+    p = 1.0 + panels.t - 2.0 * panels.t**3
+    c = np.linalg.lstsq(polynomials.values(panels.t, 6), p, rcond=None)[0]
+    by_panels, expected = Expansion(α, β, p, panels), Expansion(α, β, c, polynomials)
+    np.testing.assert_allclose(by_panels.σ_YY(X), expected.σ_YY(X), rtol=1e-11)
+    np.testing.assert_allclose(by_panels.hilbert(X), expected.hilbert(X), rtol=1e-10)
 
 
 @pytest.mark.parametrize("terms, limit", [(20, 1e-10), (60, 1e-10), (150, 1e-10), (300, 1e-9)])

@@ -4,6 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from random_solids import random_solid, stiffness
+from stroh import Stroh, admittances
 
 import galinx
 from galinx.solvers.layers.layered import Layer, Layered
@@ -30,21 +31,7 @@ def material(name, angle):
 
 def ratio(C, c):
     """-Y₂₂/Y₂₁ at a speed by eigenvectors of the fundamental matrix, c complex."""
-    c11, c12, c16, c22, c26, c66 = [mp.mpf(float(x)) for x in C]
-    Q = mp.matrix([[c11 - c * c, c16], [c16, c66 - c * c]])
-    R, T = mp.matrix([[c16, c12], [c66, c26]]), mp.matrix([[c66, c26], [c26, c22]])
-    inverse = T**-1
-    blocks = -inverse * R.T, inverse, R * inverse * R.T - Q, -R * inverse
-    N = mp.matrix(4)
-    for k, block in enumerate(blocks):
-        for i in range(2):
-            for j in range(2):
-                N[2 * (k // 2) + i, 2 * (k % 2) + j] = block[i, j]
-    values, vectors = mp.eig(N)
-    some = [k for k in range(4) if values[k].imag > 0]
-    assert len(some) == 2
-    A, B = (mp.matrix([[vectors[i + row, k] for k in some] for i in range(2)]) for row in (0, 2))
-    Y = A * B**-1
+    Y = Stroh(C, c).Y
     return -Y[1, 1] / Y[1, 0]
 
 
@@ -73,20 +60,11 @@ def test_thresholds_are_those_of_waves_that_neither_grow_nor_decay(name, angle, 
     assert min(solid.flutter()) == pytest.approx(expected, abs=1e-8)
 
 
-def eigenvectors(solid, C, mirrored=False):
-    """L of waves that decay below the surface of a solid, by its fundamental matrix, [Pa], (n, 2, 2)."""
-    c11, c12, c16, c22, c26, c66 = solid.response(0.0).C[np.triu_indices(3)] * solid.μ
-    c16, c26 = (-c16, -c26) if mirrored else (c16, c26)
-    Q = np.array([[c11, c16], [c16, c66]]) - solid.ρ * (C * C)[:, None, None] * np.eye(2)
-    R, T = np.array([[c16, c12], [c66, c26]]), np.array([[c66, c26], [c26, c22]])
-    inverse = np.linalg.inv(T)
-    N = np.empty((len(C), 4, 4), dtype=complex)
-    N[:, :2, :2], N[:, :2, 2:] = -inverse @ R.T, inverse * solid.μ
-    N[:, 2:, :2], N[:, 2:, 2:] = (R @ inverse @ R.T - Q) / solid.μ, -R @ inverse
-    p, vectors = np.linalg.eig(N)
-    order = np.argsort(-p.imag, axis=1)[:, None, :2]
-    A, B = (np.take_along_axis(vectors[:, rows], order, axis=2) for rows in (slice(2), slice(2, 4)))
-    return solid.μ * B @ np.linalg.inv(A)
+def impedances(solid, speeds, mirrored=False):
+    """Tractions by displacements of waves that decay below the surface of a solid [Pa], (n, 2, 2)."""
+    C = solid.response(0.0).C[np.triu_indices(3)]
+    C = C * [1, 1, -1, 1, -1, 1] if mirrored else C
+    return solid.μ * np.linalg.inv(admittances(C, solid.ρ / solid.μ * speeds**2))
 
 
 def turns(F, unit):
@@ -111,7 +89,7 @@ def growing(solid, g):
     """
 
     def F(C):
-        L = eigenvectors(solid, C)
+        L = impedances(solid, C)
         return L[:, 0, 0] - g * L[:, 1, 0]
 
     return turns(F, solid.response(0.0).C.max() ** 0.5 * solid.c_s)
@@ -160,7 +138,7 @@ def growing_between(plate, punch, V, V_punch, g):
     )
 
     def total(C):
-        L, M = eigenvectors(plate, C + V), eigenvectors(punch, C + V_punch, True)
+        L, M = impedances(plate, C + V), impedances(punch, C + V_punch, True)
         return (
             (L[:, 0, 0] - g * L[:, 1, 0]) * np.linalg.det(M)
             + (M[:, 0, 0] + g * M[:, 1, 0]) * np.linalg.det(L)

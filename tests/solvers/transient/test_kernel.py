@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from layers_reference import admittance, plane_strain
 from random_solids import isotropic_as, random_solid, stiffness
+from stroh import admittances
 
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.admittance import Admittance
@@ -53,21 +54,9 @@ def test_kernels_are_the_transform_of_their_symbols(ν, c, s):
 
 def symbols(C, k, stiff):
     """v̂ and û of unit σ_YY and σ_XY where the field is e^(ikX), by eigenvectors, (4, n)."""
-    c11, c12, c16, c22, c26, c66 = stiff
-    R, T = np.array([[c16, c12], [c66, c26]]), np.array([[c66, c26], [c26, c22]])
-    found = np.empty((4, len(C)), dtype=complex)
-    for n, (one, at) in enumerate(zip(C, k)):
-        Q = np.array([[c11, c16], [c16, c66]]) - one**2 * np.eye(2)
-        whole = np.block(
-            [[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(T, Q), -np.linalg.solve(T, R + R.T)]]
-        )
-        p, vectors = np.linalg.eig(whole)
-        # e^(ikpY) decays downwards where Im p has the sign of -Re k.
-        kept = np.argsort(p.imag * np.sign(at.real))[:2]
-        A = vectors[:2, kept]
-        tractions = 1j * at * (R.T @ A + T @ A * p[kept])
-        found[:, n] = (A @ np.linalg.inv(tractions))[::-1, ::-1].ravel()
-    return found
+    # e^(ikpY) decays downwards where Im p has the sign of -Re k.
+    Y = admittances(stiff, C**2, -np.sign(k.real)) / (1j * k)[:, None, None]
+    return Y[:, ::-1, ::-1].reshape(-1, 4).T
 
 
 def of_any_solid(stiff, c, x, s):

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from loaded import under
+from loaded import under, yield_of
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
-from galinx.solvers.contact.yielding import Strength
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
@@ -20,7 +19,7 @@ def flat(g, c, strength):
     exact = under(FlatPunch(response, g[:, None]))
     body = make_contact(SOLID, Flat(1e-3), 2e6, None, strength * 1e9)
     field = lambda points: exact.stresses(points[..., 0], points[..., 1])  # noqa: E731
-    return Strength(field, body, response, g, FlatPunch(response, g))
+    return yield_of(body, field, response, g, FlatPunch(response, g))
 
 
 @pytest.mark.parametrize("strength", [1e7, 1e3, 150.0])

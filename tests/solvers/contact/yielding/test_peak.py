@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from loaded import LoadedHalfPlane
+from loaded import LoadedHalfPlane, yield_of
 from scipy.optimize import brentq
 
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
-from galinx.solvers.contact.yielding import Strength
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
@@ -46,7 +45,7 @@ def of_pressure(pressure, g, strength=1.0, stresses=None):
     exact = LoadedHalfPlane(AT_REST, g[:, None], pressure)
     body = make_contact(SOLID, Flat(1e-3), 2e6, pressure, strength * 1e9)
     field = stresses or (lambda points: exact.stresses(points[..., 0], points[..., 1]))
-    return Strength(field, body, AT_REST, g, None)
+    return yield_of(body, field, AT_REST, g)
 
 
 def linear(pieces):

@@ -48,7 +48,7 @@ OF_OTHERS = {
     "slope under the punch": "v,X under the punch over that beside it",
     "stresses inside": "stresses inside", "estimate inside": "their estimate",
 }  # fmt: skip
-TOLERANCES = [10.0**-n for n in range(2, 10)]
+TOLERANCES = [10.0**-n for n in (2, 4, 6, 8, 9)]
 SPEEDS = (0.0, 0.6, 0.9, 0.91)
 #: Moments that the far boundary follows, its distance over a, columns of cells outside the rings.
 BOUNDARIES = ((0, 1e10, 6), (1, 482, 2), (2, 239, 2), (3, 131, 2), (5, 18, 1), (6, 18, 1), (8, 18, 1))

@@ -48,7 +48,7 @@ OF_OTHERS = {
     "slope under the punch": "v,X under the punch over that beside it",
     "stresses inside": "stresses inside", "estimate inside": "their estimate",
 }  # fmt: skip
-TOLERANCES = [10.0**-n for n in range(2, 10)]
+TOLERANCES = [10.0**-n for n in (2, 4, 6, 8, 9)]
 SPEEDS = (0.0, 0.6, 0.9, 0.91)
 #: Moments that the far boundary follows, its distance over a, columns of cells outside the rings.
 BOUNDARIES = ((0, 1e10, 6), (1, 482, 2), (2, 239, 2), (3, 131, 2), (5, 18, 1), (6, 18, 1), (8, 18, 1))
@@ -182,16 +182,14 @@ def of_archive(path: Path) -> str:
             verdicts = list(file[f"{name}/verdicts"].asstr())
             if name == "random":  # the first is of each kind of scene
                 kinds = _KIND.findall(verdicts.pop(0).partition("errors: ")[2])
-            rows.append(
-                (
-                    name,
-                    file[f"{name}/verdicts"].attrs["long_name"],
-                    "; ".join(v.removeprefix("holds: ") for v in verdicts),
-                )
-            )
-    return markdown(("row", "extremes", "result"), rows) + "\n\n" + markdown(
-        ("random scenes", "estimate over true error: of K_I and σ_YY, of K_I alone, of stresses"), kinds
-    )  # fmt: skip
+            about = file[f"{name}/verdicts"].attrs["long_name"]
+            rows.append(f"- {about}: {'; '.join(v.removeprefix('holds: ') for v in verdicts)}")
+    rows += [
+        "",
+        "Estimate over true error of K_I and σ_YY, of K_I alone, of stresses, in random scenes:",
+        "",
+    ]
+    return "\n".join([*rows, *(f"- {kind}: {figures}" for kind, figures in kinds)])
 
 
 def stacks() -> str:

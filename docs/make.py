@@ -6,6 +6,7 @@ mkdocs loads it as a hook, so the program is imported only where pages are made.
 
 import json
 import os
+import re
 import runpy
 from collections import Counter
 from pathlib import Path
@@ -128,7 +129,7 @@ with h5py.File("out.h5") as file:
 - Brackets hold the shape, if not that of the section; the unit; NaN, if there may be no answer; after
   "with" the methods, if not all give the dataset, words of `solve.mode` and `output.quantities`, and
   what else it needs: sharp edges (punch), free ends, a pressure of your own, friction along the contact,
-  finite stresses, one method, fitted speeds.
+  finite stresses, one method, fitted speeds. Lengths without a unit are over the half-width.
 - Words with a slash between them follow the order of the names in their row.
 - The place of the largest or smallest value NAME is `NAME_X_over_a` along the surface and, where it may
   lie inside, `NAME_Y_over_a` outwards, over the half-width. The lists leave these out.
@@ -432,7 +433,15 @@ def _datasets(rows: list[Any], asked: bool, usual: str, given: list[str]) -> lis
     methods, that are left out.
     """
     from galinx.app.methods import MODES
-    from galinx.postprocess.quantities.quantity import ANYWHERE, METHODS, NUMBER, TEXT, WHOLE
+    from galinx.postprocess.quantities.quantity import (
+        ANYWHERE,
+        METHODS,
+        NUMBER,
+        OVER_A,
+        TEXT,
+        WHOLE,
+        X_OVER_A,
+    )  # fmt: skip
 
     kinds = {TEXT: "text", WHOLE: "whole", NUMBER: ""}
     of_methods: dict[str, list[Any]] = {}
@@ -455,7 +464,9 @@ def _datasets(rows: list[Any], asked: bool, usual: str, given: list[str]) -> lis
         words += [f"`{row.asked_by}`"] * bool(row.asked_by and asked)
         needs = ", ".join(filter(None, words))
         rest = (", ".join(filter(None, (*values, f"with {needs}" * bool(needs)))),)
-        abouts = [r.about for r in same]
+        # Of lengths the page says once what they are over.
+        lengths = row.unit == "1" and row.scale in (OVER_A, X_OVER_A)
+        abouts = [re.sub(r",? over the half-width", "", r.about) if lengths else r.about for r in same]
         for said in METHODS.values():
             abouts = [about.removesuffix(f", {said}") for about in abouts]
         table.append(([f"/{path}"], _common(abouts), rest))

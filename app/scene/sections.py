@@ -376,9 +376,8 @@ class Motion:
     )  # fmt: skip
     strokes: tuple[str | Partial, ...] = key(
         STROKES, "strokes in order of time", ("forward", "backward", "forward"),
-        "of a law without memory, Coulomb's or Stribeck's, there is a single steady state forward if "
-        "neither `strokes` nor `X_over_L` is given; a stroke `{to = 0.8}` goes on from where the one "
-        "before ended; it may have a `speed` of its own, `rest` is the time at rest before it",
+        "without `strokes` and `X_over_L` Coulomb's and Stribeck's laws have a single steady state "
+        "forward; `{to = 0.8}` goes on from where the stroke before ended, after the time `rest`",
     )  # fmt: skip
     rest: float = key(
         Number("s", _NOT_NEGATIVE), "time at rest between strokes", 0.0, "some laws age there"
@@ -422,19 +421,16 @@ class Solve:
     cuts: int = key(Whole(Range(at_least=1, at_most=256)), "cuts of every cell's sides", 1)
     sweep: str = key(
         Choice(("auto", "every")), "which of many speeds finite elements solve", "auto",
-        '`"auto"`: from 16 speeds on as many as a fit through them needs to give the others, see '
-        '[Sweeps](howto_sweep.md); `"every"`: each',
+        '`"auto"`: from 16 speeds on as many as a [fit](howto_sweep.md) needs; `"every"`: each',
     )  # fmt: skip
     solver: str = key(Choice(("auto", "direct", "boomeramg", "gamg")), "solver of linear systems", "auto")
     assembler: str = key(
         Choice(ASSEMBLERS), "assembler of matrices", "tensor",
-        '`"tensor"`: element matrices by tensor products, condensed; `"dolfinx"`: the same weak form by '
-        "`fem.form`, `assemble_matrix` and `dirichletbc`, several times slower at high degrees",
+        '`"tensor"`: by tensor products, condensed; `"dolfinx"`: by `fem.form`, slower at high degrees',
     )  # fmt: skip
     pressure: tuple[tuple[float, float], ...] | None = key(
         Or("closed_form", PRESSURE), "σ_YY of the traction mode", "closed_form",
-        "for the mode traction; rows are pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1, linear between "
-        "them, of any resultant",
+        "rows are pairs [X/a, σ_YY/(N/2a)] from X/a = -1 to 1, linear between them, of any resultant",
     )  # fmt: skip
 
     @property
@@ -699,8 +695,7 @@ class Section:
             keys["vary"] = Key(
                 Variations({key: own[key].kind for key in single[model]}, every),
                 "parameters of the laws, table by table", (),
-                "instead of the product of the lists above: the product of each table, with what it "
-                "leaves out as the section has it; laws that are in several tables are computed once",
+                "a product of each table instead of that of the lists above; each law is computed once",
             )  # fmt: skip
         return keys
 

@@ -786,7 +786,7 @@ class StressesBelow:
         σ_YY[under] = np.atleast_2d(self.pressure.σ_YY(r[under]))[self.row]
         H[under] = self._cauchy(r[under], np.log1p(r[under]) - np.log1p(-r[under]))
         H[~under] = self.at(r[~under] - 0.0j).real
-        σ[:, on] = of.σ_XX(of.strain(self.g, σ_YY, H), σ_YY, self.g * σ_YY), σ_YY, self.g * σ_YY
+        σ[:, on] = of.in_plane(self.g, σ_YY, H), σ_YY, self.g * σ_YY
         return σ
 
 

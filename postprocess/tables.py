@@ -159,9 +159,9 @@ _INDENTATION = _Spec("indentation v₀", of.INDENTATION)
 #: Pull under the punch, which no punch exerts.
 _PULL = _Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X)
 _OF_PUNCH = (
-    _Spec("largest von Mises in the punch", yielding.PUNCH_VON_MISES),
+    _Spec("von Mises in the punch", yielding.PUNCH_VON_MISES),
     _Spec("at X", yielding.PUNCH_VON_MISES_X), _Spec("at Y", yielding.PUNCH_VON_MISES_Y),
-    _Spec("load at first yield of the punch", yielding.PUNCH_FIRST_LOAD),
+    _Spec("first yield of the punch", yielding.PUNCH_FIRST_LOAD),
 )  # fmt: skip
 #: What says where answers hold, and more of yield, in a table of its own.
 _LIMITS = (
@@ -210,9 +210,9 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
     results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
-    results += _columns(data, units, _OF_PUNCH) + _yields_first(data, units)
     depth = _columns(data, units, [_Spec("depth of yield", yielding.DEPTH)])
     results += [column for column in depth if np.nanmax(column.values)]
+    results += _columns(data, units, _OF_PUNCH) + _yields_first(data, units)
     if any(np.any(column.values) for column in intensities):
         results += intensities + _columns(data, units, _EXPONENTS)
     return [*_parameter_columns(data, units), *results, *indentation]

@@ -44,7 +44,7 @@ def test_a_scene_with_one_is_refused_at_the_start(text, fault):
     "registry, model, fault",
     [
         ("LAWS", 3, "found 3, expected a class with the members of FrictionLaw"),
-        ("SOLIDS", str, "str lacks about, c_s, "),
+        ("SOLIDS", str, "str lacks about, above, c_s, "),
         ("PROFILES", object(), "expected a class with the members of Profile"),
         ("PROFILES", dict, "dict lacks about, height, slope, words of Profile"),
         ("MESHES", str, "expected an instance of MeshKind"),

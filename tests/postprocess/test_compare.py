@@ -54,7 +54,7 @@ def test_what_agrees_is_zero():
         ("states/fem/tangential_force", [5.0], "force balance", 1.0),
         ("states/fem/K_I_left", [0.27], "K_I", 0.1),
         ("states/fem/K_I_right", [0.33], "K_I", 0.1),
-        ("states/fem/estimate", [0.1], "estimate", 0.1),
+        ("states/fem/estimate", [0.1, 0.0], "estimate", 0.1),
         ("states/fem/estimate_sigma_XX", [0.1], "estimate of sigma_XX", 0.1),
         ("states/fem/estimate_inside", [0.1], "estimate inside", 0.1),
         ("states/fem/alpha", [-0.38], "exponents", 0.02),
@@ -102,6 +102,15 @@ def test_the_pressure_of_found_ends_is_compared_over_its_largest_off_the_tip():
     at_tip, beside = (np.array([[np.nan, *σ, np.nan]]) for σ in ((-1.0, -9.0, -1.0), (-1.2, -2.0, -1.0)))
     assert of_found_ends(**{"surface/fem/sigma_YY": at_tip})[name] == 0.0
     assert of_found_ends(**{"surface/fem/sigma_YY": beside})[name] == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("tip, wanted", [(0.0, 0.0), (0.99, 0.1)])
+def test_in_plane_stresses_next_to_a_tip_are_compared_only_where_it_is_next_to_an_end(tip, wanted):
+    pressure = np.array([[np.nan, -1.0, -9.0, -1.0, np.nan]])
+    changes = {f"surface/{method}/sigma_YY": pressure for method in METHODS}
+    changes["surface/X_over_a"] = np.where(X == 0.0, tip, X)
+    changes["surface/fem/sigma_XX"] = EXACT + 0.4 * (X == 0.0)
+    assert of_found_ends(**changes)["sigma_XX"] == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize("which, moved", [("half_width", 1.9e-3), ("centre", 1.1e-3)])

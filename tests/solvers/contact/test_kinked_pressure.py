@@ -46,9 +46,9 @@ def nodes_and_forces(ends, degree, σ_YY):
 
 def test_a_product_with_a_function_has_the_nodal_forces_of_the_product():
     ends, degree = facets(0.3, 4), 5
-    s, forces = nodes_and_forces(ends, degree, lambda r: r**3 - 2.0)
-    _, expected = nodes_and_forces(ends, degree, lambda r: (1.0 + r) * (r**3 - 2.0))
-    found = ContactFacets(s, degree, AS_DRAWN).product(lambda r: 1.0 + r) @ forces
+    s, forces = nodes_and_forces(ends, degree, lambda r: r**5 - 2.0)
+    _, expected = nodes_and_forces(ends, degree, lambda r: (1.0 + r**3) * (r**5 - 2.0))
+    found = ContactFacets(s, degree, AS_DRAWN).product(lambda r: 1.0 + r**3) @ forces
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13)
 
 

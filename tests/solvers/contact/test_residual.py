@@ -5,6 +5,7 @@ import pytest
 from random_solids import random_solid
 
 from galinx.solvers.contact import residual
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.on_layers import LayersUnderPunch
@@ -51,11 +52,26 @@ def test_a_wrong_pressure_is_seen(contact, ε):
     assert (0.01 * ε <= of_field).all() and (of_field <= 10.0 * ε).all()
 
 
-def test_a_wrong_field_is_seen(contact):
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_a_wrong_field_is_seen_in_any_unit(contact, unit):
+    def left_where(wrong):
+        def field(X, Y):
+            return unit * found.stresses(X, Y) * (1.0 + 1e-5 * wrong(X))
+
+        return left(contact, lambda r: unit * found.groups[0].contact_stress(r), field)[1].min()
+
     found = contact[0]
-    at_a_point = left(contact, inside=lambda X, Y: found.stresses(X, Y) * (1.0 + 1e-5 * (X == 0.9)))[1]
-    at_a_depth = left(contact, inside=lambda X, Y: found.stresses(X, Y) * (1.0 + 1e-5 * (len(X) > 9)))[1]
-    assert at_a_point.min() >= 1e-7 and at_a_depth.min() >= 1e-6
+    assert left_where(lambda X: X == 0.9) >= 1e-7 and left_where(lambda X: len(X) > 9) >= 1e-6
+
+
+def test_the_indentation_at_the_left_end_is_that_at_the_right_one():
+    """Of a flat punch; its mirror image slides the other way."""
+    g, (X, _) = np.array([[-0.5], [0.3]]), residual.places()
+    response = Isotropic(1.0, 0.3, 1.0).response(0.3)
+    σ_YY = FlatPunch(response, g).σ_YY(X)
+    at_left = residual.indentation(response, g, σ_YY, 0.1)
+    at_right = residual.indentation(response, -g, σ_YY[:, ::-1], 0.1)
+    np.testing.assert_allclose(at_left, at_right, rtol=1e-4)
 
 
 def test_the_rule_under_the_punch_has_the_integrals_of_even_and_of_infinite_pressures():

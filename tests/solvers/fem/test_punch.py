@@ -66,6 +66,13 @@ def test_solutions_are_refined_where_that_changes_forces(c, refines):
     assert np.linalg.norm(found.normal - wanted.normal) <= 2e-10 * scale
 
 
+def test_flat_states_of_a_punch_with_a_profile_are_those_of_a_flat_punch():
+    flat, g = small_punch(), [-0.5, 0.5]
+    profile = small_punch(heights=0.1 * flat.space.contact.s**2)
+    expected = flat.states(g).normal
+    np.testing.assert_allclose(profile.states(g, flat=True).normal, expected, rtol=0.0, atol=1e-12)
+
+
 @pytest.mark.parametrize("c", [0.0, 0.6, 0.91])
 def test_friction_along_the_contact_that_does_not_vary_is_a_number(c):
     g = np.linspace(-0.9, 0.8, 7)

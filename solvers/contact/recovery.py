@@ -764,9 +764,13 @@ class StressesBelow:
         return np.asarray(factor * right ** (self.α - α) * left ** (self.β - β))
 
     def _cauchy(self, z: NDArray, y: NDArray) -> NDArray[Any]:
-        """(1/π) ∫ σ_YY/(t - z) dt, (n,)."""
+        """(1/π) ∫ σ_YY/(t - z) dt, (n,).
+
+        By its y the weight is continuous across the surface beside the contact, over which fields of
+        nearly equal planes are continued.
+        """
         α, β = self._weight
-        return (1.0 - z) ** α * (1.0 + z) ** β * self._panels.cauchy(self._factor, y) / np.pi
+        return np.exp(β * y) * (1.0 - z) ** (α + β) * self._panels.cauchy(self._factor, y) / np.pi
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""

@@ -6,6 +6,9 @@ from isotropic_field import field
 from loaded import under
 
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.recovery import StressesBelow
+from galinx.solvers.profiles.punches import Flat, Parabolic
 from galinx.solvers.solids.half_plane import mean_and_difference
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
@@ -30,6 +33,19 @@ def test_interior_field_meets_the_surface(c):
     np.testing.assert_allclose(σ_XX, punch.σ_XX(X), atol=1e-7)
     np.testing.assert_allclose(σ_YY, punch.σ_YY(X), atol=1e-7)
     np.testing.assert_allclose(σ_XY, -0.66 * punch.σ_YY(X), atol=1e-7)
+
+
+@pytest.mark.parametrize("profile", [Flat(1.0), Flat(1.0, 0.9), Flat(1.0, -0.9), Parabolic(1.0)])
+def test_stresses_below_a_pressure_that_is_known_on_the_surface_alone(profile):
+    """Its smooth factor at points of a rule has the field of its potential; also at free ends."""
+    response, g = Isotropic(1.0, 0.3, 1.0).response(0.3), np.array([-0.4])
+    exact = contacts(response, g, profile, 0.5)
+    (group,) = exact.groups
+    below = StressesBelow(response, g[0], group.pressure, 0, group.α[0], group.β[0])
+    X, depths = [-3.0, -2.0, -1.2, -0.999, 0.2, 0.99, 1.01, 1.5], [0.0, 1e-9, 1e-3, 0.02, 0.5]
+    points = np.array([(x, -depth) for x in X for depth in depths])
+    expected = exact.stresses(*points.T)[:, 0]
+    np.testing.assert_allclose(below(points), expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
 
 
 class SymbolicFrame(MovingFrame):

@@ -190,5 +190,8 @@ def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side(kink):
     exact = -2.0 * np.sqrt(1.0 - kink**2)
     assert pressure.at_kink(0) == pytest.approx(exact, abs=1e-8)
     assert abs(pressure.at_kink(0) - exact) <= pressure.left_at_kinks <= 1e-8
-    beside = kink + np.array([-1e-6, 1e-6])
-    np.testing.assert_allclose(pressure.σ_YY(beside)[0], under_a_kink(beside, kink), rtol=1e-8)
+    for beside, left in (
+        (kink + np.array([-1e-6, 1e-6]), 1e-8),
+        (np.array([-1.0, 1.0]) * (1.0 - 1e-6), 1e-5),
+    ):
+        np.testing.assert_allclose(pressure.σ_YY(beside)[0], under_a_kink(beside, kink), rtol=left)

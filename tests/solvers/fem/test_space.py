@@ -5,7 +5,7 @@ import subprocess
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import clean_environment, mpirun, space_on
+from support import clean_environment, mpirun, small_punch, space_on
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.charts import Physical
@@ -13,7 +13,7 @@ from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.contact import stresses
 from galinx.solvers.contact.fem_plan import levels, requirements, size_of, unknowns
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.fields import SurfaceTrace
+from galinx.solvers.fem.fields import SurfaceTrace, surface_slopes
 from galinx.solvers.fem.space import Space, consistent_forces, distribute
 
 
@@ -37,6 +37,22 @@ def test_between_facets_the_right_one_counts_whatever_rounding_does():
     for at in (-1e-16, 0.0, 2e-16):
         np.testing.assert_allclose(trace.derivative([at]), 1.0)
     np.testing.assert_allclose(trace.derivative([-1e-6]), -1.0)
+
+
+def test_rounding_of_slopes_is_that_of_the_displacements():
+    """Of displacements that are changed at random the slopes change by no more, nor much less."""
+    punch, rng = small_punch(), np.random.default_rng(0)
+    X = np.array([-3.0, -1.001, -0.9999, 0.0, 0.5, 0.999, 1.5])
+    fields, ε = punch.fields[:2], 1e-8
+    slopes = surface_slopes(punch.space, fields, X)
+    changes = []
+    for _ in range(10):
+        other = [field.copy() for field in fields]
+        for field in other:
+            field.array *= 1.0 + ε * rng.uniform(-1.0, 1.0, len(field.array))
+        changes.append(np.abs(surface_slopes(punch.space, other, X).basis[0] - slopes.basis[0]))
+    shares = np.max(changes, axis=0) / (slopes.noise * ε / np.finfo(float).eps)
+    assert shares.max() <= 1.0 and shares.min() >= 0.05
 
 
 def test_more_ranks_than_cells():

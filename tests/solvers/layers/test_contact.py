@@ -170,6 +170,16 @@ def test_panels_have_the_hilbert_transform_of_polynomials():
     np.testing.assert_allclose(by_panels.hilbert(X), expected.hilbert(X), rtol=1e-10)
 
 
+def test_next_to_free_ends_a_pressure_goes_on_as_it_does_farther_away():
+    panels, rng = Panels(-0.45, -0.55, 0.3), np.random.default_rng(0)
+    left, right = (2.0 / (1.0 + np.exp(side * panels.x)) for side in (-1.0, 1.0))
+    exact = (
+        left * right * np.exp(panels.t) * (1.0 + 0.2 * left * np.log(left) - 0.3 * right * np.log(right))
+    )
+    continued = panels.continued(exact + 1e-14 * rng.uniform(-1.0, 1.0, len(exact)), (True, True))
+    np.testing.assert_allclose(continued, exact, rtol=1e-6)
+
+
 @pytest.mark.parametrize("terms, limit", [(20, 1e-10), (60, 1e-10), (150, 1e-10), (300, 1e-9)])
 def test_what_is_left_of_the_hilbert_transform_keeps_its_digits_beside_the_punch(terms, limit):
     """Many polynomials grow fast beyond the edges: how far they are taken there depends on how many.

@@ -258,7 +258,7 @@ class ContactFacets:
     def interpolated(self, nodal: NDArray, r: NDArray) -> NDArray[np.float64]:
         """Values at r under the punch, (..., q), of functions by their values at the nodes, (..., n)."""
         s = self._chart.surface_coordinate(r)
-        facet = np.clip(np.searchsorted(self.start, s, side="right") - 1, 0, len(self.start) - 1)
+        facet = np.maximum(np.searchsorted(self.start, s, side="right") - 1, 0)
         values, _ = lagrange(self.nodes, (s - self.start[facet]) / self.length[facet])
         return np.einsum("qi,...qi->...q", values, nodal[..., self.facets[facet]])
 

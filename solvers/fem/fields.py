@@ -53,8 +53,7 @@ class SurfaceTrace:
         """Derivatives by nodal values of the facets at ``s``, these values, and the facets' lengths."""
         s = np.asarray(s, dtype=float)
         first = self.s[:, 0] - _BETWEEN * (self.s[:, -1] - self.s[:, 0])
-        facet = np.searchsorted(first, s, side="right") - 1
-        facet = np.clip(facet, 0, len(self.s) - 1)
+        facet = np.maximum(np.searchsorted(first, s, side="right") - 1, 0)
         start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
         _, by_node = lagrange(self._reference_nodes, (s - start) / length)
         return by_node, self.u[facet], length

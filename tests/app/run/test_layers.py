@@ -25,6 +25,7 @@ from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation
 from galinx.solvers.contact.on_layers import LayersUnderPunch, rule_of_ends
 from galinx.solvers.contact.solution import FreeOnLayers
+from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles.punches import Parabolic
@@ -130,10 +131,18 @@ def test_friction_that_leaves_no_pressure_but_at_an_edge_is_told(mu):
 
 def test_interfaces_and_inside():
     """Tractions are continuous, in-plane stress is not, and points at the interface lie above it."""
-    data = coated({
-        "solve.tolerance": 1e-7, "output.quantities": ["interfaces", "interior"],
-        "output.points": [[0.5, -1.0], [0.5, -1.0001], [-1.2, -0.4]],
-    }).data  # fmt: skip
+    asked = {"solve.tolerance": 1e-7, "output.quantities": ["interfaces", "interior"],
+             "output.points": [[0.5, -1.0], [0.5, -1.0001], [-1.2, -0.4]]}  # fmt: skip
+    data = coated(asked).data
+    σ = [data[f"interior/sie/sigma_{ij}"][0] for ij in ("XX", "YY", "XY")]
+    for points, solid in (([0, 2], HARD), ([1], SOFT)):  # in plane strain, of the solid at each depth
+        XX, YY, XY = (of[points] for of in σ)
+        expected = von_mises(XX, YY, XY, solid.ν * (XX + YY))
+        assert data["interior/sie/von_mises"][0, points] == pytest.approx(expected, rel=1e-12)
+    # Estimates are those of each state.
+    more = coated(asked, {"friction.mu_c": [0.05, 0.4]}).data
+    for name in ("states/sie/estimate_interfaces", "states/sie/estimate_inside"):
+        assert more[name][1] == pytest.approx(data[name][0], rel=1e-6) != more[name][0]
     X = data["interfaces/X_over_a"]
     assert data["interfaces/depth_over_a"] == pytest.approx([1.0])
     at = np.argmin(np.abs(X - 0.5))

@@ -10,7 +10,7 @@ from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
 from galinx.solvers.contact.fem_plan import PressureMoments
 from galinx.solvers.contact.pressure import Expansion
-from galinx.solvers.contact.recovery import MOMENTS, Polynomials
+from galinx.solvers.contact.recovery import MOMENTS, Polynomials, Stretch
 from galinx.solvers.fem import ladder as error
 from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
 
@@ -202,6 +202,17 @@ def test_the_pressure_and_its_moments_are_gauged():
         assert error.of_pressure(pressure, moments).change(one)[0] == pytest.approx(1e-3)
     steeper = replace(pressure, c=smooth + 1e-3 * (np.arange(MOMENTS) == 2))
     assert error.of_pressure(steeper, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])).change(one) > 2e-3
+
+
+def test_what_misplaced_edges_leave_is_relative_to_the_pressure():
+    pressure = Expansion(
+        np.array([[-0.4]]), np.array([[-0.6]]), np.array([[-0.3, 0.1, 0.05]]), Stretch(0.5)
+    )
+    one, tenfold = (
+        error.of_pressure(replace(pressure, c=size * pressure.c), np.ones((1, 6)), 1e-4).unresolved
+        for size in (1.0, 10.0)
+    )
+    assert one == pytest.approx(tenfold) and one > pressure.unresolved
 
 
 @pytest.mark.parametrize("component", range(3))

@@ -1,5 +1,7 @@
 """Largest values of functions and sampled curves of which the largest is known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -95,3 +97,20 @@ def test_the_stress_between_turns_is_highest_between_its_samples(place, sign):
         _, found = at_and_between(np.array([-1.0, *inner, 1.0]), stress)
         at, value = found[:, 0 if sign > 0.0 else 1, 0]
         assert value == pytest.approx(sign, rel=3e-8) and at == pytest.approx(place, abs=1e-5)
+    # What is not known next to a turn does not count.
+    wrong = lambda X: stress(X) + sign * 9.0 * ((X > -1.0) & (X < -1.0 + 1e-4))  # noqa: E731
+    _, found = at_and_between(np.array([-1.0, 1.0]), wrong, nearest=1e-3)
+    assert found[:, 0 if sign > 0.0 else 1, 0] == pytest.approx(np.array([place, sign]), abs=1e-5)
+
+
+@pytest.mark.parametrize("free", [0, 1])
+def test_at_a_free_end_stress_is_the_limit_of_that_outside(free):
+    d, side, exponents = np.geomspace(1e-7, 1e-4, 30), (-1.0, 1.0)[free], np.array([-0.4, -0.4])
+    exponents[free] = 0.6
+    outside = SimpleNamespace(X=np.sort(side * (1.0 + d)))
+    σ_XX = 3.0 - 2.0 * (np.abs(outside.X) - 1.0) ** 0.6
+    local = SimpleNamespace(β=exponents[:1], α=exponents[1:])
+    turns = stresses.turns_at_ends(SimpleNamespace(places=outside, σ_XX=σ_XX[None]), local)
+    np.testing.assert_array_equal(turns.X, [[-1.0, 1.0]])
+    expected = np.where(np.arange(2) == free, 3.0, np.nan)
+    np.testing.assert_allclose(turns.σ[0, 0], expected, rtol=1e-9)

@@ -170,6 +170,8 @@ def test_what_a_limit_leaves_out_is_in_its_error(exponent, opposite):
     )
     true = np.abs(usual - 3.0).max()
     assert 1e-12 < true <= error_at_kink(usual, farther) <= 30.0 * true
+    # The error goes with the cube of the distance.
+    assert farthest_at_kink(8e-9) == pytest.approx(2.0 * farthest_at_kink(1e-9))
 
 
 def test_two_limits_that_differ_are_wrong_by_half_of_that():

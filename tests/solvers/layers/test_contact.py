@@ -25,6 +25,7 @@ from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.solution import make_contact
+from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.profiles.punches import Flat
@@ -370,3 +371,14 @@ def test_recurrence_is_the_series(α, β):
     exact = eval_jacobi(np.arange(60), α, β, r[:, None])
     assert (np.abs(jacobi(60, α, β, r) - exact) / np.maximum(np.abs(exact), 0.1)).max() <= 1e-11
     assert jacobi(1, α, β, r).shape == (7, 1)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_contact_wider_than_what_is_known_of_the_punch_is_refused(side):
+    profile = table(
+        tuple(sorted((side * x, 0.01 * (x**2 + abs(x))) for x in (-0.01, 0.0, 1.0, 2.0, 3.0)))
+    )
+    response = COATED.response(0.0)
+    speed = LayersUnderPunch(response, response.stack(1.0), 1e-4, Punch(profile, 1.0, LOAD))
+    with pytest.raises(SolveError, match="known from"):
+        speed.contact(0.0)

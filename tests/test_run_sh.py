@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from support import FEW_DEGREES, HOME, SCENE, clean_environment
+from support import HOME, SCENE, clean_environment
 
 #: Files that a user may have for reasons of their own, named like rooms and libraries of the program.
 NAMESAKES = (
@@ -33,7 +33,7 @@ def test_without_rights_the_command_for_an_administrator_is_shown(tmp_path):
     [
         ("::", ("plan", SCENE)),  # empty entries mean the current folder
         (":/nowhere", ("plan", SCENE)),
-        (None, ("-n", "2", "run", SCENE, *FEW_DEGREES)),
+        (None, ("-n", "2", "run", SCENE, "--set", 'solve.methods=["closed_form"]')),
     ],
     ids=["plan ::", "plan :/nowhere", "two ranks"],
 )

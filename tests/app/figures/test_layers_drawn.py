@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from support import HOME, computed
+from support import computed
 
-import galinx
 from galinx.app.figures.archive import of_archive
 from galinx.app.figures.choice import Choice, size
-from galinx.app.scene.read import parse
 
 MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
 QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
@@ -60,14 +58,12 @@ def test_interfaces_are_lines_in_maps(coated):
 
 
 def test_finite_elements_are_markers_and_only_some_of_many_interfaces_are_shown():
-    text = (HOME / "scenes" / "coating.toml").read_text()
-    first, rest = text.split("[[layer]]")
-    layer, rest = rest.split("[friction]")
-    layers = "".join(f"[[layer]]{layer}".replace("7.5", E) for E in ("7.5", "5", "4", "6"))
-    text = f"{first}{layers}[friction]{rest}".replace("[0.1, 0.4, 0.8]", "0.4")
-    text = text.replace('["sie"]', '["sie", "fem"]\ntolerance = 1e-3')
-    quantities = '["friction", "sif", "surface", "interfaces"]'
-    run = galinx.compute(parse(text.replace("1 mm", "0.3 mm").replace(quantities, '["interfaces"]')))
+    layer = {"thickness": "0.3 mm", "nu": 0.3, "rho": 1200}
+    run = computed("coating", {
+        "layer": [layer | {"E": f"{E} GPa"} for E in (7.5, 5, 4, 6)],
+        "friction.mu_c": 0.4, "solve": {"methods": ["sie", "fem"], "tolerance": 1e-3},
+        "output.quantities": ["interfaces"],
+    })  # fmt: skip
     drawing = drawn(run, "interfaces")
     axes = np.reshape(drawing.figure.axes, (3, -1))
     assert axes.shape[1] == 3
@@ -105,10 +101,10 @@ def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():
 
 def test_flutter_is_drawn_over_the_angle_of_a_solid_with_axes():
     """Along and across the fibres both signs have one threshold; turned by -θ they change places."""
-    changes = {"solid.material": "carbon-epoxy", "solve.methods": ["closed_form"], "output.map": None}
-    result = galinx.compute(
-        galinx.template("cylinder", changes | {"output.quantities": ["sif"], "motion.c": [0.0]})
-    )
+    result = computed("cylinder", {
+        "solid.material": "carbon-epoxy", "solve.methods": ["closed_form"], "output.map": None,
+        "output.quantities": ["sif"], "motion.c": [0.0],
+    })  # fmt: skip
     (drawing,) = result.drawings(figures=("flutter",))
     values = [line.get_ydata() for line in drawing.figure.axes[0].lines]
     positive, negative = (y for y in values if len(y) == 37)

@@ -210,10 +210,10 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
 def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(tables_run, monkeypatch, tmp_path):
     true, refused, whole = SlidingPunch.__init__, {0.6}, tables_run.data
 
-    def punch(self, space, response, *rest):
+    def punch(self, space, response, *rest, **named):
         if response.c in refused:
             raise SolveError("provoked")
-        true(self, space, response, *rest)
+        true(self, space, response, *rest, **named)
 
     monkeypatch.setattr(SlidingPunch, "__init__", punch)
     computed().save(tmp_path / "out.h5")

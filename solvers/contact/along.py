@@ -83,7 +83,7 @@ class FlatAlong(Pressure):
     @cached_property
     def rule(self) -> Rule:
         """Quadrature over the contact, graded towards kinks of friction."""
-        return Rule(self.along.kinks)
+        return Rule((*self.along.kinks, *self.along.weak_kinks))
 
     def _divided(self, function: Callable[[NDArray], NDArray], r: NDArray, dμ: NDArray) -> NDArray:
         """∫ (f(t) - f(r))/(t - r) dμ(t) at places r, (n,)."""

@@ -489,11 +489,16 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     ]
     columns += [c for c in _columns(data, units, _OF_LOOPS) if np.nan_to_num(c.values).any()]
     note = "all per depth, in all strokes; stiffness: where the first stroke begins"
-    if of.LOAD.path in data:
-        load = units.scale(of.LOAD.unit)
-        note += f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
     sheet = layout("Friction loops", _numbers(len(states)), columns, width, "loop")
-    return replace(sheet, notes=[note])
+    return replace(sheet, notes=[f"{note}{_under_the_first_load(data, units)}"])
+
+
+def _under_the_first_load(data: Mapping[str, Any], units: Units) -> str:
+    """Words on the load of numbers that are known under the first alone; "" where there is one."""
+    if of.LOAD.path not in data:
+        return ""
+    load = units.scale(of.LOAD.unit)
+    return f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
@@ -555,10 +560,12 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if np.isfinite(by_formula).any():
         columns.append(Column("by formula", [_rounded(t, time) for t in by_formula], "none"))
     notes = [
-        f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X",
-        "off: largest relative difference of K_I, or of the centre over a, from steady motion",
+        f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X"
+        + _under_the_first_load(data, units),
+        "off: largest relative difference of K_I, or of the centre over a, from steady motion under the "
+        "last load",
         "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
-        "K_I: dimensionless, by the final load",
+        "K_I: dimensionless, over N",
     ]
     return replace(layout(title, _numbers(len(when)), columns, width, "start"), notes=notes)
 

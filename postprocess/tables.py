@@ -21,6 +21,7 @@ from .quantities import (
     over_time,
     runs,
     stresses,
+    swept,
     table,
     validity,
     yielding,
@@ -293,7 +294,9 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     X = units.position.of(np.where(lowest > largest, data[low_X.path], data[high_X.path]))
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
-        head = f"shear {engineering(depth, 'm')} deep" if several else "interface shear"
+        depths_differ = swept.INTERFACE_DEPTHS.path in data
+        where = f"at interface {i + 1}" if depths_differ else f"{engineering(depth, 'm')} deep"
+        head = f"shear {where}" if several else "interface shear"
         name = f"interface_shear{f'_{i + 1}' * several}"
         columns += _placed(units, head, name, shear[:, i], X=X[:, i])
     return columns
@@ -344,7 +347,8 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     if first is not None:
         shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
     elif stress is not None and contact.yield_strength:
-        strength = contact.yield_strength * 2.0 * units.half_width / units.load
+        strength = _of_states(data, "solid.yield_strength", contact.yield_strength)
+        strength = strength * 2.0 * units.half_width / units.load
         shares, unit = data[stress.path] / strength, "of the yield strength"
     elif preferred(data, yielding.REACH_LEFT) is not None:
         return [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
@@ -354,12 +358,19 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
 
 
+def _of_states(data: Mapping[str, Any], key: str, value: Any) -> Any:
+    """A number of the scene, or of every state where it is swept."""
+    return data.get(f"states/{key}", value)
+
+
 def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Column of the body that yields first of two elastic ones; none where that was not computed."""
     of_plate, of_punch = (preferred(data, row) for row in (yielding.VON_MISES, yielding.PUNCH_VON_MISES))
     strengths = units.contact.yield_strength, units.contact.solid.punch_strength
     if not of_plate or not of_punch or not all(strengths):
         return []
+    keys = ("solid.yield_strength", "punch.solid.yield_strength")
+    strengths = tuple(_of_states(data, key, strength) for key, strength in zip(keys, strengths))
     plate, punch = (data[row.path] / Y for row, Y in zip((of_plate, of_punch), strengths))
     words = ["" if isnan(a) else "plate" if a > b else "punch" for a, b in zip(plate, punch)]
     return [Column("yields first", words, "none", "yields_first")]

@@ -200,6 +200,11 @@ class Units:
         return self.scale("N/(2a)")
 
     @property
+    def of_pascals(self) -> float:
+        """Factor of strengths in Pa to the unit of stresses of states."""
+        return float(np.max(self.stress.factor * 2.0 * self.half_width / self.load))
+
+    @property
     def position(self) -> Scaled:
         """Scale of positions along X over a, from the contact's middle: µm from the punch's axis."""
         return self.scale(X_OVER_A)

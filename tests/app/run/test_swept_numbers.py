@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from support import computed
 
 from galinx.app.errors import BadInput
+from galinx.app.figures.choice import Archive, Choice
+from galinx.app.figures.stresses import Fields
 from galinx.app.results import check
 from galinx.app.results.result import load
 from galinx.app.scene.changes import from_words
@@ -84,3 +87,75 @@ def test_thicknesses_of_a_layer():
 def test_contacts_of_another_kind_are_no_sweep():
     with pytest.raises(BadInput, match="of another kind"):
         swept_by(FLAT, "punch.tilt=['0 deg', '0.1 deg']")
+
+
+ROUND = {
+    "solid": {"material": "aluminium"}, "friction": {"mu": 0.3}, "motion": {"speed": "1 m/s"},
+    "output": None, "solve": {"methods": ["closed_form"], "tolerance": 1e-3},
+    "punch": {"profile": "parabolic", "radius": "5 mm", "load": "100 N/mm"},
+}  # fmt: skip
+SHOULDERS = ROUND | {
+    "punch": {
+        "profile": "rounded_flat", "flat_half_width": "1 um", "radius": "5 mm", "load": "100 N/mm",
+    }
+}  # fmt: skip
+#: An elastic punch of the same constants: both bodies have the same largest stress.
+PAIR = ROUND | {"punch.solid": {"material": "aluminium", "yield_strength": "300 MPa"}}
+
+
+@pytest.mark.parametrize(
+    "scene, words",
+    [
+        (SHOULDERS, ["solid.yield_strength=[100, 900] MPa"]),
+        (PAIR, ["solid.yield_strength=[200, 400] MPa"]),
+        (PAIR, ["punch.solid.yield_strength=[200, 400] MPa", "solid.yield_strength=300 MPa"]),
+    ],
+)
+def test_a_swept_strength_is_that_of_each_state(scene, words):
+    result = swept_by(scene, *words)
+    told = {column.name: column for column in result.table() if column.name.startswith("yields")}
+    each = [[*map(str, column.values)] for column in told.values()]
+    for state in (0, 1):
+        _, single = alone(scene | from_words(words), result, state)
+        own = {column.name: str(column.values[0]) for column in single.table()}
+        assert {name: own[name] for name in told} == dict(zip(told, (texts[state] for texts in each)))
+    assert any(texts[0] != texts[1] for texts in each)
+
+
+def test_interfaces_of_swept_depths_have_numbers_for_names():
+    """No depth is that of all states, in tables and above curves."""
+    below = {"thickness": "5 um", "E": "300 GPa", "nu": 0.25, "rho": 5220}
+    scene = COATED | {"layer": [*COATED["layer"], below], "output.quantities": ["interfaces"]}
+    result = swept_by(scene, "layer[0].thickness=[10, 20] um")
+    heads = {column.head for column in result.table()}
+    assert {"shear at interface 1", "shear at interface 2"} <= heads
+    texts = {text.get_text() for text in result.figure("interfaces").findobj(Text)}
+    assert {"(a)  interface 1", "(b)  interface 2"} <= texts
+    heads = {column.head for column in computed("tables4_5", scene).table()}
+    assert {"shear 20 µm deep", "shear 25 µm deep"} <= heads
+
+
+def test_one_friction_beside_that_along_the_contact_is_over_each_solid():
+    """Friction that is the same all along has the pressure of one friction, whatever the swept ν is."""
+    along = FLAT | {"friction": {"along": [[-1, 0.8], [0, 0.8], [1, 0.8]]}, "motion": {"speed": "1 m/s"}}
+    result = swept_by(along, "punch.load=50 N/mm", "solid.nu=[0.0, 0.45]")
+    over_uniform = result.figure("along").axes[2]
+    curves = [line.get_ydata() for line in over_uniform.lines if len(line.get_xdata()) > 10]
+    assert len(curves) == 2
+    for curve in curves:
+        np.testing.assert_allclose(curve[np.isfinite(curve)], 1.0, rtol=1e-6)
+
+
+def test_a_map_has_the_yield_strength_of_its_state():
+    """In the unit of its stresses."""
+    mapped = ROUND | {
+        "output": {
+            "quantities": ["interior"],
+            "map": {"X": [-1, 1, 5], "Y": [-1, -0.2, 4]},
+        }
+    }  # fmt: skip
+    result = swept_by(mapped, "solid.yield_strength=[200, 300] MPa")
+    archive = Archive(result.data, result.scene, Choice(units=result.units()))
+    fields = Fields(archive)
+    levels = [fields.panel("von_mises", np.zeros((4, 5)), state, 1.0).map.level for state in (0, 1)]
+    assert levels == pytest.approx([200.0, 300.0])

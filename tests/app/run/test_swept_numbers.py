@@ -6,9 +6,10 @@ from matplotlib.text import Text
 from support import computed
 
 from galinx.app.errors import BadInput
-from galinx.app.figures.choice import Archive, Choice
+from galinx.app.figures.choice import Archive, Choice, StateLabels
 from galinx.app.figures.stresses import Fields
 from galinx.app.results import check
+from galinx.app.results.report import summary
 from galinx.app.results.result import load
 from galinx.app.scene.changes import from_words
 from galinx.postprocess.quantities import states, swept
@@ -159,3 +160,16 @@ def test_a_map_has_the_yield_strength_of_its_state():
     fields = Fields(archive)
     levels = [fields.panel("von_mises", np.zeros((4, 5)), state, 1.0).map.level for state in (0, 1)]
     assert levels == pytest.approx([200.0, 300.0])
+
+
+@pytest.mark.parametrize("dimensionless", [False, True])
+def test_speeds_over_several_wave_speeds_are_told_in_metres_per_second(dimensionless):
+    result = swept_by(FLAT, "solid.E=[50, 200] GPa", "motion.speed=[100, 200, 300] m/s")
+    labels = StateLabels(result.data, result.scene, result.units(dimensionless))
+    said = [labels.text(state, ["c"]) for state in (0, len(labels.all) - 1)]
+    assert [text.replace("\u202f", " ") for text in said] == ["V = 100 m/s", "V = 300 m/s"]
+    text = summary(result.data, result.scene)
+    assert "slides at 100 to 300 m/s, c = 0.03184 to 0.1911" in text
+    assert "wave speed 1570 to 3140 m/s" in text and "others differ in solid.E." in text
+    axes = result.figure("parameters", x="c", dimensionless=dimensionless).axes
+    assert {axis.get_xlabel() for axis in axes} <= {"", "speed $V$ (m/s)"}

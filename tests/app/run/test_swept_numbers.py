@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from support import computed
+from support import computed, scene_of
 
 from galinx.app.errors import BadInput
 from galinx.app.figures.choice import Archive, Choice, StateLabels
 from galinx.app.figures.stresses import Fields
+from galinx.app.figures.waves import answers, curve
 from galinx.app.results import check
 from galinx.app.results.report import summary
 from galinx.app.results.result import load
@@ -143,8 +144,8 @@ def test_one_friction_beside_that_along_the_contact_is_over_each_solid():
     over_uniform = result.figure("along").axes[2]
     curves = [line.get_ydata() for line in over_uniform.lines if len(line.get_xdata()) > 10]
     assert len(curves) == 2
-    for curve in curves:
-        np.testing.assert_allclose(curve[np.isfinite(curve)], 1.0, rtol=1e-6)
+    for ratio in curves:
+        np.testing.assert_allclose(ratio[np.isfinite(ratio)], 1.0, rtol=1e-6)
 
 
 def test_a_map_has_the_yield_strength_of_its_state():
@@ -173,3 +174,20 @@ def test_speeds_over_several_wave_speeds_are_told_in_metres_per_second(dimension
     assert "wave speed 1570 to 3140 m/s" in text and "others differ in solid.E." in text
     axes = result.figure("parameters", x="c", dimensionless=dimensionless).axes
     assert {axis.get_xlabel() for axis in axes} <= {"", "speed $V$ (m/s)"}
+
+
+def test_answers_on_one_solid_are_refused_for_several():
+    for answer, scene, words in (
+        (curve, COATED, "layer[0].thickness=[10, 20] um"),
+        (lambda scene: answers(scene, 0.1, 1.0, 2), FLAT, "solid.nu=[0.2, 0.3]"),
+    ):
+        with pytest.raises(
+            BadInput, match=r"found several values of (layer\[0\].thickness|solid.nu), exp"
+        ):
+            answer(scene_of("tables4_5", scene | from_words([words])))
+
+
+def test_the_threshold_of_flutter_says_of_which_state_it_is():
+    result = swept_by(COATED, "layer[0].E=[300, 450] GPa")
+    (drawing,) = result.drawings(figures=["flutter"])
+    assert drawing.caption.endswith("those of the first state; others differ in layer[0].E.")

@@ -208,6 +208,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         length = units.scale(CONTACT)
         width = np.full(count, contact.half_width) * length.factor
         results.insert(0, Column("half-width", width, length.unit, "half_width"))
+    results[1:1] = _resultant(data, units)
     results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
     results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
@@ -281,6 +282,15 @@ def _columns(
                 )
             )  # fmt: skip
     return columns
+
+
+def _resultant(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Column of the resultant of a prescribed pressure; none where it is the load N."""
+    row = preferred(data, of.RESULTANT | {FEM: of.NORMAL_FORCE})
+    if row is None or np.allclose(-data[row.path], units.load, rtol=1e-6):
+        return []
+    scale = units.scale(row.unit)
+    return [Column("resultant of the pressure", scale.of(-data[row.path]), scale.unit, "resultant")]
 
 
 def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -445,6 +455,8 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
             yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
         if not units.dimensionless:
             yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
+    if {"resultant of the pressure", "load at first yield"} <= heads:
+        yield "load at first yield: N; the pressure and its resultant grow with it"
     if speeds := solved_speeds(data):
         yield speeds
     lacking = []

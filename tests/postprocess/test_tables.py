@@ -29,3 +29,17 @@ def test_only_strokes_have_a_friction_loop(tmp_path):
         computed(SCENE, {"friction.mu": 0.2, "motion.strokes": strokes}).save(archive)
         shown = here("show", archive)
         assert shown.returncode == 0 and ("Friction loops" in shown.stdout) is loops
+
+
+def test_the_resultant_of_a_prescribed_pressure_stands_beside_the_load():
+    """A pressure of any resultant is given over N/(2a), and the load at first yield is N."""
+    pressure = {"solve.mode": "traction", "punch.profile": None, "punch.radius": None, "friction.mu": 0.2}
+    for top, resultant in ((-1.5, "112.5 N/mm"), (-4.0 / 3.0, None)):
+        rows = [[-1, 0], [-0.5, top], [0.5, top], [1, 0]]
+        result = computed(
+            SCENE, pressure | {"solve.pressure": rows, "output.quantities": ["surface", "yield"]}
+        )
+        sheet = states_sheet(result.data, result.units(), width=80)
+        assert dict(sheet.rows).get("resultant of the pressure") == resultant
+        said = any(note.startswith("load at first yield: N;") for note in sheet.notes)
+        assert said == (resultant is not None)

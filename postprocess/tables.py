@@ -551,8 +551,10 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
     columns = _columns(data, units, [_Spec("motion", runs.OUTCOME), *_OF_SLIDERS])
-    labels = _numbers(len(data[runs.OUTCOME.path]))
-    return layout("Motion of the slider", labels, columns, width, "law")
+    labels = _numbers(count := len(data[runs.OUTCOME.path]))
+    sheet = layout("Motion of the slider", labels, columns, width, "law")
+    order = "laws: in the order of the states, all of the first load, then all of the next"
+    return replace(sheet, notes=[order] if count > 1 and of.LOAD.path in data else [])
 
 
 def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:

@@ -71,6 +71,8 @@ def plain(text: str) -> str:
 
     def greek(match: re.Match[str]) -> str:
         word = match[1]
+        if word == "vartheta":  # Unicode calls it a symbol
+            return "ϑ"
         kind = "CAPITAL" if word[0].isupper() else "SMALL"
         name = {"lambda": "LAMDA"}.get(word.lower(), word.upper())
         try:

@@ -37,8 +37,8 @@ class ContactNumbers:
     Attributes:
         load: carried load over N.
         centre: centre of the pressure over a.
-        K_left, K_right: normalised intensities at X = -a and X = a over the final load, dimensionless, by
-            the exponents of steady motion.
+        K_left, K_right: normalised intensities at X = -a and X = a over N, dimensionless, by the
+            exponents of steady motion.
     """
 
     load: NDArray[np.float64]
@@ -133,11 +133,14 @@ _STEADY_TAIL = 0.1
 def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
     """Largest difference of K_I over that of steady motion, and of the centre over a, (starts, times).
 
+    Steady motion is that under the last load, which need not be N.
+
     Args:
         data: datasets of starts from rest by path.
         method: name of the method of solution.
     """
-    K, centre = data[rows.STEADY_K_I.path][:, None], data[rows.STEADY_CENTRE.path][:, None]
+    K = data[rows.STEADY_K_I.path][:, None] * data[rows.LOAD.path][-1]
+    centre = data[rows.STEADY_CENTRE.path][:, None]
     of_K = [np.abs(data[row[method].path] / K - 1.0) for row in (rows.K_I_LEFT, rows.K_I_RIGHT)]
     return np.asarray(np.max([*of_K, np.abs(data[rows.CENTRE[method].path] - centre)], axis=0))
 
@@ -145,16 +148,16 @@ def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
 def times_near_steady(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.float64]:
     """Times over a/c_s from which on starts are within ``SHARES`` of steady motion, (starts, shares).
 
-    A time after the last one is extrapolated: the distance is taken to fall like 1/t, t from when half of
-    the load was applied. That is done if distance times t changes by a tenth at most in the second half
-    of the motion; else the motion is too short, and the time is NaN.
+    A time after the last one is extrapolated: the distance is taken to fall like 1/t, t from when the
+    last load would have come on at once. That is done if distance times t changes by a tenth at most in
+    the second half of the motion; else the motion is too short, and the time is NaN.
 
     Args:
         t: times over a/c_s, (times,).
         load: load over N, (times,).
         off: distances from steady motion, see :func:`from_steady`, (starts, times).
     """
-    lacks, steps = np.concatenate([[1.0], 1.0 - load]), np.diff(t, prepend=0.0)
+    lacks, steps = np.concatenate([[1.0], 1.0 - load / load[-1]]), np.diff(t, prepend=0.0)
     begun = float(steps @ (lacks[1:] + lacks[:-1])) / 2.0
     times = np.empty((len(off), len(SHARES)))
     tail, since = t >= (begun + t[-1]) / 2.0, t - begun

@@ -21,6 +21,7 @@ from .quantities import (
     over_time,
     runs,
     stresses,
+    swept,
     table,
     validity,
     yielding,
@@ -207,6 +208,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         length = units.scale(CONTACT)
         width = np.full(count, contact.half_width) * length.factor
         results.insert(0, Column("half-width", width, length.unit, "half_width"))
+    results[1:1] = _resultant(data, units)
     results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
     results += _shear_at_interfaces(data, units)
     results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
@@ -282,6 +284,15 @@ def _columns(
     return columns
 
 
+def _resultant(data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Column of the resultant of a prescribed pressure; none where it is the load N."""
+    row = preferred(data, of.RESULTANT | {FEM: of.NORMAL_FORCE})
+    if row is None or np.allclose(-data[row.path], units.load, rtol=1e-6):
+        return []
+    scale = units.scale(row.unit)
+    return [Column("resultant of the pressure", scale.of(-data[row.path]), scale.unit, "resultant")]
+
+
 def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Columns of the largest |σ_XY| at each interface, and of its place."""
     rows = preferred(data, {method: of_all[4] for method, of_all in layers.INTERFACE_EXTREMES.items()})
@@ -293,7 +304,9 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     X = units.position.of(np.where(lowest > largest, data[low_X.path], data[high_X.path]))
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
-        head = f"shear {engineering(depth, 'm')} deep" if several else "interface shear"
+        depths_differ = swept.INTERFACE_DEPTHS.path in data
+        where = f"at interface {i + 1}" if depths_differ else f"{engineering(depth, 'm')} deep"
+        head = f"shear {where}" if several else "interface shear"
         name = f"interface_shear{f'_{i + 1}' * several}"
         columns += _placed(units, head, name, shear[:, i], X=X[:, i])
     return columns
@@ -344,7 +357,8 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     if first is not None:
         shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
     elif stress is not None and contact.yield_strength:
-        strength = contact.yield_strength * 2.0 * units.half_width / units.load
+        strength = _of_states(data, "solid.yield_strength", contact.yield_strength)
+        strength = strength * 2.0 * units.half_width / units.load
         shares, unit = data[stress.path] / strength, "of the yield strength"
     elif preferred(data, yielding.REACH_LEFT) is not None:
         return [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
@@ -354,12 +368,19 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
 
 
+def _of_states(data: Mapping[str, Any], key: str, value: Any) -> Any:
+    """A number of the scene, or of every state where it is swept."""
+    return data.get(f"states/{key}", value)
+
+
 def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Column of the body that yields first of two elastic ones; none where that was not computed."""
     of_plate, of_punch = (preferred(data, row) for row in (yielding.VON_MISES, yielding.PUNCH_VON_MISES))
     strengths = units.contact.yield_strength, units.contact.solid.punch_strength
     if not of_plate or not of_punch or not all(strengths):
         return []
+    keys = ("solid.yield_strength", "punch.solid.yield_strength")
+    strengths = tuple(_of_states(data, key, strength) for key, strength in zip(keys, strengths))
     plate, punch = (data[row.path] / Y for row, Y in zip((of_plate, of_punch), strengths))
     words = ["" if isnan(a) else "plate" if a > b else "punch" for a, b in zip(plate, punch)]
     return [Column("yields first", words, "none", "yields_first")]
@@ -434,6 +455,8 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
             yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
         if not units.dimensionless:
             yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
+    if {"resultant of the pressure", "load at first yield"} <= heads:
+        yield "load at first yield: N; the pressure and its resultant grow with it"
     if speeds := solved_speeds(data):
         yield speeds
     lacking = []
@@ -489,11 +512,16 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     ]
     columns += [c for c in _columns(data, units, _OF_LOOPS) if np.nan_to_num(c.values).any()]
     note = "all per depth, in all strokes; stiffness: where the first stroke begins"
-    if of.LOAD.path in data:
-        load = units.scale(of.LOAD.unit)
-        note += f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
     sheet = layout("Friction loops", _numbers(len(states)), columns, width, "loop")
-    return replace(sheet, notes=[note])
+    return replace(sheet, notes=[f"{note}{_under_the_first_load(data, units)}"])
+
+
+def _under_the_first_load(data: Mapping[str, Any], units: Units) -> str:
+    """Words on the load of numbers that are known under the first alone; "" where there is one."""
+    if of.LOAD.path not in data:
+        return ""
+    load = units.scale(of.LOAD.unit)
+    return f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
 
 
 def inner_sheet(data: dict[str, Any]) -> Sheet:
@@ -523,8 +551,10 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
     columns = _columns(data, units, [_Spec("motion", runs.OUTCOME), *_OF_SLIDERS])
-    labels = _numbers(len(data[runs.OUTCOME.path]))
-    return layout("Motion of the slider", labels, columns, width, "law")
+    labels = _numbers(count := len(data[runs.OUTCOME.path]))
+    sheet = layout("Motion of the slider", labels, columns, width, "law")
+    order = "laws: in the order of the states, all of the first load, then all of the next"
+    return replace(sheet, notes=[order] if count > 1 and of.LOAD.path in data else [])
 
 
 def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
@@ -555,10 +585,12 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if np.isfinite(by_formula).any():
         columns.append(Column("by formula", [_rounded(t, time) for t in by_formula], "none"))
     notes = [
-        f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X",
-        "off: largest relative difference of K_I, or of the centre over a, from steady motion",
+        f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X"
+        + _under_the_first_load(data, units),
+        "off: largest relative difference of K_I, or of the centre over a, from steady motion under the "
+        "last load",
         "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
-        "K_I: dimensionless, by the final load",
+        "K_I: dimensionless, over N",
     ]
     return replace(layout(title, _numbers(len(when)), columns, width, "start"), notes=notes)
 

@@ -160,7 +160,8 @@ class Units:
             row: quantity whose unit this is; None for one of states.
         """
         if self.dimensionless:
-            return Scaled("", "1" if kind in (OVER_A, X_OVER_A, OVER_C_S, OVER_N) else kind)
+            unit = "1" if kind in (OVER_A, X_OVER_A, OVER_C_S, OVER_N) else kind
+            return Scaled("", "m" if kind == CONTACT else unit)
         unit, factor, offset, size = self._in_si(kind, row)
         sizes = [size, *(other._in_si(kind, row)[3] for other in self.beside)]
         name, of_si = prefixed(unit, float(max(sizes)))
@@ -197,6 +198,11 @@ class Units:
     def stress(self) -> Scaled:
         """Scale of stresses of states: MPa for N/(2a)."""
         return self.scale("N/(2a)")
+
+    @property
+    def of_pascals(self) -> float:
+        """Factor of strengths in Pa to the unit of stresses of states."""
+        return float(np.max(self.stress.factor * 2.0 * self.half_width / self.load))
 
     @property
     def position(self) -> Scaled:

@@ -121,12 +121,17 @@ class Validity:
         worst = {name: f"{self._worst[name]:.3g}" for name in self._worst}
         states = {name: f"{n} state{'s' * (n > 1)}" for name, n in self._states.items()}
         if "crossings" in worst:
-            text = self._steady.words(*self._shortest) if self._steady and self._shortest else ""
+            text = short = ""
+            if self._steady and self._shortest:
+                text, short = (
+                    self._steady.words(*self._shortest, too_short=only) for only in (False, True)
+                )
+            reached = "comes near only towards its end" if text and not short else "does not reach"
             yield (
                 "in a stroke a shear wave crosses the contact "
                 f"{-self._worst['crossings']:.2g} times at the least, and less than {FEW:g} times in "
                 f"{states['crossings']}: the reported steady state is a limit that such a stroke "
-                "does not reach" + f"; {text}" * bool(text)
+                f"{reached}" + f"; {text}" * bool(text)
             )
         if (
             self._steady

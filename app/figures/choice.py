@@ -230,7 +230,7 @@ class StateLabels:
             return _short([str(value) for value in values])
         symbol, factor, in_unit = self.scale(name)
         text = f"${symbol} = {_short([number(factor * value) for value in values])}{unit(in_unit)}$"
-        if name == C and self._units.dimensionless and len(values) == 1:
+        if name == C and symbol != "V" and self._units.dimensionless and len(values) == 1:
             text += f" (${number(values[0] * self.c_s)}{unit('m/s')}$)"
         return text
 
@@ -238,6 +238,12 @@ class StateLabels:
         """Symbol in TeX of a numeric parameter, what its values are multiplied by, and its unit."""
         row = self.parameters[name]
         scaled = self._units(row, name)
+        if (
+            name == C and scaled and WAVE_SPEED.path in self._data
+        ):  # over c_s one speed has several numbers
+            if self._units.dimensionless:
+                return "V", self.c_s, "m/s"
+            return "V", float(self.c_s * np.max(scaled.factor / self._data[WAVE_SPEED.path])), scaled.unit
         if scaled is None or np.ndim(scaled.factor) or scaled.offset:
             return str(row.symbol), 1.0, row.unit
         return (

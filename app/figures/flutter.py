@@ -50,6 +50,10 @@ def flutter(of: Archive) -> Drawing:
         f"Least |σ_XY/σ_YY| from which on waves along the interface grow, {words}; no curve where none "
         f"grow. The grey line is the largest |σ_XY/σ_YY| of the states, {g:.3g}."
     )
+    if of.scene.swept:
+        caption += (
+            f" Solids are those of the first state; others differ in {' and '.join(of.scene.swept)}."
+        )
     return Drawing("flutter", caption, render([panel], Size(COLUMN), high=0.72))
 
 

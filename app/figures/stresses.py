@@ -30,6 +30,7 @@ from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.texts import number, plain
 
 from ..errors import BadInput
+from ..plan.variants import of_state
 from .choice import (
     Archive,
     C,
@@ -355,8 +356,8 @@ def friction_along(of: Archive) -> Drawing:
     resultant = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
     under, scale = np.abs(data[SURFACE_X.path]) < 1.0, of.scaled(next(iter(rows.values())))
     X = data[SURFACE_X.path][under]
-    motions = zip(data[SPEED.path][states].tolist(), resultant[states].tolist())
-    flat = [FlatPunch(of.scene.body.response(c), g) for c, g in motions]
+    motions = zip(states, data[SPEED.path][states].tolist(), resultant[states].tolist())
+    flat = [FlatPunch(of_state(of.scene, i)[0].body.response(c), g) for i, c, g in motions]
     uniform = scale.of(np.array([-punch.σ_YY(X) for punch in flat]), states)
     pressures = {method: -of.values(row)[states][:, under] for method, row in rows.items()}
     values = {
@@ -414,9 +415,17 @@ def interfaces(of: Archive) -> Drawing:
     numbers = labels.ordered(states).tolist()
     styles = looks(len(numbers), len(names) == 1 and labels.numeric(names[0]))
     called = [labels.label(i, names) if len(numbers) > 1 else "" for i in numbers]
-    (unit, depths), a = interface_depths(of.data), of.scene.body.half_width
-    over_a = depths[0] if unit == "1" else depths[0] / a
+    unit, depths = interface_depths(of.data)
+    bodies = [of_state(of.scene, i)[0].body for i in (numbers if len(depths) > 1 else [0])]
+    depths = depths[numbers] if len(depths) > 1 else depths
+    a = bodies[0].half_width
+    over_a = np.max([d if unit == "1" else d / b.half_width for d, b in zip(depths, bodies)], axis=0)
+    alike = np.ptp(depths, axis=0) == 0.0
     factor, length = (1.0, "$a$") if of.units.dimensionless and unit == "1" else _length(of, a)
+    titles = [
+        f"depth {number(depth * factor)} {length}" if same else f"interface {i}"
+        for i, (depth, same) in enumerate(zip(over_a, alike), 1)
+    ]
     columns = spread(range(len(over_a)), max(1, int(width / _LEAST_INTERFACE)))
     available = of.by_method(STATE, INTERFACE, ALONG)
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
@@ -442,7 +451,7 @@ def interfaces(of: Archive) -> Drawing:
             label = named(words, of.scaled(next(iter(rows[0].values()))).unit)
             panels.append(Panel(
                 position_name(of, "position along the interface "), label if i == columns[0] else "",
-                curves=curves, title=f"depth {number(over_a[i] * factor)} {length}" if titled else "",
+                curves=curves, title=titles[i] if titled else "",
                 xlim=window(places, half), bands=_contacts(places), at_y=(0.0,),
             ))  # fmt: skip
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
@@ -508,7 +517,7 @@ class Fields:
         each = [self._values(row, [state])[0] for row in rows if row]
         if len(each) < len(names):
             return None
-        level = self._level(name, self._of.scene.solid.punch_strength)
+        level = self._level(name, of_state(self._of.scene, state)[0].solid.punch_strength)
         return (maximum_shear(*each) if len(each) > 1 else each[0]), level
 
     def _level(self, name: str, strength: float | None) -> float:
@@ -516,7 +525,7 @@ class Fields:
         of = self._of
         if name != "von_mises" or not strength or of.scene.layers or of.units.stress.unit == "N/(2a)":
             return 0.0
-        return strength * float(of.units.scale("Pa").factor)
+        return strength * of.units.of_pascals
 
     def _values(self, row: Quantity, states: Sequence[int]) -> NDArray:
         """A quantity of states in the figure's units, (states, rows, columns)."""
@@ -533,7 +542,9 @@ class Fields:
             values = maximum_shear(values, *others)
         elif not held:
             YY, XY = others
-            values = von_mises(values, YY, XY, self._of.scene.solid.σ_ZZ(values, YY, XY))
+            solids = [of_state(self._of.scene, state)[0].solid for state in states]
+            ZZ = [solid.σ_ZZ(*stresses) for solid, *stresses in zip(solids, values, YY, XY)]
+            values = von_mises(values, YY, XY, np.array(ZZ))
         return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
 
     def label(self, name: str) -> str:
@@ -552,7 +563,7 @@ class Fields:
             options: further attributes of the map.
         """
         of, ((a, b),) = self._of, places_of(self._of, [state])
-        level = self._level(name, of.scene.half_plane.yield_strength)
+        level = self._level(name, of_state(of.scene, state)[0].half_plane.yield_strength)
         shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
         x = position_name(of, "")
         return Panel(

@@ -165,7 +165,7 @@ class _Sweep:
             return name, named(columns[name].about, columns[name].unit), columns[name].best
         if requested == _SPEED and of.units.dimensionless:
             return name, "speed $V$ (m/s)", labels.values(C) * labels.c_s
-        if name == C and of.units.dimensionless:
+        if name == C and labels.scale(C)[2] == "1":
             self.beside = "speed (m/s)", labels.c_s
         return name, *self._axis(name)
 

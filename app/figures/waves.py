@@ -54,12 +54,22 @@ class Dispersion:
         return bool(np.isnan(self.speed).any())
 
 
+def _require_one(command: str, scene: Scene) -> None:
+    """Raise BadInput for swept numbers, of which these answers would know the first alone."""
+    if scene.variants:
+        keys = ", ".join(scene.swept)
+        raise BadInput(
+            f"{command}: found several values of {keys}, expected one of each; choose by --set"
+        )
+
+
 def curve(scene: Scene) -> Dispersion:
     """Dispersion of the slowest wave along a scene's layers.
 
     Raises:
         BadInput: it has none.
     """
+    _require_one("dispersion", scene)
     solid: Any = scene.solid
     if not scene.layers:
         raise BadInput(
@@ -148,6 +158,7 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
     Raises:
         BadInput: there is no answer.
     """
+    _require_one("response", scene)
     solid = scene.solid
     if scene.layers or solid.nearly_incompressible:
         raise BadInput(

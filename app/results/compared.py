@@ -45,7 +45,7 @@ class Comparison:
         self.results, self.labels = results, _labels(results)
         own = [result.units(dimensionless) for result in results]
         self.units = [Units(r.scene.body, r.data, dimensionless, own) for r in results]
-        self._by, self.pairs = _paired([result.data for result in results])
+        self._by, self.pairs = _paired([result.data for result in results], dimensionless)
         counts = [len(result.data[states.FRICTION.path]) for result in results]
         self._alone = [n - len({*self.pairs[:, k].tolist()}) for k, n in enumerate(counts)]
         if chosen:
@@ -73,7 +73,7 @@ class Comparison:
     @property
     def titles(self) -> list[str]:
         """Numbers of the states of each pair, and the parameters that pair them."""
-        of_key = [c for c, *_ in self._rows.values() if c and c.path and c.path in self._by]
+        of_key = [row[0] for row in self._rows.values() if row[0] and self._pairs(row)]
         titles = []
         for p, pair in enumerate(self.pairs.tolist()):
             same = len(set(pair)) == 1
@@ -81,6 +81,12 @@ class Comparison:
             values = [f"{c.head} {c.words(p)}" if c.unit != "none" else c.words(p) for c in of_key]
             titles.append(numbers + f" ({', '.join(values)})" * bool(values))
         return titles
+
+    def _pairs(self, row: Sequence[Column | None]) -> bool:
+        """True for a parameter that pairs states; equal speeds over c_s may differ in m/s, and do not."""
+        if not any(column and column.path and column.path in self._by for column in row):
+            return False
+        return len({tuple(column.texts()) for column in row if column}) == 1
 
     def columns(self) -> list[Column]:
         """One row a pair: each quantity of every result, then its difference from the first [%]."""
@@ -130,7 +136,7 @@ class Comparison:
             heads += [textwrap.fill(label, _NARROW), "difference\n[%]"]
         shown = []
         for key, columns in self._rows.items():
-            if not any(column and column.path and column.path in self._by for column in columns):
+            if not self._pairs(columns):
                 texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
                 first = next(column for column in columns if column)
                 shown.append((first, [*zip(*texts)], self._off[key]))
@@ -233,19 +239,28 @@ def _labels(results: Sequence[Result]) -> list[str]:
     return [f"{title} ({n})" for n, title in enumerate(titles, 1)]
 
 
-def _paired(results: Sequence[dict[str, Any]]) -> tuple[list[str], NDArray[np.int64]]:
+def _paired(results: Sequence[dict[str, Any]], over_c_s: bool) -> tuple[list[str], NDArray[np.int64]]:
     """Paths of the parameters that pair states, [] where order does, and pairs, (pairs, results).
 
-    A parameter that is constant in every result pairs nothing, whatever its values are.
+    A parameter that is constant in every result pairs nothing, whatever its values are. Speeds pair in
+    m/s or over c_s, whichever pairs more states; with ``over_c_s`` only by the latter.
     """
     common = [path for path in parameters(results[0]) if all(path in data for data in results)]
-    by = [path for path in common if any(len(set(_values(data, path))) > 1 for data in results)]
-    keys = [[*zip(*(_values(data, path) for path in by))] for data in results]
-    if by and all(len(set(key)) == len(key) for key in keys):
-        places = [{key: n for n, key in enumerate(of_result)} for of_result in keys]
-        pairs = [[place[key] for place in places] for key in keys[0] if all(key in p for p in places)]
-        if pairs:
-            return by, np.array(pairs)
+    best: tuple[list[str], list[list[int]]] = [], []
+    for speed in (states.SPEED.path, *(() if over_c_s else (states.VELOCITY.path,))):
+        taken = [speed if path == states.SPEED.path and speed in results[0] else path for path in common]
+        by = [
+            (path, of) for path, of in zip(common, taken)
+            if any(len(set(_values(data, of))) > 1 for data in results)
+        ]  # fmt: skip
+        keys = [[*zip(*(_values(data, of) for _, of in by))] for data in results]
+        if by and all(len(set(key)) == len(key) for key in keys):
+            places = [{key: n for n, key in enumerate(of_result)} for of_result in keys]
+            pairs = [[place[key] for place in places] for key in keys[0] if all(key in p for p in places)]
+            if len(pairs) > len(best[1]):
+                best = [path for path, _ in by], pairs
+    if best[1]:
+        return best[0], np.array(best[1])
     count = min(len(data[states.FRICTION.path]) for data in results)
     return [], np.tile(np.arange(count)[:, None], len(results))
 

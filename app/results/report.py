@@ -24,6 +24,7 @@ from markupsafe import Markup, escape
 from galinx.postprocess.compare import checked
 from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.quantities.quantity import FEM, METHODS
+from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import (
     BESIDE,
     Sheet,
@@ -220,9 +221,13 @@ def explorer(of: Archive) -> dict[str, Any] | None:
 
 def summary(data: dict[str, Any], scene: Scene) -> str:
     """Scene and finite elements of an archive, in two sentences with units."""
-    count, c = len(data[states.FRICTION.path]), np.unique(data[states.SPEED.path])
-    solid, c_s = scene.solid, scene.solid.c_s
-    moving, speed = (" to ".join(f"{v * unit:.4g}" for v in sorted({c[0], c[-1]})) for unit in (1.0, c_s))
+    count, solid = len(data[states.FRICTION.path]), scene.solid
+
+    def range_of(values: Any) -> str:
+        return " to ".join(dict.fromkeys(f"{value:.4g}" for value in (np.min(values), np.max(values))))
+
+    c, c_s = data[states.SPEED.path], data.get(WAVE_SPEED.path, solid.c_s)
+    moving, speed = range_of(c), range_of(c * c_s)
     load = " to ".join(
         engineering(N, "N/m") for N in sorted({min(scene.punch.loads), max(scene.punch.loads)})
     )
@@ -230,8 +235,10 @@ def summary(data: dict[str, Any], scene: Scene) -> str:
     text = (
         f"{count} friction state{'s' * (count > 1)} of {kind} {scene.punch.profile.words()}, load "
         f"{load}, that slides at {speed} m/s, c = {moving} of the shear "
-        f"wave speed {c_s:.4g} m/s, on a half-plane with {solid.words()}."
+        f"wave speed {range_of(c_s)} m/s, on a half-plane with {solid.words()}."
     )
+    if scene.swept:
+        text += f" Constants are those of the first state; others differ in {' and '.join(scene.swept)}."
     record = [runs.RECORD[name].path for name in ("cells", "degree", "unknowns")]
     if all(path in data for path in record):
         cells, degree, unknowns = (int(data[path].max()) for path in record)

@@ -76,7 +76,7 @@ CENTRE = _by_method(
 )  # fmt: skip
 K_I_LEFT, K_I_RIGHT = (
     _by_method(
-        f"{{method}}/K_I_{side}", "1", f"stress intensity factor over time at {at} by the final load",
+        f"{{method}}/K_I_{side}", "1", f"stress intensity factor over time at {at}, over N",
         nan_allowed=ANYWHERE,
     )
     for side, at in (("left", "X = -a"), ("right", "X = a"))
@@ -114,8 +114,9 @@ SHARE = "10, 1 and 0.1 %"
 
 OFF = _by_method(
     "{method}/off_steady", "1",
-    "distance from steady motion at the end, the largest difference of K_I, relative, and of the "
-    "centre, over the half-width", (START,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+    "distance at the end from steady motion under the load there, the largest difference of K_I, "
+    "relative, and of the centre, over the half-width",
+    (START,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
 )  # fmt: skip
 WITHIN = _by_method(
     "{method}/steady_within", "a/c_s",

@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
 from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
@@ -83,7 +82,7 @@ class FlatAlong(Pressure):
     @cached_property
     def rule(self) -> Rule:
         """Quadrature over the contact, graded towards kinks of friction."""
-        return Rule(self.along.kinks)
+        return Rule((*self.along.kinks, *self.along.weak_kinks))
 
     def _divided(self, function: Callable[[NDArray], NDArray], r: NDArray, dμ: NDArray) -> NDArray:
         """∫ (f(t) - f(r))/(t - r) dμ(t) at places r, (n,)."""
@@ -216,6 +215,8 @@ class Splines(Polynomials):
         return np.sort(np.concatenate([self.knots, *more]))
 
     def values(self, r: NDArray, count: int = 0) -> NDArray[np.float64]:
+        from scipy.interpolate import BSpline  # a slow import
+
         return BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
 
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:

@@ -155,7 +155,8 @@ def of_contact(
         return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
 
     layers = _kernels(response, h) if len(response.depths) else []
-    kinks, exponents = [*kinks, *body.friction_kinks], (local.α, local.β)
+    kinks = [*kinks, *body.friction_kinks, *body.weak_friction_kinks]
+    exponents = local.α, local.β
     return of_pressure(
         response, lambda r: body.ratio(g, r), exponents, slope, pressure, kinks, breaks, layers
     )

@@ -68,6 +68,7 @@ class Contact:
         yield_knots: positions X/a that stand for a finite pressure where the largest stress below it is
             searched for; none where stresses are infinite.
         friction_kinks: positions X/a at which friction along the contact is not smooth, in any state.
+        weak_friction_kinks: those at which only a higher derivative of it jumps.
         tips: positions from the punch's axis [m] at which stresses inside the contact are infinite.
     """
 
@@ -88,6 +89,7 @@ class Contact:
     knots: ClassVar[Any] = ()
     yield_knots: ClassVar[Any] = ()
     friction_kinks: ClassVar[Any] = ()
+    weak_friction_kinks: ClassVar[Any] = ()
     tips: ClassVar[Any] = ()
 
     @property
@@ -302,6 +304,10 @@ class VaryingContact(SharpContact):
     @property
     def friction_kinks(self) -> tuple[float, ...]:
         return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
+
+    @property
+    def weak_friction_kinks(self) -> tuple[float, ...]:
+        return tuple(sorted({kink for along in self.along.values() for kink in along.weak_kinks}))
 
     def edges(self, response: HalfPlane, g: NDArray) -> Exponents:
         at = self.ratio(g, np.array([-1.0, 1.0]))

@@ -19,8 +19,9 @@ from .law import FrictionLaw
 _τ, _, _TO_LEGENDRE = legendre_panel(16)
 _EXACT, _INTEGRATED = 1e-12, 1e-7
 #: Half-length of panels over their distance from the nearer end from which on those that resolve nothing
-#: surround a kink, and at which they are no longer halved; most panels of one length.
-_BESIDE, _SHORTEST, _MOST = 1e-3, 1e-8, 400
+#: surround a kink, or a jump of a higher derivative, and at which they are no longer halved; most panels
+#: of one length.
+_BESIDE, _BESIDE_WEAK, _SHORTEST, _MOST = 1e-3, 1e-2, 1e-8, 400
 #: End of the first panel: panels end at no round number, where kinks are that they would not meet.
 _FIRST = 0.0618033988
 
@@ -33,11 +34,13 @@ class Along:
         mean: mean over X.
         ratio: σ_XY/σ_YY at positions X/a in [-1, 1], (n,): (n,).
         kinks: positions inside at which it is not smooth.
+        weak_kinks: further ones, at which a higher derivative jumps: meshes need no cells for these.
     """
 
     mean: float
     ratio: Callable[[NDArray], NDArray]
     kinks: tuple[float, ...] = ()
+    weak_kinks: tuple[float, ...] = ()
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
         """σ_XY/σ_YY at X/a, beside the contact that at its nearer end, in the shape of X."""
@@ -93,11 +96,13 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
 
     mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a)) / (2.0 * a)
     known = law.exact(start, s, V, np.zeros(1)) is not None
-    return Along(mean, ratio, _kinks(ratio, _EXACT if known else _INTEGRATED))
+    digits = _EXACT if known else _INTEGRATED
+    kinks, all_kinks = (_kinks(ratio, digits, beside) for beside in (_BESIDE, _BESIDE_WEAK))
+    return Along(mean, ratio, kinks, tuple(sorted({*all_kinks} - {*kinks})))
 
 
-def _kinks(function: Callable[[NDArray], NDArray], digits: float) -> tuple[float, ...]:
-    """Positions in (-1, 1) at which panels do not resolve a function before they are very short.
+def _kinks(function: Callable[[NDArray], NDArray], digits: float, short: float) -> tuple[float, ...]:
+    """Positions in (-1, 1) at which panels do not resolve a function before they are ``short``.
 
     Raises:
         ValueError: the function is not smooth in between.
@@ -110,7 +115,7 @@ def _kinks(function: Callable[[NDArray], NDArray], digits: float) -> tuple[float
         size = max(size, float(np.abs(values).max()))
         unresolved = np.abs(values @ _TO_LEGENDRE[-2:].T).max(axis=1) > digits * size
         room, middle = half / (1.0 - np.abs(left + half)), left + half
-        beside = unresolved & (room < _BESIDE)
+        beside = unresolved & (room < short)
         rough += zip(half[beside].tolist(), middle[beside].tolist())
         halved = unresolved & (room > _SHORTEST)
         if halved.sum() > _MOST:

@@ -165,7 +165,7 @@ class Course:
         load: load over N.
         centre: centre of the pressure over a.
         K_left, K_right: normalised intensities of the pressure at X = -a and X = a, by the exponents of
-            steady motion at the friction of each time, and over the final load.
+            steady motion at the friction of each time, and over N.
         work_of_load: ∫ N dv₀ over N²/(4μ).
         work_of_friction: ∫∫ σ_XY u̇ dX dt, u̇ as seen from the punch, over N²/(4μ): work of friction on
             the solid besides that of carrying it past the punch.

@@ -2,7 +2,7 @@
 
 from support import computed, here
 
-from galinx.postprocess.tables import states_sheet
+from galinx.postprocess.tables import sliders_sheet, states_sheet
 
 SCENE = """
 solid.material = "steel"
@@ -29,3 +29,30 @@ def test_only_strokes_have_a_friction_loop(tmp_path):
         computed(SCENE, {"friction.mu": 0.2, "motion.strokes": strokes}).save(archive)
         shown = here("show", archive)
         assert shown.returncode == 0 and ("Friction loops" in shown.stdout) is loops
+
+
+def test_the_resultant_of_a_prescribed_pressure_stands_beside_the_load():
+    """A pressure of any resultant is given over N/(2a), and the load at first yield is N."""
+    pressure = {"solve.mode": "traction", "punch.profile": None, "punch.radius": None, "friction.mu": 0.2}
+    for top, resultant in ((-1.5, "112.5 N/mm"), (-4.0 / 3.0, None)):
+        rows = [[-1, 0], [-0.5, top], [0.5, top], [1, 0]]
+        result = computed(
+            SCENE, pressure | {"solve.pressure": rows, "output.quantities": ["surface", "yield"]}
+        )
+        sheet = states_sheet(result.data, result.units(), width=80)
+        assert dict(sheet.rows).get("resultant of the pressure") == resultant
+        said = any(note.startswith("load at first yield: N;") for note in sheet.notes)
+        assert said == (resultant is not None)
+
+
+def test_sliders_under_several_loads_say_in_which_order_they_are():
+    slider = {"mass": 1.0, "stiffness": 1e3, "drive_speed": 1e-3, "duration": 1.0}
+    said = []
+    for loads in (1.0, [1.0, 2.0]):
+        changes = {f"slider.{key}": value for key, value in slider.items()}
+        changes |= {"friction.mu": 0.2, "punch.load": loads, "output.quantities": ["friction", "slider"]}
+        result = computed(
+            SCENE, changes | {"punch.profile": None, "punch.radius": None, "solve.methods": []}
+        )
+        said.append(sliders_sheet(result.data, result.units()).notes)
+    assert not said[0] and "all of the first load" in said[1][0]

@@ -27,6 +27,20 @@ def test_the_largest_difference_is_taken():
     data = {
         "time/steady_K_I": np.array([0.3]), "time/steady_centre": np.array([-0.1]),
         "time/sie/K_I_left": np.array([[0.3, 0.33]]), "time/sie/K_I_right": np.array([[0.3, 0.24]]),
-        "time/sie/centre_of_pressure": np.array([[0.05, -0.1]]),
+        "time/sie/centre_of_pressure": np.array([[0.05, -0.1]]), "time/load": np.array([0.5, 1.0]),
     }  # fmt: skip
     assert from_steady(data, "sie") == pytest.approx(np.array([[0.15, 0.2]]))
+
+
+def test_steady_motion_is_that_under_the_last_load():
+    """Half of N is left: with half of K_I motion is steady, and times are from when it had come on."""
+    data = {
+        "time/steady_K_I": np.array([0.3]), "time/steady_centre": np.array([-0.1]),
+        "time/sie/K_I_left": np.array([[0.3, 0.15]]), "time/sie/K_I_right": np.array([[0.33, 0.165]]),
+        "time/sie/centre_of_pressure": np.array([[-0.1, -0.1]]), "time/load": np.array([1.0, 0.5]),
+    }  # fmt: skip
+    np.testing.assert_allclose(from_steady(data, "sie"), [[1.2, 0.1]], rtol=1e-12)
+    t = np.linspace(0.01, 40.0, 4000)
+    load = np.where(t < 2.0, 0.0, np.where(t < 4.0, 1.0, 0.5))
+    off = 1.0 / np.maximum(t, 0.1)[None]  # (1 × 2 - 0.5 × 4)/0.5 = 0: as if it came on then
+    np.testing.assert_allclose(times_near_steady(t, load, off)[0, 1], 100.0, rtol=2e-3)

@@ -5,6 +5,7 @@ import pytest
 from support import computed, kept
 
 from galinx.postprocess.quantities import table
+from galinx.postprocess.quantities.quantity import CONTACT
 from galinx.postprocess.units import number, prefixed
 
 #: What units that may stand in a result are in SI, as powers of m, kg and s, and their sizes.
@@ -85,6 +86,8 @@ def test_dimensionless_is_as_archived_and_nothing_stands_twice():
         assert (scaled is None) == (path == "states/speed")
         if scaled:
             assert scaled.unit == row.unit and scaled.factor == 1.0 and np.all(scaled.offset == 0.0)
+    # The half-width of a flat punch is in the scene and no dataset.
+    assert plain.scale(CONTACT).unit == "m" and plain.scale(CONTACT).factor == 1.0
     names = [
         scaled.head for path, row in table().items() if path.startswith("states/") and (scaled := si(row))
     ]

@@ -94,6 +94,22 @@ def test_tension_and_its_place_are_told():
     assert warning.startswith("the punch would have to pull, by up to 0.25 N/(2a), at X/a = 0.5")
 
 
+@pytest.mark.parametrize(
+    "crossings, said", [(2.9, "does not reach; "), (3.1, "comes near only towards its end; ")]
+)
+def test_a_stroke_that_outlasts_the_start_is_not_said_to_miss_steady_motion(crossings, said):
+    validity = Validity(Steady(lambda c, g: 6.0, 1e-6))
+    validity.see(
+        {
+            "states/c": np.array([0.01]),
+            "states/g": np.zeros(1),
+            "states/wave_crossings": np.array([crossings]),
+        }
+    )
+    (text,) = validity.words()
+    assert f"a limit that such a stroke {said}from rest it takes 6 a/c_s" in text
+
+
 def test_what_several_parts_say_is_one_sentence():
     validity = Validity()
     thresholds = {"states/flutter_positive": np.ones(2), "states/flutter_negative": np.full(2, 2.0)}

@@ -96,6 +96,42 @@ def test_the_swapped_order_is_the_mirror(light, heavy):
     assert compared > 5
 
 
+@pytest.mark.parametrize(
+    "key, given, said",
+    [
+        (
+            "motion.speed",
+            ["1 m/s", "500 m/s"],
+            ["states 0, 1 (speed 1 m/s)", "states 1, 0 (speed 500 m/s)"],
+        ),
+        ("motion.c", [0.1, 0.3], ["states 0, 1", "states 1, 0"]),  # m/s of the first alone would mislead
+    ],
+)
+def test_speeds_pair_as_they_are_given(key, given, said):
+    """Two solids have other wave speeds: equal speeds in m/s are not equal over c_s."""
+    keys = PLAIN | {"motion.c": None, "motion.strokes": ["forward"], "motion.X_over_L": [0.5]}
+    steel, aluminium = (
+        computed(
+            "tables4_5",
+            keys
+            | {
+                "solid.material": name,
+                key: values,
+                "solid.E": None,
+                "solid.nu": None,
+                "solid.rho": None,
+                "title": name,
+            },
+        )
+        for name, values in (("steel", given), ("aluminium", given[::-1]))
+    )
+    comparison = Comparison([steel, aluminium])
+    assert comparison.titles == said
+    shown = [row[0] for sheet in comparison.sheets() for row in sheet.rows]
+    assert any("speed" in head for head in shown) == (key == "motion.c")
+    assert [*comparison.notes()][-1].startswith("difference")
+
+
 def test_other_parameters_are_paired_by_their_order(light):
     other = computed("tables4_5", PLAIN | {"motion.X_over_L": [0.3, 0.7], "title": "other"})
     comparison = Comparison([light, other])

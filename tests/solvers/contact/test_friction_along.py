@@ -1,5 +1,6 @@
 """Friction that varies along the contact: closed form against a quadrature of its own in 30 digits."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import mpmath as mp
@@ -12,6 +13,7 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.friction.elasto_plastic import ElastoPlastic
 from galinx.solvers.friction.maxwell_slip import MaxwellSlip
 from galinx.solvers.friction.stribeck import Coulomb
 from galinx.solvers.profiles.punches import Flat
@@ -131,3 +133,16 @@ def test_kinks_of_a_law_are_found_where_its_elements_slip():
     law = MaxwellSlip(((400.0, 0.2), (1000.0, 0.3)))
     along = advected(law, 1, 1.0, 1e-3, -1.0)
     np.testing.assert_allclose(along.kinks, [1.0 - 0.5, 1.0 - 0.3], atol=1e-7)
+
+
+@pytest.mark.parametrize("stiffness", [1e3, 5e3])
+def test_a_jump_of_curvature_costs_no_digits(stiffness):
+    """Bristles break away where a derivative of friction jumps: rules end there, cells need not."""
+    law = ElastoPlastic(μ_C=0.4, μ_S=0.6, v_S=1.0, j=2.0, σ0=stiffness, σ1=0.0, σ2=0.0, r=0.7)
+    along, response = advected(law, 1, 0.1, 1e-3, -1.0), ISOTROPIC.response(0.0)
+    breakaway = 1.0 - 0.7 * float(law.g(0.1)) / stiffness / 1e-3
+    assert not along.kinks
+    exact = FlatAlong(response, replace(along, kinks=(breakaway,), weak_kinks=()))
+    found = FlatAlong(response, along)
+    assert found.resultant_ratio == pytest.approx(exact.resultant_ratio, abs=1e-9)
+    np.testing.assert_allclose(found.σ_YY(PLACES), exact.σ_YY(PLACES), rtol=1e-8)

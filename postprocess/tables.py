@@ -429,6 +429,8 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
 def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
     """Notes on columns, and on how to ask for those that are not there."""
     heads = {column.head for column in columns}
+    if "stroke" in heads:
+        yield "FM1, BM1, FM2: first forward, first backward, second forward motion"
     if "K_I, right" in heads:
         if "largest tension σ_XX" in heads:
             yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
@@ -460,8 +462,19 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
     columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]
     kept = [c for c, before in zip(columns, [None, *columns]) if not c.place or before in columns]
-    labels = _numbers(len(data[of.FRICTION.path]))
-    return layout("Where answers hold", labels, kept, width) if kept else Sheet("", [], [])
+    title, labels, notes = "Where answers hold", _numbers(len(data[of.FRICTION.path])), list[str]()
+    if len(labels) > 1:
+        same = [
+            c for c, after in zip(kept, [*kept[1:], None])
+            if c.constant and not c.place and not (after and after.place)
+        ]  # fmt: skip
+        if len(same) < len(kept):
+            kept = [c for c in kept if c not in same]
+            words = ", ".join(f"{c.head}: {c.words(0)}" for c in same)
+            notes = [f"the same in all: {words}"] * bool(same)
+        elif width:
+            title, labels = f"{title}, the same in all states", labels[:1]
+    return replace(layout(title, labels, kept, width), notes=notes) if kept else Sheet("", [], [])
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
@@ -546,7 +559,7 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         _Spec("centre in steady motion", over_time.STEADY_CENTRE, 5),
     )
     columns = [
-        Column("way", ways, "none"),
+        Column("direction", ways, "none"),
         *_columns(data, units, specs, archived=True),
         Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3),
         Column("within 1 % from", [_when(t, end, time) for t in when], "none"),

@@ -138,8 +138,7 @@ FIGURES = {
         sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _always
     ),
     "friction": _Figure(
-        friction.friction, lambda of: not of.scene.steady, frozenset({"states", "measured"}),
-        friction.has_loop,
+        friction.friction, friction.varies, frozenset({"states", "measured"}), friction.has_loop
     ),
     "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_always),
     "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_always),

@@ -14,8 +14,8 @@ from galinx.solvers.solids import Solid
 from ..errors import BadInput
 from ..scene.scene import Scene
 from .choice import Archive, Drawing
-from .render import JOINED, Curve, Panel, Size, render
-from .style import COLUMN, looks
+from .render import JOINED, Curve, Panel, Size, note, render
+from .style import COLUMN, GREY, Look, looks
 
 #: Wavelengths over the thickness of all layers, angles [°], and speeds over the limit.
 _LENGTHS, _ANGLES, _SPEEDS = np.geomspace(1.0, 100.0, 17), np.linspace(-90.0, 90.0, 37), 25
@@ -46,11 +46,12 @@ def flutter(of: Archive) -> Drawing:
         label, r"flutter threshold of $|\sigma_{XY}/\sigma_{YY}|$", curves=curves, at_y=(g,),
         ylim=(0.0, most), log="x" * bool(of.scene.layers), xlim=(x[0], x[-1]),
     )  # fmt: skip
+    notes = [note(Look(GREY, "-", ""), f"this archive: at most {g:.3g}", width=0.4)]
     caption = (
         f"Least |σ_XY/σ_YY| from which on waves along the interface grow, {words}; no curve where none "
         f"grow. The grey line is the largest |σ_XY/σ_YY| of the states, {g:.3g}."
     )
-    return Drawing("flutter", caption, render([panel], Size(COLUMN), high=0.72))
+    return Drawing("flutter", caption, render([panel], of.size or Size(COLUMN), notes=notes, high=0.72))
 
 
 def _thresholds(scene: Scene) -> tuple[NDArray, NDArray, str, str]:

@@ -21,7 +21,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from galinx.texts import folded, plain
+from galinx.texts import folded, in_tex, plain
 
 from .style import GREY, PAGE, SMALL, TALLEST, Look, styled
 
@@ -341,7 +341,7 @@ class _Drawn:
         boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
         box = Bbox.union([axis.bbox, *filter(None, boxes)])
         left, below, right, above = np.abs(np.subtract(box.extents, axis.bbox.extents)) / dpi
-        unit = panel.unit
+        unit = in_tex(panel.unit)
         if self.power:
             unit = f"$10^{{{self.power}}}${' ' + unit if unit else ''}"
         y = panel.y and (f"{panel.y} ({unit})" if unit else panel.y)

@@ -56,8 +56,8 @@ _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 _HEAD = """\
 # Gallery
 
-The headings name scenes in `scenes/`; `./run.sh init` says what each is about. Below each picture stands
-the file that `plot` makes of the scene's archive, or `./run.sh` in `results/`. Copy a scene and change it:
+The headings name scenes in `scenes/`; `./run.sh init` says what each is about. Below each picture is the
+file that `plot` makes of the scene's archive, or `./run.sh` in `results/`. Copy a scene and change it:
 
 ```console
 ./run.sh init fig8 -o mine.toml

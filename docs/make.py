@@ -216,7 +216,8 @@ def scene_page() -> str:
     for name, section in SECTIONS.items():
         parts += [f"## {section.heading.format(name)}\n", *_section(section)]
     parts.append("## Materials\n\n`./run.sh materials` prints their constants and sources.\n")
-    parts.append("".join(f"- `{n}`: {m.about.replace(';', ',').partition(',')[0]}\n" for n, m in LIBRARY.items()))
+    about = {name: solid.about.replace(";", ",").partition(",")[0] for name, solid in LIBRARY.items()}
+    parts.append("".join(f"- `{name}`: {words}\n" for name, words in about.items()))
     return "\n".join(parts)
 
 

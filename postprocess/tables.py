@@ -105,10 +105,15 @@ class Column:
 
     def texts(self, count: int | None = None) -> list[str]:
         """The first cells as text."""
+        cells = self.rounded(count)
+        return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
+
+    def rounded(self, count: int | None = None) -> list[Any]:
+        """The first values, rounded to the step."""
         cells = [*self.values[:count]]
         if self.step:
             cells = [round(cell / self.step) * self.step if cell == cell else cell for cell in cells]
-        return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
+        return cells
 
     def words(self, i: int) -> str:
         """Cell of state ``i`` with its unit."""
@@ -260,7 +265,8 @@ def _columns(
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
     columns: list[Column] = []
-    steps = dict.fromkeys((X_OVER_A, CONTACT), _STEP * float(np.max(units.length.factor)))
+    lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
+    steps = dict.fromkeys(lengths, _STEP * float(np.max(units.length.factor)))
     steps[_STRESS] = _STRESS_STEP * float(np.max(units.stress.factor))
     for head, rows, digits, taken in specs:
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
@@ -276,7 +282,7 @@ def _columns(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
                     scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
-                    0.0 if units.dimensionless or archived else steps.get(of_kind, 0.0),
+                    0.0 if archived else steps.get(of_kind, 0.0),
                 )
             )  # fmt: skip
     return columns

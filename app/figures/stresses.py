@@ -327,6 +327,7 @@ def compared(
                 surface, pairs[k][n],
                 look._replace(line=LINES[order % len(LINES)]) if several else look,
                 f"{label}, {titles[k]}" if several else label,
+                1.0 if n else 2.0,  # the first shows below others that are the same
             )
             for n, (surface, look, label) in enumerate(zip(surfaces, styles, labels))
             if name in surface.values

@@ -191,12 +191,13 @@ def table(scene: Scene, answer: Answer) -> list[str]:
     """Lines of a table of the dynamic stiffness in SI units."""
     oscillation, μ = answer.oscillation, scene.solid.μ
     hertz = oscillation.ω * scene.solid.c_s / (2.0 * np.pi * scene.punch.profile.half_width)  # type: ignore[attr-defined]
-    lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)    Im N/v0 (Pa)    |v0/N| (1/Pa)   phase of v0 (°)"]
+    lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)  Im N/v0 (Pa)  |v0/N| (1/Pa)  phase (°)"]
     for ω, f, K in zip(oscillation.ω, hertz, 2.0 * μ * oscillation.stiffness):
         lag = -np.angle(K, deg=True)
         lines.append(
-            f"{ω:<10.4g} {f:<15.6g} {K.real:<15.6g} {K.imag:<15.6g} {1.0 / abs(K):<15.6g} {lag:.2f}"
+            f"{ω:<10.4g} {f:<15.6g} {K.real:<13.6g} {K.imag:<13.6g} {1.0 / abs(K):<14.6g} {lag:.2f}"
         )
+    lines.append("per depth; the phase is that of v0")
     return [*lines, f"largest relative error, measured: {oscillation.error.max():.1e}"]
 
 

@@ -267,7 +267,7 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     ]
     cells = [list(range(kept))]
     for column in shown:
-        values = column.values[:kept]
+        values = column.rounded(kept)
         cells.append(list(values) if isinstance(values[0], str) else _numbers(values, 12))
     note = counted(count, "state")
     if same:

@@ -105,15 +105,10 @@ class Column:
 
     def texts(self, count: int | None = None) -> list[str]:
         """The first cells as text."""
-        cells = self.rounded(count)
-        return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
-
-    def rounded(self, count: int | None = None) -> list[Any]:
-        """The first values, rounded to the step."""
         cells = [*self.values[:count]]
         if self.step:
             cells = [round(cell / self.step) * self.step if cell == cell else cell for cell in cells]
-        return cells
+        return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
 
     def words(self, i: int) -> str:
         """Cell of state ``i`` with its unit."""
@@ -405,6 +400,15 @@ def layout(
     return Sheet(title, [noun, *heads], [[label, *row] for label, *row in zip(labels, *texts)])
 
 
+def shared(columns: Sequence[Column]) -> list[Column]:
+    """Columns in which several states have the same, but for places and what has one."""
+    followed = zip(columns, (*columns[1:], None))
+    return [
+        column for column, after in followed
+        if len(column.values) > 1 and column.constant and not (column.place or (after and after.place))
+    ]  # fmt: skip
+
+
 def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int = 0) -> Sheet:
     """Table of the first states of an archive, with :func:`state_columns`.
 
@@ -469,15 +473,10 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]
     kept = [c for c, before in zip(columns, [None, *columns]) if not c.place or before in columns]
     title, labels, notes = "Where answers hold", _numbers(len(data[of.FRICTION.path])), list[str]()
-    if len(labels) > 1:
-        same = [
-            c for c, after in zip(kept, [*kept[1:], None])
-            if c.constant and not c.place and not (after and after.place)
-        ]  # fmt: skip
+    if same := shared(kept):
         if len(same) < len(kept):
             kept = [c for c in kept if c not in same]
-            words = ", ".join(f"{c.head}: {c.words(0)}" for c in same)
-            notes = [f"the same in all: {words}"] * bool(same)
+            notes = [f"the same in all: {', '.join(f'{c.head}: {c.words(0)}' for c in same)}"]
         elif width:
             title, labels = f"{title}, the same in all states", labels[:1]
     return replace(layout(title, labels, kept, width), notes=notes) if kept else Sheet("", [], [])

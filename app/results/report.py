@@ -28,6 +28,7 @@ from galinx.postprocess.tables import (
     BESIDE,
     Sheet,
     limits_sheet,
+    shared,
     solved_speeds,
     starts_sheet,
     state_columns,
@@ -259,7 +260,7 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     What is the same in all states of several stands in its note.
     """
     columns, count = state_columns(data, units), len(data[states.FRICTION.path])
-    same = [column for column in columns if column.constant and count > 1 and not column.place]
+    same = shared(columns)
     shown = [column for column in columns if column not in same]
     kept = min(count, _CELLS // (len(shown) + 1))
     heads = [{"head": "state", "name": "state", "csv": "state", "digits": None}] + [
@@ -267,8 +268,10 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     ]
     cells = [list(range(kept))]
     for column in shown:
-        values = column.rounded(kept)
-        cells.append(list(values) if isinstance(values[0], str) else _numbers(values, 12))
+        values = column.values[:kept]
+        if not isinstance(values[0], str):  # all digits, but for numbers that are rounding alone
+            values = _numbers(np.where(np.abs(values) <= 0.5 * column.step, 0.0, values), 12)
+        cells.append(list(values))
     note = counted(count, "state")
     if same:
         note += f"; the same in all: {', '.join(f'{c.head} {c.words(0)}' for c in same if c.words(0))}"

@@ -11,7 +11,7 @@ from support import CLOSED_FORM, computed, here, kept
 
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
-from galinx.app.figures import flutter
+from galinx.app.figures import waves
 from galinx.app.figures.archive import of_archive, write
 from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
@@ -208,7 +208,7 @@ ROUND = {"solve.methods": ["closed_form"], "output.map": None, "output.quantitie
 
 
 def test_the_flutter_figure_has_the_size_that_is_asked_for(monkeypatch):
-    monkeypatch.setattr(flutter, "_ANGLES", np.array([0.0, 30.0]))
+    monkeypatch.setattr(waves, "_ANGLES", np.array([0.0, 30.0]))
     changes = {"output.quantities": ["friction"], "output.map": None}
     of, wide = computed("fibres", changes), Size(6.0)
     (drawing,) = of_archive(of.data, of.scene, Choice(figures=("flutter",), size=wide))

@@ -13,7 +13,7 @@ import pytest
 from support import THOROUGH, kept
 
 from galinx import compute, template
-from galinx.app.results.report import markup
+from galinx.app.results.report import markup, states_table
 from galinx.postprocess.tables import BESIDE, state_columns
 
 CHROMIUM = shutil.which("chromium")
@@ -92,6 +92,16 @@ def test_a_report_has_every_state_and_its_curves(page, map_run):
                 at = [int(np.abs(half * X - place).argmin()) for place in x[np.isfinite(x)]]
                 np.testing.assert_allclose(y[np.isfinite(x)], held[at], rtol=1e-4)
                 assert len(at) > 50
+
+
+def test_what_is_rounding_alone_is_0_on_a_page(map_run):
+    data = dict(map_run.data)
+    largest = data["states/fem/sigma_XX_max"] = data["states/fem/sigma_XX_max"].copy()
+    largest[1] = 4e-9
+    shown = states_table(data, map_run.units())["data"]
+    (column,) = (n for n, head in enumerate(shown["columns"]) if head["name"] == "fem_sigma_XX_max")
+    values = [row[column] for row in shown["rows"]]
+    assert values[1] == 0.0 and min(values[:1] + values[2:]) > 0.0
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,7 @@ _INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
 _POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
 _RAISED = re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
 #: Exponents, as in m^(-β), and signs of numbers.
-_EXPONENT, _NEGATIVE = re.compile(r"\^\(([^()]*)\)"), re.compile(r"(?<![\w.)\]}-])-(?=\d)")
+_EXPONENT, _NEGATIVE = re.compile(r"\^\(([^()]*)\)"), re.compile(r"(?<![\w.)\]}-])-(?=[\dσ]|a\b)")
 #: plotly.js beside its Python package: of PyPI, and of Debian.
 _SCRIPTS = ("package_data/plotly.min.js", "/usr/share/python3-plotly/plotly.js")
 

@@ -111,6 +111,7 @@ def test_what_is_rounding_alone_is_0_on_a_page(map_run):
         ("4.8e-07 m", "4.8&#8239;×&#8239;10<sup>−7</sup> m"), ("<b>", "&lt;b&gt;"),
         (r"$\sigma_0 l/N$", "σ₀ l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
         (r"c = $4.786 \times 10^{-7}$", "c = 4.786&#8239;×&#8239;10<sup>−7</sup>"), ("0x1e-7", "0x1e-7"),
+        ("2-3 at X = -a, -1.5, MPa·m^(-β)", "2-3 at X = −a, −1.5, MPa·m<sup>−β</sup>"),
     ],
 )  # fmt: skip
 def test_symbols_are_typeset(text, shown):

@@ -44,8 +44,8 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
     return {path: rows[path] for path in (*swept, *first, *own, *last)}
 
 
-#: Most states in a table, most of them side by side, and most inner variables of a law.
-LIMIT, BESIDE, _VARIABLES = 24, 8, 6
+#: Most states in a table, and most of them side by side.
+LIMIT, BESIDE = 24, 8
 #: Characters of a narrow column.
 _NARROW = 11
 
@@ -512,28 +512,6 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         note += f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
     sheet = layout("Friction loops", _numbers(len(states)), columns, width, "loop")
     return replace(sheet, notes=[note])
-
-
-def inner_sheet(data: dict[str, Any]) -> Sheet:
-    """Table of the law's inner variables at the first states; no rows without any, or for f alone.
-
-    Where friction varies along the contact there are none either.
-    """
-    if preferred(data, of.RESULTANT_RATIO):
-        return Sheet("", [], [])
-    z, f = data.get(of.INNER_STATE.path), data[of.FRICTION.path]
-    rows: list[list[str]] = []
-    count = min(0 if z is None else z.shape[1], _VARIABLES)
-    if z is not None and z.any() and not (z.shape[1] == 1 and np.allclose(z[:, 0], f, rtol=1e-12)):
-        columns = data[of.MOTION.path], data[of.POSITION.path], f, z
-        for n, (motion, X, of_state, inner) in enumerate(zip(*(values[:LIMIT] for values in columns))):
-            components = (f"{value:.6g}" for value in inner[:count].tolist())
-            rows.append([f"{n} {motion}", f"{X:.4g}", f"{of_state:+.4f}", *components])
-    notes = ["z: inner variables, dimensionless, as defined in the law's file"]
-    if z is not None and z.shape[1] > count:
-        notes.append(f"and {z.shape[1] - count} more; show --json lists all")
-    heads = ["state", "X/L", "f", *(f"z{n + 1}" for n in range(count))]
-    return Sheet("Inner state of the friction law", heads, rows, notes)
 
 
 def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:

@@ -29,7 +29,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
 
     Example: ./run.sh show tables.h5 --dimensionless
     """
-    from galinx.postprocess.tables import inner_sheet, limits_sheet, loops_sheet, sheets_of_run
+    from galinx.postprocess.tables import limits_sheet, loops_sheet, sheets_of_run
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -40,7 +40,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
         else:
             sheets = sheets_of_run(data, units, attributes["title"], width())
             if not result.scene.steady:  # else no stroke was asked for
-                sheets += [loops_sheet(data, units, width()), inner_sheet(data)]
+                sheets.append(loops_sheet(data, units, width()))
             sheets.append(limits_sheet(data, units, width()))
             print_result([sheet for sheet in sheets if sheet.rows], data, attributes, verbose)
             print_warnings(attributes)

@@ -292,12 +292,18 @@ def _parts(sheet: Any, width: int) -> list[list[int]]:
         for column in zip(sheet.columns, *sheet.rows)
     ]
     wide[0] = min(wide[0], max(width // 2, 12))  # labels may take several lines
-    parts = [[0]]
-    for i in range(1, len(wide)):
-        if len(parts[-1]) > 1 and sum(wide[k] for k in parts[-1]) + wide[i] > width:
-            parts.append([0])
-        parts[-1].append(i)
-    return parts
+
+    def parts(room: int) -> list[list[int]]:
+        made = [[0]]
+        for i in range(1, len(wide)):
+            if len(made[-1]) > 1 and sum(wide[k] for k in made[-1]) + wide[i] > room:
+                made.append([0])
+            made[-1].append(i)
+        return made
+
+    # As few parts as the width needs, all of about the same width: no column stands alone.
+    fewest = len(parts(width))
+    return next(made for room in range(1, width + 1) if len(made := parts(room)) == fewest)
 
 
 def print_verdict(
@@ -306,25 +312,32 @@ def print_verdict(
     """Print how well numbers were checked, and the verdict of an archive; verbose, all comparisons."""
     from galinx.postprocess.compare import checked
 
-    if verbose:
-        for text, value in json.loads(attributes["comparisons"]).items():
-            console.print(f"  {text}: {value:.1e}")
     _print_folded(console, checked(data, attributes))
     styles = {"PASS": "bold green", "FAIL": "bold red"}
     console.print(f"verdict: {attributes['verdict']}", style=styles.get(attributes["verdict"]))
     if verbose:
-        for reason in json.loads(attributes["verdict_reasons"]):
-            console.print(f"  {reason}")
+        reasons = json.loads(attributes["verdict_reasons"])
+        others = [
+            f"{text}: {value:.1e}"
+            for text, value in json.loads(attributes["comparisons"]).items()
+            if not any(reason.startswith(f"{text}: ") for reason in reasons)
+        ]
+        for line in (*reasons, *others):
+            _print_folded(console, f"  {line}")
 
 
 def _print_folded(console: Any, text: str, **style: Any) -> None:
-    text = textwrap.fill(plain(text), console.width, subsequent_indent="  ", break_on_hyphens=False)
-    console.print(text, **style)
+    console.print(_fill(text), **style)
+
+
+def _fill(text: str, hang: int = 2) -> str:
+    """A text in lines as wide as the terminal, 80 columns where it is none."""
+    return textwrap.fill(plain(text), width(), subsequent_indent=" " * hang, break_on_hyphens=False)
 
 
 def say(text: str, hang: int = 2) -> None:
     """Print a line, folded at the terminal's width (80 columns where it is none)."""
-    print(textwrap.fill(plain(text), width(), subsequent_indent=" " * hang, break_on_hyphens=False))
+    print(_fill(text, hang))
 
 
 def colours() -> bool:
@@ -362,7 +375,8 @@ def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:
 def print_warnings(attributes: dict[str, Any]) -> None:
     """Print the warnings of an archive on the error stream."""
     for text in json.loads(attributes["warnings"]):
-        print(f"warning: {text}", file=sys.stderr)
+        line = f"warning: {text}"
+        print(_fill(line) if sys.stderr.isatty() else line, file=sys.stderr)
 
 
 def print_times(clock: Clock) -> None:

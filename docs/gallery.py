@@ -56,8 +56,8 @@ _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 _HEAD = """\
 # Gallery
 
-The headings name scenes in `scenes/`. Below each picture stands the file that `plot` makes of the
-scene's archive, or `./run.sh` in `results/`. Copy a scene and change it:
+The headings name scenes in `scenes/`; `./run.sh init` says what each is about. Below each picture is the
+file that `plot` makes of the scene's archive, or `./run.sh` in `results/`. Copy a scene and change it:
 
 ```console
 ./run.sh init fig8 -o mine.toml
@@ -68,19 +68,19 @@ scene's archive, or `./run.sh` in `results/`. Copy a scene and change it:
 
 
 def page() -> str:
-    """The page: every scene with what it is about, those of ``SHOWN`` with a picture."""
+    """The page: the scenes of ``SHOWN`` with a picture and what to see there, then the others."""
     from galinx.app.scene.library import templates
 
     known = templates()
     parts = [_HEAD]
     for name, (figure, seen) in SHOWN.items():
         parts.append(
-            f"## `{name}`\n\n{known[name].about}\n\n"
+            f"## `{name}`\n\n"
             f"[![{name}](figures/gallery/{name}.png)](figures/gallery/{name}.png)\n\n"
             f"*{seen}* `{_called(name, figure)}`\n"
         )
-    others = "\n".join(f"- `{name}`: {known[name].about}" for name in known if name not in SHOWN)
-    parts.append(f"## Other scenes\n\n{others}\n")
+    others = ", ".join(f"`{name}`" for name in known if name not in SHOWN)
+    parts.append(f"## Other scenes\n\n{others}.\n")
     return "\n".join(parts)
 
 

@@ -51,7 +51,7 @@ Before the command stand
 - `-x FILE.py`: run a file that registers [models of your own](howto_extend.md); may be repeated
 - `--version`: print the version
 
-With the folder `bin` on `PATH` the same command is called `galinx`. An installed `galinx` knows the
+An installed `galinx` knows the
 commands and these options, not the words above; `mpirun -n RANKS galinx COMMAND …` runs it on ranks.
 """
 
@@ -113,17 +113,7 @@ _ARCHIVE = """\
 Written by `docs/make.py` from the table of quantities, `postprocess/quantities/`.
 
 A run writes one HDF5 file. Every dataset has `units` ("1" for dimensionless) and `long_name`, every
-numerical one a checksum. [Read archives](howto_read_archive.md) shows how to read them:
-
-    ./run.sh run scenes/tables4_5.toml -o out.h5
-
-```python
-import h5py
-
-with h5py.File("out.h5") as file:
-    K_I = file["states/fem/K_I_right"][()]
-    motion = file["states/motion"].asstr()[()]
-```
+numerical one a checksum. [Read archives](howto_read_archive.md) shows how to read them.
 
 - METHOD is `closed_form`, `sie` (integral equation) or `fem` (finite elements).
 - Brackets hold the shape, if not that of the section; the unit; NaN, if there may be no answer; after
@@ -226,7 +216,8 @@ def scene_page() -> str:
     for name, section in SECTIONS.items():
         parts += [f"## {section.heading.format(name)}\n", *_section(section)]
     parts.append("## Materials\n\n`./run.sh materials` prints their constants and sources.\n")
-    parts.append("".join(f"- `{n}`: {m.about.partition(';')[0]}\n" for n, m in LIBRARY.items()))
+    about = {name: solid.about.replace(";", ",").partition(",")[0] for name, solid in LIBRARY.items()}
+    parts.append("".join(f"- `{name}`: {words}\n" for name, words in about.items()))
     return "\n".join(parts)
 
 

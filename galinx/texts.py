@@ -38,6 +38,7 @@ def bytes_in_words(count: float, digits: int = 3) -> str:
 #: Beyond these numbers are written with a power of ten.
 _SMALL, _LARGE = 1e-3, 1e6
 
+_GREEK = {"α": "alpha", "β": "beta"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
@@ -66,6 +67,11 @@ def unit(name: str) -> str:
     return rf"\,\mathrm{{{over[1]}^{{-1}}}}" if over else rf"\,\mathrm{{{name}}}"
 
 
+def in_tex(name: str) -> str:
+    """Unit with its exponent in TeX, for an axis: ``MPa·m^(-β)`` as ``MPa·m$^{-\\beta}$``."""
+    return re.sub(r"\^\(-([αβ])\)", lambda of: f"$^{{-\\{_GREEK[of[1]]}}}$", name)
+
+
 def plain(text: str) -> str:
     """Plain text of a text with formulas between dollars: μ_C = 4.786 × 10⁻⁷."""
 
@@ -74,6 +80,8 @@ def plain(text: str) -> str:
         if word == "vartheta":  # Unicode calls it a symbol
             return "ϑ"
         kind = "CAPITAL" if word[0].isupper() else "SMALL"
+        if word == "vartheta":
+            return "ϑ"
         name = {"lambda": "LAMDA"}.get(word.lower(), word.upper())
         try:
             return unicodedata.lookup(f"GREEK {kind} LETTER {name}")

@@ -45,8 +45,8 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
     return {path: rows[path] for path in (*swept, *first, *own, *last)}
 
 
-#: Most states in a table, most of them side by side, and most inner variables of a law.
-LIMIT, BESIDE, _VARIABLES = 24, 8, 6
+#: Most states in a table, and most of them side by side.
+LIMIT, BESIDE = 24, 8
 #: Characters of a narrow column.
 _NARROW = 11
 
@@ -262,7 +262,8 @@ def _columns(
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
     columns: list[Column] = []
-    steps = dict.fromkeys((X_OVER_A, CONTACT), _STEP * float(np.max(units.length.factor)))
+    lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
+    steps = dict.fromkeys(lengths, _STEP * float(np.max(units.length.factor)))
     steps[_STRESS] = _STRESS_STEP * float(np.max(units.stress.factor))
     for head, rows, digits, taken in specs:
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
@@ -278,7 +279,7 @@ def _columns(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
                     scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
-                    0.0 if units.dimensionless or archived else steps.get(of_kind, 0.0),
+                    0.0 if archived else steps.get(of_kind, 0.0),
                 )
             )  # fmt: skip
     return columns
@@ -420,6 +421,15 @@ def layout(
     return Sheet(title, [noun, *heads], [[label, *row] for label, *row in zip(labels, *texts)])
 
 
+def shared(columns: Sequence[Column]) -> list[Column]:
+    """Columns in which several states have the same, but for places and what has one."""
+    followed = zip(columns, (*columns[1:], None))
+    return [
+        column for column, after in followed
+        if len(column.values) > 1 and column.constant and not (column.place or (after and after.place))
+    ]  # fmt: skip
+
+
 def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int = 0) -> Sheet:
     """Table of the first states of an archive, with :func:`state_columns`.
 
@@ -450,6 +460,8 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
 def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
     """Notes on columns, and on how to ask for those that are not there."""
     heads = {column.head for column in columns}
+    if "stroke" in heads:
+        yield "FM1, BM1, FM2: first forward, first backward, second forward motion"
     if "K_I, right" in heads:
         if "largest tension σ_XX" in heads:
             yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
@@ -483,8 +495,14 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
     columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]
     kept = [c for c, before in zip(columns, [None, *columns]) if not c.place or before in columns]
-    labels = _numbers(len(data[of.FRICTION.path]))
-    return layout("Where answers hold", labels, kept, width) if kept else Sheet("", [], [])
+    title, labels, notes = "Where answers hold", _numbers(len(data[of.FRICTION.path])), list[str]()
+    if same := shared(kept):
+        if len(same) < len(kept):
+            kept = [c for c in kept if c not in same]
+            notes = [f"the same in all: {', '.join(f'{c.head}: {c.words(0)}' for c in same)}"]
+        elif width:
+            title, labels = f"{title}, the same in all states", labels[:1]
+    return replace(layout(title, labels, kept, width), notes=notes) if kept else Sheet("", [], [])
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
@@ -524,28 +542,6 @@ def _under_the_first_load(data: Mapping[str, Any], units: Units) -> str:
     return f"; under the first load, N = {load.text(load.factor * data[of.LOAD.path][0])}"
 
 
-def inner_sheet(data: dict[str, Any]) -> Sheet:
-    """Table of the law's inner variables at the first states; no rows without any, or for f alone.
-
-    Where friction varies along the contact there are none either.
-    """
-    if preferred(data, of.RESULTANT_RATIO):
-        return Sheet("", [], [])
-    z, f = data.get(of.INNER_STATE.path), data[of.FRICTION.path]
-    rows: list[list[str]] = []
-    count = min(0 if z is None else z.shape[1], _VARIABLES)
-    if z is not None and z.any() and not (z.shape[1] == 1 and np.allclose(z[:, 0], f, rtol=1e-12)):
-        columns = data[of.MOTION.path], data[of.POSITION.path], f, z
-        for n, (motion, X, of_state, inner) in enumerate(zip(*(values[:LIMIT] for values in columns))):
-            components = (f"{value:.6g}" for value in inner[:count].tolist())
-            rows.append([f"{n} {motion}", f"{X:.4g}", f"{of_state:+.4f}", *components])
-    notes = ["z: inner variables, dimensionless, as defined in the law's file"]
-    if z is not None and z.shape[1] > count:
-        notes.append(f"and {z.shape[1] - count} more; show --json lists all")
-    heads = ["state", "X/L", "f", *(f"z{n + 1}" for n in range(count))]
-    return Sheet("Inner state of the friction law", heads, rows, notes)
-
-
 def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the motion of the slider for the first laws, with its stick-slip."""
     if runs.OUTCOME.path not in data:
@@ -576,7 +572,7 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         _Spec("centre in steady motion", over_time.STEADY_CENTRE, 5),
     )
     columns = [
-        Column("way", ways, "none"),
+        Column("direction", ways, "none"),
         *_columns(data, units, specs, archived=True),
         Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3),
         Column("within 1 % from", [_when(t, end, time) for t in when], "none"),

@@ -160,8 +160,8 @@ class Units:
             row: quantity whose unit this is; None for one of states.
         """
         if self.dimensionless:
-            unit = "1" if kind in (OVER_A, X_OVER_A, OVER_C_S, OVER_N) else kind
-            return Scaled("", "m" if kind == CONTACT else unit)
+            archived = {CONTACT: "m"} | dict.fromkeys((OVER_A, X_OVER_A, OVER_C_S, OVER_N), "1")
+            return Scaled("", archived.get(kind, kind))
         unit, factor, offset, size = self._in_si(kind, row)
         sizes = [size, *(other._in_si(kind, row)[3] for other in self.beside)]
         name, of_si = prefixed(unit, float(max(sizes)))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from galinx.texts import folded, number, plain
+from galinx.texts import folded, in_tex, number, plain
 
 
 @pytest.mark.parametrize(
@@ -20,7 +20,7 @@ def test_numbers_are_typeset(value, shown):
 def test_formulas_become_plain_text():
     assert plain(r"at $\mu_C = 0.7$, $\sigma_0 l/N$") == "at μ_C = 0.7, σ₀ l/N"
     assert plain(r"$\delta_D$ and $\mathrm{own\_key}$, $\lambda$") == "δ_D and own_key, λ"
-    assert plain(r"$\vartheta_0$") == "ϑ₀"
+    assert plain(r"$\vartheta_0$") == "ϑ₀" and in_tex("MPa·m^(-β)") == r"MPa·m$^{-\beta}$"
 
 
 def test_lines_are_folded_between_words_and_formulas_stay_whole():

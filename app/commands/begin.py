@@ -30,8 +30,9 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
     if not ranks.is_root():
         return errors.GOOD
     if name is None:
+        wide = max(map(len, available)) + 1
         for template in available.values():
-            say(f"{template.name:<16} {template.about}", 17)
+            say(f"{template.name:<{wide}}{template.about}", wide)
         return errors.GOOD
     if name not in available:
         raise BadInput(f"init {short(name)}: no such scene{nearest(name, available)}")
@@ -53,7 +54,7 @@ def materials() -> int:
     if ranks.is_root():
         for name, material in LIBRARY.items():
             say(f"{name}: {material.about}")
-            say(f"  {material.kind}: {material.told}", 4)
+            say(f"  {material.kind}: {material.words}", 4)
             say(f"  {material.source}", 4)
             if material.yield_strength:
                 say(f"  yield strength {material.yield_strength}: {material.yield_source}", 4)

@@ -114,19 +114,15 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
 
     Example: ./run.sh plan scenes/tables4_5.toml
     """
-    from ..plan.plan import expense
+    from ..plan.plan import by_reason, expense
     from ..plan.variants import lines_of, make_plans
 
     plans = make_plans(options.read(scene, changes, unset))
     if ranks.is_root():
         for text in lines_of(plans):
             say(f"do    {text}", 6)
-        reasons: dict[str, dict[str, None]] = {}
-        for what, _, reason in (text.partition(": ") for each in plans for text in each.skipped):
-            name = what.rpartition("/")[2] if what.startswith("states/") else what
-            reasons.setdefault(reason, {})[name] = None
-        for reason, names in reasons.items():
-            say(f"skip  {', '.join(names)}: {reason}", 6)
+        for text in by_reason(text for each in plans for text in each.skipped):
+            say(f"skip  {text}", 6)
         say(f"cost  {expense(*plans)}", 6)
         for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)

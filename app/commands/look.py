@@ -29,7 +29,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
 
     Example: ./run.sh show tables.h5 --dimensionless
     """
-    from galinx.postprocess.tables import inner_sheet, limits_sheet, loops_sheet, sheets_of_run
+    from galinx.postprocess.tables import limits_sheet, loops_sheet, sheets_of_run
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -40,7 +40,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
         else:
             sheets = sheets_of_run(data, units, attributes["title"], width())
             if not result.scene.steady:  # else no stroke was asked for
-                sheets += [loops_sheet(data, units, width()), inner_sheet(data)]
+                sheets.append(loops_sheet(data, units, width()))
             sheets.append(limits_sheet(data, units, width()))
             print_result([sheet for sheet in sheets if sheet.rows], data, attributes, verbose)
             print_warnings(attributes)
@@ -213,7 +213,7 @@ def compare(
     "figure",
     "NAMES",
     "surface, along, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
-    "energies, degrees, mesh, film; several as in surface,mesh; all for all.",
+    "energies, flutter, degrees, mesh, film; several as in surface,mesh; all for all.",
 )
 @_text("states", "NUMBERS", "States, see show: 0,4,7 or 0-3.")
 @_text("quantity", "NAMES", "Stresses, as in sigma_XX,von_mises.")
@@ -283,8 +283,12 @@ def dispersion(
     slowest = waves.curve(options.read(scene, changes, unset))
     if ranks.is_root():
         print("kH (1)     wavelength (m)  speed (m/s)")
-        for kH, length, speed in zip(slowest.kH, slowest.length, slowest.speed):
+        # Short waves that all leak are one line.
+        shown = max((n for n, speed in enumerate(slowest.speed, 2) if speed == speed), default=1)
+        for kH, length, speed in zip(slowest.kH[:shown], slowest.length, slowest.speed):
             print(f"{kH:<10.4g} {length:<15.6g} {'none' if speed != speed else f'{speed:.6g}'}")
+        if shown < len(slowest.kH):
+            print(f"{f'to {slowest.kH[-1]:.4g}':<10} {f'to {slowest.length[-1]:.6g}':<15} none")
         say("k is the wavenumber, H the thickness of all layers")
         if slowest.leaks:
             say(

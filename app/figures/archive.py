@@ -14,7 +14,7 @@ from galinx.texts import number
 from ..errors import BadInput
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
-from . import flutter, friction, motion, numerics, stresses, sweep
+from . import friction, motion, numerics, stresses, sweep, waves
 from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
@@ -138,8 +138,7 @@ FIGURES = {
         sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _always
     ),
     "friction": _Figure(
-        friction.friction, lambda of: not of.scene.steady, frozenset({"states", "measured"}),
-        friction.has_loop,
+        friction.friction, friction.varies, frozenset({"states", "measured"}), friction.has_loop
     ),
     "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_always),
     "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_always),
@@ -147,7 +146,7 @@ FIGURES = {
     "pressures": _Figure(motion.pressures, _holds(*motion.PRESSURES)),
     "stresses": _Figure(motion.stresses, motion.has_surface),
     "energies": _Figure(motion.energies, _holds(*motion.ENERGIES)),
-    "flutter": _Figure(flutter.flutter, flutter.has_flutter),
+    "flutter": _Figure(waves.flutter, waves.has_flutter),
     "degrees": _Figure(numerics.degrees, _holds(*numerics.DEGREES)),
     "mesh": _Figure(numerics.mesh, lambda of: bool(make_plan(of.scene).fem)),
     FILM: _Figure(film, lambda of: _has_strokes(of) or motion.has_film(of), _STRESSES),

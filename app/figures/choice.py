@@ -20,7 +20,7 @@ from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import parameters
 from galinx.postprocess.units import Scaled, Units, as_archived
-from galinx.texts import number, plain, unit
+from galinx.texts import in_tex, number, plain, unit
 
 from ..errors import BadInput, nearest, short
 from ..scene.scene import Scene
@@ -419,6 +419,7 @@ def named(words: str, unit: str) -> str:
     """Name of an axis with its unit: ``load (N/mm)``, ``pressure $/(N/2a)$``."""
     if unit in ("", "1", "none"):
         return words
+    unit = in_tex(unit)
     return f"{words} $/({unit.replace('(2a)', '2a')})$" if unit.startswith("N/(") else f"{words} ({unit})"
 
 

@@ -129,6 +129,13 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
     )  # fmt: skip
 
 
+def varies(of: Archive) -> bool:
+    """Return True if friction changes between places or strokes."""
+    loops = Loops(of)
+    each = (loop.f for loop in (loops.of(int(i)) for i in loops.first[:_LOOPS]) if loop)
+    return not of.scene.steady and any(np.ptp(f) > 1e-6 * np.abs(f).max() for f in each)
+
+
 def has_loop(of: Archive) -> bool:
     """Return True if friction changes along a stroke, or between strokes, but not along the contact."""
     if any(of.has(row) for row in RESULTANT_RATIO.values()):
@@ -177,6 +184,7 @@ def loops_figure(panels: Sequence[Panel], loops: Sequence[Loop], size: Size | No
     if len(entries) > 1:
         panels = [replace(panel, own_legend=True) for panel in panels]
     strokes = [name for name, _ in loops[0].strokes] if len(loops) > 1 and any(entries) else []
+    strokes *= len(strokes) > 1
     notes = [note(Look(GREY, LINES[n % len(LINES)], ""), name) for n, name in enumerate(strokes)]
     return render(panels, size, across(size.width, len(panels), 2.0), notes, high=0.78)
 

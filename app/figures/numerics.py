@@ -56,7 +56,9 @@ def degrees(of: Archive) -> Drawing:
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(shown)) - (len(shown) - 1) / 2.0) / max(1, len(shown) - 1)
     curves: list[Curve] = []
-    errors = [(states.ESTIMATE[FEM], "_")] + [(states.TRUE_ERROR, "x")] * of.has(states.TRUE_ERROR)
+    # K_I is 0 at free ends, and its error no number for a logarithmic axis.
+    exact = of.has(states.TRUE_ERROR) and bool(data[states.TRUE_ERROR.path].any())
+    errors = [(states.ESTIMATE[FEM], "_")] + [(states.TRUE_ERROR, "x")] * exact
     for i, look, off in zip(shown, looks(len(shown), ordered=True), aside):
         computed = np.flatnonzero(change[i] > 0.0)
         label = labels.label(int(np.argmax(c_of == c[i])), [C]) if len(shown) > 1 else ""
@@ -69,12 +71,13 @@ def degrees(of: Archive) -> Drawing:
     words = "estimated error", "true error"
     notes = [note(Look(GREY, "-", m), word, MARKERS) for (_, m), word in zip(errors, words)]
     panel = Panel(
-        "polynomial degree", "relative change or error of $K_I$", curves=curves, log="y", whole=True
-    )
+        "polynomial degree", f"relative change or error{' of $K_I$' * exact}", curves=curves, log="y",
+        whole=True,
+    )  # fmt: skip
     caption = (
         "How K_I and the moments of the pressure settle as the polynomial degree rises: markers are "
-        "changes from the degree before, bars the error estimated at the last, crosses the true one, "
-        "which has to lie below."
+        "changes from the degree before, bars the error estimated at the last"
+        f"{', crosses the true one, which has to lie below' * exact}."
     )
     figure = render([panel], of.size or Size(COLUMN), notes=notes, high=0.72)
     return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(c), "speeds"))

@@ -11,7 +11,6 @@ from math import ceil, floor, log10
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import colors
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -21,7 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from galinx.texts import folded, plain
+from galinx.texts import folded, in_tex, plain
 
 from .style import GREY, PAGE, SMALL, TALLEST, Look, styled
 
@@ -85,7 +84,6 @@ class Map:
         values: the numbers, (rows, columns).
         label: of the colour bar; "" for none.
         limit: largest number with a colour of its own.
-        least: smallest one, for colours over decades; 0 for colours that begin at -limit or 0.
         signed: zero is in the middle of the colours.
         extend: ends of the bar at which colours are clipped.
         lines: draw lines of equal numbers.
@@ -99,7 +97,6 @@ class Map:
     values: NDArray
     label: str = ""
     limit: float = 1.0
-    least: float = 0.0
     signed: bool = False
     extend: str = "neither"
     lines: bool = False
@@ -333,15 +330,14 @@ class _Drawn:
         if self.bar is not None:
             assert panel.map
             fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + 0.25)
-            if not panel.map.least:
-                self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
-                self.bar.update_ticks()
+            self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
+            self.bar.update_ticks()
         if self.other is not None:
             self.other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
         boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
         box = Bbox.union([axis.bbox, *filter(None, boxes)])
         left, below, right, above = np.abs(np.subtract(box.extents, axis.bbox.extents)) / dpi
-        unit = panel.unit
+        unit = in_tex(panel.unit)
         if self.power:
             unit = f"$10^{{{self.power}}}${' ' + unit if unit else ''}"
         y = panel.y and (f"{panel.y} ({unit})" if unit else panel.y)
@@ -428,19 +424,15 @@ def _draw_map(axis: Axes, shown: Map) -> None:
     X, Y = shown.X, shown.Y
     half_X, half_Y = (abs(z[-1] - z[0]) / max(len(z) - 1, 1) / 2.0 for z in (X, Y))
     along, heights = (X[0] - half_X, X[-1] + half_X), np.array([Y[0] - half_Y, Y[-1] + half_Y])
-    if shown.least:
-        scale: dict[str, Any] = {"norm": colors.LogNorm(shown.least, max(shown.limit, 2.0 * shown.least))}
-    else:
-        scale = {"vmin": -shown.limit if shown.signed else 0.0, "vmax": shown.limit}
-    colours = "cividis" if shown.least else "RdBu_r" if shown.signed else "viridis"
+    lowest, colours = (-shown.limit, "RdBu_r") if shown.signed else (0.0, "viridis")
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
         axis.imshow(
-            np.maximum(values, shown.least) if shown.least else values, extent=(*along, *side * heights),
-            origin="lower", interpolation="bilinear", aspect="auto", cmap=colours, **scale,
+            values, extent=(*along, *side * heights), origin="lower", interpolation="bilinear",
+            aspect="auto", cmap=colours, vmin=lowest, vmax=shown.limit,
         )  # fmt: skip
         if shown.lines:
-            levels = MaxNLocator(9).tick_values(-shown.limit if shown.signed else 0.0, shown.limit)
+            levels = MaxNLocator(9).tick_values(lowest, shown.limit)
             axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
         if values.max() > level > 0.0:
             axis.contour(X, side * Y, values, [level], colors="white", linewidths=1.0)

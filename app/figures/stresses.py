@@ -328,6 +328,7 @@ def compared(
                 surface, pairs[k][n],
                 look._replace(line=LINES[order % len(LINES)]) if several else look,
                 f"{label}, {titles[k]}" if several else label,
+                1.0 if n else 2.0,  # the first shows below others that are the same
             )
             for n, (surface, look, label) in enumerate(zip(surfaces, styles, labels))
             if name in surface.values
@@ -349,7 +350,7 @@ _FRICTIONS = 4
 
 
 def friction_along(of: Archive) -> Drawing:
-    """Figure of f over X, and of the pressure beside that of one friction with the same resultant."""
+    """Figure of f over X, and of the pressure beside that of uniform friction of the same force."""
     data, labels = of.data, of.labels
     names, chosen = states_for_panel(labels, labels.varied(of.selected()), of.selected(), _FRICTIONS)
     states, rows = chosen.tolist(), {method: row for method, row in PRESSURE.items() if of.has(row)}
@@ -368,7 +369,7 @@ def friction_along(of: Archive) -> Drawing:
     axes = {
         "f": "friction coefficient $f$",
         "sigma_YY": named(SHOWN["sigma_YY"][0], scale.unit),
-        "over uniform": "over that of one friction",
+        "over uniform": "pressure over that of uniform $f$",
     }
     places, position = places_of(of, states), position_name(of, "position ")
     styles, dotted = labels.looks(states, names), LINES[3]
@@ -383,12 +384,12 @@ def friction_along(of: Archive) -> Drawing:
     ]
     notes = [
         *explained(set(pressures)),
-        note(Look(GREY, dotted, ""), "dotted: one friction of the same resultant"),
+        note(Look(GREY, dotted, ""), "dotted: uniform $f$ of the same force"),
     ]
     figure = render(panels, of.size, 0 if of.size else 3, notes, 0.8)
     caption = (
-        "Friction along the contact, and the contact pressure beside that of one friction with the same "
-        "resultant (dotted). At each end the pressure has the exponent of the friction there."
+        "Friction along the contact, and the contact pressure beside that of uniform friction of the "
+        "same force (dotted). At each end the pressure has the exponent of the friction there."
     )
     missing = of.not_shown(states, "--figure along --states")
     return Drawing("along", caption, figure, left_out=missing)

@@ -1,18 +1,23 @@
-"""Waves of a scene: the slowest ones along its layers, and those that a punch sends out under loads that
-oscillate.
+"""Waves of a scene: the slowest ones along its layers, those that a punch sends out under loads that
+oscillate, and those that grow along a sliding interface.
 
 The slowest waves are described by their speed over the wavenumber, the punch by its dynamic stiffness
-over the frequency of the load.
+over the frequency of the load, flutter by its threshold: of layers over the wavelength, of a solid with
+axes over their angle, of two elastic bodies over the speed of the plate.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.quantities.states import RATIO
+from galinx.postprocess.quantities.validity import SIGNS
+from galinx.solvers.layers.flutter import thresholds_by_length
 from galinx.solvers.layers.layered import dispersion
 from galinx.solvers.profiles.punches import Flat
+from galinx.solvers.solids import Solid
 from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
 from galinx.texts import plain
 
@@ -20,9 +25,9 @@ from ..errors import BadInput
 from ..plan.over_time import headings
 from ..plan.states import enumerate_states
 from ..scene.scene import Scene
-from .choice import Drawing, drive_label, fewer, spread
-from .render import MARKERS, Curve, Panel, Size, render
-from .style import COLUMN, GREY, looks
+from .choice import Archive, Drawing, drive_label, fewer, spread
+from .render import JOINED, MARKERS, Curve, Panel, Size, note, render
+from .style import COLUMN, GREY, Look, looks
 
 #: Wavenumbers times the thickness of all layers; fewer where a layer is graded.
 _kH, _FEWER = np.geomspace(0.03, 100.0, 61), 4
@@ -202,12 +207,13 @@ def table(scene: Scene, answer: Answer) -> list[str]:
     """Lines of a table of the dynamic stiffness in SI units."""
     oscillation, μ = answer.oscillation, scene.solid.μ
     hertz = oscillation.ω * scene.solid.c_s / (2.0 * np.pi * scene.punch.profile.half_width)  # type: ignore[attr-defined]
-    lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)    Im N/v0 (Pa)    |v0/N| (1/Pa)   phase of v0 (°)"]
+    lines = ["ω (c_s/a)  frequency (Hz)  Re N/v0 (Pa)  Im N/v0 (Pa)  |v0/N| (1/Pa)  phase (°)"]
     for ω, f, K in zip(oscillation.ω, hertz, 2.0 * μ * oscillation.stiffness):
         lag = -np.angle(K, deg=True)
         lines.append(
-            f"{ω:<10.4g} {f:<15.6g} {K.real:<15.6g} {K.imag:<15.6g} {1.0 / abs(K):<15.6g} {lag:.2f}"
+            f"{ω:<10.4g} {f:<15.6g} {K.real:<13.6g} {K.imag:<13.6g} {1.0 / abs(K):<14.6g} {lag:.2f}"
         )
+    lines.append("per depth; the phase is that of v0")
     return [*lines, f"largest relative error, measured: {oscillation.error.max():.1e}"]
 
 
@@ -235,3 +241,69 @@ def response_drawing(computed: list[Answer]) -> Drawing:
     )
     missing = fewer(len(shown), len(computed), "speeds with frictions")
     return Drawing("response", caption, render(panels, high=0.72), left_out=missing)
+
+
+#: Wavelengths over the thickness of all layers, angles [°], and speeds over the limit.
+_LENGTHS, _ANGLES, _SPEEDS = np.geomspace(1.0, 100.0, 17), np.linspace(-90.0, 90.0, 37), 25
+
+
+def has_flutter(of: Archive) -> bool:
+    """True where the threshold depends on wavelength, angle or speed."""
+    scene = of.scene
+    return bool(scene.layers or scene.elastic_punch or hasattr(scene.half_plane.solid, "angle"))
+
+
+def flutter(of: Archive) -> Drawing:
+    """Figure of the threshold by the sign of σ_XY/σ_YY, and the largest friction of the archive.
+
+    Raises:
+        BadInput: a layer is graded.
+    """
+    x, values, label, words = _thresholds(of.scene)
+    shown = np.where(np.isinf(values), np.nan, values)
+    alike = np.allclose(shown[0], shown[1], rtol=1e-6, equal_nan=True)
+    names = (
+        ("either sign",) if alike else tuple(rf"$\sigma_{{XY}}/\sigma_{{YY}}$ {sign}" for sign in SIGNS)
+    )
+    curves = [Curve(x, y, look, name, JOINED) for y, name, look in zip(shown, names, looks(len(names)))]
+    g = float(np.abs(of.data[RATIO.path]).max())
+    most = max(1.1 * g, float(np.nanmax(shown, initial=0.0)) * 1.05)
+    panel = Panel(
+        label, r"flutter threshold of $|\sigma_{XY}/\sigma_{YY}|$", curves=curves, at_y=(g,),
+        ylim=(0.0, most), log="x" * bool(of.scene.layers), xlim=(x[0], x[-1]),
+    )  # fmt: skip
+    notes = [note(Look(GREY, "-", ""), f"this archive: at most {g:.3g}", width=0.4)]
+    caption = (
+        f"Least |σ_XY/σ_YY| from which on waves along the interface grow, {words}; no curve where none "
+        f"grow. The grey line is the largest |σ_XY/σ_YY| of the states, {g:.3g}."
+    )
+    if of.scene.swept:
+        caption += (
+            f" Solids are those of the first state; others differ in {' and '.join(of.scene.swept)}."
+        )
+    return Drawing("flutter", caption, render([panel], of.size or Size(COLUMN), notes=notes, high=0.72))
+
+
+def _thresholds(scene: Scene) -> tuple[NDArray, NDArray, str, str]:
+    """Numbers x, thresholds of both signs, (2, n), the name of x, and what the thresholds are over."""
+    solid: Solid = scene.solid
+    if scene.layers:
+        length = _LENGTHS * float(solid.depths[-1])
+        try:
+            values = thresholds_by_length(solid, length)
+        except ValueError as error:
+            raise BadInput(f"flutter: {error}") from error
+        own = ", ".join(f"{g:.3g}" for g in dict.fromkeys(solid.flutter()))
+        words = (
+            "over the length of the waves. Those much shorter than the layers grow without bound from "
+            f"the threshold of the uppermost solid on, {own}; echoes of the interfaces let others grow "
+            "at less friction, at a bounded rate"
+        )
+        return _LENGTHS, values, "wavelength over thickness of the layers", words
+    if scene.elastic_punch:
+        c = np.linspace(0.0, 0.99 * solid.limit(), _SPEEDS)
+        values = np.array([solid.flutter(speed) for speed in c.tolist()]).T
+        return c, values, "speed of the plate $c = V/c_s$", "over the speed of the plate"
+    plate: Solid = scene.half_plane.solid
+    each = [replace(plate, angle=angle).flutter() for angle in _ANGLES.tolist()]  # type: ignore[type-var]
+    return _ANGLES, np.array(each).T, "angle from X to the axis (°)", "over the angle of the solid"

@@ -7,7 +7,7 @@ where an answer costs accuracy. :func:`lines` are the plan's steps in words, wit
 
 import json
 from bisect import bisect_left
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
@@ -450,9 +450,20 @@ def expense(*plans: Plan) -> str:
     """
     first = plans[0]
     numbers = sum(plan.states for plan in plans) * (first.numbers + len(first.quantities))
+    if not numbers:
+        return "little memory beside the programs, small results"
     archived = bytes_in_words(8.0 * (numbers + sum(map(len, first.positions.values()))), 2)
     needed = bytes_in_words(max(map(_bytes, plans)), 2)
     return f"about {needed}{' a rank' * bool(first.fem)} beside the programs, results of {archived}"
+
+
+def by_reason(skipped: Iterable[str]) -> list[str]:
+    """Messages about work that is not done, one for each reason."""
+    reasons: dict[str, dict[str, None]] = {}
+    for what, _, reason in (text.partition(": ") for text in skipped):
+        name = what.rpartition("/")[2] if "/" in what else what
+        reasons.setdefault(reason, {})[name] = None
+    return [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
 
 
 def _bytes(plan: Plan) -> float:

@@ -29,6 +29,7 @@ from galinx.postprocess.tables import (
     BESIDE,
     Sheet,
     limits_sheet,
+    shared,
     solved_speeds,
     starts_sheet,
     state_columns,
@@ -50,6 +51,7 @@ from ..figures.stresses import (
     surface_panels,
 )
 from ..figures.style import as_hex
+from ..plan.plan import by_reason
 from ..scene.scene import Scene
 from ..study.published import (
     INTENSITIES,
@@ -69,6 +71,8 @@ _INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
 #: Powers of ten as numbers in programs and as plain text write them.
 _POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
 _RAISED = re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
+#: Exponents, as in m^(-β), and signs of numbers.
+_EXPONENT, _NEGATIVE = re.compile(r"\^\(([^()]*)\)"), re.compile(r"(?<![\w.)\]}-])-(?=[\dσ]|a\b)")
 #: plotly.js beside its Python package: of PyPI, and of Debian.
 _SCRIPTS = ("package_data/plotly.min.js", "/usr/share/python3-plotly/plotly.js")
 
@@ -84,6 +88,8 @@ def markup(text: str) -> Markup:
 
     page = str(escape(plain(text))).replace("sigma_", "σ_")
     page = _RAISED.sub(lambda found: power(normalize("NFKC", found[1])), page)
+    page = _EXPONENT.sub(lambda found: f"<sup>{found[1].replace('-', '−')}</sup>", page)
+    page = _NEGATIVE.sub("−", page)
     page = _INDEXED.sub(r"<i>\1</i><sub>\2</sub>", page)
     return Markup(_POWER.sub(lambda found: found[1] + power(str(int(found[2])).replace("-", "−")), page))
 
@@ -110,12 +116,10 @@ def chart(panel: Panel) -> dict[str, Any]:
     unit, shown = f" ({panel.unit})" if panel.unit else "", panel.map
     data = [_trace(curve) for curve in panel.curves]
     layout: dict[str, Any] = {
-        "title": {"text": plain(panel.title)} if panel.title else {},
-        "xaxis": _axis(plain(panel.x or ""), panel.xlim, "x" in panel.log),
+        "title": {"text": _label(panel.title)} if panel.title else {},
+        "xaxis": _axis(_label(panel.x or ""), panel.xlim, "x" in panel.log),
         # In lines that are no longer than a chart is high.
-        "yaxis": _axis(
-            folded(plain(panel.y or "") + unit, _LINE).replace("\n", "<br>"), panel.ylim, "y" in panel.log
-        ),
+        "yaxis": _axis(_label(folded((panel.y or "") + unit, _LINE)), panel.ylim, "y" in panel.log),
         "shapes": [_shape("y", "rect", "x", *band) for band in panel.bands]
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],
@@ -125,7 +129,7 @@ def chart(panel: Panel) -> dict[str, Any]:
     if panel.whole:
         layout["xaxis"]["dtick"] = 1
     if shown:
-        label = plain(shown.label)
+        label = _label(shown.label)
         data.append({
             "type": "heatmap", "x": _numbers(shown.X), "y": _numbers(shown.Y), "zsmooth": "best",
             "z": [_numbers(row, 4) for row in shown.values], "zmax": float(f"{shown.limit:.3g}"),
@@ -136,6 +140,11 @@ def chart(panel: Panel) -> dict[str, Any]:
         })  # fmt: skip
         layout["yaxis"]["scaleanchor"] = "x"
     return {"data": data, "layout": layout}
+
+
+def _label(text: str) -> str:
+    """Text of a chart, which knows the markup of indices and lines, from one with formulas in TeX."""
+    return str(markup(text)).replace("\n", "<br>")
 
 
 def _trace(curve: Curve) -> dict[str, Any]:
@@ -258,7 +267,7 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     What is the same in all states of several stands in its note.
     """
     columns, count = state_columns(data, units), len(data[states.FRICTION.path])
-    same = [column for column in columns if column.constant and count > 1 and not column.place]
+    same = shared(columns)
     shown = [column for column in columns if column not in same]
     kept = min(count, _CELLS // (len(shown) + 1))
     heads = [{"head": "state", "name": "state", "csv": "state", "digits": None}] + [
@@ -267,7 +276,9 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     cells = [list(range(kept))]
     for column in shown:
         values = column.values[:kept]
-        cells.append(list(values) if isinstance(values[0], str) else _numbers(values, 12))
+        if not isinstance(values[0], str):  # all digits, but for numbers that are rounding alone
+            values = _numbers(np.where(np.abs(values) <= 0.5 * column.step, 0.0, values), 12)
+        cells.append(list(values))
     note = counted(count, "state")
     if same:
         note += f"; the same in all: {', '.join(f'{c.head} {c.words(0)}' for c in same if c.words(0))}"
@@ -359,7 +370,7 @@ def page(
             for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
         ],
         "done": list(Counter(data[runs.DONE.path].tolist()).items()),
-        "skipped": data[runs.SKIPPED.path].tolist(),
+        "skipped": by_reason(data[runs.SKIPPED.path].tolist()),
         "versions": f"{', '.join(map(' '.join, versions.items()))}; {attributes['machine']}; "
         + attributes.get("created", "not archived"),
         "scene": data[runs.SCENE.path],

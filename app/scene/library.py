@@ -37,10 +37,9 @@ class Material:
         return {"kind": self.kind} | self.values | strength
 
     @property
-    def told(self) -> str:
-        """Constants of the material in one line, each with its unit or "dimensionless"."""
-        unit = {key: " (dimensionless)" for key, value in self.values.items() if isinstance(value, float)}
-        return ", ".join(f"{key} = {value}{unit.get(key, '')}" for key, value in self.values.items())
+    def words(self) -> str:
+        """Constants of the material in one line, each with its unit, if it has one."""
+        return ", ".join(f"{key} = {value}" for key, value in self.values.items())
 
 
 def _material(entry: dict[str, Any]) -> Material:

@@ -21,6 +21,8 @@ def test_the_tension_that_frictionless_contact_has_by_rounding_is_none():
         result.data["states/closed_form/sigma_XX_max"][:] = tension
         rows = dict(states_sheet(result.data, result.units(), width=80).rows)
         assert rows["largest tension σ_XX"] == shown
+        plain = dict(states_sheet(result.data, result.units(dimensionless=True), width=80).rows)
+        assert (plain["largest tension σ_XX"] == "0 N/(2a)") is (shown == "0 MPa")
 
 
 def test_only_strokes_have_a_friction_loop(tmp_path):

@@ -78,6 +78,14 @@ def test_every_quantity_has_a_unit_and_is_in_si_what_is_archived(name):
             assert SIZES[scaled.unit][1] == SIZES[row.unit][1], path
 
 
+@pytest.mark.parametrize("dimensionless", [False, True])
+@pytest.mark.parametrize("name", SCENES)
+def test_every_column_has_a_unit(name, dimensionless):
+    for column in kept(name).table(dimensionless):
+        known = column.unit in SIZES or column.unit.startswith(("N/(2a)", "of ", "MPa√m", "MPa·m^(-"))
+        assert known, column.label
+
+
 def test_dimensionless_is_as_archived_and_nothing_stands_twice():
     result = kept("cylinder")
     plain, si = result.units(dimensionless=True), result.units()

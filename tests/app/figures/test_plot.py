@@ -11,10 +11,11 @@ from support import CLOSED_FORM, computed, here, kept
 
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
+from galinx.app.figures import waves
 from galinx.app.figures.archive import of_archive, write
 from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
-from galinx.app.figures.render import Curve, Film, Panel
+from galinx.app.figures.render import Curve, Film, Panel, Size
 from galinx.app.figures.style import Look
 from galinx.postprocess.errors import Occupied
 from galinx.postprocess.target import GIF, MP4
@@ -204,6 +205,22 @@ def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
 
 
 ROUND = {"solve.methods": ["closed_form"], "output.map": None, "output.quantities": ["sif"]}
+
+
+def test_the_flutter_figure_has_the_size_that_is_asked_for(monkeypatch):
+    monkeypatch.setattr(waves, "_ANGLES", np.array([0.0, 30.0]))
+    changes = {"output.quantities": ["friction"], "output.map": None}
+    of, wide = computed("fibres", changes), Size(6.0)
+    (drawing,) = of_archive(of.data, of.scene, Choice(figures=("flutter",), size=wide))
+    assert drawing.figure.get_figwidth() == wide.width
+    assert "this archive: at most 0.3" in [text.get_text() for text in drawing.figure.legends[0].texts]
+
+
+def test_errors_of_intensities_that_vanish_are_not_drawn():
+    of = computed("cylinder_on_steel", {"output.quantities": ["sif"], "solve.tolerance": 1e-3})
+    (drawing,) = of_archive(of.data, of.scene, Choice(figures=("degrees",)))
+    legend = [text.get_text() for text in drawing.figure.legends[0].texts]
+    assert legend == ["estimated error"] and "crosses" not in drawing.caption
 
 
 def test_contacts_of_several_widths_are_compared_in_units():

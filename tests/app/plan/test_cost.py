@@ -36,6 +36,11 @@ def test_planned_memory_covers_what_runs_took(degree, cuts, measured, monkeypatc
     assert 0.95 * measured < PROGRAM["fem"] + told(scene)[0] < 1.6 * measured
 
 
+def test_sizes_that_are_not_estimated_are_no_zeros():
+    for name in ("slider", "start_from_rest", "table1"):
+        assert "bytes" not in expense(make_plan(template(name)))
+
+
 BOTH, EXACT = ["closed_form", "fem"], ["closed_form"]
 
 

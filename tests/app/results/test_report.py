@@ -13,7 +13,7 @@ import pytest
 from support import THOROUGH, kept
 
 from galinx import compute, template
-from galinx.app.results.report import markup
+from galinx.app.results.report import markup, states_table
 from galinx.postprocess.tables import BESIDE, state_columns
 
 CHROMIUM = shutil.which("chromium")
@@ -94,6 +94,16 @@ def test_a_report_has_every_state_and_its_curves(page, map_run):
                 assert len(at) > 50
 
 
+def test_what_is_rounding_alone_is_0_on_a_page(map_run):
+    data = dict(map_run.data)
+    largest = data["states/fem/sigma_XX_max"] = data["states/fem/sigma_XX_max"].copy()
+    largest[1] = 4e-9
+    shown = states_table(data, map_run.units())["data"]
+    (column,) = (n for n, head in enumerate(shown["columns"]) if head["name"] == "fem_sigma_XX_max")
+    values = [row[column] for row in shown["rows"]]
+    assert values[1] == 0.0 and min(values[:1] + values[2:]) > 0.0
+
+
 @pytest.mark.parametrize(
     "text, shown",
     [
@@ -101,6 +111,7 @@ def test_a_report_has_every_state_and_its_curves(page, map_run):
         ("4.8e-07 m", "4.8&#8239;×&#8239;10<sup>−7</sup> m"), ("<b>", "&lt;b&gt;"),
         (r"$\sigma_0 l/N$", "σ₀ l/N"), ("sigma_XX", "<i>σ</i><sub>XX</sub>"),
         (r"c = $4.786 \times 10^{-7}$", "c = 4.786&#8239;×&#8239;10<sup>−7</sup>"), ("0x1e-7", "0x1e-7"),
+        ("2-3 at X = -a, -1.5, MPa·m^(-β)", "2-3 at X = −a, −1.5, MPa·m<sup>−β</sup>"),
     ],
 )  # fmt: skip
 def test_symbols_are_typeset(text, shown):

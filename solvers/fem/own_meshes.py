@@ -45,7 +45,7 @@ from ..contact.fem_plan import (
 from ..contact.free_ends import SHAPES, free_ends
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
-from ..contact.solution import Contact, Task
+from ..contact.solution import Contact, Task, make_contact
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
@@ -440,7 +440,7 @@ def scaled(task: Task, half_width: float) -> Task:
     depths = task.body.solid.depths / half_width  # type: ignore[attr-defined]
     return replace(
         task,
-        body=replace(task.body, profile=Flat(half_width)),
+        body=make_contact(task.body.solid, Flat(half_width), task.body.load),
         response=replace(task.response, a=half_width),  # type: ignore[type-var]
         places=replace(task.places, interfaces=depths),
     )

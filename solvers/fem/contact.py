@@ -94,7 +94,8 @@ class PunchLevel(Level):
 
     @abstractmethod
     def heights(self) -> NDArray[np.float64] | None:
-        """Heights over N/(2μ) at the contact nodes, of the punch or of shapes; None for a flat punch."""
+        """Heights at the contact nodes, of the punch or of shapes, in a unit of the level's own; None for a
+        flat punch."""
 
     @abstractmethod
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
@@ -218,10 +219,11 @@ class SharpLevel(PunchLevel):
 
     def heights(self) -> NDArray[np.float64] | None:
         body = self.task.body
-        return None if body.flat else body.height(self.r)
+        # Over a length of the punch, not over one that has the load: digits are the same under any load.
+        return None if body.flat else body.profile.height(body.half_width * self.r) / body.half_width
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
-        contact = self.punch.states(g, share=self.task.body.load / body.load)
+        contact = self.punch.states(g, share=body.half_width / body.displacement)
         return contact.between(float(body.half_width), 0.0, False)
 
     def pressure(self, contact: ContactStates) -> Expansion:

@@ -94,8 +94,7 @@ class PunchLevel(Level):
 
     @abstractmethod
     def heights(self) -> NDArray[np.float64] | None:
-        """Heights at the contact nodes, of the punch or of shapes, in a unit of the level's own; None for a
-        flat punch."""
+        """Heights of the punch or of shapes at the contact nodes, in the level's unit; None if flat."""
 
     @abstractmethod
     def solved(self, g: NDArray, body: Contact) -> ContactStates:

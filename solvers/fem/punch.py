@@ -180,9 +180,8 @@ class SlidingPunch(Punch):
         space: the finite element space.
         response: of the half-plane, at a speed below its limit.
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
-        heights: of the punch at the contact nodes, (nodes,),
-            over N/(2μ) or in the unit of shares,
-            or of shapes that are combined, (shapes, nodes); None for a flat punch.
+        heights: of the punch at the contact nodes, (nodes,), over N/(2μ) or in another unit that shares
+            make up for; or of shapes that are combined, (shapes, nodes); None for a flat punch.
         along: gives G by g where friction varies along the contact; None where G is g.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case, which shows whether the others need it.

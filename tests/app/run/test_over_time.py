@@ -54,7 +54,7 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert result.attributes["verdict"] == "PASS"
     assert len(json.loads(result.attributes["comparisons"])) == 7
     assert [drawing.name for drawing in result.drawings(figures=("all",))] == [
-        "friction", "time", "pressures", "stresses", "energies",
+        "time", "pressures", "stresses", "energies",
     ]  # fmt: skip
     words = ["--figure", "film", "--format", "gif", "-o", tmp_path / "film.gif"]
     assert here("plot", tmp_path / "s.h5", *words).returncode == 0
@@ -183,7 +183,6 @@ def test_a_coating_starts_by_both_methods():
     assert np.isfinite(result.data["time/steady_centre"]).all()
     assert np.isnan(result.data["time/steady_K_I"]).all()
     assert [drawing.name for drawing in result.drawings(figures=("all",))] == [
-        "friction",
         "time",
         "pressures",
     ]

@@ -12,7 +12,7 @@ from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
-from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
+from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
 from galinx.solvers.contact.solution import (
     FLAT,
@@ -86,6 +86,8 @@ _OF_FLAT_PUNCHES = {
 def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     if scene.layers:
         return "the solid has layers, and no closed form"
+    if VARYING in body.modes and not body.flat:
+        return "friction varies along the contact of a punch that is not flat; sie and fem solve it"
     lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
     if scene.elastic_punch and scene.elastic_punch.speed:
         lacks = lacks | {row.path: "the punch's surface moves, too" for row in SLIP_REVERSED}
@@ -93,7 +95,8 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
 
 
 def _layers_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
-    if not scene.layers:
+    by_closed_form = CLOSED_FORM in scene.solve.methods and body.flat
+    if not scene.layers and (VARYING not in body.modes or by_closed_form):
         return "the solid has no layers, and closed_form knows the solution"
     return _refusal(quantity, body, {})
 
@@ -124,8 +127,20 @@ def fem_mode(scene: Any) -> str:
     return scene.solve.mode if mode == CONTACT else mode
 
 
+def _fem_along_refusal(scene: Any, body: Contact) -> str:
+    """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
+    if scene.layers and (body.found or body.friction_kinks):
+        return "friction varies along a contact over layers, with free ends or kinks of friction"
+    if body.found and not smooth(body.profile):
+        return "friction varies along the contact of a punch with kinks"
+    moving = body.found and any(along.has_length for along in scene.along.values())
+    return "kinks of friction move with the half-width" if moving and body.friction_kinks else ""
+
+
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
+    if VARYING in body.modes and (why := _fem_along_refusal(scene, body)):
+        return f"{why}; sie takes it"
     lacks = _LACKING.get(mode, {})
     if body.solid.nearly_incompressible:
         lacks = lacks | dict.fromkeys((BELOW, YIELD), "finite elements give none inside for ν > 0.49")

@@ -366,12 +366,9 @@ RULES: Registry[Rule] = Registry(
         ),
         **_both("K_I", _intensities, "K_I at both ends{}, relative", of.K_I_LEFT, of.K_I_RIGHT),
         "estimate": _estimate(of.ESTIMATE[FEM], "K_I and moments", False),
-        "resultant_ratio": against(
-            CLOSED_FORM, _apart, "resultant of σ_XY over that of σ_YY, absolute", of.RESULTANT_RATIO
-        ),
-        "pressure_centre": against(
-            CLOSED_FORM, _apart, "centre of pressure, over a", of.PRESSURE_CENTRE
-        ),
+        **_both("resultant_ratio", _apart, "resultant of σ_XY over that of σ_YY{}, absolute",
+                of.RESULTANT_RATIO),
+        **_both("pressure_centre", _apart, "centre of pressure{}, over a", of.PRESSURE_CENTRE),
         "sigma_YY over layers": against(
             SIE, _pressure, f"σ_YY{_SIE}, relative to itself or a tenth of the mean",
             at.PRESSURE, beside=(at.SURFACE_X,),

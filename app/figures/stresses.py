@@ -20,12 +20,12 @@ from galinx.postprocess.quantities.quantity import (
     POINT,
     STATE,
 )
-from galinx.postprocess.quantities.states import RESULTANT_RATIO, SPEED
+from galinx.postprocess.quantities.states import CENTRE, HALF_WIDTH, LOAD, RESULTANT_RATIO, SPEED
 from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFACE_X
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
-from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import from_edge, under_punch
-from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP
+from galinx.solvers.contact.on_layers import under_punch as half_plane_under_punch
+from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.texts import number, plain
 
@@ -349,6 +349,26 @@ def compared(
 _FRICTIONS = 4
 
 
+#: Accuracy of the pressure with one friction beside that with friction along the contact.
+_DRAWN = 1e-4
+
+
+def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[np.float64]:
+    """Pressure over N/(2a) with one friction g, at places X over a half-width a, (n,), of a state."""
+    scene, data = of_state(of.scene, state)[0], of.data
+    load = float(data[LOAD.path][state]) if LOAD.path in data else scene.punch.load
+    body = make_contact(scene.solid, scene.punch.profile, load)
+    response = body.response(float(data[SPEED.path][state]))
+    contact = half_plane_under_punch(body, response, _DRAWN).contact(g)
+    unit = body.half_width
+    h, m = (
+        next((float(data[row.path][state]) for row in rows.values() if of.has(row)), default)
+        for rows, default in ((HALF_WIDTH, unit), (CENTRE, 0.0))
+    )
+    r = ((m + h * X) / unit - contact.centre) / contact.half_width
+    return np.asarray(-contact.pressure.σ_YY(r) * h / (contact.half_width * unit))
+
+
 def friction_along(of: Archive) -> Drawing:
     """Figure of f over X, and of the pressure beside that of uniform friction of the same force."""
     data, labels = of.data, of.labels
@@ -357,9 +377,8 @@ def friction_along(of: Archive) -> Drawing:
     resultant = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
     under, scale = np.abs(data[SURFACE_X.path]) < 1.0, of.scaled(next(iter(rows.values())))
     X = data[SURFACE_X.path][under]
-    motions = zip(states, data[SPEED.path][states].tolist(), resultant[states].tolist())
-    flat = [FlatPunch(of_state(of.scene, i)[0].body.response(c), g) for i, c, g in motions]
-    uniform = scale.of(np.array([-punch.σ_YY(X) for punch in flat]), states)
+    one = np.array([_of_one_friction(of, i, float(resultant[i]), X) for i in states])
+    uniform = scale.of(one, states)
     pressures = {method: -of.values(row)[states][:, under] for method, row in rows.items()}
     values = {
         "f": {CLOSED_FORM: of.scene.friction.stress_ratio * data[RATIO_ALONG.path][states][:, under]},

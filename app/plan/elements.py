@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
-from galinx.solvers.contact import FREE_ENDS
+from galinx.solvers.contact import FREE_ENDS, VARYING_FREE
 from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
@@ -210,10 +210,12 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
         tests=pressure_moments(scene.solid, kind, required),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        kinks=kinks, shapes=_shapes(scene, responses, g) if mode == FREE_ENDS else 0,
+        kinks=kinks, shapes=_shapes(scene, responses, g) if mode in _OF_SHAPES else 0,
     )  # fmt: skip
 
 
+#: Modes in which punches are sums of polynomials.
+_OF_SHAPES = (FREE_ENDS, VARYING_FREE)
 #: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
 _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
     (SHARP, True): lambda required, scene, _: required_over_layers(required, scene.solid),
@@ -224,7 +226,7 @@ _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requireme
     (PRESCRIBED, True): lambda required, *_: no_nearer(required, NEAR),
     # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
     (FREE, False): lambda required, _, mode: replace(
-        required_of_free_ends(required), bends=mode == FREE_ENDS
+        required_of_free_ends(required), bends=mode in _OF_SHAPES
     ),
     (FREE, True): lambda required, *_: no_nearer(required, NEAR_FREE_END),
 }

@@ -139,7 +139,11 @@ class Work:
         solved = np.ones(len(g), dtype=bool)
         with self.clock(_STEPS["closed_form"]):
             local = task.body.local_exponents(task.response, g, load)
-            known = SimpleNamespace(local=local, g=g, places=task.places)  # without a solution of states
+            # Without a solution of states.
+            known = SimpleNamespace(
+                local=local, g=g, places=task.places,
+                half_width=task.body.half_widths(task.response, g, load),
+            )  # fmt: skip
             data = self._of(LOCAL, known, task.body.loaded(load))
         for name in self.methods:
             if name not in solvers:

@@ -27,7 +27,6 @@ from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import Parameter, parameters
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles import half_width
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
@@ -131,7 +130,7 @@ class Scene:
         Raises:
             ValueError: a law refuses its parameters.
         """
-        friction, a = self.friction, float(half_width(self.punch.profile))
+        friction = self.friction
         if friction.along is not None:
             law = next(friction.laws())
             means = {
@@ -141,6 +140,7 @@ class Scene:
             return {g: tabulated(friction.along, g / scale if scale else 1.0) for g in sorted(means)}
         if friction.state != ADVECTED:
             return {}
+        a = make_contact(self.solid, self.punch.profile, self.punch.load).half_width
         V = self.motion.speed or tuple(c * self.solid.c_s for c in self.motion.c or ())
         each: dict[float, Along] = {}
         for speed in dict.fromkeys(V) if friction.law.depends_on_speed else V[:1]:
@@ -233,8 +233,8 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
         return
     if found := _not_varying(scene):
         yield (
-            f"friction varies along the contact, but found {found}; expected steady sliding of a flat "
-            "punch that is not tilted on a solid without layers, with a direct solver"
+            f"friction varies along the contact, but found {found}; expected steady sliding of a punch "
+            "that is not tilted, with a direct solver"
         )
     elif FEM in scene.solve.methods:
         try:
@@ -251,8 +251,7 @@ def _not_varying(scene: Scene) -> str:
     reasons = {
         "a motion in time": scene.time is not None,
         "a slider": scene.slider is not None,
-        f"a {punch.words()}": not isinstance(punch, Flat) or punch.rise != 0.0,
-        "layers": bool(scene.layers),
+        f"a {punch.words()}": isinstance(punch, Flat) and punch.rise != 0.0,
         "an elastic punch": scene.elastic_punch is not None,
         f'solve.mode = "{solve.mode}"': solve.mode != "contact",
         f'solve.mesh = "{solve.mesh}"': solve.mesh != "confocal",

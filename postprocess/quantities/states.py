@@ -168,14 +168,17 @@ RESULTANT = by_method(
 )  # fmt: skip
 
 #: Resultant and centre of the tractions where friction varies along the contact, by method.
+_RESULTANTS = [
+    {"compared": (name, f"{name} over layers")} for name in ("resultant_ratio", "pressure_centre")
+]
 RESULTANT_RATIO = by_method(
     "states/{method}/resultant_ratio", "1", "resultant of sigma_XY over that of sigma_YY", (STATE,),
-    lambda s, _: s.resultant_ratio, {CLOSED_FORM: {}, FEM: {"compared": ("resultant_ratio",)}},
+    lambda s, _: s.resultant_ratio, {CLOSED_FORM: {}, SIE: {}, FEM: _RESULTANTS[0]},
     mode=VARYING,
 )  # fmt: skip
 PRESSURE_CENTRE = by_method(
     "states/{method}/pressure_centre", "1", "centre of pressure over the half-width", (STATE,),
-    lambda s, _: s.pressure_centre, {CLOSED_FORM: {}, FEM: {"compared": ("pressure_centre",)}},
+    lambda s, _: s.pressure_centre, {CLOSED_FORM: {}, SIE: {}, FEM: _RESULTANTS[1]},
     mode=VARYING, scale=X_OVER_A,
 )  # fmt: skip
 

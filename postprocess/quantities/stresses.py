@@ -40,8 +40,8 @@ SURFACE_X = Quantity(
 )
 RATIO_ALONG = Quantity(
     "surface/g", "1", "sigma_XY/sigma_YY along the contact, NaN outside", (STATE, POINT),
-    lambda s, body: np.where(s.places.under, body.ratio(s.g, s.places.X), np.nan), LOCAL, VARYING,
-    ON_SURFACE, nan_allowed=BESIDE,
+    lambda s, body: np.where(s.places.under, body.ratio(s.g, s.places.X, s.half_width), np.nan),
+    LOCAL, VARYING, ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 PRESSURE = by_method(
     "surface/{method}/sigma_YY", "N/(2a)", "contact stress", (STATE, POINT),

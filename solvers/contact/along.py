@@ -25,7 +25,7 @@ from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, from_edge, under_punch
 from .panels import Panels, stretched
-from .pressure import Expansion, Pressure
+from .pressure import ENDS, Expansion, Pressure
 from .recovery import Polynomials
 from .residual import Rule
 
@@ -141,9 +141,27 @@ class ExpansionAlong(Expansion):
 
     Attributes:
         friction: σ_XY/σ_YY over X/a.
+        tips: see :class:`.pressure.Pressure`.
     """
 
     friction: Along = constant(0.0)
+    tips: tuple[float, ...] = ()
+
+    @property
+    def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
+        return tuple(self.functions.kinks)
+
+    def ending(self, free: tuple[bool, bool]) -> "ExpansionAlong":
+        r = np.outer(ENDS, [1.0, 1.0 - _STEP])
+        g, at_kinks = self.friction(r), np.abs(ENDS[:, None] - self.kinks).min(axis=1, initial=1.0)
+        spread = np.ptp(self.friction(self.functions.t)) or 1.0
+        slope = np.abs(np.diff(g)[:, 0]) / _STEP / spread
+        lengths = np.minimum(1.0 / np.maximum(slope, 1.0), at_kinks)
+        c = self.functions.continued(self.c, free, tuple(lengths.tolist()))
+        return replace(self, c=c, ends=free)
+
+    def tipped(self, tips: tuple[float, ...]) -> "ExpansionAlong":
+        return replace(self, tips=tips)
 
     @cached_property
     def _shear(self) -> NDArray[np.float64]:
@@ -151,10 +169,11 @@ class ExpansionAlong(Expansion):
         return np.asarray(self.c * self.friction(self.functions.t))
 
     def _hilbert(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
-        H, under = self.functions.rest(c, r, 1.0), np.abs(r) < 1.0
+        H, under, beside = self.functions.rest(c, r, 1.0), np.abs(r) < 1.0, np.abs(r) > 1.0
         x = stretched(r[under])
         of_weight = self.functions.weight(x) * self.functions.hilbert_of_weight(x)
         H[under] += self.functions.interpolated(c, x) * of_weight
+        H[beside] = replace(self, c=c).at(r[beside] - 0.0j).real
         infinite = (from_edge(r) == 0.0) & np.where(r < 0.0, *~self.free)
         return np.where(infinite, np.nan, H)
 
@@ -164,6 +183,18 @@ class ExpansionAlong(Expansion):
     def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         ratio, H = self.friction(r), self.hilbert(r)
         return ratio[None], H[None], (self._hilbert(self._shear, r) - ratio * H)[None]
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        flat = np.ravel(z).astype(complex)
+        y, right = np.log((1.0 + flat) / (1.0 - flat)), np.log(1.0 - flat)
+        y = y.real - 1j * (-y.imag % (2.0 * np.pi))
+        weight = np.exp(self.α * right + self.β * (y + right))
+        return (weight * self.functions.cauchy(self.c, y) / np.pi).reshape(np.shape(z))
+
+    def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        shear = replace(self, c=self._shear)
+        of_shear = response.inside(shear, 1.0, X, Y) - response.inside(shear, 0.0, X, Y)
+        return np.asarray(response.inside(self, 0.0, X, Y) + of_shear)
 
     def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
         return np.ones_like(g), self.friction(t)
@@ -217,6 +248,8 @@ class Splines(Polynomials):
     def values(self, r: NDArray, count: int = 0) -> NDArray[np.float64]:
         from scipy.interpolate import BSpline  # a slow import
 
+        if not len(r):  # SciPy takes none
+            return np.empty((0, len(self._knots) - self.degree - 1))
         return BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
 
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:

@@ -99,7 +99,7 @@ class Group:
 
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
-        return self.response.inside(self.pressure, self.g[:, None], X, Y)
+        return self.pressure.inside(self.response, self.g[:, None], X, Y)
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n), on the surface, too: (3, rows, n)."""
@@ -108,7 +108,8 @@ class Group:
         columns = on.any(axis=0)
         if columns.any():
             σ_XX, σ_YY = self.surface(X[:, columns])
-            on_surface = [σ_XX, σ_YY, self.g[:, None] * σ_YY]
+            g, ratios = self.pressure.ratios(self.g, X[:, columns])
+            on_surface = [σ_XX, σ_YY, g[:, None] * ratios * σ_YY]
             σ[..., columns] = np.where(on[:, columns], on_surface, σ[..., columns])
         return σ
 

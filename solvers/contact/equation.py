@@ -20,6 +20,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lstsq
 from scipy.special import roots_jacobi
 
 from ..errors import SolveError
@@ -115,8 +116,9 @@ _NEXT_TO_END, _ACROSS, _MORE_AT_ENDS = np.geomspace(1e-6, 1e-2, 5), np.linspace(
 
 #: A change that rounding alone may make.
 _ROUNDING = 2e-12
-#: Panels towards a kink of friction that varies along the contact, or of the punch there.
-_TO_KINK_OF_FRICTION = 12
+#: Number and grading of panels towards kinks of friction that varies along the contact, and those of the
+#: punch there, at which the pressure may be infinite.
+_TO_KINKS_ALONG = (12, 0.2), (18, 0.35)
 #: Longest panel at first where the kernel is rough, over the contact's half-width, its factor from step
 #: to step, and the number of steps.
 _COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
@@ -125,7 +127,7 @@ _COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
 class _NoLayers:
     """Kernel of a uniform half-plane, whose equation has none."""
 
-    rough = False
+    rough, error = False, 0.0
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         return np.zeros((*np.shape(x), 4))
@@ -228,9 +230,9 @@ class Equation:
         The last term vanishes for one friction. The adjoint has n̂ outside the integral.
         """
         friction, response = self.friction, self.response
-        kinks = tuple(sorted({*self.kinks, *friction.kinks}))
-        steps = _TO_KINK_OF_FRICTION if friction.varies else TO_BEND
-        panels = Panels(self.α, self.β, finest, kinks, steps, rough=self.kernel.rough)
+        kinks = tuple(sorted({*self.kinks, *friction.kinks, *friction.weak_kinks}))
+        grading = _TO_KINKS_ALONG[bool(self.kinks)] if friction.varies else TO_BEND
+        panels = Panels(self.α, self.β, finest, kinks, *grading, rough=self.kernel.rough)
         x, t = panels.x, panels.t
         apart = panels.apart(x[:, None], x - x[:, None])
         np.fill_diagonal(apart, np.inf)
@@ -244,12 +246,11 @@ class Equation:
         A += np.diag(panels.hilbert_of_weight(x) - self._cot(t))
         n = response.n + g * response.n12
         A *= n[:, None] if self.adjoint else n
-        for i, at in enumerate(x.tolist() if self.kernel is not UNIFORM else ()):
-            by_shear, by_pressure = panels.row(self._kernels, at).T
-            A[i] += scale[i] * (by_pressure + (g[i] if self.adjoint else g) * by_shear)
+        by_shear, by_pressure = np.moveaxis(panels.rows(self._kernels), -1, 0)
+        A += scale[:, None] * (by_pressure + (g[:, None] if self.adjoint else g) * by_shear)
         A = np.vstack([A, panels.weights])
         b = np.vstack([np.stack([slope(t) * scale for slope in slopes], axis=-1), loads])
-        c = np.linalg.lstsq(A, b, rcond=None)[0].T
+        c = lstsq(A, b, lapack_driver="gelsy", check_finite=False)[0].T
         return expansion(self.α, self.β, c, panels, friction)
 
 

@@ -13,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..profiles import jumps, kinks
-from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
+from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, VARYING, stresses
 from .closed_form import FlatPunch
 from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
-from .ends import Punch
 from .equation import SolvedContact
-from .on_layers import LayersUnderPunch, Nodes, OnLayers, mixture
+from .on_layers import LayersUnderPunch, Nodes, mixture, under_punch
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS
 from .residual import of_contact, of_field
@@ -85,7 +84,7 @@ class ExactSolution(Solution):
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
-        flat = self.task.body.edges(self.task.response, self.g)
+        flat = self.task.body.edges(self.task.response, self.g, self.half_width)
         free_left, free_right = self._of("free").T
         return Exponents(flat.α + free_right, flat.β + free_left)
 
@@ -107,12 +106,18 @@ class ExactSolution(Solution):
     @property
     def resultant_ratio(self) -> NDArray[np.float64]:
         """Resultant of σ_XY over that of σ_YY, of friction that varies along the contact, (states,)."""
-        return np.array([group.pressure.resultant_ratio for group in self.contacts.groups])[self._rows]
+        return self._of_pressures("resultant_ratio")
 
     @property
     def pressure_centre(self) -> NDArray[np.float64]:
         """Centre of pressure over a, of friction that varies along the contact, (states,)."""
-        return np.array([group.pressure.pressure_centre for group in self.contacts.groups])[self._rows]
+        return self._of_pressures("pressure_centre")
+
+    def _of_pressures(self, name: str) -> NDArray[np.float64]:
+        """Attribute of the pressure of every state by its name, (states,)."""
+        return self.contacts.joined(
+            lambda group: np.full(len(group.rows), getattr(group.pressure, name))
+        )[self._rows]
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
@@ -270,14 +275,13 @@ class Layers:
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
         body = task.body
-        stack = task.response.stack(body.half_width)  # type: ignore[attr-defined]
-        punch = Punch(body.profile, body.half_width, body.compression)
         # A place inside is in one layer with one friction and in another with the next.
         every = bool(len(task.places.points) or len(task.places.around)) and body.found
-        layers = LayersUnderPunch(task.response, stack, self.tolerance, punch, every)
+        every |= VARYING in body.modes
+        layers = under_punch(body, task.response, self.tolerance, every)
         if body.knots:  # a prescribed pressure needs no equation
             pressure: Any = body.pressure
-            length, rough = float(stack.layers[0].H), layers.kernel.rough
+            length, rough = float(layers.stack.layers[0].H), layers.kernel.rough
             fine, coarse = (
                 replace(pressure, nodes=nodes, length=length, rough=rough) for nodes in (FINE, COARSE)
             )
@@ -325,13 +329,13 @@ class _OverLayers:
         fine, coarse = zip(*each)
         return Nodes(fine), Nodes(coarse)
 
-    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[OnLayers, OnLayers]:
+    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Group, Group]:
         """States of a contact that was solved, and with fewer unknowns."""
         h, m = (
             np.full(len(rows), length * self.layers.punch.unit)
             for length in (contact.half_width, contact.centre)
         )
-        fine = OnLayers(self.task.response, rows, g[rows], contact.pressure, h, m, self.layers)
+        fine = self.layers.states(rows, g[rows], contact.pressure, h, m)
         return fine, replace(fine, pressure=contact.before)
 
     def contacts(self, g: NDArray) -> tuple[Contacts, Contacts]:
@@ -455,7 +459,7 @@ class LayeredSolution(ExactSolution):
     def _below(self) -> NDArray[np.float64]:
         now, before = self.both_inside
         X, Y = self.places.points.T
-        tables = np.array([self._at.layers.errors[height] for height in Y.tolist()])
+        tables = np.array([self._at.layers.errors.get(height, 0.0) for height in Y.tolist()])
         size = stresses.of_inside(now, X, Y)
         return self._relative(stresses.largest(now - before), tables, size)
 

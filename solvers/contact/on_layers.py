@@ -27,13 +27,14 @@ and under the slope -∫ K(r - t) σ₀(t) dt by which σ₀ bends the layers, w
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache, partial
+from functools import cache, cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..approximation import barycentric
+from ..friction.along import Along, constant
 from ..layers.kernel import REACH, Kernel, Level, Scaled
 from ..layers.layered import Layered, LayersAtSpeed
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
@@ -42,7 +43,7 @@ from .closed_form import FreeEnds
 from .contacts import Group, contacts, off_tips, panels_of
 from .edges import EdgeExponents
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
-from .equation import Equation, Resolution, SolvedContact, converged
+from .equation import UNIFORM, Equation, Resolution, SolvedContact, converged
 from .panels import Panels
 from .pressure import ENDS, Expansion, Pressure
 
@@ -209,6 +210,7 @@ class LayersUnderPunch:
         tolerance: relative.
         punch: the punch, whose unit is the half-width where both its ends are sharp.
         every: solve each friction, however many there are.
+        friction: σ_XY/σ_YY over the contact by the number g of a state and the half-width [m].
     """
 
     response: Any
@@ -216,6 +218,7 @@ class LayersUnderPunch:
     tolerance: float
     punch: Punch
     every: bool = False
+    friction: Callable[[float, float], Along] = lambda g, h: constant(g)
 
     #: Largest error of stresses at each height over a at which they were evaluated.
     errors: dict[float, float] = field(default_factory=dict)
@@ -300,7 +303,12 @@ class LayersUnderPunch:
         return contact
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
-        return Equation(self.response, self.scaled(h), g, slope)
+        friction = self.friction(g, self.punch.unit * h)
+        return Equation(self.response, self.scaled(h), friction, slope)
+
+    def states(self, *attributes: Any) -> Group:
+        """States of one pressure with the attributes of :class:`Group` after the response."""
+        return OnLayers(self.response, *attributes, self)  # type: ignore[call-arg]
 
     def _at_resolution(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
         """Contact at a resolution, from the half-width h on."""
@@ -310,12 +318,23 @@ class LayersUnderPunch:
             return SolvedContact(
                 g, self._equation(g, 1.0, self.punch.slope(0.0, 1.0)).pressure(resolution)
             )
-        m, h = free_ends(self.punch, lambda h: rule_of_ends(self._equation(g, h), resolution), h)
+
+        @cache  # on a uniform solid all half-widths share it, unless friction has a length
+        def rule(kernel: Any, friction: Along) -> Rule:
+            return rule_of_ends(Equation(self.response, kernel, friction, np.zeros_like), resolution)
+
+        def of_half_width(h: float) -> Rule:
+            equation = self._equation(g, h)
+            return rule(equation.kernel, equation.friction)
+
+        m, h = free_ends(self.punch, of_half_width, h)
         equation = self._equation(g, h, self.punch.slope(m, h))
-        if self.punch.kinks(m, h):
+        places = self.punch.kinks(m, h)
+        if places and not equation.friction.varies:
             pressure, taken = kinked(equation, resolution, self.punch, m, h)
         else:
-            pressure, taken = vanishing(equation, resolution)
+            pressure, taken = vanishing(replace(equation, kinks=places), resolution)
+            pressure = pressure.tipped(places if jumps(self.punch.profile) else ())
         return SolvedContact(g, pressure, h, m, taken)
 
     def _tilted(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
@@ -344,6 +363,35 @@ class LayersUnderPunch:
         m = float(np.sign(rise)) * (h - whole)
         pressure = parts.sum(np.array([1.0, slope])).ending((side == 0, side == 1))
         return SolvedContact(g, pressure, h, m)
+
+
+class UniformUnderPunch(LayersUnderPunch):
+    """A uniform solid under a punch, for the same equation; it has no stack."""
+
+    kernel = UNIFORM  # type: ignore[assignment]
+    rounding = 0.0  # type: ignore[assignment]
+
+    def scaled(self, h: float) -> Any:
+        return UNIFORM
+
+    def states(self, *attributes: Any) -> Group:
+        return Group(self.response, *attributes)
+
+
+def under_punch(body: Any, response: Any, tolerance: float, every: bool = False) -> LayersUnderPunch:
+    """A half-plane under the punch of a contact, with or without layers; lengths over its half-width."""
+    unit = body.half_width
+    kind: Any = LayersUnderPunch if body.layered else UniformUnderPunch
+    stack = response.stack(unit) if body.layered else None
+    punch = Punch(body.profile, unit, body.compression)
+    at_speed: LayersUnderPunch = kind(response, stack, tolerance, punch, every, body.friction)
+    return at_speed
+
+
+def half_width_of(body: Any, response: Any, g: float) -> float:
+    """Half-width [m] of a contact with the friction of a state, to a millionth."""
+    at_speed = under_punch(body, response, OF_ENDS)
+    return float(at_speed.punch.unit * at_speed.contact(g, checked=False).half_width)
 
 
 @lru_cache(maxsize=256)
@@ -409,8 +457,7 @@ class OnLayers(Group):
 
     def strain(self, r: NDArray) -> NDArray[np.float64]:
         def values(node: OnLayers) -> NDArray[np.float64]:
-            by_kernel = node.pressure.integral(self.layers.scaled(node.size), r)
-            return np.asarray(by_kernel[:, 1] + node.g[:, None] * by_kernel[:, 0])
+            return node.pressure.strain(node.g, self.layers.scaled(node.size), r)
 
         return self.read(("strain", r.tobytes()), values)
 
@@ -439,7 +486,8 @@ class OnLayers(Group):
     def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
         """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
         t, forces = self.pressure.points(level.depth / self.size)
-        u_X, σ_YY, σ_XY = level.read(t, forces, self.g, X, self.size)
+        g, ratios = self.pressure.ratios(self.g, t)
+        u_X, σ_YY, σ_XY = level.read(t, forces, g, X, self.size, ratios)
         media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
         return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
 

@@ -32,7 +32,7 @@ _REACH, _REACH_OF_SLOPES = 26.0, 40.0
 _LONGEST, _SLOPES, _LONGEST_OF_WEIGHT = ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0)), 0.8, 0.7
 #: Panels towards a kink: their grading, and their number where the pressure itself is infinite or has a
 #: cusp, and where only the pressure that layers add is resolved; both for slopes.
-_TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, 5, 0.5, 46
+_TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, (5, 0.2), 0.5, 46
 #: Panels towards a place where a kernel is rough: their grading and number; distance over a panel's
 #: length within which a place is near it.
 _GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
@@ -201,6 +201,13 @@ class Panels(Functions):
         slope = 1.0 / (2.0 * np.cosh(self.x / 2.0) ** 2)
         return of_τ / self.half[:, None, None] / slope.reshape(-1, self.nodes, 1)
 
+    def rows(self, kernel: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
+        """Weights of :meth:`row` for every point, (n, n, functions)."""
+        if self.rough:
+            return np.array([self.row(kernel, x) for x in self.x.tolist()])
+        away = -self.apart(self.x[:, None], self.x - self.x[:, None])
+        return np.asarray(kernel(away) * self.weights[:, None])
+
     def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:
         """Weights of values at the points in ∫ kernel(t(x) - t) w(t) … dt, (n, functions).
 
@@ -308,15 +315,18 @@ class Panels(Functions):
         fine = replace(self, finest=min(finest, self.finest))
         return fine.t, fine.weights * self.interpolated(p, fine.x)
 
-    def continued(self, p: NDArray, free: tuple[bool, bool]) -> NDArray[np.float64]:
+    def continued(
+        self, p: NDArray, free: tuple[bool, bool], lengths: tuple[float, float] = (1.0, 1.0)
+    ) -> NDArray[np.float64]:
         """Values that fall to zero at free ends, left and right, like d and d log d.
 
         Nearer to an end than ``_MENDED`` a fit of such terms replaces p; the equation, which is weighted
-        there as edges need it, resolves p only relative to the largest p.
+        there as edges need it, resolves p only relative to the largest p. Distances d from an end are
+        over the length over which the pressure varies there.
         """
         continued = p.copy()
-        for x in [side * self.x for side, is_free in zip((-1.0, 1.0), free) if is_free]:
-            d = 2.0 / (1.0 + np.exp(x))
+        for end in np.flatnonzero(free).tolist():
+            d = 2.0 / (1.0 + np.exp((2 * end - 1) * self.x)) / lengths[end]
             fitted, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
             c, *_ = np.linalg.lstsq(_to_end(d[fitted]), p[fitted] / d[fitted], rcond=None)
             continued[near] = d[near] * (_to_end(d[near]) @ c)

@@ -120,6 +120,10 @@ class Pressure:
         by_kernel = self.integral(kernel, r)
         return np.asarray(by_kernel[:, 1] + g[:, None] * by_kernel[:, 0])
 
+    def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY below the surface of a uniform half-plane, (3, states, points)."""
+        return np.asarray(response.inside(self, g, X, Y))
+
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError("stresses inside below a profile come from finite elements only")
@@ -203,6 +207,10 @@ class Expansion(Pressure):
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         t, forces = self.functions.points(self.c, finest)
         return t, forces
+
+    def tipped(self, tips: tuple[float, ...]) -> "Expansion":
+        """Pressure that is infinite at places, of a punch with friction that varies along the contact."""
+        return self
 
     def ending(self, free: tuple[bool, bool]) -> "Expansion":
         """Pressure that falls to zero at free ends, left and right."""

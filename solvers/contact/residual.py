@@ -158,7 +158,7 @@ def of_contact(
     kinks = [*kinks, *body.friction_kinks, *body.weak_friction_kinks]
     exponents = local.α, local.β
     return of_pressure(
-        response, lambda r: body.ratio(g, r), exponents, slope, pressure, kinks, breaks, layers
+        response, lambda r: body.ratio(g, r, h), exponents, slope, pressure, kinks, breaks, layers
     )
 
 

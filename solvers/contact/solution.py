@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SolveError
-from ..friction.along import Along
+from ..friction.along import Along, constant
 from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
 from ..solids import Solid
 from ..solids.half_plane import HalfPlane
-from . import FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
+from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
 from .stresses import Places
@@ -173,13 +173,31 @@ class Contact:
         """
         return self.solid.σ_ZZ(*σ)
 
-    def ratio(self, g: NDArray, X: NDArray) -> NDArray[np.float64]:
-        """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with means g."""
+    def friction(self, g: float, a: float) -> Along:
+        """σ_XY/σ_YY over a contact of the half-width a [m], of a state with the number g."""
+        return constant(g)
+
+    def ratio(self, g: NDArray, X: NDArray, a: Any = None) -> NDArray[np.float64]:
+        """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with numbers g.
+
+        Args:
+            g: numbers of the states, (states,).
+            X: positions over a, (n,).
+            a: half-widths of the contacts [m], (states,); None for that of this contact.
+        """
         return np.asarray(g)[:, None]
 
-    def edges(self, response: HalfPlane, g: NDArray) -> Any:
-        """Local analysis of sharp ends with frictions g, (states,): exponents α and β."""
+    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Any:
+        """Local analysis of sharp ends with frictions of :meth:`ratio`: exponents α and β, (states,)."""
         return EdgeExponents(response, g)
+
+    def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
+        """Half-widths [m] on which frictions depend, (states,), to a millionth; None where none does.
+
+        Args:
+            response, g, load: as of :meth:`local_exponents`.
+        """
+        return None
 
     def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Exponents of the pressure at the ends of states.
@@ -189,7 +207,7 @@ class Contact:
             g: σ_XY/σ_YY under the punch, (states,).
             load: of each state [N/m], (states,); None for this contact's.
         """
-        edges = self.edges(response, g)
+        edges = self.edges(response, g, self.half_widths(response, g, load))
         free_left, free_right = self._free_ends(response, g, load).T
         return Exponents(edges.α + free_right, edges.β + free_left)
 
@@ -282,8 +300,8 @@ class SharpContact(Contact):
 
 
 @dataclass(frozen=True)
-class VaryingContact(SharpContact):
-    """Contact of a flat punch with friction that varies along it, on a uniform solid.
+class VaryingContact(Contact):
+    """Contact with friction that varies along it.
 
     Attributes:
         along: σ_XY/σ_YY over X/a by the number g that stands for it in a state, its mean.
@@ -291,15 +309,18 @@ class VaryingContact(SharpContact):
 
     along: Mapping[float, Along] = field(default_factory=dict)
 
-    modes, fem_mode = (PUNCH, VARYING), VARYING
-
     @property
     def lacks(self) -> dict[str, str]:
         reason = "friction varies along the contact"
         return super().lacks | {FLAT: reason, YIELD: reason}
 
-    def ratio(self, g: NDArray, X: NDArray) -> NDArray[np.float64]:
-        return np.stack([self.along[each](X) for each in np.asarray(g).tolist()])
+    def friction(self, g: float, a: float) -> Along:
+        return self.along[g].at(a)
+
+    def ratio(self, g: NDArray, X: NDArray, a: Any = None) -> NDArray[np.float64]:
+        g = np.asarray(g)
+        each = zip(g.tolist(), np.broadcast_to(self.half_width if a is None else a, g.shape).tolist())
+        return np.stack([self.friction(*state)(X) for state in each])
 
     @property
     def friction_kinks(self) -> tuple[float, ...]:
@@ -309,9 +330,15 @@ class VaryingContact(SharpContact):
     def weak_friction_kinks(self) -> tuple[float, ...]:
         return tuple(sorted({kink for along in self.along.values() for kink in along.weak_kinks}))
 
-    def edges(self, response: HalfPlane, g: NDArray) -> Exponents:
-        at = self.ratio(g, np.array([-1.0, 1.0]))
+    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Exponents:
+        at = self.ratio(g, np.array([-1.0, 1.0]), a)
         return Exponents(EdgeExponents(response, at[:, 1]).α, EdgeExponents(response, at[:, 0]).β)
+
+
+class VaryingSharpContact(VaryingContact, SharpContact):
+    """Contact between two sharp corners with friction that varies along it."""
+
+    modes, fem_mode = (PUNCH, VARYING), VARYING
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .along import FlatAlong
@@ -510,6 +537,57 @@ _ON_LAYERS: dict[type[Contact], type[Contact]] = {
 }
 
 
+class VaryingFreeContact(VaryingContact, FreeContact):
+    """Contact between two free ends with friction that varies along it."""
+
+    fem_mode = VARYING_FREE
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        return (*super().modes, VARYING)
+
+    @property
+    def _has_length(self) -> bool:
+        return any(along.has_length for along in self.along.values())
+
+    @property
+    def growth_exponent(self) -> float | None:  # type: ignore[override]
+        return None if self._has_length else super().growth_exponent
+
+    def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
+        if not self._has_length:
+            return None
+        from .on_layers import half_width_of
+
+        each, known = [], self._half_widths
+        for value, N in zip(g.tolist(), np.broadcast_to(self.loaded(load).load, g.shape).tolist()):
+            state = response.c, value, N
+            if state not in known:
+                known[state] = half_width_of(self.loaded(N), response, value)
+            each.append(known[state])
+        return np.array(each)
+
+    @cached_property
+    def _half_widths(self) -> dict[tuple[float, float, float], float]:
+        return {}
+
+
+class VaryingSharpOnLayers(VaryingSharpContact, SharpOnLayers):
+    """Contact over layers between two sharp corners with friction that varies along it."""
+
+
+class VaryingFreeOnLayers(VaryingFreeContact, FreeOnLayers):  # type: ignore[misc]
+    """Contact over layers between two free ends with friction that varies along it."""
+
+
+_VARYING: dict[type[Contact], Any] = {
+    SharpContact: VaryingSharpContact,
+    FreeContact: VaryingFreeContact,
+    SharpOnLayers: VaryingSharpOnLayers,
+    FreeOnLayers: VaryingFreeOnLayers,
+}
+
+
 def make_contact(
     solid: Solid,
     profile: Any,
@@ -524,13 +602,13 @@ def make_contact(
 
     Where an end is free the punch determines the pressure, and a prescribed one is left out.
     """
-    if along:
-        return VaryingContact(solid, profile, load, None, yield_strength, along)
     kind: type[Contact] = PrescribedContact if pressure else SharpContact
     if has_free_end(profile):
         kind, pressure = OneFreeContact if any(profile.sharp) else FreeContact, None
     if len(solid.depths):
         kind = _ON_LAYERS[kind]
+    if along:
+        return _VARYING[kind](solid, profile, load, None, yield_strength, along)  # type: ignore[no-any-return]
     return kind(solid, profile, load, pressure, yield_strength)
 
 

@@ -16,13 +16,13 @@ speed.
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact import FREE_ENDS, VARYING
+from ..contact import FREE_ENDS, INTENSITIES, VARYING, VARYING_FREE
 from ..contact.along import Splines
 from ..contact.edges import EdgeExponents
 from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
@@ -41,7 +41,7 @@ from .discretisation import Discretisation
 from .displacement import Displacement
 from .fields import Slopes
 from .ladder import Gauge, Level, joined, of_pressure
-from .punch import LEAST, ContactStates, Punch, sliding_punch
+from .punch import LEAST, ContactStates, Punch, SlidingPunch, sliding_punch
 from .solution import SolvedStates
 from .space import Space
 
@@ -89,8 +89,12 @@ class PunchLevel(Level):
             self.space, self.task.response, plan.solver, self.heights(), self.along(), least=least
         )
         self.factor = punch.factor
-        punch.prepare(self.g)
+        self.prepare(punch)
         return punch
+
+    def prepare(self, punch: SlidingPunch) -> None:
+        """Complete the fields of a punch for all states of the level."""
+        punch.prepare(self.g)
 
     @abstractmethod
     def heights(self) -> NDArray[np.float64] | None:
@@ -200,7 +204,7 @@ class PunchLevel(Level):
             pressure = self.over_flat(flat.tested(self.moments), sign * g)
             K_I.append(pressure.K_I[:, ::sign])
             if self.work.stresses:
-                of_flat = sign * g, flat.weights, pressure.σ_YY(X)
+                of_flat = sign * g[:, None], flat.weights, pressure.σ_YY(X)
                 σ_XX.append(self.stress_gauges.σ_XX(*of_flat)[:, ::sign])
         if not self.mirrored:
             K_left, K_right = K_I[0].T
@@ -240,8 +244,8 @@ class SharpLevel(PunchLevel):
 _NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
 
 
-class VaryingLevel(SharpLevel):
-    """Sharp edges of a flat punch with friction that varies along the contact."""
+class AlongLevel(PunchLevel):
+    """Contacts with friction that varies along them, whose pressures are splines."""
 
     twins = False
 
@@ -249,26 +253,23 @@ class VaryingLevel(SharpLevel):
     def _facets(self) -> ContactFacets:
         return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
-    def along(self) -> Callable[[float], NDArray]:
-        along = self.task.body.along  # type: ignore[attr-defined]
-        return cache(lambda g: self._facets.product(along[g]))
+    def splines(
+        self, g: NDArray, half_width: NDArray, tested: Callable[[NDArray], NDArray],
+        nearest: float = _NEXT, more: float = 0.0,
+    ) -> Expansion:  # fmt: skip
+        """Pressure of contacts, by splines without knots within a distance of ends and kinks.
 
-    def pressure(self, contact: ContactStates) -> Expansion:
-        return self._splines(contact, _NEXT)
-
-    def gauge(self, states: SolvedStates) -> Gauge:
-        gauge, coarse = super().gauge(states), self._splines(states.contact, 4.0 * _NEXT)
-        # Without knots next to ends and kinks, splines of all degrees are off alike.
-        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
-        return replace(gauge, unresolved=gauge.unresolved + off)
-
-    def _splines(self, contact: ContactStates, nearest: float) -> Expansion:
-        """Pressure of contacts, by splines without knots within a distance of ends and kinks."""
-        body, g, degree = self.task.body, contact.g, self.space.degree
+        Args:
+            g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
+            tested: normal forces times tests (nodes, n), (states, n).
+            nearest: distance over a of knots from ends and kinks, over the root of a length.
+            more: added to the exponents of sharp edges.
+        """
+        body, degree = self.task.body, self.space.degree
         kinks = np.array(body.friction_kinks)
         places = np.concatenate([[-1.0], kinks, [1.0]])
         ends_of_cells = self.r[::degree]
-        ratio = body.ratio(g, ends_of_cells)
+        ratio = body.ratio(g, ends_of_cells, half_width)
         steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
@@ -279,12 +280,30 @@ class VaryingLevel(SharpLevel):
         knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
-        local, at_nodes = body.edges(self.task.response, g), splines.values(self.r)
+        local, at_nodes = body.edges(self.task.response, g, half_width), splines.values(self.r)
         # Nodal forces know of tests their interpolants only.
         return splines.fitted(
-            contact.tested(at_nodes), local.α, local.β,
+            tested(at_nodes), local.α + more, local.β + more,
             lambda r: self._facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
+
+
+class VaryingLevel(AlongLevel, SharpLevel):
+    """Sharp edges of a flat punch with friction that varies along the contact."""
+
+    def along(self) -> Callable[[float], NDArray]:
+        along = self.task.body.along  # type: ignore[attr-defined]
+        return cache(lambda g: self._facets.product(along[g]))
+
+    def pressure(self, contact: ContactStates) -> Expansion:
+        return self.splines(contact.g, contact.half_width, contact.tested)
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        gauge, contact = super().gauge(states), states.contact
+        coarse = self.splines(contact.g, contact.half_width, contact.tested, 4.0 * _NEXT)
+        # Without knots next to ends and kinks, splines of all degrees are off alike.
+        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
+        return replace(gauge, unresolved=gauge.unresolved + off)
 
 
 class FreeLevel(PunchLevel):
@@ -319,6 +338,98 @@ class FreeLevel(PunchLevel):
         lengths = np.column_stack([states.contact.half_width, states.contact.centre])
         groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
         return joined(gauge.word, groups, gauge.unresolved)
+
+
+#: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left;
+#: places at which the pressure between free ends is measured.
+_KEPT, _BALANCED, _OF_INTENSITIES = 32, 1e-12, 1e-7
+_ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
+
+
+class VaryingFreeLevel(AlongLevel, FreeLevel):
+    """Free ends of smooth punches with friction that varies along the contact.
+
+    Middle and half-width are the root of the intensities at both ends, with the friction of each
+    half-width.
+    """
+
+    @cached_property
+    def _numbers(self) -> dict[Any, float]:
+        """Numbers by which the punch knows frictions."""
+        return {}
+
+    @cached_property
+    def _ends(self) -> dict[tuple[float, float], tuple[float, float]]:
+        """Middles and half-widths [m] of solved states, by number of the friction and load [N/m]."""
+        return {}
+
+    def along(self) -> Callable[[float], NDArray]:
+        numbers = self._numbers
+        return lru_cache(_KEPT)(lambda number: self._facets.product([*numbers][int(number)]))
+
+    def prepare(self, punch: SlidingPunch) -> None:
+        self.punch = punch
+        g, loads = self.g, np.array(self.task.loads)
+        # Parts that are asked for add fields.
+        self.solved(np.repeat(g, len(loads)), self.task.body.loaded(np.tile(loads, len(g))))
+        punch.prepare(np.array([len(self._numbers) - 1.0]))
+
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
+        loads = np.broadcast_to(body.load, g.shape).tolist()
+        own, *others = zip(*(self._balanced(*state) for state in zip(g.tolist(), loads)))
+        amplitudes, h, m, lowest, unresolved = (np.array(of) for of in others)
+        # Fields were added from state to state.
+        fields = max(parts.shape[1] for parts in own)
+        parts = np.array([np.pad(of, ((0, 0), (0, fields - of.shape[1]))) for of in own])
+        contact = self.punch.summed(g, parts, amplitudes)
+        return contact.between(h, m, True, unresolved=unresolved, v0=contact.v0 + lowest)
+
+    def _balanced(self, g: float, load: float) -> tuple[Any, ...]:
+        """Parts, amplitudes, half-width, middle, depth of the lowest point and slope beyond the shapes.
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        from scipy.optimize import root  # a slow import
+
+        body, punch, count = self.task.body.loaded(load), self.task.body.profile, self.shapes
+        unit = float(body.displacement)
+        m, scale = self._ends.get((g, load), (0.0, float(body.half_width)))
+
+        def contact(m: float, h: float) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+            """Parts, amplitudes under the load, intensities at both ends, and all shapes of the punch."""
+            number = self._numbers.setdefault(body.friction(g, h), float(len(self._numbers)))
+            parts, each = self.punch.parts(np.array([number])), np.ones(1 + count)
+            pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
+            loads = self.punch.loads(parts)[0]
+            shapes = slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit
+            amplitudes = np.append((-2.0 - shapes[:count] @ loads[1:]) / loads[0], shapes[:count])
+            return parts[0], amplitudes, amplitudes @ pressure.K_I, shapes
+
+        def intensities(x: NDArray) -> NDArray[np.float64]:
+            return contact(scale * x[0], scale * float(np.exp(x[1])))[2]
+
+        x = root(intensities, [m / scale, 0.0], tol=_BALANCED).x
+        m, h = scale * float(x[0]), scale * float(np.exp(x[1]))
+        parts, amplitudes, K, shapes = contact(m, h)
+        if not np.abs(K).max() < _OF_INTENSITIES:
+            raise SolveError("no contact of a finite half-width carries the load")
+        self._ends[g, load] = m, h
+        size = np.abs(shapes)
+        lowest, beyond = float(punch.height(np.array(m))) / unit, size[count:].sum() / size.max()
+        return parts, amplitudes, h, m, lowest, beyond
+
+    def pressure(self, contact: ContactStates) -> Expansion:
+        return self.splines(contact.g, contact.half_width, contact.tested, more=1.0)
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        contact, σ = states.contact, states.pressure.σ_YY(_ACROSS)
+        size, h = np.abs(σ).max(axis=1, keepdims=True), contact.half_width
+        coarse = self.splines(contact.g, h, contact.tested, 4.0 * _NEXT, 1.0)
+        off = np.abs(coarse.σ_YY(_ACROSS) - σ) / size
+        lengths = np.column_stack([h, contact.centre]), h[:, None]
+        groups = (contact.tested(self.moments[:, 1:6]), 2.0), (σ, size), lengths
+        return joined(INTENSITIES, groups, off.max(axis=1))
 
 
 #: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
@@ -403,6 +514,7 @@ PUNCHES: dict[str, type[PunchLevel]] = {
     "contact": SharpLevel,
     FREE_ENDS: FreeLevel,
     VARYING: VaryingLevel,
+    VARYING_FREE: VaryingFreeLevel,
 }
 
 

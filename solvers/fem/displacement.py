@@ -78,12 +78,19 @@ class Displacement:
             σ[:, :, batch] = self._task.response.stresses_at(points[batch, 1], gradients, side)
         return σ
 
-    def surface(self, g: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None) -> Surface:
-        """Stresses on the surface, by weights (states, fields) and σ_YY, (states, n) or (n,)."""
+    def surface(
+        self, ratio: NDArray, weights: NDArray, σ_YY: NDArray, raw: NDArray | None = None
+    ) -> Surface:
+        """Stresses on the surface, by weights (states, fields) and σ_YY, (states, n) or (n,).
+
+        Args:
+            ratio: σ_XY/σ_YY, (states, n) or (states, 1).
+            weights, σ_YY, raw: of the states.
+        """
         u_X, v_X = self.slopes.of(weights)
         places = self._task.places
         σ = np.where(places.under, σ_YY, 0.0)
-        σ_XX = self._task.response.σ_XX(u_X, σ, self._task.body.ratio(g, places.X) * σ)
+        σ_XX = self._task.response.σ_XX(u_X, σ, ratio * σ)
         σ_YY = np.broadcast_to(np.where(places.under, σ_YY, np.nan), σ_XX.shape)
         return Surface(places, σ_YY, σ_XX, raw, v_X)
 

@@ -144,7 +144,7 @@ class StressGauges:
         no nearer to an edge than the word's points are.
 
         Args:
-            own: frictions, weights and σ_YY of the states, as of :meth:`of`.
+            own: σ_XY/σ_YY, weights and σ_YY of the states, as of :meth:`of`.
             noise: effect of rounding on σ_XX, (states, n); a bound by the last digits of the fields, if
                 it is None.
         """
@@ -250,9 +250,9 @@ class Level:
         return self.stress_gauges.of(*self.fields_of(self.states(g, load))) if self.work.stresses else []
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
-        """Frictions, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
+        """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
         X = self.measured_task.places.X
-        return states.contact.g, states.contact.weights, states.pressure.σ_YY(X)
+        return states.ratio(X), states.contact.weights, states.pressure.σ_YY(X)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding alone on each gauge, relative; arguments as of :meth:`states`."""

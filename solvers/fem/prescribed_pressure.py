@@ -87,7 +87,7 @@ class LoadsLevel(Level):
 
         def σ_XX(X: NDArray) -> NDArray[np.float64]:
             at = self.displacement_at(replace(self.task, places=Places(X, np.empty((0, 2)))))
-            return at.surface(g, weights, self.prescribed(X)).σ_XX
+            return at.surface(g[:, None], weights, self.prescribed(X)).σ_XX
 
         return turns_at_knots(self.prescribed, g, σ_XX)
 

@@ -58,10 +58,14 @@ class SolvedStates:
         """Stresses by the fields."""
         return self.level.displacement
 
+    def ratio(self, X: NDArray) -> NDArray[np.float64]:
+        """σ_XY/σ_YY at X over a, (states, n) or (states, 1)."""
+        return np.asarray(self.body.ratio(self.contact.g, X, self.contact.half_width))
+
     @property
     def local(self) -> Exponents:
         """Exponents of the pressure at the right and the left end."""
-        flat = self.body.edges(self.task.response, self.contact.g)
+        flat = self.body.edges(self.task.response, self.contact.g, self.contact.half_width)
         return Exponents(flat.α + self.contact.free[:, 1], flat.β + self.contact.free[:, 0])
 
     @cached_property
@@ -70,7 +74,7 @@ class SolvedStates:
         contact, recovery = self.contact, self.level.recovery
         raw = contact.tested(recovery.raw) if recovery else None
         σ_YY = self.pressure.σ_YY(self.task.places.X)
-        surface = self.displacement.surface(contact.g, contact.weights, σ_YY, raw)
+        surface = self.displacement.surface(self.ratio(self.task.places.X), contact.weights, σ_YY, raw)
         return replace(surface, turns=self.level.turns(self, surface))
 
     @cached_property

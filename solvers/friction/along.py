@@ -6,6 +6,7 @@ slipped their distance from that end: f over X/a is f of the law over its slip.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,15 @@ class Along:
         """True if it is not one number all along the contact."""
         return True
 
+    @property
+    def has_length(self) -> bool:
+        """True if it depends on the half-width of the contact."""
+        return False
+
+    def at(self, a: float) -> "Along":
+        """σ_XY/σ_YY over a contact of another half-width a [m]."""
+        return self
+
 
 @dataclass(frozen=True)
 class Constant(Along):
@@ -63,6 +73,21 @@ class Constant(Along):
 def constant(g: float) -> Along:
     """Friction σ_XY/σ_YY = g all along the contact."""
     return Constant(g, lambda X: np.full(X.shape, g))
+
+
+@dataclass(frozen=True)
+class Advected(Along):
+    """σ_XY/σ_YY of bristles that enter the contact at rest.
+
+    Attributes:
+        over: gives it for another half-width [m].
+    """
+
+    over: Callable[[float], Along] = constant
+    has_length = True
+
+    def at(self, a: float) -> Along:
+        return self.over(a)
 
 
 def tabulated(rows: Sequence[tuple[float, float]], factor: float) -> Along:
@@ -96,9 +121,10 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
 
     mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a)) / (2.0 * a)
     known = law.exact(start, s, V, np.zeros(1)) is not None
+    over = lru_cache(lambda a: advected(law, s, V, a, stress_ratio))
     digits = _EXACT if known else _INTEGRATED
     kinks, all_kinks = (_kinks(ratio, digits, beside) for beside in (_BESIDE, _BESIDE_WEAK))
-    return Along(mean, ratio, kinks, tuple(sorted({*all_kinks} - {*kinks})))
+    return Advected(mean, ratio, kinks, tuple(sorted({*all_kinks} - {*kinks})), over)
 
 
 def _kinks(function: Callable[[NDArray], NDArray], digits: float, short: float) -> tuple[float, ...]:

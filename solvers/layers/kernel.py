@@ -299,7 +299,7 @@ class Kernel:
         return kernels
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scaled:
     """A kernel with lengths over another unit than a, so that contacts of all sizes share one kernel.
 
@@ -396,7 +396,9 @@ class Level:
         """Absolute error of u,X, σ_YY and σ_XY under a pressure with the resultant of a punch, 2."""
         return 2.0 * (self._transform.error / np.pi + self._table.error)
 
-    def read(self, t: NDArray, σ: NDArray, g: Any, X: NDArray, size: float = 1.0) -> NDArray[np.float64]:
+    def read(
+        self, t: NDArray, σ: NDArray, g: Any, X: NDArray, size: float = 1.0, ratios: Any = 1.0
+    ) -> NDArray[np.float64]:
         """u,X times μ, σ_YY and σ_XY at positions, (3, ..., n).
 
         Args:
@@ -404,10 +406,13 @@ class Level:
             g: σ_XY/σ_YY on top, (...).
             X: positions.
             size: unit over a of ``t``, ``X`` and stresses.
+            ratios: σ_XY/σ_YY at ``t`` over g, a number or (len(t),).
         """
+        both = np.stack([σ * ratios, σ], axis=-1)
         fields, step = np.empty((len(X), 6)), max(_DIFFERENCES_AT_ONCE // len(t), 1)
         for start in range(0, len(X), step):
             rows = slice(start, start + step)
-            fields[rows] = size * np.einsum("t,xtf->xf", σ, self._table(size * (X[rows, None] - t)))
+            table = self._table(size * (X[rows, None] - t)).reshape(-1, len(t), 3, 2)
+            fields[rows] = size * np.einsum("ts,xtfs->xfs", both, table).reshape(-1, 6)
         by_shear, by_pressure = fields[:, 0::2], fields[:, 1::2]
         return np.moveaxis(np.multiply.outer(g, by_shear.T) + by_pressure.T, -2, 0)

@@ -13,11 +13,10 @@ ORTHOTROPIC = {
 }  # fmt: skip
 
 
-def slid(friction, solid=ISOTROPIC, c=0.3, **solve):
+def slid(friction, solid=ISOTROPIC, c=0.3, punch=None, **solve):
     """The result of a scene of this friction."""
-    none = dict.fromkeys(("punch", "output"))
-    scene = {"solid": solid, "friction": friction, "motion": {"c": c}, "solve": solve or None}
-    return computed(changes=scene | none)
+    scene = {"solid": solid, "friction": friction, "motion": {"c": c}, "punch": punch}
+    return computed(changes=scene | {"solve": solve or None, "output": None})
 
 
 def advected(model, **parameters):
@@ -56,6 +55,29 @@ def test_both_methods_agree_within_tolerance_and_estimate(seed):
     X = data["surface/X_over_a"]
     raw, exact = data["surface/fem/sigma_YY_raw"], data["surface/closed_form/sigma_YY"]
     np.testing.assert_allclose(raw[:, np.abs(X) < 0.9], exact[:, np.abs(X) < 0.9], rtol=2e-3)
+
+
+def random_cylinder(seed):
+    """A random friction, solid, speed and load under a cylinder."""
+    rng = np.random.default_rng(seed)
+    solid = ORTHOTROPIC | {"angle": rng.uniform(0.0, 180.0)} if seed % 3 == 1 else ISOTROPIC
+    friction = [
+        advected("dahl", mu_c=rng.uniform(0.1, 0.8), sigma0_over_load=10.0 ** rng.uniform(2.0, 4.0)),
+        advected("lugre", mu_c=0.3, mu_s=0.5, stribeck_velocity=1e-3,
+                 sigma0_over_load=rng.uniform(300.0, 3e4)),
+        {"along": [[-1, rng.uniform(0.0, 0.8)], [1, rng.uniform(0.1, 0.8)]]},
+    ][seed % 3]  # fmt: skip
+    return friction, solid, rng.uniform(0.0, 0.6), {"load": f"{rng.uniform(10.0, 200.0)} N/mm"}
+
+
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 1, 2))
+def test_free_ends_by_both_methods(seed):
+    *of_scene, load = random_cylinder(seed)
+    result = slid(*of_scene, punch={"profile": "parabolic", "radius": "50 mm"} | load)
+    data = result.data
+    assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
+    fem, sie = (data[f"states/{name}/half_width"] for name in ("fem", "sie"))
+    assert (np.abs(fem / sie - 1.0) <= data["states/fem/estimate"] + 1e-6).all()
 
 
 def test_archive_has_friction_over_x_its_resultant_and_the_centre():

@@ -7,9 +7,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 from random_solids import random_solid
+from support import THOROUGH
 
 from galinx.solvers.contact.along import FlatAlong
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.equation import UNIFORM, Equation
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl
@@ -66,6 +68,27 @@ def test_closed_form_against_a_quadrature_in_30_digits(seed):
     pressure = FlatAlong(response, tabulated(rows, -1.0))
     found = pressure.σ_YY(PLACES) / pressure.σ_YY(np.zeros(1))
     np.testing.assert_allclose(found, reference(response, linear(rows), inner, PLACES), rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 1, 2))
+def test_integral_equation_against_the_closed_form(seed):
+    """Two solutions that share no line: values on panels by collocation, and the formula."""
+    rng = np.random.default_rng(100 + seed)
+    solid = random_solid(seed) if seed else ISOTROPIC
+    response = solid.response(rng.uniform(0.0, 0.8) * solid.limit())
+    inner = np.sort(rng.uniform(-0.9, 0.9, rng.integers(0, 3))).tolist()
+    rows = list(zip([-1.0, *inner, 1.0], rng.uniform(0.0, 0.9, len(inner) + 2).tolist()))
+    law = Dahl(rng.uniform(0.1, 0.8), 10.0 ** rng.uniform(2.0, 5.0), 1.0)
+    friction = tabulated(rows, -1.0) if seed % 2 else advected(law, 1, 1.0, 1e-3, -1.0)
+    exact = FlatAlong(response, friction)
+    pressure = Equation(response, UNIFORM, friction, np.zeros_like).pressure(0.7)
+    np.testing.assert_allclose(pressure.σ_YY(PLACES), exact.σ_YY(PLACES), rtol=1e-7)
+    np.testing.assert_allclose(pressure.K_I, exact.K_I, rtol=1e-7)
+    X = np.array([-3.0, -1.01, *PLACES, 1.0001, 2.0])
+    for one, other in zip(pressure.transforms(None, X), exact.transforms(None, X)):
+        np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
+    for name in ("resultant_ratio", "pressure_centre"):
+        assert getattr(pressure, name) == pytest.approx(getattr(exact, name), abs=1e-9)
 
 
 @pytest.mark.parametrize("stiffness", [10.0, 1e3, 1e5])

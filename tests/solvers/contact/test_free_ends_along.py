@@ -1,0 +1,149 @@
+"""Free ends with friction that varies along the contact: the equation against 15 digits; symmetries.
+
+Reference: with S = -sin πα, Z = (1 - t) e^E, E(t) = ⨍ α(s)/(s - t) ds, the pressure that vanishes at both
+ends under a slope f is τ = N̂ σ = cos(πα) S f - S Z (1/π) ⨍ S f/(Z (s - t)) ds, with ∫ S f/Z dt = 0 and
+∫ t S f/Z dt = -∫ τ dt (Gakhov, Boundary value problems, §47).
+"""
+
+from functools import lru_cache
+
+import mpmath as mp
+import numpy as np
+import pytest
+from random_solids import random_solid
+
+from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.on_layers import under_punch
+from galinx.solvers.contact.solution import make_contact
+from galinx.solvers.friction.along import advected, tabulated
+from galinx.solvers.friction.dahl import Dahl
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.profiles.punches import Flat, Parabolic, Wedge
+from galinx.solvers.solids.isotropic import Isotropic
+
+ISOTROPIC, LOAD, CYLINDER = Isotropic(2.5e9, 0.3, 1000.0), 1e4, Parabolic(0.1)
+PLACES = np.array([-0.999, -0.3, 0.6, 0.95])
+
+
+def solved(solid, friction, profile=CYLINDER, c=0.4, tolerance=1e-7):
+    """The contact by the integral equation, with lengths over its half-width at rest, and its body."""
+    body = make_contact(solid, profile, LOAD, along={friction.mean: friction})
+    response = body.response(c * solid.limit())
+    return under_punch(body, response, tolerance).contact(friction.mean), body, response
+
+
+def reference(response, g, m, h, unit):
+    """∫ S f/Z dt, ∫ t S f/Z dt and τ at places, of the slope f = (m + h t) over a unit."""
+    with mp.workdps(15):
+        n, q, n12 = (mp.mpf(float(value)) for value in (response.n, response.q, response.n12))
+        pieces = [-1, 1]
+
+        def cot(t):
+            return g(t) * q / (n + g(t) * n12)
+
+        def α(t):
+            return -mp.mpf(1) / 2 - mp.atan(cot(t)) / mp.pi
+
+        @lru_cache(None)
+        def Z(t):
+            at = α(t)
+            E = mp.quad(lambda s: (α(s) - at) / (s - t) if s != t else mp.mpf(0), sorted({*pieces, t}))
+            return (1 - t) ** (1 + at) * (1 + t) ** -at * mp.exp(E)
+
+        def F(t):
+            return -mp.sin(mp.pi * α(t)) * (m + h * t) / unit / Z(t)
+
+        def τ(t):
+            t, S = mp.mpf(float(t)), -mp.sin(mp.pi * α(mp.mpf(float(t))))
+            H = mp.quad(lambda s: (F(s) - F(t)) / (s - t), pieces) + F(t) * mp.log((1 - t) / (1 + t))
+            return mp.cos(mp.pi * α(t)) * S * (m + h * t) / unit - S * Z(t) * H / mp.pi
+
+        balance, load = (float(mp.quad(of, pieces)) for of in (F, lambda t: F(t) * t))
+        return balance, load, np.array([float(τ(X)) for X in PLACES])
+
+
+def of_dahl(μ, stiffness, a):
+    """g of bristles that enter at X = a."""
+
+    def g(t):
+        return -mp.mpf(μ) * (1 - mp.exp(-mp.mpf(stiffness) / mp.mpf(μ) * mp.mpf(a) * (1 - t)))
+
+    return g
+
+
+@pytest.mark.parametrize("seed, stiffness", [(0, 3000.0), (2, 1000.0)])
+def test_cylinder_with_advected_dahl_against_15_digits(seed, stiffness):
+    solid, friction = random_solid(seed) if seed else ISOTROPIC, None
+    half_width = make_contact(solid, CYLINDER, LOAD).half_width
+    friction = advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, half_width, -1.0)
+    contact, body, response = solved(solid, friction)
+    m, h = contact.centre * half_width, contact.half_width * half_width
+    # μ v,X over N/(2h) is 2 h P'/(N/μ).
+    unit = CYLINDER.radius * body.compression / (2.0 * h)
+    balance, load, τ = reference(response, of_dahl(0.6, stiffness, h), m, h, unit)
+    assert abs(balance) < 1e-8
+    if not seed:
+        assert load == pytest.approx(2.0 * response.n, rel=1e-8)
+    own = response.n + friction.at(h)(PLACES) * response.n12
+    np.testing.assert_allclose(own * contact.pressure.σ_YY(PLACES), τ, rtol=1e-7)
+
+
+@pytest.mark.parametrize("profile", [CYLINDER, Wedge(0.01)])
+@pytest.mark.parametrize("seed", [0, 2])
+def test_constant_friction_is_one_number(profile, seed):
+    solid = random_solid(seed) if seed else ISOTROPIC
+    friction = tabulated([(-1, 0.5), (0.3, 0.5), (1, 0.5)], -1.0)
+    contact, body, response = solved(solid, friction, profile)
+    one = contacts(response, np.array([-0.5]), profile, body.compression)
+    unit = body.half_width
+    assert contact.half_width * unit == pytest.approx(one.of("half_width")[0], rel=1e-10)
+    assert contact.centre * unit == pytest.approx(one.of("centre")[0], rel=1e-9)
+    expected = one.groups[0].pressure.σ_YY(PLACES)
+    np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), np.ravel(expected), atol=5e-9)
+
+
+@pytest.mark.parametrize("profile", [Flat(2e-3), CYLINDER])
+def test_constant_friction_over_layers_is_one_number(profile):
+    solid = Layered((Layer(1e-3, Isotropic(7.5e9, 0.3, 1200.0)),), ISOTROPIC)
+    friction = tabulated([(-1, 0.4), (1, 0.4)], -1.0)
+    contact, _, response = solved(solid, friction, profile)
+    one = under_punch(make_contact(solid, profile, LOAD), response, 1e-7).contact(-0.4)
+    assert contact.half_width == pytest.approx(one.half_width, rel=1e-9)
+    assert contact.centre == pytest.approx(one.centre, abs=1e-9)
+    np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), one.pressure.σ_YY(PLACES), atol=2e-8)
+
+
+def test_mirrored_friction_mirrors_the_contact():
+    rows = [(-1, 0.1), (0.3, 0.6), (1, 0.2)]
+    one, *_ = solved(ISOTROPIC, tabulated(rows, -1.0), tolerance=1e-5)
+    mirrored = tabulated([(-X, f) for X, f in rows[::-1]], 1.0)
+    other, *_ = solved(ISOTROPIC, mirrored, tolerance=1e-5)
+    assert other.half_width == pytest.approx(one.half_width, rel=1e-10)
+    assert other.centre == pytest.approx(-one.centre, rel=1e-8)
+    np.testing.assert_allclose(other.pressure.σ_YY(-PLACES), one.pressure.σ_YY(PLACES), atol=5e-9)
+
+
+def test_scaled_bristles_scale_the_contact():
+    """Punch, bristles and load four times as large: the same over the half-width."""
+    contacts_of = []
+    for k in (1.0, 4.0):
+        body = make_contact(ISOTROPIC, Parabolic(0.1 * k), LOAD * k)
+        friction = advected(Dahl(0.6, 1000.0 / k, 1.0), 1, 1.0, body.half_width, -1.0)
+        body = make_contact(ISOTROPIC, Parabolic(0.1 * k), LOAD * k, along={friction.mean: friction})
+        response = body.response(0.4 * ISOTROPIC.limit())
+        contacts_of.append(under_punch(body, response, 1e-8).contact(friction.mean))
+    one, other = contacts_of
+    assert other.half_width == pytest.approx(one.half_width, rel=1e-11)
+    assert other.centre == pytest.approx(one.centre, rel=1e-9)
+
+
+@pytest.mark.parametrize("stiffness, f", [(1e-3, 0.0), (1e9, 0.6)])
+def test_cylinder_between_no_friction_and_full_friction(stiffness, f):
+    """Long pre-sliding leaves Hertz's contact, a short one is full friction but next to the end."""
+    half_width = make_contact(ISOTROPIC, CYLINDER, LOAD).half_width
+    friction = advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, half_width, -1.0)
+    contact, body, response = solved(ISOTROPIC, friction, tolerance=1e-6)
+    one = contacts(response, np.array([-f]), CYLINDER, body.compression)
+    assert contact.half_width * half_width == pytest.approx(one.of("half_width")[0], rel=1e-5)
+    expected = np.ravel(one.groups[0].pressure.σ_YY(PLACES))
+    np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), expected, rtol=3e-4)

@@ -95,8 +95,9 @@ class SolvedStates:
     @property
     def centre_of_pressure(self) -> NDArray[np.float64]:
         """Centre of pressure over the half-width, from the middle, (states,)."""
-        moments = self.contact.tested(self.level.recovery.moments[:, :2])
-        return np.asarray(moments[:, 1] / moments[:, 0])
+        r = self.level.r
+        load, moment = self.contact.tested(np.column_stack([np.ones_like(r), r])).T
+        return np.asarray(moment / load)
 
     @property
     def off_equation(self) -> NDArray[np.float64]:

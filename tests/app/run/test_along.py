@@ -13,10 +13,10 @@ ORTHOTROPIC = {
 }  # fmt: skip
 
 
-def slid(friction, solid=ISOTROPIC, c=0.3, punch=None, **solve):
-    """The result of a scene of this friction."""
-    scene = {"solid": solid, "friction": friction, "motion": {"c": c}, "punch": punch}
-    return computed(changes=scene | {"solve": solve or None, "output": None})
+def slid(friction, solid=ISOTROPIC, c=0.3, **sections):
+    """The result of a scene of this friction, and of other sections."""
+    scene = {"solid": solid, "friction": friction, "motion": {"c": c}}
+    return computed(changes=scene | dict.fromkeys(("punch", "solve", "output")) | sections)
 
 
 def advected(model, **parameters):
@@ -80,6 +80,17 @@ def test_free_ends_by_both_methods(seed):
     assert (np.abs(fem / sie - 1.0) <= data["states/fem/estimate"] + 1e-6).all()
 
 
+def test_flat_punches_over_layers_by_both_methods():
+    layer = {"thickness": "1 mm", "E": "120 GPa", "nu": 0.3, "rho": 2400}
+    sections = {"layer": [layer], "solve": {"methods": ["sie", "fem"], "tolerance": 1e-4}}
+    result = slid({"along": [[-1, 0.1], [1, 0.5]]}, **sections)
+    data = result.data
+    assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
+    for name in ("pressure_centre", "resultant_ratio"):
+        fem, sie = (data[f"states/{method}/{name}"] for method in ("fem", "sie"))
+        assert np.abs(fem - sie).max() <= 1e-6 and np.abs(sie).min() > 1e-2
+
+
 def test_archive_has_friction_over_x_its_resultant_and_the_centre():
     data = slid({"along": [[-1, 0.2], [1, 0.5]]}).data
     X = data["surface/X_over_a"]
@@ -103,5 +114,5 @@ def test_friction_in_the_table_is_the_force_over_the_load():
 
 @pytest.mark.parametrize("row", [[0.203, 0.1], [0.2011, 0.6989]])
 def test_kinks_near_each_other_have_cells_between_them(row):
-    result = slid({"along": [[-1, 0.2], [0.2, 0.7], row, [1, 0.5]]}, tolerance=1e-4)
+    result = slid({"along": [[-1, 0.2], [0.2, 0.7], row, [1, 0.5]]}, solve={"tolerance": 1e-4})
     assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]

@@ -82,7 +82,7 @@ class Column:
         path: of that dataset, "" for none.
         digits: that are shown.
         place: True where it is a place of what the column before it has.
-        step: to which numbers are rounded where they are shown, 0 for none.
+        least: size up to which a number is rounding, and shown as 0.
     """
 
     head: str
@@ -92,7 +92,7 @@ class Column:
     path: str = ""
     digits: int = 4
     place: bool = False
-    step: float = 0.0
+    least: float = 0.0
 
     @property
     def label(self) -> str:
@@ -107,8 +107,8 @@ class Column:
     def texts(self, count: int | None = None) -> list[str]:
         """The first cells as text."""
         cells = [*self.values[:count]]
-        if self.step:
-            cells = [round(cell / self.step) * self.step if cell == cell else cell for cell in cells]
+        if self.least:
+            cells = [0.0 if abs(cell) <= self.least else cell for cell in cells]
         return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
 
     def words(self, i: int) -> str:
@@ -117,9 +117,8 @@ class Column:
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
 
-#: Step over a to which places, and over N/(2a) to which stresses, are rounded where they are shown: less
-#: is rounding of the methods.
-_STEP, _STRESS_STEP = 1e-5, 1e-7
+#: Size of places over a, and of stresses over N/(2a), up to which they are rounding of the methods.
+_LEAST, _LEAST_STRESS = 5e-6, 5e-8
 
 _STRESS = "N/(2a)"
 
@@ -238,6 +237,8 @@ def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
             Column("friction f", force, "1", "f", resultant.path),
             Column("mean of f over X", f, "1", "mean_f", of.FRICTION.path),
         ]
+        if preferred(data, of.HALF_WIDTH):  # slip over free ends follows the width, and the mean with it
+            del columns[2]
     head = "speed c over the wave speed" if units.dimensionless else "speed"
     columns += _columns(data, units, [_Spec(head, speed, 6)])
     load = units.scale(of.LOAD.unit)
@@ -263,8 +264,8 @@ def _columns(
     """
     columns: list[Column] = []
     lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
-    steps = dict.fromkeys(lengths, _STEP * float(np.max(units.length.factor)))
-    steps[_STRESS] = _STRESS_STEP * float(np.max(units.stress.factor))
+    least = dict.fromkeys(lengths, _LEAST * float(np.max(units.length.factor)))
+    least[_STRESS] = _LEAST_STRESS * float(np.max(units.stress.factor))
     for head, rows, digits, taken in specs:
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
@@ -279,7 +280,7 @@ def _columns(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
                     scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
-                    0.0 if archived else steps.get(of_kind, 0.0),
+                    0.0 if archived else least.get(of_kind, 0.0),
                 )
             )  # fmt: skip
     return columns

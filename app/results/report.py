@@ -277,7 +277,7 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     for column in shown:
         values = column.values[:kept]
         if not isinstance(values[0], str):  # all digits, but for numbers that are rounding alone
-            values = _numbers(np.where(np.abs(values) <= 0.5 * column.step, 0.0, values), 12)
+            values = _numbers(np.where(np.abs(values) <= column.least, 0.0, values), 12)
         cells.append(list(values))
     note = counted(count, "state")
     if same:

@@ -2,7 +2,7 @@
 
 from support import computed, here
 
-from galinx.postprocess.tables import sliders_sheet, states_sheet
+from galinx.postprocess.tables import Column, sliders_sheet, states_sheet
 
 SCENE = """
 solid.material = "steel"
@@ -58,3 +58,8 @@ def test_sliders_under_several_loads_say_in_which_order_they_are():
         )
         said.append(sliders_sheet(result.data, result.units()).notes)
     assert not said[0] and "all of the first load" in said[1][0]
+
+
+def test_rounding_is_zero_and_all_else_keeps_its_digits():
+    column = Column("centre", [-0.04594211, 3e-6], "mm", least=1.43e-5)
+    assert column.texts() == ["-0.04594", "0"]

@@ -104,11 +104,14 @@ class Column:
         """True where all states have the same."""
         return len(set(self.texts())) == 1
 
+    def shown(self, count: int | None = None) -> list[Any]:
+        """The first cells, those that are rounding as 0."""
+        cells = [*self.values[:count]]
+        return [0.0 if not isinstance(cell, str) and abs(cell) <= self.least else cell for cell in cells]
+
     def texts(self, count: int | None = None) -> list[str]:
         """The first cells as text."""
-        cells = [*self.values[:count]]
-        if self.least:
-            cells = [0.0 if abs(cell) <= self.least else cell for cell in cells]
+        cells = self.shown(count)
         return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
 
     def words(self, i: int) -> str:

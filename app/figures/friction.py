@@ -44,8 +44,11 @@ class Loop:
     @property
     def varies(self) -> bool:
         """True where friction changes along a stroke."""
-        strokes = [self.f[part] for _, part in self.strokes]
-        return any(np.ptp(f) > 1e-6 * np.abs(f).max() for f in strokes if len(f))
+        return any(_changes(self.f[part]) for _, part in self.strokes)
+
+
+def _changes(f: NDArray) -> bool:
+    return bool(len(f) and np.ptp(f) > 1e-6 * np.abs(f).max())
 
 
 class Loops:
@@ -80,6 +83,11 @@ class Loops:
             return None
         label = self.labels.label(state, self.names if called is None else called)
         return Loop(label, self._X, self._f[row], self._strokes)
+
+    @property
+    def few(self) -> list[Loop]:
+        """The first loops, as many as a panel tells apart."""
+        return [loop for loop in (self.of(int(i)) for i in self.first[:_LOOPS]) if loop]
 
     def panel(self, states: Sequence[int], called: Sequence[str], title: str = "") -> Panel:
         """A panel with the loops of some states, each once."""
@@ -131,18 +139,14 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
 
 def varies(of: Archive) -> bool:
     """Return True if friction changes between places or strokes."""
-    loops = Loops(of)
-    each = (loop.f for loop in (loops.of(int(i)) for i in loops.first[:_LOOPS]) if loop)
-    return not of.scene.steady and any(np.ptp(f) > 1e-6 * np.abs(f).max() for f in each)
+    return not of.scene.steady and any(_changes(loop.f) for loop in Loops(of).few)
 
 
 def has_loop(of: Archive) -> bool:
     """Return True if friction changes along a stroke, or between strokes, but not along the contact."""
     if any(of.has(row) for row in RESULTANT_RATIO.values()):
         return False
-    loops = Loops(of)
-    shown = [loop for loop in (loops.of(int(i)) for i in loops.first[:_LOOPS]) if loop]
-    return of.scene.slider is None and any(loop.varies for loop in shown)
+    return of.scene.slider is None and any(loop.varies for loop in Loops(of).few)
 
 
 def friction(of: Archive) -> Drawing:

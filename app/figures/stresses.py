@@ -23,6 +23,7 @@ from galinx.postprocess.quantities.quantity import (
 from galinx.postprocess.quantities.states import CENTRE, HALF_WIDTH, LOAD, RESULTANT_RATIO, SPEED
 from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFACE_X
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
+from galinx.postprocess.tables import preferred
 from galinx.solvers.contact.edges import from_edge, under_punch
 from galinx.solvers.contact.on_layers import under_punch as half_plane_under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact
@@ -361,10 +362,9 @@ def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[n
     response = body.response(float(data[SPEED.path][state]))
     contact = half_plane_under_punch(body, response, _DRAWN).contact(g)
     unit = body.half_width
-    h, m = (
-        next((float(data[row.path][state]) for row in rows.values() if of.has(row)), default)
-        for rows, default in ((HALF_WIDTH, unit), (CENTRE, 0.0))
-    )
+    half_width, centre = preferred(data, HALF_WIDTH), preferred(data, CENTRE)
+    h = data[half_width.path][state] if half_width else unit
+    m = data[centre.path][state] if centre else 0.0
     r = ((m + h * X) / unit - contact.centre) / contact.half_width
     return np.asarray(-contact.pressure.σ_YY(r) * h / (contact.half_width * unit))
 

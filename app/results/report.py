@@ -275,10 +275,8 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
     ]
     cells = [list(range(kept))]
     for column in shown:
-        values = column.values[:kept]
-        if not isinstance(values[0], str):  # all digits, but for numbers that are rounding alone
-            values = _numbers(np.where(np.abs(values) <= column.least, 0.0, values), 12)
-        cells.append(list(values))
+        values = column.shown(kept)
+        cells.append(values if isinstance(values[0], str) else _numbers(values, 12))
     note = counted(count, "state")
     if same:
         note += f"; the same in all: {', '.join(f'{c.head} {c.words(0)}' for c in same if c.words(0))}"

@@ -242,7 +242,7 @@ SMOOTH = {
 }
 
 
-@pytest.mark.parametrize("name, seed, share", zip(SMOOTH, (0, 1, 2), (0.3, 0.85, 0.6)))
+@pytest.mark.parametrize("name, seed, share", list(zip(SMOOTH, (0, 1, 2), (0.3, 0.85, 0.6))))
 def test_smooth_punches_take_the_parabolas_way(name, seed, share, skew):
     """All states of a speed from one mesh, and the verdict of the defaults."""
     outputs = '["sif", "surface", "interior"]\npoints = [[0.0, -0.7], [1.1, -0.05]]'

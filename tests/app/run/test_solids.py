@@ -100,7 +100,6 @@ def test_the_block_is_smaller_for_a_solid_stiff_across_its_depth_and_says_so():
     assert error.max() > 0.01 and np.all(error <= estimate) and np.all(estimate <= 10.0 * error)
 
 
-@pytest.mark.parametrize("known", [False, True])
 @pytest.fixture(scope="module")
 def skew():
     """Stresses inside by fibres askew to the surface, whose σ_ZZ is known, or is not."""

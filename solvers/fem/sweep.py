@@ -55,10 +55,9 @@ AT_ONCE = 2
 #: Numbers of frictions that are tried until the interpolation between them is so accurate, relative:
 #: forces have to balance to 1e-9, and at free ends terms cancel that are much larger than their sum.
 _FRICTIONS, _BETWEEN = (8, 12, 16, 20, 26, 34, 44, 60), 3e-12
-#: Share of the cost of solving every speed that may be lost where no fit becomes good enough.
-_REGRET = 0.08
-#: Speeds, at both ends of the sweep, at which the discretisation's error is measured in any case.
-_ENDS = 2
+#: Cost that the most speeds of a fit may have at its degree beyond that of solving them by themselves,
+#: over the cost of solving every speed: few fits take so many.
+_REGRET = 0.25
 
 
 #: Parts of a punch at some frictions, (parts, frictions, n) each: forces in Y at the contact nodes (those
@@ -126,15 +125,14 @@ def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -
         tasks: all speeds.
         say: shows the work under way.
     """
-    degree, lost = None, 0.0
+    degree = None
     while True:
         try:
-            fit = Fit(work, tasks, say, degree, lost)
+            fit = Fit(work, tasks, say, degree)
             fit.train()
         except HigherDegree as higher:
-            degree, lost = higher.args[0], fit.spent
-            if lost <= fit.allowed:
-                continue
+            degree = higher.args[0]
+            continue
         except SolveError as error:  # each speed by itself tells which, and why
             say(f"no fit through speeds: {error}")
             return None
@@ -146,12 +144,9 @@ def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -
 class Fit:
     """Fit through solved speeds, and its error.
 
-    Costs are counted in factorisations, which go with the fourth power of the degree or so.
-
     Args:
         work, tasks, say: as of :func:`train`.
         degree: degree to begin with; the plan's if None.
-        lost: cost of the speeds that were solved before, in vain.
 
     Attributes:
         space: space of the last degree.
@@ -162,14 +157,11 @@ class Fit:
         rational: rational function through the samples; None for fewer than three.
         error: error of the fit, by word of output.quantities; None where it is not good enough and serves
             the solved speeds alone.
-        spent: cost of all solved speeds.
-        allowed: cost that may be lost.
     """
 
     def __init__(
-        self, work: Discretisation, tasks: list[Task], say: Callable[[str], None],
-        degree: int | None, lost: float,
-    ) -> None:  # fmt: skip
+        self, work: Discretisation, tasks: list[Task], say: Callable[[str], None], degree: int | None
+    ) -> None:
         assert work.plan.sweep
         self._sweep = sweep = work.plan.sweep
         self._kind = PUNCHES[work.plan.mode]
@@ -180,16 +172,16 @@ class Fit:
         self.error: dict[str, float] | None = None
         probes = sweep.g if sweep.few else np.linspace(sweep.g[0], sweep.g[-1], PROBES)
         self._probes = tasks[0].probes(probes)
+        #: Most speeds that are solved for a fit.
+        self._most = min(MOST, len(tasks) // 2)
         # The fastest needs the highest degree: it is solved first, by every rank for itself.
         first = int(np.argmin([task.response.margin for task in tasks]))
+        say(f"finite elements at c = {tasks[first].response.c:g}, of the fit")
         solved = self._climbed(first, degree)
         with closing(solved):
             level: PunchLevel = solved.level
             self.space, self.recovery, self.at = level.space, level.recovery, self._frictions(level)
             self._take([self._speed(first, solved, {})])
-        self._alone = [self._cost(True, of) for of in work.plan.degrees]
-        self._lost, self.allowed = lost, _REGRET * sum(self._alone)
-        self.spent = lost + self._cost(True)  # it would be solved just so by itself
 
     @property
     def samples(self) -> list[Sample]:
@@ -285,12 +277,12 @@ class Fit:
 
     def train(self) -> None:
         """Solve speeds until the fit's error is known; none is where it does not become good enough."""
-        tasks, tolerance = self._tasks, self._work.plan.tolerance
+        tolerance = self._work.plan.tolerance
         worst: list[int] = []
-        while len(self.speeds) < min(MOST, len(tasks) // 2):
+        while self._pays and len(self.speeds) < self._most:
             numbers = self._next(worst)
             if not numbers:
-                return  # there is no other speed, or it would cost too much
+                return
             before, worst = self.rational, []
             error = self._solved(numbers)
             if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in self._words):
@@ -299,72 +291,43 @@ class Fit:
                 changes = {number: self._change(before, number) for number in self._changed(before)}
                 error = {word: max(of[word] for of in (error, *changes.values())) for word in error}
                 if self._excess(error) <= 1.0:
-                    error = self._seconded(error)
-                    if self._excess(error) <= 1.0:
-                        self.error = error
-                        return
+                    self.error = error
+                    return
                 worst = [max(changes, key=lambda number: self._excess(changes[number]))]
 
-    def _seconded(self, error: dict[str, float]) -> dict[str, float]:
-        """Error of a good fit, after the discretisation's error was measured at more speeds.
-
-        That measurement is put off until the fit is good, lest it be in vain.
-        """
-        while (missing := LADDERS - len(self.estimates)) > 0:
-            more = self._far([])[:missing]
-            if not more:
-                break
-            off = self._solved(dict.fromkeys(more, True))
-            error = {word: max(value, off.get(word, 0.0)) for word, value in error.items()}
-        return error
-
-    def _next(self, worst: list[int]) -> dict[int, bool]:
-        """Numbers of the speeds to solve next: the worst one, and speeds far from all solved ones.
-
-        Each maps to True where its error is to be measured: at the ends of the sweep, and elsewhere as
-        far as the cost may be in vain. Speeds that would cost too much are left out.
-        """
-        lost, kept = self._lost, dict[int, bool]()
-        for number in self._far(worst):
-            measured = len(self.estimates) + sum(kept.values())
-            for measures in (True, False):
-                more = self._cost(measures) - self._alone[number]
-                allowed = measured < LADDERS if measures else measured >= _ENDS
-                if allowed and lost + more <= self.allowed:
-                    lost += more
-                    kept[number] = measures
-                    break
-        return kept
-
-    def _far(self, numbers: list[int]) -> list[int]:
-        """Numbers of as many speeds as are solved at once: the given ones, and others far from all."""
+    def _next(self, worst: list[int]) -> list[int]:
+        """Numbers of the speeds to solve next: the worst one, and speeds far from all solved ones."""
+        numbers = list(worst)
         while len(numbers) < AT_ONCE:
             number = leja(self._sweep.z, [*self.speeds, *numbers])
             if number is None:
                 break
-            numbers = [*numbers, number]
+            numbers.append(number)
         return numbers
 
-    def _cost(self, measures: bool, degree: int | None = None) -> float:
-        """Cost of a speed at a degree, the fit's if None, with or without measuring its error."""
-        degree = degree or self.space.degree
-        solved = [p for p, _ in levels(degree, 1, fixed=False)] if measures else [degree]
-        return float(sum(p**4 for p in solved))
+    @property
+    def _pays(self) -> bool:
+        """True where the speeds of a fit cost little more at its degree than each by itself.
 
-    def _solved(self, numbers: dict[int, bool]) -> dict[str, float]:
-        """Solve speeds, shared out over the ranks, and take them in.
+        Costs are counted in factorisations, which go with the fourth power of the degree or so.
+        """
 
-        Args:
-            numbers: numbers of the speeds; True where the error is to be measured.
+        def measured(degree: int) -> int:
+            return sum(p**4 for p, _ in levels(degree, 1, fixed=False))
+
+        degree, alone = self.space.degree, [measured(own) for own in self._work.plan.degrees]
+        spent = LADDERS * measured(degree) + (self._most - LADDERS) * degree**4
+        return spent <= (self._most / len(alone) + _REGRET) * sum(alone)
+
+    def _solved(self, numbers: list[int]) -> dict[str, float]:
+        """Solve speeds, shared out over the ranks, and take them in; the first ones are measured.
 
         Returns:
             Largest error of the previous fit at these speeds, by word, empty where there was no fit.
         """
-        for number, measures in numbers.items():
-            cost = self._cost(measures)
-            self.spent, self._lost = self.spent + cost, self._lost + cost - self._alone[number]
+        measured = numbers[: max(LADDERS - len(self.estimates), 0)]
         speeds = by_turns(
-            list(numbers), lambda number: self._solve(number, numbers[number]),
+            numbers, lambda number: self._solve(number, number in measured),
             not self._work.plan.shared_speeds,
         )  # fmt: skip
         self._take(speeds)
@@ -392,13 +355,13 @@ class Fit:
     def _solve(self, number: int, measures: bool) -> Speed:
         """Solve a speed, with or without the measurement of its error."""
         task, expected = self._tasks[number], list[Gauge]()
+        self._say(f"finite elements at c = {task.response.c:g}, of the fit")
         if self.rational:
             with self.level(task) as predicted:
                 expected = predicted.gauges(*self._probes)
         if measures:
             solved = self._climbed(number, self.space.degree)
         else:
-            self._announce(task)
             level, done = self._kind(self._work, task, self.space, self._all), WorkDone()
             done.count(level.factor)
             solved = Solved(level, None, size_of(self.space) | vars(done))
@@ -410,14 +373,10 @@ class Fit:
     def _climbed(self, number: int, degree: int | None) -> Solved:
         """Speed that is solved with the measurement of its error, from a degree on."""
         work, task = self._work, self._tasks[number]
-        self._announce(task)
         return climb(
             work, task, self._all, lambda space, g: self._kind(work, task, space, g), degree,
             DISCRETISATION,
         )  # fmt: skip
-
-    def _announce(self, task: Task) -> None:
-        self._say(f"finite elements at c = {task.response.c:g}, of the fit")
 
     def _speed(self, number: int, solved: Solved, off: dict[str, float]) -> Speed:
         level, error = solved.level, solved.error

@@ -5,8 +5,9 @@ of combinations of fields are evaluated at any points: inner unknowns were conde
 for the cells that hold a point, and for no other.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -114,8 +115,8 @@ def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
 #: How far outside a cell, over its size, a point still counts as inside.
 _SLACK = 1e-9
 
-#: Points whose gradients are held at once: of every field, or of every state.
-TOGETHER = 20_000
+#: Points whose gradients are held at once.
+TOGETHER = 4_000
 
 
 #: Values of fields at all nodes of some of this rank's cells, (cells, nodes, 2, fields). Collective.
@@ -140,25 +141,25 @@ class KeptValues:
         new = np.array([cell for cell in cells.tolist() if cell not in self._kept], dtype=np.int64)
         values = self._compute(new)
         self._kept |= dict(zip(new.tolist(), values))
-        u = np.empty((len(cells), *values.shape[1:]))
-        for i, cell in enumerate(cells.tolist()):
-            u[i] = self._kept[cell]
-        return u
+        return np.array([self._kept[cell] for cell in cells.tolist()]).reshape(-1, *values.shape[1:])
 
 
 class Gradients:
-    """Displacement gradients along X and Y at given points, by those of the fields.
+    """Displacement gradients at given points, by those of the fields; kept where the points are few.
 
     Args:
-        basis: μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields).
+        batches: for some points after others, μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields).
     """
 
-    def __init__(self, basis: NDArray) -> None:
-        self._basis = basis
+    def __init__(self, batches: Sequence[Callable[[], NDArray]]) -> None:
+        self._batches = batches
+        if len(batches) == 1:
+            basis = batches[0]()
+            self._batches = [lambda: basis]
 
     def of_fields(self) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of every field, (n, 2, 2, fields), the same on every rank."""
-        return self._basis
+        return np.concatenate([batch() for batch in self._batches])
 
     def of(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a) of combinations with weights (states, fields): (states, n, 2, 2)."""
@@ -169,7 +170,11 @@ class Gradients:
 
         Collective.
         """
-        yield slice(None), _combined(self._basis, weights)
+        first = 0
+        for batch in self._batches:
+            basis = batch()[..., : weights.shape[1]]
+            yield slice(first, first + len(basis)), np.einsum("nijf,sf->snij", basis, weights)
+            first += len(basis)
 
     def of_each(self, weights: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over N/(2a), where each combination has points of its own.
@@ -186,14 +191,8 @@ class Gradients:
         return np.einsum("snijf,sf->snij", each, weights)
 
 
-def _combined(basis: NDArray, weights: NDArray) -> NDArray[np.float64]:
-    return np.einsum("nijf,sf->snij", basis[..., : weights.shape[1]], weights)
-
-
 class InteriorGradients(Gradients):
-    """Displacement gradients along X and Y at given points, in batches of points.
-
-    Where points are many, the fields' values at nodes are kept instead, of which there are fewer.
+    """Displacement gradients along X and Y at given points by the fields' values at nodes.
 
     Args:
         space: the finite element space.
@@ -209,41 +208,9 @@ class InteriorGradients(Gradients):
     def __init__(
         self, space: Space, response: HalfPlane, values: Values, points: NDArray, side: int = 1
     ) -> None:
-        self._count = len(points)
-        self._batches = [
-            _Batch(space, response, points[first : first + TOGETHER], side)
-            for first in range(0, max(len(points), 1), TOGETHER)
-        ]
-        self._cells = np.unique(np.concatenate([batch.cells for batch in self._batches]))
-        grid, self._nodes = tensor_order(space.reference_nodes)
-        #: At the nodes of these cells, (cells, p+1, p+1, 2, fields).
-        self._values = values(self._cells)[:, grid]
-        if len(self._batches) == 1:
-            super().__init__(self._gradients(self._batches[0], self._values))
-            self._values = self._values[:0].copy()  # no longer needed
-
-    def of_fields(self) -> NDArray[np.float64]:
-        if len(self._batches) == 1:
-            return super().of_fields()
-        return np.concatenate([self._gradients(batch, self._values) for batch in self._batches])
-
-    def by_batches(self, weights: NDArray) -> Iterator[tuple[slice, NDArray[np.float64]]]:
-        if len(self._batches) == 1:
-            yield from super().by_batches(weights)
-            return
-        states, fields = weights.shape
-        for i, batch in enumerate(self._batches):
-            points = slice(i * TOGETHER, min((i + 1) * TOGETHER, self._count))
-            if states < self._values.shape[-1]:
-                combined = self._gradients(batch, self._values[..., :fields] @ weights.T)
-                yield points, np.moveaxis(combined, -1, 0)
-            else:
-                yield points, _combined(self._gradients(batch, self._values), weights)
-
-    def _gradients(self, batch: "_Batch", values: NDArray) -> NDArray[np.float64]:
-        """Gradients of fields at a batch's points, from their values at the nodes of all cells."""
-        of_batch = np.searchsorted(self._cells, batch.cells)
-        return batch.gradients(self._nodes, (values[i] for i in of_batch), values.shape[-1])
+        firsts = range(0, max(len(points), 1), TOGETHER)
+        each = [_Batch(space, response, points[first : first + TOGETHER], side) for first in firsts]
+        super().__init__([partial(batch.gradients, values) for batch in each])
 
 
 class _Batch:
@@ -264,6 +231,7 @@ class _Batch:
 
     def __init__(self, space: Space, response: HalfPlane, points: NDArray, side: int) -> None:
         self._chart, self._comm = space.contracted(response), space.comm
+        self._grid, self._nodes = tensor_order(space.reference_nodes)
         self._points, self._vertices = points, space.vertices[..., :2]
         cell, point, t = _located(self._vertices, self._chart.from_physical(points))
         of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
@@ -279,20 +247,20 @@ class _Batch:
         #: How many cells hold a point, which are many on a border only.
         self._sharing = count.astype(np.int16)
 
-    def gradients(self, nodes: NDArray, values: Iterable[NDArray], fields: int) -> NDArray[np.float64]:
-        """Gradients along X and Y, (n, 2, 2, fields), the same on every rank. Collective.
+    def gradients(self, values: Values) -> NDArray[np.float64]:
+        """Gradients of fields along X and Y, (n, 2, 2, fields), the same on every rank. Collective.
 
         Args:
-            nodes: places along a side of the unit square, (p+1,).
-            values: at the nodes of each of the cells, (p+1, p+1, 2, fields).
-            fields: number of fields.
+            values: of the fields in cells.
         """
-        result = np.zeros((len(self._points), 2, 2, fields))
+        u = values(self.cells)[:, self._grid]
+        result = np.zeros((len(self._points), 2, 2, u.shape[-1]))
         ends = np.append(self._first[1:], len(self._point))
-        for cell, first, end, u in zip(self.cells, self._first, ends, values):
+        for cell, first, end, own in zip(self.cells, self._first, ends, u):
             # A cell holds a point once.
             t = self._t[first:end]
-            result[self._point[first:end]] += gradients_in_plane(self._vertices[cell], nodes, t, u)
+            gradients = gradients_in_plane(self._vertices[cell], self._nodes, t, own)
+            result[self._point[first:end]] += gradients
         # On the border between cells the gradient jumps; the mean of both is taken.
         result = self._comm.allreduce(result) / self._sharing[:, None, None, None]
         return self._chart.physical_gradients(self._chart.from_physical(self._points), result)

@@ -20,7 +20,7 @@ from ..contact.stresses import Places, Surface, Turns, turns_at_knots
 from ..rays import NEAR, rays
 from .discretisation import Discretisation
 from .displacement import Displacement
-from .fields import TOGETHER, Gradients, Slopes
+from .fields import Gradients, Slopes
 from .ladder import Level
 from .punch import ContactStates
 from .solution import SolvedStates
@@ -183,9 +183,7 @@ class PiecesDisplacement(Displacement):
         self._pieces, self._loads = pieces, loads
 
     def _at(self, points: NDArray, side: int = 1) -> Gradients:
-        firsts = range(0, max(len(points), 1), TOGETHER)
-        each = [self._pieces.gradients(self._loads, points[first : first + TOGETHER]) for first in firsts]
-        return Gradients(np.concatenate(each))
+        return Gradients([lambda: self._pieces.gradients(self._loads, points)])
 
     @cached_property
     def slopes(self) -> Slopes:

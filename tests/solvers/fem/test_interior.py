@@ -38,7 +38,7 @@ def punch():
 
 @pytest.mark.parametrize("states", [1, 40])
 def test_batches_of_points_give_the_same(punch, states, monkeypatch):
-    """Those with fewer states than fields, whose nodal values are combined first, and those with more."""
+    """Those with fewer states than fields, and those with more."""
     random = np.random.default_rng(3)
     points = random.uniform([-2.0, -2.0], [2.0, -0.01], (50, 2))
     points = np.concatenate([points, [[0.0, -0.5]]])  # which lies between two cells

@@ -152,7 +152,7 @@ class PunchLevel(Level):
         """Slopes of the fields on the surface, at no place where no stress is requested."""
         count = len(self.fields)
         nowhere = Slopes(np.empty((2, 0, count)), np.empty((0, count)))
-        return self.stress_gauges.displacement.slopes if self.work.stresses else nowhere
+        return self.gauged_displacement.slopes if self.work.stresses else nowhere
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, self.punch.slopes, self.continuation())
@@ -182,8 +182,7 @@ class PunchLevel(Level):
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
         """Gauges of states: of pressure and ends, and of requested stresses."""
         states = self.states(g, load)
-        of_stresses = self.stress_gauges.of(*self.fields_of(states)) if self.work.stresses else []
-        return [self.gauge(states), *of_stresses]
+        return [self.gauge(states), *(self.stress_gauges(states) if self.work.stresses else [])]
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
@@ -196,7 +195,7 @@ class PunchLevel(Level):
         """
         own = self.fields_of(self.states(g, load))
         if not self.twins or not (self.mirrored or self.plan.tests.even):
-            return [self.factor.largest_residual, *self.stress_gauges.rounding(own)]
+            return [self.factor.largest_residual, *self.rounding_of_stresses(own)]
         X = self.measured_task.places.X
         K_I, σ_XX = [], []
         for sign in (1, -1) if self.mirrored else (1,):
@@ -205,13 +204,13 @@ class PunchLevel(Level):
             K_I.append(pressure.K_I[:, ::sign])
             if self.work.stresses:
                 of_flat = sign * g[:, None], flat.weights, pressure.σ_YY(X)
-                σ_XX.append(self.stress_gauges.σ_XX(*of_flat)[:, ::sign])
+                σ_XX.append(self.σ_XX(*of_flat)[:, ::sign])
         if not self.mirrored:
             K_left, K_right = K_I[0].T
-            return [float(np.abs(K_left / K_right - 1.0).max()), *self.stress_gauges.rounding(own)]
+            return [float(np.abs(K_left / K_right - 1.0).max()), *self.rounding_of_stresses(own)]
         noise = np.abs(σ_XX[0] - σ_XX[1]) if σ_XX else None
         of_edges = float((np.abs(K_I[0] - K_I[1]) / np.abs(K_I[0])).max())
-        return [of_edges, *self.stress_gauges.rounding(own, noise)]
+        return [of_edges, *self.rounding_of_stresses(own, noise)]
 
     def close(self) -> None:
         self.punch.destroy()

@@ -87,102 +87,22 @@ def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
     return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
 
 
-def of_interfaces(σ: NDArray) -> Gauge:
-    """Gauge of stresses along interfaces, (4, states, interfaces, n)."""
-    size = np.broadcast_to(stresses.of_interfaces(σ), σ.shape)
-    values, of = (np.moveaxis(part, 1, 0).reshape(σ.shape[1], -1) for part in (σ, size))
-    return Gauge(AT_INTERFACES, values, of)
-
-
-#: Words of output.quantities that request stresses, in the order of their gauges.
-_STRESSES = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
-
-
-class StressGauges:
-    """Gauges of the requested stresses, by combinations of fields.
-
-    Args:
-        work: has the words of the requested stresses, as ``stresses``.
-        task: the speed, and the places.
-        displaced: makes the displacement at a task's places.
-
-    Attributes:
-        task: the task at no more places than the error is measured at.
-        displacement: displacement at these.
-    """
-
-    def __init__(self, work: Any, task: Task, displaced: Callable[[Task], Displacement]) -> None:
-        self._words = [word for word in _STRESSES if word in work.stresses]
-        self.task = gauged(task)
-        self.displacement = displaced(self.task)
-
-    def of(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> list[Gauge]:
-        """Gauges of states, by weights (states, fields) and σ_YY on the surface, NaN beside the punch."""
-        gauges, places = [], self.task.places
-        for word in self._words:
-            if word == ON_SURFACE:
-                σ_XX = self.σ_XX(g, weights, σ_YY)
-                gauges.append(Gauge(word, σ_XX, stresses.of_in_plane(σ_XX, places.X)))
-            elif word == AT_INTERFACES:
-                gauges.append(of_interfaces(self.displacement.interfaces(weights)))
-            elif word == BELOW:
-                gauges.append(of_inside(self.displacement.inside(weights), places.points))
-            else:
-                gauges.append(of_inside(self.displacement.around(weights), places.around, YIELD))
-        return gauges
-
-    def σ_XX(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
-        """In-plane stress of states on the surface, (states, n); arguments as of :meth:`of`."""
-        return self.displacement.surface(g, weights, σ_YY).σ_XX
-
-    def rounding(
-        self, own: tuple[NDArray, NDArray, NDArray], noise: NDArray | None = None
-    ) -> list[float]:
-        """Effect of rounding on stresses, relative, by word.
-
-        Points inside have no mirror image, those on the surface have: σ_XX there stands for all stresses,
-        no nearer to an edge than the word's points are.
-
-        Args:
-            own: σ_XY/σ_YY, weights and σ_YY of the states, as of :meth:`of`.
-            noise: effect of rounding on σ_XX, (states, n); a bound by the last digits of the fields, if
-                it is None.
-        """
-        if not self._words:
-            return []  # no derivative is taken that is not requested
-        size = stresses.of_in_plane(self.σ_XX(*own), self.task.places.X)
-        if noise is None:
-            bound = _SOLVED / self.task.response.margin**0.5
-            noise = bound * self.displacement.rounding(own[1])
-        return [float((noise / size)[:, self._as_near(word)].max()) for word in self._words]
-
-    def _as_near(self, word: str) -> NDArray[np.bool_]:
-        """Mask of the places on the surface no nearer to an edge than the places of a word, (n,)."""
-        places = self.task.places
-        X, Y = places.X, np.zeros(1)
-        if word in (BELOW, YIELD):
-            X, Y = (places.points if word == BELOW else places.around).T
-        elif word == AT_INTERFACES:
-            X, Y = places.along, places.interfaces[:, None]
-        on_surface = from_edge(places.X)
-        nearest = np.hypot(from_edge(X), Y).min(initial=np.inf)
-        return np.asarray(on_surface >= min(nearest, on_surface.max()))
-
-
 def gauged(task: Task) -> Task:
     """Task at fewer points inside, picked at all distances from the edges, from nearest to farthest."""
-    points, around = (_picked(all_) for all_ in (task.places.points, task.places.around))
-    if points is task.places.points and around is task.places.around:
+
+    def picked(points: NDArray) -> NDArray[np.float64]:
+        if len(points) <= _POINTS:
+            return points
+        X, Y = points.T
+        order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
+        return points[np.sort(spread(order, _POINTS))]
+
+    places = task.places
+    if max(len(places.points), len(places.around)) <= _POINTS:
         return task
-    return replace(task, places=replace(task.places, points=points, around=around))
-
-
-def _picked(points: NDArray) -> NDArray[np.float64]:
-    if len(points) <= _POINTS:
-        return points
-    X, Y = points.T
-    order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
-    return points[np.sort(spread(order, _POINTS))]
+    return replace(
+        task, places=replace(places, points=picked(places.points), around=picked(places.around))
+    )
 
 
 class Level:
@@ -219,15 +139,21 @@ class Level:
         return self.task
 
     @cached_property
-    def stress_gauges(self) -> StressGauges:
-        """Gauges of the requested stresses."""
-        return StressGauges(self.work, self.measured_task, self.displacement_at)
+    def gauged_task(self) -> Task:
+        """Task with no more places than the error is measured at."""
+        return gauged(self.measured_task)
+
+    @cached_property
+    def gauged_displacement(self) -> Displacement:
+        """Displacement, for stresses at these."""
+        return self.displacement_at(self.gauged_task)
 
     @cached_property
     def displacement(self) -> Displacement:
         """Displacement, for stresses at all places."""
-        gauges = self.stress_gauges
-        return gauges.displacement if gauges.task is self.task else self.displacement_at(self.task)
+        if self.gauged_task is self.task:
+            return self.gauged_displacement
+        return self.displacement_at(self.task)
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         """States with values g of σ_XY/σ_YY, (states,), under the task's load or others [N/m].
@@ -246,17 +172,73 @@ class Level:
         return 1.0
 
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        """Gauges of states, of the requested stresses; arguments as of :meth:`states`."""
-        return self.stress_gauges.of(*self.fields_of(self.states(g, load))) if self.work.stresses else []
+        """Gauges of states; arguments as of :meth:`states`."""
+        return self.stress_gauges(self.states(g, load)) if self.work.stresses else []
+
+    def stress_gauges(self, states: SolvedStates) -> list[Gauge]:
+        """Gauges of the requested stresses of states."""
+        at, places, weights = self.gauged_displacement, self.gauged_task.places, states.contact.weights
+
+        def of_interfaces() -> Gauge:
+            σ = at.interfaces(weights)
+            size = np.broadcast_to(stresses.of_interfaces(σ), σ.shape)
+            values, scale = (np.moveaxis(of, 1, 0).reshape(σ.shape[1], -1) for of in (σ, size))
+            return Gauge(AT_INTERFACES, values, scale)
+
+        def of_surface() -> Gauge:
+            σ_XX = self.σ_XX(*self.fields_of(states))
+            return Gauge(ON_SURFACE, σ_XX, stresses.of_in_plane(σ_XX, places.X))
+
+        by_word = {
+            ON_SURFACE: of_surface,
+            BELOW: lambda: of_inside(at.inside(weights), places.points),
+            YIELD: lambda: of_inside(at.around(weights), places.around, YIELD),
+            AT_INTERFACES: of_interfaces,
+        }
+        return [gauge() for word, gauge in by_word.items() if word in self.work.stresses]
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
         """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
         X = self.measured_task.places.X
         return states.ratio(X), states.contact.weights, states.pressure.σ_YY(X)
 
+    def σ_XX(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
+        """In-plane stress on the surface, (states, n), by what :meth:`fields_of` gives."""
+        return self.gauged_displacement.surface(g, weights, σ_YY).σ_XX
+
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding alone on each gauge, relative; arguments as of :meth:`states`."""
         raise NotImplementedError
+
+    def rounding_of_stresses(
+        self, own: tuple[NDArray, NDArray, NDArray], noise: NDArray | None = None
+    ) -> list[float]:
+        """Effect of rounding on stresses, relative, by word.
+
+        Points inside have no mirror image, those on the surface have: σ_XX there stands for all stresses,
+        no nearer to an edge than the word's points are.
+
+        Args:
+            own: σ_XY/σ_YY, weights and σ_YY of the states, as of :meth:`fields_of`.
+            noise: effect of rounding on σ_XX, (states, n); a bound by the last digits of the fields, if
+                it is None.
+        """
+        places, response = self.gauged_task.places, self.task.response
+        nearest = {
+            ON_SURFACE: lambda: from_edge(places.X),
+            BELOW: lambda: np.hypot(from_edge(places.points[:, 0]), places.points[:, 1]),
+            YIELD: lambda: np.hypot(from_edge(places.around[:, 0]), places.around[:, 1]),
+            AT_INTERFACES: lambda: np.hypot(from_edge(places.along), places.interfaces[:, None]),
+        }
+        words = [word for word in nearest if word in self.work.stresses]
+        if not words:
+            return []  # no derivative is taken that is not requested
+        size = stresses.of_in_plane(self.σ_XX(*own), places.X)
+        if noise is None:
+            noise = _SOLVED / response.margin**0.5 * self.gauged_displacement.rounding(own[1])
+        on_surface = from_edge(places.X)
+        least = [min(nearest[word]().min(initial=np.inf), on_surface.max()) for word in words]
+        return [float((noise / size)[:, on_surface >= distance].max()) for distance in least]
 
     def close(self) -> None:
         """Free factor and fields."""

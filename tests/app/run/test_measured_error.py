@@ -225,6 +225,13 @@ def test_every_stress_inside_is_gauged(component):
     assert change[0] == pytest.approx(0.01, rel=0.02)
 
 
+def measured(words, task, displacement):
+    """A level with a displacement."""
+    made = error.Level(SimpleNamespace(stresses=words), task, None, G)
+    made.displacement_at = lambda task: displacement
+    return made
+
+
 def test_stresses_are_no_better_than_the_last_digits_of_displacements():
     """All that is known of their rounding without mirror images: 100 over the root of the margin."""
     displacement = SimpleNamespace(
@@ -233,8 +240,8 @@ def test_stresses_are_no_better_than_the_last_digits_of_displacements():
     )
     places = SimpleNamespace(X=np.array([-2.0, 2.0]), points=np.empty((0, 2)), around=np.empty((0, 2)))
     task = SimpleNamespace(places=places, response=SimpleNamespace(margin=0.04))
-    gauges = error.StressGauges(SimpleNamespace(stresses={"surface"}), task, lambda _: displacement)
-    (found,) = gauges.rounding((G, np.ones((1, 1)), np.zeros((1, 2))))
+    gauges = measured({"surface"}, task, displacement)
+    (found,) = gauges.rounding_of_stresses((G, np.ones((1, 1)), np.zeros((1, 2))))
     assert found == pytest.approx(100.0 / 0.2 * 2e-13)
 
 
@@ -249,12 +256,10 @@ def test_rounding_inside_is_that_of_no_place_on_the_surface_nearer_to_an_edge():
     displacement = SimpleNamespace(surface=surface, rounding=lambda weights: noise[None])
     places = SimpleNamespace(X=X, points=np.array([[1.0, -0.5], [0.0, -3.0]]), around=np.empty((0, 2)))
     task = SimpleNamespace(places=places, response=SimpleNamespace(margin=1.0))
-    gauges = error.StressGauges(
-        SimpleNamespace(stresses={"interior", "surface"}), task, lambda _: displacement
-    )
+    gauges = measured({"interior", "surface"}, task, displacement)
     states = G, np.ones((1, 1)), np.zeros((1, 4))
-    assert gauges.rounding(states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
-    of_mirrors = gauges.rounding(states, 2.0 * noise[None])
+    assert gauges.rounding_of_stresses(states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
+    of_mirrors = gauges.rounding_of_stresses(states, 2.0 * noise[None])
     assert of_mirrors == pytest.approx([2e-9 / 4.0, 4e-12 / 4.0], rel=1e-3)
 
 

@@ -37,8 +37,6 @@ LEAST = 1e-13
 #: Relative change of the contact forces for which no solution is refined. It keeps results on any number
 #: of ranks equal to 1e-9; next to an edge a force counts by the little load there.
 NEGLIGIBLE = 1e-11
-#: Residual which refined solutions may bring back; what is larger takes further loads.
-_BROUGHT_BACK = 1e-12
 #: Most loads of an iterative solver; a factor takes as many as there are contact nodes.
 LIMIT = 120
 #: Frictions at which a space of loads is completed at most; states whose equations are held in memory.
@@ -215,9 +213,8 @@ class SlidingPunch(Punch):
         #: Relative residual that may remain; number of parts; true where solutions are refined.
         self._left, self._parts, self._refines = least, len(shapes), False
         self.fields, self.forces = self._frictionless(shaped, negligible)
-        #: Orthonormal loads, (n, loads), and displacements of the last ones that have no fields yet.
+        #: Orthonormal loads, (n, loads).
         self._loads: NDArray[np.float64] = np.empty((len(nodes.s), 0))
-        self._rough: list[NDArray[np.float64]] = []
         self._complete = False
 
     def prepare(self, g: NDArray[np.float64]) -> None:
@@ -277,10 +274,7 @@ class SlidingPunch(Punch):
             rest = self._rest(g)
             left = float(np.linalg.norm(rest, axis=0).max())
             if left <= self._left:
-                if not self._rough:
-                    return
-                self._settle()
-                continue
+                return
             if self._loads.shape[1] >= limit:
                 raise SolveError(
                     f"the contact forces at g = {g[0]:g} to {g[-1]:g} (dimensionless) did not converge "
@@ -295,11 +289,9 @@ class SlidingPunch(Punch):
                 more = np.column_stack([more, along])
             for _ in range(2):  # twice is enough
                 more, _ = np.linalg.qr(more - self._loads @ (self._loads.T @ more))
-            x = self._displacements(self._tangential(more))
+            fields, forces = self._refined(self._tangential(more), self._refines)
             self._loads = np.column_stack([self._loads, more])
-            self._rough += list(x.T)
-            forces = [self._boundary.follow(force) for force in self._reactions(x)]
-            self.forces = np.concatenate([self.forces, forces])
+            self.fields, self.forces = [*self.fields, *fields], np.concatenate([self.forces, forces])
 
     def _frictionless(self, shaped: NDArray, negligible: float) -> tuple[list[PETSc.Vec], NDArray]:
         """Fields and forces of the flat punch at v = -1 and of each shape, without friction.
@@ -329,24 +321,16 @@ class SlidingPunch(Punch):
         self._refines = bool(max(changes) > negligible)
         return fields[flat:], self._followed(fields[flat:], after[flat:])
 
-    def _settle(self) -> None:
-        """Fields of the loads that have none: rough ones are checked, and refined if needed."""
-        new = len(self._rough)
-        b, x = self._tangential(self._loads[:, -new:]), np.column_stack(self._rough)
-        fields, self.forces[-new:] = self._refined(b, x, self._refines)
-        self.fields, self._rough = [*self.fields, *fields], []
-        if self._refines:  # loads that follow are as small as what was changed
-            self._refines, self._left = False, max(self._left, _BROUGHT_BACK)
-
     def _refined(
-        self, b: NDArray, x: NDArray, refines: bool, checked: bool = True
+        self, b: NDArray, refines: bool, checked: bool = True
     ) -> tuple[list[PETSc.Vec], NDArray[np.float64]]:
-        """Fields and forces of displacements x under loads b, (rows, k), checked and refined."""
+        """Fields and forces under loads b, (rows, k), checked and refined."""
+        x = self._displacements(b)
         residuals = self._residuals(x, b, np.zeros(b.shape[1]))
         if checked:
             self.factor.check(b, x, residuals)
         if refines:
-            x = x + self._corrections(residuals)
+            x += self._corrections(residuals)
         fields = [vector(self.factor.A, column) for column in x.T]
         return fields, self._followed(fields, self._reactions(x))
 
@@ -495,7 +479,7 @@ class ElasticPunch(SlidingPunch):
         #: Combinations of displacements and tangential forces, (basis, 2 n).
         self._basis = rows[size > self._left * size[0]]
         b = self._tangential(self._basis[:, n:].T)
-        fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
+        fields, forces = self._refined(b, True, bool(np.any(g)))
         for field, moved in zip(fields, self._basis[:, :n] @ units):
             field.setArray(field.array_r + moved)
         self.fields = [*self.fields, *fields]

@@ -414,9 +414,8 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         if not np.abs(K).max() < _OF_INTENSITIES:
             raise SolveError("no contact of a finite half-width carries the load")
         self._ends[g, load] = m, h
-        size = np.abs(shapes)
-        lowest, beyond = float(punch.height(np.array(m))) / unit, size[count:].sum() / size.max()
-        return parts, amplitudes, h, m, lowest, beyond
+        lowest = float(punch.height(np.array(m))) / unit
+        return parts, amplitudes, h, m, lowest, float(left_out(shapes, count))
 
     def pressure(self, contact: ContactStates) -> Expansion:
         return self.splines(contact.g, contact.half_width, contact.tested, more=1.0)
@@ -446,6 +445,12 @@ def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
     b = np.zeros((*loads.shape, 1))
     b[:, 0] = -2.0
     return np.asarray(np.linalg.solve(np.concatenate([loads[:, None], K], axis=1), b)[..., 0])
+
+
+def left_out(slopes: NDArray, count: int) -> NDArray[np.float64]:
+    """Slope beyond the first shapes over the largest of all, (...), 0 where all vanish."""
+    size = np.abs(slopes)
+    return size[..., count:].sum(axis=-1) / np.maximum(size.max(axis=-1), np.finfo(float).tiny)
 
 
 def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
@@ -478,13 +483,12 @@ def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
         near = condition.solve(punch, unit, near)
         ends.append(near)
         slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
-    (m, h), size, count = np.transpose(ends), np.abs(slopes), loads.shape[1] - 1
+    (m, h), count = np.transpose(ends), loads.shape[1] - 1
     shapes = np.array(slopes)[:, :count]
     v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
     lowest = np.asarray(punch.height(m)) / units
-    unresolved = size[:, count:].sum(axis=1) / size.max(axis=1)
     free = np.ones((len(m), 2), dtype=bool)
-    return np.column_stack([v0, shapes]), h, m, free, lowest, unresolved
+    return np.column_stack([v0, shapes]), h, m, free, lowest, left_out(np.array(slopes), count)
 
 
 def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:

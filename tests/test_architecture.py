@@ -49,7 +49,7 @@ PURE = {
 }  # fmt: skip
 #: What finite elements are compared with, and may not use: but the mode that prescribes the closed form's
 #: pressure has that.
-TRACTION, FORMULA = "solvers/fem/prescribed_pressure.py", "solvers.contact.closed_form"
+TRACTION, FORMULA = "solvers/fem/traction.py", "solvers.contact.closed_form"
 SOLUTIONS = (
     FORMULA, "solvers.contact.exact",
     "solvers.contact.equation", "solvers.contact.contacts", "solvers.contact.on_layers",

@@ -38,8 +38,7 @@ from ..contact.solution import Contact, Task
 from ..errors import SolveError
 from ..profiles.punches import Flat, Parabolic
 from .discretisation import Discretisation
-from .displacement import Displacement
-from .fields import Slopes
+from .fields import Displacement, Slopes
 from .ladder import Gauge, Level, joined, of_pressure
 from .punch import LEAST, ContactStates, Punch, SlidingPunch, sliding_punch
 from .solution import SolvedStates

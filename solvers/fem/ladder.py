@@ -24,7 +24,7 @@ from ..contact.pressure import Expansion
 from ..contact.solution import Task
 from ..contact.stresses import Surface, Turns, turns_at_ends
 from .discretisation import Discretisation
-from .displacement import Displacement
+from .fields import Displacement
 from .punch import spread
 from .solution import Solution, SolvedStates, solution_of
 from .space import Space

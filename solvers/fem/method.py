@@ -17,9 +17,9 @@ from .contact import PUNCHES
 from .discretisation import Discretisation, quiet_compiler
 from .ladder import to_tolerance
 from .own_meshes import BetweenKinks, OverLayers
-from .prescribed_pressure import FormulaLevel, PiecesLevel, WholeLevel
 from .space import Space
 from .sweep import Fit, train
+from .traction import FormulaLevel, PiecesLevel, WholeLevel
 
 #: Levels of states that share a mesh, by the plan's mode.
 LEVELS: dict[str, Any] = PUNCHES | {

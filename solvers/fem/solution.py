@@ -21,7 +21,7 @@ from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
 from ..contact.stresses import Surface, Turns, together
 from ..contact.yielding import InSolid
-from .displacement import Displacement
+from .fields import Displacement
 from .punch import ContactStates
 
 #: Least distance over a from an end or a kink at which stresses of an elastic punch are evaluated.

@@ -22,7 +22,7 @@ from . import versions
 from .cells import image
 from .element import size_of_cells
 from .forms import traction_form, weak_form
-from .space import NodalForces, Space, Traction
+from .space import Space, Traction
 from .versions import compiling
 
 #: Degree to which the traction times a test function is integrated on facets: next to the edges of the
@@ -137,7 +137,9 @@ class DolfinxSpace(Space):
         )
         return self._compiled(form), traction
 
-    def nodal_forces(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> NodalForces:
+    def nodal_forces(
+        self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
         """Consistent nodal forces of the traction under a flat punch, by a linear form over ``ds``.
 
         Raises:
@@ -151,7 +153,7 @@ class DolfinxSpace(Space):
         b = versions.vector(form)
         forces = np.array(b.getValues(self.contact.dofs(1)))
         b.destroy()
-        return NodalForces(self.contact.numbers, self.contact.s[self.contact.owned], forces)
+        return self.contact.numbers, self.contact.s[self.contact.owned], forces
 
     def cell_values(
         self, fields: Sequence[PETSc.Vec], response: HalfPlane, cells: NDArray[np.int64]

@@ -34,7 +34,6 @@ from scipy.sparse import coo_matrix, csr_matrix
 from ..approximation import lagrange
 from ..solids.half_plane import HalfPlane
 from . import cells, versions
-from .element import Element
 from .space import Space
 
 #: Rate at which the highest polynomial is damped, over c_s and the cell's shorter side; the share of
@@ -155,10 +154,9 @@ class Motion:
     @cached_property
     def K(self) -> csr_matrix:
         """Matrix of the steady form, (unknowns, unknowns)."""
-        space, element = self.space, Element(self.space.reference_nodes)
-        dofs = np.arange(element.size)
+        space, dofs = self.space, np.arange(self.space.kernel.size)
         chart = space.contracted(self.response)
-        matrices = element.matrices(self.H, chart, space.vertices, [(dofs, dofs)])[0]
+        matrices = space.kernel.matrices(self.H, chart, space.vertices, [(dofs, dofs)])[0]
         return self._sum(matrices, versions.cell_nodes(space.V))
 
     @cached_property

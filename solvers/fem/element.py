@@ -26,6 +26,8 @@ from .cells import Contracted
 
 #: Products of functions that are computed at once, so that they stay in the processor's cache.
 _PRODUCTS = 700_000
+#: Numbers of the element matrices that are treated at once: some ten megabytes.
+_NUMBERS = 2_000_000
 
 #: Factors of functions: values (points, functions) along the first direction, and along the second.
 _Factors = tuple[NDArray, NDArray]
@@ -36,14 +38,18 @@ class Element:
 
     Args:
         reference: places of the nodes in the unit square, (nodes, 2).
-        pressures: polynomials along each direction for an unknown pressure, orthonormal on the unit
-            square; the first of their products is constant.
+        inner: numbers of the nodes inside the cell, whose unknowns are eliminated.
+        pressures: polynomials along each direction for an unknown discontinuous pressure, orthonormal on
+            the unit square; the first of their products is constant. 0 or at least 2: two unknowns stay,
+            as without its mean the pressure inside a cell is not determined.
 
     Attributes:
         size: unknowns of a cell: two of each node, then the pressures.
+        nodes: number of nodes.
+        at_once: number of cells that are treated at once.
     """
 
-    def __init__(self, reference: NDArray, pressures: int = 0) -> None:
+    def __init__(self, reference: NDArray, inner: NDArray[np.int32], pressures: int = 0) -> None:
         grid, nodes = cells.tensor_order(reference)
         # The integrand is not polynomial in a conformal chart; so many points, exact to two degrees above
         # the product of gradients, integrate it as well as the space can tell.
@@ -52,7 +58,9 @@ class Element:
         self._weights = np.outer(weights, weights)
         value, slope = lagrange(nodes, self._points)
         gradient = [(slope, value), (value, slope)]
+        self.nodes, self.inner = len(reference), inner
         self.size = 2 * len(reference) + pressures**2
+        self.at_once = max(16, _NUMBERS // self.size**2)
         self._pressures, self._side = pressures, len(nodes)
         self._blocks = [_Block(3, gradient, gradient)]
         if pressures:
@@ -160,6 +168,56 @@ class Element:
         starts = np.cumsum([0] + [block.size for block in self._blocks])
         return starts[block] + (within * lefts * rights + first) * lefts * rights + second
 
+    @cached_property
+    def outer(self) -> NDArray[np.int64]:
+        """Local nodes on a cell's boundary."""
+        return np.setdiff1d(np.arange(self.nodes), self.inner)
+
+    @cached_property
+    def outer_dofs(self) -> NDArray[np.int64]:
+        """Local unknowns that stay: two a node on the cell's boundary, and two pressures."""
+        kept = 2 * self.nodes + np.arange(min(self._pressures, 2))
+        return np.concatenate([_dofs(self.outer), kept])
+
+    @cached_property
+    def inner_dofs(self) -> NDArray[np.int64]:
+        """Local unknowns that are eliminated."""
+        first = 2 * self.nodes + min(self._pressures, 2)
+        return np.concatenate([_dofs(self.inner), np.arange(first, self.size)])
+
+    def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
+        """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
+
+        Args:
+            H, chart, corners: see :meth:`matrices`.
+        """
+        K_bb, K_ib, K_ii = self._parts(H, chart, corners)
+        if self._pressures:
+            S = K_bb - K_ib.swapaxes(1, 2) @ np.linalg.solve(K_ii, K_ib)
+        else:
+            for L, half in zip(np.linalg.cholesky(K_ii), K_ib):
+                half.T[:] = dtrsm(1.0, L.T, half.T, side=1, overwrite_b=True)  # L⁻¹ K_ib
+            S = K_bb - K_ib.swapaxes(1, 2) @ K_ib
+        return _free_of_translations(S, len(self.outer))
+
+    def extend(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[Any]:
+        """Extensions E = -K_ii⁻¹ K_ib, which give inner unknowns from outer ones, (m, i, b)."""
+        _, K_ib, K_ii = self._parts(H, chart, corners)
+        return -np.linalg.solve(K_ii, K_ib)
+
+    def _parts(self, H: NDArray, chart: Contracted, corners: NDArray) -> list[NDArray[np.float64]]:
+        """Blocks K_bb, K_ib and K_ii of the element matrices, b outer and i inner unknowns."""
+        b, i = self.outer_dofs, self.inner_dofs
+        K_bb, K_ib, K_ii = self.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
+        if self._pressures:
+            # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
+            unit = 1.0 / size_of_cells(corners)[:, None]
+            of_b, of_i = (np.where(dofs < 2 * self.nodes, 1.0, unit) for dofs in (b, i))
+            K_bb *= of_b[:, :, None] * of_b[:, None, :]
+            K_ib *= of_i[:, :, None] * of_b[:, None, :]
+            K_ii *= of_i[:, :, None] * of_i[:, None, :]
+        return [K_bb, K_ib, K_ii]
+
 
 def _contracted(H: NDArray, entries: int, gradients: NDArray) -> NDArray[np.float64]:
     """Sums over pairs of axes, [cell, components, derivatives, second, first].
@@ -213,78 +271,6 @@ class _Block:
 def _pairs(left: NDArray, right: NDArray) -> NDArray[np.float64]:
     """Products of each function of one kind with each of another, (points, pairs)."""
     return (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
-
-
-#: Numbers of the element matrices that are treated at once: some ten megabytes.
-_NUMBERS = 2_000_000
-
-
-class CellMatrices(Element):
-    """Element matrices, inner unknowns eliminated.
-
-    Args:
-        reference: places of a cell's nodes in the unit square, (nodes, 2), two unknowns each.
-        inner: numbers of the nodes that lie inside the cell.
-        pressures: polynomials along each direction for a discontinuous pressure, whose unknowns follow
-            those of the nodes; 0 or at least 2. Two unknowns stay: without its mean the pressure inside
-            a cell is not determined.
-    """
-
-    def __init__(self, reference: NDArray, inner: NDArray[np.int32], pressures: int = 0) -> None:
-        super().__init__(reference, pressures)
-        self.nodes, self.inner = len(reference), inner
-        #: Number of cells that are treated at once.
-        self.at_once = max(16, _NUMBERS // self.size**2)
-
-    @cached_property
-    def outer(self) -> NDArray[np.int64]:
-        """Local nodes on a cell's boundary."""
-        return np.setdiff1d(np.arange(self.nodes), self.inner)
-
-    @cached_property
-    def outer_dofs(self) -> NDArray[np.int64]:
-        """Local unknowns that stay: two a node on the cell's boundary, and two pressures."""
-        kept = 2 * self.nodes + np.arange(min(self._pressures, 2))
-        return np.concatenate([_dofs(self.outer), kept])
-
-    @cached_property
-    def inner_dofs(self) -> NDArray[np.int64]:
-        """Local unknowns that are eliminated."""
-        first = 2 * self.nodes + min(self._pressures, 2)
-        return np.concatenate([_dofs(self.inner), np.arange(first, self.size)])
-
-    def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
-        """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
-
-        Args:
-            H, chart, corners: see :meth:`Element.matrices`.
-        """
-        K_bb, K_ib, K_ii = self._parts(H, chart, corners)
-        if self._pressures:
-            S = K_bb - K_ib.swapaxes(1, 2) @ np.linalg.solve(K_ii, K_ib)
-        else:
-            for L, half in zip(np.linalg.cholesky(K_ii), K_ib):
-                half.T[:] = dtrsm(1.0, L.T, half.T, side=1, overwrite_b=True)  # L⁻¹ K_ib
-            S = K_bb - K_ib.swapaxes(1, 2) @ K_ib
-        return _free_of_translations(S, len(self.outer))
-
-    def extend(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[Any]:
-        """Extensions E = -K_ii⁻¹ K_ib, which give inner unknowns from outer ones, (m, i, b)."""
-        _, K_ib, K_ii = self._parts(H, chart, corners)
-        return -np.linalg.solve(K_ii, K_ib)
-
-    def _parts(self, H: NDArray, chart: Contracted, corners: NDArray) -> list[NDArray[np.float64]]:
-        """Blocks K_bb, K_ib and K_ii of the element matrices, b outer and i inner unknowns."""
-        b, i = self.outer_dofs, self.inner_dofs
-        K_bb, K_ib, K_ii = self.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
-        if self._pressures:
-            # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.
-            unit = 1.0 / size_of_cells(corners)[:, None]
-            of_b, of_i = (np.where(dofs < 2 * self.nodes, 1.0, unit) for dofs in (b, i))
-            K_bb *= of_b[:, :, None] * of_b[:, None, :]
-            K_ib *= of_i[:, :, None] * of_b[:, None, :]
-            K_ii *= of_i[:, :, None] * of_i[:, None, :]
-        return [K_bb, K_ib, K_ii]
 
 
 def _free_of_translations(S: NDArray, nodes: int) -> NDArray[np.float64]:

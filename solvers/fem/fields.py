@@ -111,9 +111,8 @@ def surface_slopes(space: Space, fields: Sequence[PETSc.Vec], X: NDArray) -> Slo
 
 def gather(space: Space, fields: Sequence[PETSc.Vec]) -> SurfaceTrace:
     """Trace of displacement fields on the whole surface. Collective."""
-    facets = space.surface_facets(("contact", "free surface"))
-    u = space.fetch(fields, space.numbers[facets.nodes])
-    parts = space.comm.allgather((facets.s, u))
+    nodes, s = space.surface_facets(("contact", "free surface"))
+    parts = space.comm.allgather((s, space.fetch(fields, space.numbers[nodes])))
     s = np.concatenate([part[0] for part in parts])
     order = np.argsort(s[:, 0])
     return SurfaceTrace(s[order], np.concatenate([part[1] for part in parts])[order])

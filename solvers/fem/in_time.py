@@ -147,9 +147,9 @@ class SurfaceInTime:
 
     def __init__(self, motion: Motion, X: NDArray) -> None:
         self.X, self._motion = np.asarray(X, dtype=float), motion
-        facets = motion.space.surface_facets(("contact", "free surface"))
-        order = np.argsort(facets.s[:, 0])
-        self._s, self._nodes = facets.s[order], facets.nodes[order]
+        nodes, s = motion.space.surface_facets(("contact", "free surface"))
+        order = np.argsort(s[:, 0])
+        self._s, self._nodes = s[order], nodes[order]
         self._degree = motion.space.degree
 
     def strain(self, u: NDArray) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ from ..errors import MeshError
 from ..solids.half_plane import HalfPlane
 from . import versions
 from .cells import Contracted, model_cells
-from .element import CellMatrices
+from .element import Element
 from .forms import FORMS
 from .versions import create_mesh, tag_facets
 
@@ -118,34 +118,6 @@ class SurfaceNodes:
     def dofs(self, component: int) -> NDArray[np.int32]:
         """Global numbers of the owned unknowns, component 0 for u and 1 for v."""
         return np.asarray(self.numbers + np.int32(component))
-
-
-@dataclass(frozen=True)
-class SurfaceFacets:
-    """This rank's facets of the surface.
-
-    Attributes:
-        nodes: local node numbers of each facet in order of X, (F, p+1).
-        s: their surface coordinates, (F, p+1).
-    """
-
-    nodes: NDArray[np.int32]
-    s: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class NodalForces:
-    """∫ σ φ d(X/a) over N/(2a) of a traction on the contact; a node stands once for each of its facets.
-
-    Attributes:
-        numbers: global numbers of the nodes' first unknowns, (n,).
-        s: their surface coordinates, (n,).
-        forces: this rank's part, (n,).
-    """
-
-    numbers: NDArray[np.int32]
-    s: NDArray[np.float64]
-    forces: NDArray[np.float64]
 
 
 def consistent_forces(
@@ -372,11 +344,11 @@ class Space:
         return versions.vertices(self.mesh, self.mesh.topology.index_map(2).size_local)
 
     @cached_property
-    def kernel(self) -> CellMatrices:
+    def kernel(self) -> Element:
         """Condensed matrices of cells, and the nodes that condensation leaves."""
         inner = np.array(self.V.dofmap.dof_layout.entity_dofs(2, 0))
         # Two degrees less make displacement and pressure a stable pair on quadrilaterals.
-        return CellMatrices(self.reference_nodes, inner, (self.degree - 1) * self.mixed)
+        return Element(self.reference_nodes, inner, (self.degree - 1) * self.mixed)
 
     @cached_property
     def _cell_nodes(self) -> NDArray[np.int32]:
@@ -401,7 +373,7 @@ class Space:
         return (slice(start, start + step) for start in range(0, count, step))
 
     def condensed(self, response: HalfPlane, cells: Any) -> NDArray[np.float64]:
-        """Condensed matrices of some of this rank's cells, see ``CellMatrices.condense``."""
+        """Condensed matrices of some of this rank's cells, see :meth:`.element.Element.condense`."""
         return self._cells(self.kernel.condense, response, self.vertices[cells])
 
     def _cells(
@@ -409,8 +381,12 @@ class Space:
     ) -> NDArray[np.float64]:
         return part(self.densities(response, corners), self.contracted(response), corners)
 
-    def surface_facets(self, parts: Sequence[str]) -> SurfaceFacets:
-        """Facets of the named parts of the boundary whose cell this rank owns."""
+    def surface_facets(self, parts: Sequence[str]) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Facets of the named parts of the boundary whose cell this rank owns.
+
+        Returns:
+            Local numbers of each facet's nodes in order of X, and their surface coordinates, (F, p+1).
+        """
         topology, dofmap = self.mesh.topology, self.V.dofmap
         to_cell, to_facet = topology.connectivity(1, 2), topology.connectivity(2, 1)
         owned_cells = topology.index_map(2).size_local
@@ -424,18 +400,24 @@ class Space:
         index = np.array(nodes, dtype=np.int32).reshape(-1, self.degree + 1)
         s = self.chart.along_surface(self.coordinates[index])
         order = np.argsort(s, axis=1)
-        return SurfaceFacets(np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1))
+        return np.take_along_axis(index, order, 1), np.take_along_axis(s, order, 1)
 
-    def nodal_forces(self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()) -> NodalForces:
-        """Consistent nodal forces of a traction on the contact.
+    def nodal_forces(
+        self, σ_YY: Traction, knots: NDArray | tuple[float, ...] = ()
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
+        """Consistent nodal forces ∫ σ φ d(X/a) over N/(2a) of a traction on the contact.
 
         Args:
             σ_YY: the traction over N/(2a).
             knots: positions X over a, under the punch, between which it is smooth.
+
+        Returns:
+            Global numbers of nodes' first unknowns, their surface coordinates, and this rank's part of
+            the forces, (n,) each; a node stands once for each of its facets.
         """
-        facets, ends = self.surface_facets(("contact",)), self.contact.s[[0, -1]]
-        forces = consistent_forces(facets.s, self.chart, ends, σ_YY, knots)
-        return NodalForces(self.numbers[facets.nodes.ravel()], facets.s.ravel(), forces.ravel())
+        nodes, s = self.surface_facets(("contact",))
+        forces = consistent_forces(s, self.chart, self.contact.s[[0, -1]], σ_YY, knots)
+        return self.numbers[nodes.ravel()], s.ravel(), forces.ravel()
 
     def held(self, A: PETSc.Mat, response: HalfPlane, parts: Sequence[str]) -> PETSc.Mat:
         """The matrix with displacements held: "far" on the far boundary, "contact" for v under a punch.

@@ -71,13 +71,12 @@ class LoadedHalfPlane:
             σ_YY: the load.
             knots: positions X over a, under the punch, between which it is smooth.
         """
-        load, comm = self.space.nodal_forces(σ_YY, knots), self.space.comm
-        X = self.space.chart.surface_position(load.s)
-        resultant = comm.allreduce(float(load.forces.sum()))
-        moments = comm.allreduce(self._far.tests(X) @ load.forces)
+        (numbers, s, forces), comm = self.space.nodal_forces(σ_YY, knots), self.space.comm
+        resultant = comm.allreduce(float(forces.sum()))
+        moments = comm.allreduce(self._far.tests(self.space.chart.surface_position(s)) @ forces)
         for component in (1, 0):
             b = self.factor.A.createVecLeft()
-            b.setValues(load.numbers + component, load.forces, addv=PETSc.InsertMode.ADD_VALUES)
+            b.setValues(numbers + component, forces, addv=PETSc.InsertMode.ADD_VALUES)
             b.assemble()
             self._loads.append(np.array(b.array_r))
             b.destroy()

@@ -97,9 +97,9 @@ def test_a_traction_over_ds_is_what_a_graded_rule_makes_of_it():
     tensor, dolfinx = both("confocal", Refinement(4, 0.25, 1, (2.0,) * 3), 5, "isotropic")
     sums = []
     for space in (tensor, dolfinx):
-        load = space.nodal_forces(traction)
+        _, s, forces = space.nodal_forces(traction)
         of_nodes = np.zeros(len(space.contact.s))
-        np.add.at(of_nodes, np.searchsorted(space.contact.s, load.s - 1e-12), load.forces)
+        np.add.at(of_nodes, np.searchsorted(space.contact.s, s - 1e-12), forces)
         sums.append(of_nodes)
     np.testing.assert_allclose(sums[1], sums[0], atol=2e-7)
     np.testing.assert_allclose(sums[1].sum(), -2.0, rtol=1e-7)

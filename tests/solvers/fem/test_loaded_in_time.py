@@ -52,10 +52,10 @@ def motion_under(motion, h, steps, load):
 
         return solved
 
-    facets, f = space.surface_facets(("contact",)), np.zeros(motion.size)
+    (facets, s), f = space.surface_facets(("contact",)), np.zeros(motion.size)
     ends = space.contact.s[[0, -1]]
-    forces = consistent_forces(facets.s, space.chart, ends, lambda left, right: -np.ones_like(left), ())
-    np.add.at(f, 2 * facets.nodes.ravel() + 1, forces.ravel())
+    forces = consistent_forces(s, space.chart, ends, lambda left, right: -np.ones_like(left), ())
+    np.add.at(f, 2 * facets.ravel() + 1, forces.ravel())
     carried = motion.M - 2.0 * motion.response.c * γ * h * motion.B
     by_stage = factor(kron(carried, identity(2)) + (γ * h) ** 2 * motion.K)
 

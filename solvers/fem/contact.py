@@ -38,7 +38,7 @@ from ..contact.solution import Contact, Task
 from ..errors import SolveError
 from ..profiles.punches import Flat, Parabolic
 from .discretisation import Discretisation
-from .fields import Displacement, Slopes
+from .fields import Displacement
 from .ladder import Gauge, Level, joined, of_pressure
 from .punch import LEAST, ContactStates, Punch, SlidingPunch, sliding_punch
 from .solution import SolvedStates
@@ -145,13 +145,6 @@ class PunchLevel(Level):
         """Maps from nodal forces to moments, raw pressure and exponents."""
         space, X = self.space, self.task.places.X
         return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
-
-    @property
-    def slopes(self) -> Slopes:
-        """Slopes of the fields on the surface, at no place where no stress is requested."""
-        count = len(self.fields)
-        nowhere = Slopes(np.empty((2, 0, count)), np.empty((0, count)))
-        return self.gauged_displacement.slopes if self.work.stresses else nowhere
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, self.punch.slopes, self.continuation())

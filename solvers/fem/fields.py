@@ -30,6 +30,12 @@ from .space import Space
 _BETWEEN = 1e-9
 
 
+def unit_facet(s: NDArray) -> NDArray[np.float64]:
+    """Places of nodes on the unit facet, (p+1,), by those of all facets, (F, p+1), from the widest."""
+    widest = s[np.argmax(s[:, -1] - s[:, 0])]
+    return np.asarray((widest - widest[0]) / (widest[-1] - widest[0]))
+
+
 @dataclass(frozen=True)
 class SurfaceTrace:
     """Displacements of several fields along the surface, the same on every rank.
@@ -63,15 +69,8 @@ class SurfaceTrace:
         first = self.s[:, 0] - _BETWEEN * (self.s[:, -1] - self.s[:, 0])
         facet = np.maximum(np.searchsorted(first, s, side="right") - 1, 0)
         start, length = self.s[facet, 0], self.s[facet, -1] - self.s[facet, 0]
-        _, by_node = lagrange(self._reference_nodes, (s - start) / length)
+        _, by_node = lagrange(unit_facet(self.s), (s - start) / length)
         return by_node, self.u[facet], length
-
-    @property
-    def _reference_nodes(self) -> NDArray[np.float64]:
-        """Node positions on the unit facet, (p+1,), the same for all facets."""
-        widest = np.argmax(self.s[:, -1] - self.s[:, 0])
-        s = self.s[widest]
-        return (s - s[0]) / (s[-1] - s[0])
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ from galinx.clock import Clock
 from ..approximation import lagrange
 from ..transient.history import History, Way
 from .dynamic import Motion, of_both
-from .fields import SurfaceTrace
+from .fields import SurfaceTrace, unit_facet
 from .linear import ArraySolver
 
 #: On the diagonal, so that one matrix serves all stages.
@@ -167,26 +167,20 @@ class SurfaceInTime:
             forces: consistent nodal forces over N/2 at the contact nodes, (nodes,).
             α, β: exponents at X = a and X = -a.
         """
-        X, p = self._motion.X, self._degree
+        X, p, reference = self._motion.X, self._degree, unit_facet(self._s)
         mass, shapes = np.zeros((len(X), len(X))), np.zeros((len(self.X), len(X)))
         of_place = np.clip(np.searchsorted(X[::p], self.X, side="right") - 1, 0, len(X) // p - 1)
         for k, (start, end) in enumerate(pairwise(X[::p])):
             nodes = slice(k * p, k * p + p + 1)
             t, w = _rule(start, end, (α, β), (k == 0, end == X[-1]), p + 1 + _MORE)
-            φ, _ = lagrange(self._reference, t)
+            φ, _ = lagrange(reference, t)
             mass[nodes, nodes] += φ.T @ (w[:, None] * φ)
             within = of_place == k
-            shapes[within, nodes] = lagrange(self._reference, (self.X[within] - start) / (end - start))[0]
+            shapes[within, nodes] = lagrange(reference, (self.X[within] - start) / (end - start))[0]
         under = np.abs(self.X) < 1.0
         weight = np.zeros_like(self.X)
         weight[under] = (1.0 - self.X[under]) ** α * (1.0 + self.X[under]) ** β
         return np.asarray(weight * (shapes @ solve(mass, forces, assume_a="pos")))
-
-    @property
-    def _reference(self) -> NDArray[np.float64]:
-        """Places of nodes on the unit facet, from the widest facet, (p+1,)."""
-        widest = self._s[np.argmax(self._s[:, -1] - self._s[:, 0])]
-        return np.asarray((widest - widest[0]) / (widest[-1] - widest[0]))
 
 
 def _rule(

@@ -14,7 +14,7 @@ fit. A fitted speed has that error and the error of the discretisation (:class:`
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, contextmanager
-from typing import Any, NamedTuple, TypeAlias, TypeVar
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from mpi4py import MPI
@@ -212,7 +212,10 @@ class Fit:
         """Sample of a solved speed, without the singular factors of the edges."""
         punch, with_fields = level.punch, bool({BELOW, YIELD, AT_INTERFACES} & self._work.stresses)
         parts = punch.parts(self.at.nodes).swapaxes(0, 1)
-        slopes = np.concatenate([parts @ of_all.T for of_all in level.slopes.basis], axis=2)
+        basis = np.empty((2, 0, parts.shape[2]))
+        if self._work.stresses:
+            basis = level.gauged_displacement.slopes.basis
+        slopes = np.concatenate([parts @ of_all.T for of_all in basis], axis=2)
         fields = np.array([field.array_r if with_fields else [] for field in punch.fields])
         forces_over, slopes_over, _ = self._singular(task)
         return parts @ punch.forces[:, -1] / forces_over, slopes / slopes_over, parts @ fields
@@ -451,32 +454,28 @@ def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[st
     return {gauge.word: float(gauge.change(other).max()) for gauge, other in zip(gauges, others)}
 
 
-_Item = TypeVar("_Item")
-_Result = TypeVar("_Result")
-
-
-def by_turns(items: Sequence[_Item], solve: Callable[[_Item], _Result], together: bool) -> list[_Result]:
-    """Results of all items, on every rank, each solved by one of them; collective over MPI's world.
+def by_turns(numbers: list[int], solve: Callable[[int], Speed], together: bool) -> list[Speed]:
+    """Speeds, on every rank, each solved by one of them; collective over MPI's world.
 
     Args:
-        items: items, equal on every rank.
-        solve: solves an item.
-        together: True where all ranks solve each item collectively.
+        numbers: of the speeds, equal on every rank.
+        solve: solves a speed.
+        together: True where all ranks solve each speed collectively.
 
     Raises:
-        SolveError: an item could not be solved; on every rank.
+        SolveError: a speed could not be solved; on every rank.
     """
     world = MPI.COMM_WORLD
     if together or world.size == 1:
-        return [solve(item) for item in items]
-    mine: list[_Result] = []
+        return [solve(number) for number in numbers]
+    mine: list[Speed] = []
     failure: SolveError | None = None
     try:
-        mine.extend(solve(item) for item in items[world.rank :: world.size])
+        mine.extend(solve(number) for number in numbers[world.rank :: world.size])
     except SolveError as error:
         failure = error
     of_all = world.allgather((mine, failure))
     for _, failed in of_all:
         if failed:
             raise failed
-    return [of_all[i % world.size][0][i // world.size] for i in range(len(items))]
+    return [of_all[i % world.size][0][i // world.size] for i in range(len(numbers))]

@@ -24,6 +24,7 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..approximation import chebyshev_nodes, polynomial_through
 from ..solids.half_plane import HalfPlane
 from .history import History
 from .transform import Basis, Transformed
@@ -133,11 +134,9 @@ class FrictionInterpolation:
             self._take(count)
 
     def _take(self, count: int) -> None:
-        self._angles = pi * (np.arange(count) + 0.5) / count
-        self.bases = [
-            Basis(self._response, self._middle + self._half * node, self._terms)
-            for node in np.cos(self._angles)
-        ]
+        low, high = self._middle - self._half, self._middle + self._half
+        self._at = polynomial_through(chebyshev_nodes(count, low, high))
+        self.bases = [Basis(self._response, g, self._terms) for g in self._at.nodes.tolist()]
 
     def _off(self) -> float:
         values = np.array([basis.pressure(_PLACES) for basis in self.bases])
@@ -151,11 +150,8 @@ class FrictionInterpolation:
 
     def shares(self, g: ArrayLike) -> NDArray[np.float64]:
         """Weights of the few frictions in the interpolation at frictions g, (...,): (..., few)."""
-        count = len(self._angles)
-        x = np.clip((np.asarray(g) - self._middle) / max(self._half, _SAME), -1.0, 1.0)
-        orders = np.arange(count)
-        by_node = np.cos(np.outer(self._angles, orders)) * np.where(orders == 0, 1.0, 2.0) / count
-        return np.asarray(np.cos(np.arccos(x)[..., None] * orders) @ by_node.T)
+        within = np.clip(g, self._middle - self._half, self._middle + self._half)
+        return self._at.shares(within.ravel()).reshape(*within.shape, -1)
 
 
 #: Steps for which the effect of earlier steps is summed together.

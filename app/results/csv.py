@@ -86,7 +86,7 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
 
 
 def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[_Column]:
-    """Columns that number the parts of a table, interfaces from 1, others from 0; the outermost from start."""
+    """Columns of the numbers of parts, interfaces from 1, others from 0, the outermost from start."""
     first, *others = np.indices(shape, sparse=True)
     numbers = zip(over, (first + start, *others))
     return [(_NUMBERED[name], at + (name == INTERFACE)) for name, at in numbers if name in _NUMBERED]

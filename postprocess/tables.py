@@ -298,7 +298,7 @@ def _least(units: Units) -> dict[str, float]:
 
 
 def _without_tension(data: Mapping[str, Any], columns: list[Column]) -> list[Column]:
-    """Columns without a largest tension where σ_XX is less than 0 and largest at the end of what is seen."""
+    """Columns without a tension where σ_XX is less than 0 and largest at the end of what is output."""
     row, place = (preferred(data, rows) for rows in (stresses.HIGHEST, stresses.HIGHEST_X))
     if not row or not place:
         return columns

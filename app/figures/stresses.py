@@ -111,8 +111,8 @@ class Surface:
         values: numbers in the figure's units by name and by method, (rows, points).
         places: factor and offset that turn X into positions in the figure, of each row.
         position: name of the axis of positions.
-        half: positions over a that are shown; 0 for those that the contact needs, where lines break at its
-            edges.
+        half: positions over a that are shown; 0 for those that the contact needs, where lines
+            break at its edges.
     """
 
     X: NDArray[np.float64]

@@ -153,6 +153,9 @@ class _Sweep:
             answers = [name for name in _ANSWERS if name in changing]
             usual = [*answers, *_INTENSITIES] if answers else _OF_EDGES
             shown = [name for name in usual if name in changing] or changing
+            ends = [self.columns[name].best for name in _INTENSITIES if name in shown]
+            if len(ends) == 2 and np.allclose(*ends, rtol=_SAME, atol=0.0, equal_nan=True):
+                shown.remove(_INTENSITIES[1])  # over N both ends of a flat punch have the same
             self.drawn, self.more = shown[:_PANELS], [name for name in changing if name not in shown]
 
     def _over(self, selected: NDArray) -> tuple[str, str, NDArray]:

@@ -337,12 +337,9 @@ def compared(
     return Drawing("compare", caption, figure, left_out=left_out)
 
 
-#: Curves of friction along the contact that can be told apart.
-_FRICTIONS = 4
-
-
-#: Accuracy of the pressure with one friction beside that with friction along the contact.
-_DRAWN = 1e-4
+#: Curves of friction along the contact that can be told apart, and accuracy of pressures
+#: with one friction beside those.
+_FRICTIONS, _DRAWN = 4, 1e-4
 
 
 def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[np.float64]:
@@ -600,7 +597,7 @@ def inside(of: Archive) -> Drawing:
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
-    dashes, panels, off, yields, both = _interfaces(of), [], 0.0, False, False
+    dashes, panels, off = _interfaces(of), list[Panel](), 0.0
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
         clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
@@ -608,20 +605,20 @@ def inside(of: Archive) -> Drawing:
             beside = fields.of_states(name, other, states)[0]
             off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
         for k, state in enumerate(states):
-            label = fields.label(name) if k == len(states) - 1 else ""
-            above = fields.above(name, method, state)
-            options = {"extend": _CLIPPED[clipped], "lines": alone, "label": label, "above": above}
-            panel = fields.panel(name, every[k], state, limit, **options)
-            assert panel.map
-            bodies = [(panel.map.values, panel.map.level), *([above] if above else ())]
-            yields |= any(0.0 < level < field.max() for field, level in bodies)
-            both |= above is not None
+            panel = fields.panel(
+                name, every[k], state, limit, extend=_CLIPPED[clipped], lines=alone,
+                above=fields.above(name, method, state),
+                label=fields.label(name) * (k == len(states) - 1),
+            )  # fmt: skip
             panels.append(replace(
                 panel, x=panel.x if not wide or n == len(names) - 1 else None,
                 y=panel.y if k == 0 else None, dashes=dashes,
                 title=labels.label(state, apart) if n == 0 or not wide else "",
             ))  # fmt: skip
     maps = [panel.map for panel in panels if panel.map]
+    both = any(m.above for m in maps)
+    bodies = [body for m in maps for body in ((m.values, m.level), m.above) if body]
+    yields = any(0.0 < level < values.max() for values, level in bodies)
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
     panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1

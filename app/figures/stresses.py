@@ -529,8 +529,9 @@ class Fields:
         if held or name == "max_shear":
             return each[0] if held else maximum_shear(*each)
         solids = [of_state(of.scene, state)[0].solid for state in states]
-        ZZ = [solid.σ_ZZ(*components) for solid, *components in zip(solids, *each)]
-        return von_mises(*each, np.array(ZZ))
+        XX, YY, XY = each
+        ZZ = [solid.σ_ZZ(*components) for solid, *components in zip(solids, XX, YY, XY)]
+        return von_mises(XX, YY, XY, np.array(ZZ))
 
     def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
         """A stress of states, (states, rows, columns), and the largest with its own colour."""

@@ -151,12 +151,14 @@ class _Sweep:
                 if name not in apart and any(_varies(column.best[own]) for _, own in self.groups)
             ]  # fmt: skip
             answers = [name for name in _ANSWERS if name in changing]
-            usual = [*answers, *_INTENSITIES] if answers else _OF_EDGES
-            shown = [name for name in usual if name in changing] or changing
-            ends = [self.columns[name].best for name in _INTENSITIES if name in shown]
-            if len(ends) == 2 and np.allclose(*ends, rtol=_SAME, atol=0.0, equal_nan=True):
-                shown.remove(_INTENSITIES[1])  # over N both ends of a flat punch have the same
-            self.drawn, self.more = shown[:_PANELS], [name for name in changing if name not in shown]
+            asked = [*answers, *_INTENSITIES] if answers else _OF_EDGES
+            shown = [name for name in asked if name in changing] or changing
+            if {*_INTENSITIES} <= {*shown}:  # over N both ends of a flat punch have the same
+                left, right = (self.columns[name].best for name in _INTENSITIES)
+                if np.allclose(left, right, rtol=_SAME, atol=0.0, equal_nan=True):
+                    shown.remove(_INTENSITIES[1])
+            self.drawn = shown[:_PANELS]
+            self.more = [name for name in changing if name not in self.drawn]
 
     def _over(self, selected: NDArray) -> tuple[str, str, NDArray]:
         """Parameter or quantity that numbers are drawn over, the name of its axis, and its numbers."""

@@ -132,8 +132,11 @@ def solve_states(
             task = tasks[parameters["c"]]
             task = replace(task, body=task.body.loaded(parameters.get("load")))
             degree = degrees[i] or fem.degrees[task.number] + more
-            with method.one_state(task, parameters["g"], degree) as displacement:
-                yield Solved(scene, number, parameters, task, degree, *displacement, method.work.comm)
+            with method.one_state(task, parameters["g"], degree) as (space, fields, weights, pressure):
+                comm = method.work.comm
+                yield Solved(
+                    scene, number, parameters, task, degree, space, fields, weights, pressure, comm
+                )
 
     return solved()
 

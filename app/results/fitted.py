@@ -104,7 +104,7 @@ def read(path: Path) -> Table:
         raise BadInput(f"{path}, line 1: found a friction force without a load, expected {_FORM}")
     else:
         both = columns["force"], columns["load"]
-        unit = forces.get(both[0])
+        unit = forces.get(both[0], "")
         if not unit or unit != forces.get(both[1]):
             found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
             raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")

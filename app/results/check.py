@@ -54,9 +54,9 @@ from ..run.solve import Work
 from ..scene import read as scenes
 from ..scene.scene import Scene
 
-#: States of a method that are computed again, all of them under flat punches up to so many, and so many
-#: numbers of these.
-_FEW, _FLAT, _NUMBERS = 6, 2000, 1_000_000
+#: States of a method that are computed again; under smooth punches without layers; all of them under flat
+#: punches up to so many, and so many numbers of these.
+_FEW, _SMOOTH, _FLAT, _NUMBERS = 6, 24, 2000, 1_000_000
 #: Relative difference of closed forms, absolute one of places over a, and tolerances that equations are
 #: apart which were solved with other frictions beside them.
 _SAME_AGAIN, _PLACE, _TOLERANCES = 1e-6, 1e-3, 10.0
@@ -100,6 +100,7 @@ def _of_part(part: _Part) -> Iterator[str]:
     if runs.RECORD["c"].path in part.data and not len(part.data[runs.FAILURES.path]):
         yield from _of_record(part.data, plan)
     few = _spread(plan.states, _FEW)
+    more = _spread(plan.states, _SMOOTH) if smooth(plan.body.profile) else few
     for method in (CLOSED_FORM, SIE):
         by = (method, LOCAL) if method == CLOSED_FORM else (method,)
         # Residuals may be rounding alone; comparisons have them.
@@ -107,17 +108,16 @@ def _of_part(part: _Part) -> Iterator[str]:
         slow = [row for row in rows if row.asked_by == YIELD]
         quick = [row for row in rows if row not in slow]
         many = max(_NUMBERS // max(sum(int(np.prod(plan.shape(row))) for row in quick), 1), _FEW)
-        flat = method == CLOSED_FORM and FLAT not in plan.body.lacks
-        for rows, selected in (
-            (quick, _spread(plan.states, min(_FLAT, many)) if flat else few),
-            (slow, few),
-        ):
+        again = few if method == SIE else more
+        if method == CLOSED_FORM and FLAT not in plan.body.lacks:
+            again = _spread(plan.states, min(_FLAT, many))
+        for rows, selected in ((quick, again), (slow, few)):
             methods = (method,) * (method in plan.methods)
             for numbers, computed in _computed(part, methods, selected, rows) if rows else ():
                 yield from _different(part, numbers, computed)
     if plan.fem and not part.scene.layers:
-        yield from _of_invariants(part, few)
-        yield from _of_finite_elements(part, few)
+        yield from _of_invariants(part, more)
+        yield from _of_finite_elements(part, more)
 
 
 #: Words of earlier archives, and those that stand for them now.

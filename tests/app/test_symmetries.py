@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 from combined import (
     METHODS,
-    PRESSURE,
-    PROFILE,
     UNITS,
-    Case,
     answers,
     cases,
     check_same,
@@ -77,18 +74,3 @@ def test_other_units(case):
     assert set(image) == set(original)
     for name, values in original.items():
         check_same(values, image[name] / UNITS[declared(name).unit], 1e-6, name)
-
-
-@pytest.mark.parametrize(
-    "punch", [*PROFILE, *(name for name, rows in PRESSURE.items() if rows)][:: 1 if THOROUGH else 2]
-)
-def test_a_layer_of_the_same_solid_is_none(punch):
-    """The integral equation of layers, and what follows from it, against that of the uniform solid."""
-    words = tuple(word for word in words_of("isotropic") if word != YIELD)
-    uniform = solved(Case("isotropic", punch, words, ("closed_form",)))
-    layered = solved(Case("isotropic layer", punch, words, ("sie",), tolerance=1e-6))
-    names = {name: name.replace("/closed_form/", "/sie/") for name in uniform if "closed_form" in name}
-    compared = [name for name, other in names.items() if other in layered]
-    assert {name.split("/")[0] for name in compared} >= {"surface", "interior"}
-    for name in compared:
-        check_same(uniform[name], layered[names[name]], 1e-5, name)

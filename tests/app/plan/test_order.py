@@ -36,7 +36,7 @@ def test_every_state_has_its_speed_and_its_load(seed):
     assert sorted(seen) == list(range(len(order)))
 
 
-def test_a_million_speeds_are_one_run_each():
-    order = Order(tuple(np.linspace(0.0, 0.9, 10**6).tolist()), (1.0,), 1, np.full(2, np.nan))
+def test_many_speeds_are_one_run_each():
+    order = Order(tuple(np.linspace(0.0, 0.9, 10**5).tolist()), (1.0,), 1, np.full(2, np.nan))
     runs = order.runs()
-    assert next(runs) == (slice(0, 2),) and next(runs) == (slice(2, 4),) and len(order) == 2 * 10**6
+    assert next(runs) == (slice(0, 2),) and next(runs) == (slice(2, 4),) and len(order) == 2 * 10**5

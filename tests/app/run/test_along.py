@@ -114,7 +114,7 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert not loops_sheet(result.data, result.units()).rows
 
 
-@pytest.mark.parametrize("row", [[0.203, 0.1], [0.2011, 0.6989]])
+@pytest.mark.parametrize("row", [*[[0.203, 0.1]] * THOROUGH, [0.2011, 0.6989]])
 def test_kinks_near_each_other_have_cells_between_them(row):
     result = slid({"along": [[-1, 0.2], [0.2, 0.7], row, [1, 0.5]]}, solve={"tolerance": 1e-4})
     assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]

@@ -45,7 +45,7 @@ def of_solid(seed, share):
     return f'kind = "anisotropic"\nstiffness = {constants!r}\nrho = 1000.0', repr(share * solid.limit())
 
 
-@pytest.mark.parametrize("seed", range(60) if THOROUGH else (0, 1, 2))
+@pytest.mark.parametrize("seed", range(60) if THOROUGH else (0, 1))
 @pytest.mark.parametrize("tolerance", (1e-6, 1e-9) if THOROUGH else (1e-6,))
 def test_finite_elements_find_a_parabolas_ends_in_any_solid(seed, tolerance):
     rng = np.random.default_rng(seed)
@@ -248,7 +248,9 @@ SMOOTH = {
 }
 
 
-@pytest.mark.parametrize("name, seed, share", list(zip(SMOOTH, (0, 1, 2), (0.3, 0.85, 0.6))))
+@pytest.mark.parametrize(
+    "name, seed, share", list(zip(SMOOTH, (0, 1, 2), (0.3, 0.85, 0.6)))[not THOROUGH :]
+)
 def test_smooth_punches_take_the_parabolas_way(name, seed, share, skew):
     """All states of a speed from one mesh, and the verdict of the defaults."""
     outputs = '["sif", "surface", "interior"]\npoints = [[0.0, -0.7], [1.1, -0.05]]'

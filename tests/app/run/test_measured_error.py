@@ -289,8 +289,8 @@ def test_the_error_of_a_speed_between_is_the_larger_one_beside_it_and_that_of_th
     beside = [Estimate(G, np.zeros(1), {"sif": np.array([[error]])}) for error in (1e-4, 3e-4)]
     fit = SimpleNamespace(
         speeds={}, _sweep=SimpleNamespace(z=np.array([0.0, 0.5, 1.0])), error={"sif": 5e-4},
-        estimates=dict(zip((0.0, 1.0), beside)), _work=SimpleNamespace(plan=SimpleNamespace(tolerance=1.0)),
-        space=level(0.0).space, level=nullcontext,
+        estimates=dict(zip((0.0, 1.0), beside)), _work=Work(1.0, None), space=level(0.0).space,
+        level=nullcontext,
     )  # fmt: skip
     with Fit.solved_at(fit, SimpleNamespace(number=1), G) as solved:
         assert solved.error.of(G)["sif"] == pytest.approx(8e-4) and solved.fitted

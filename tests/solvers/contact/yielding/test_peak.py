@@ -163,4 +163,4 @@ def test_stresses_of_layers_are_looked_at_beside_both_ends():
         at = end + 0.5e-3
         one = SimpleNamespace(_stress=lambda state, X, depth: np.exp(-(((X - at) / 2e-4) ** 2)))  # noqa: B023
         value, X = StrengthOfLayers._at_depth(one, 0, 1e-3)
-        assert value == pytest.approx(1.0, rel=1e-3) and X == pytest.approx(at, abs=1e-5)
+        assert value == pytest.approx(1.0, rel=1e-3) and pytest.approx(at, abs=1e-5) == X

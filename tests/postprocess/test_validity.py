@@ -119,44 +119,33 @@ def test_what_several_parts_say_is_one_sentence():
     assert "up to 3, and at least 1 or 2 in 3 states" in text
 
 
-@pytest.mark.parametrize("sign", ["physical", "eq25"])
-@pytest.mark.parametrize("μ, flutters", [(0.36, False), (0.38, True)])
-def test_the_threshold_of_flutter_is_that_of_the_solid(sign, μ, flutters):
+#: Solid, its angle, thresholds of the positive and the negative direction (None: above 2), and whether
+#: waves grow under a friction of either sign.
+FLUTTER = [
+    ("carbon-epoxy", 90, (0.37191991, 0.37191991), {0.36: (False, False), 0.38: (True, True)}),
+    ("copper", 30, (0.46258727, None), {0.5: (False, True)}),
+    ("copper", -30, (None, 0.46258727), {0.5: (True, False)}),
+]
+
+
+@pytest.mark.parametrize("material, angle, thresholds, flutters", FLUTTER)
+def test_the_threshold_of_flutter_is_that_of_the_solid_and_of_the_sign(
+    material, angle, thresholds, flutters
+):
     """Carbon fibres across the motion bear a third of the friction that isotropic solids do."""
-    result = computed(
-        "tables4_5",
-        CLOSED
-        | {
-            "solid.material": "carbon-epoxy", "solid.angle": "90 deg", "motion.c": 0.0,
-            "friction.model": "coulomb", "friction.mu_c": μ, "friction.sign": sign,
-            "motion.strokes": ["forward", "backward"],
-        },
-    )  # fmt: skip
-    for side in ("positive", "negative"):
-        np.testing.assert_allclose(result.data[f"states/flutter_{side}"], 0.37191991, atol=1e-8)
-    warnings = json.loads(result.attributes["warnings"])
-    assert any("at least 0.372" in text for text in warnings) == flutters
-
-
-def test_a_solid_at_an_angle_flutters_under_one_sign_of_friction_first():
-    told = {}
-    for angle, sign in ((30, "physical"), (30, "eq25"), (-30, "physical"), (-30, "eq25")):
-        changes = {
-            "solid.material": "copper", "solid.angle": f"{angle} deg", "motion.c": 0.0,
-            "friction.model": "coulomb", "friction.mu_c": 0.5, "friction.sign": sign,
-            "motion.strokes": ["forward"],
-        }  # fmt: skip
-        result = computed("tables4_5", CLOSED | changes)
-        told[angle, sign] = any("flutter" in text for text in json.loads(result.attributes["warnings"]))
-        low, high = sorted(result.data[f"states/flutter_{side}"][0] for side in ("positive", "negative"))
-        np.testing.assert_allclose(low, 0.46258727, atol=1e-8)
-        assert high > 2.0
-    assert told == {
-        (30, "physical"): False,
-        (30, "eq25"): True,
-        (-30, "physical"): True,
-        (-30, "eq25"): False,
-    }
+    for μ, of_signs in flutters.items():
+        for sign, flutter in zip(("physical", "eq25"), of_signs):
+            changes = {
+                "solid.material": material, "solid.angle": f"{angle} deg", "motion.c": 0.0,
+                "friction.model": "coulomb", "friction.mu_c": μ, "friction.sign": sign,
+                "motion.strokes": ["forward"],
+            }  # fmt: skip
+            result = computed("tables4_5", CLOSED | changes)
+            for side, expected in zip(("positive", "negative"), thresholds):
+                found = result.data[f"states/flutter_{side}"][0]
+                assert found == pytest.approx(expected, abs=1e-8) if expected else found > 2.0
+            warnings = json.loads(result.attributes["warnings"])
+            assert any("flutter" in text for text in warnings) == flutter
 
 
 def test_strokes_are_held_against_the_time_that_steady_motion_takes():

@@ -31,16 +31,8 @@ def test_forces_balance(tables_run):
     np.testing.assert_allclose(data["states/fem/tangential_force"], -55.3e3 * data["states/g"], rtol=1e-9)
 
 
-@pytest.mark.parametrize("mode", ["contact", "traction"])
-def test_finite_elements_need_no_closed_form(mode):
-    result = computed("tables4_5", ONE_SPEED | {"solve.methods": ["fem"], "solve.mode": mode})
-    assert not any("closed_form" in name for name in result.data)
-    assert np.isfinite(result.data["surface/fem/sigma_XX"]).all()
-    assert result.verdict == "PASS"
-
-
 @pytest.mark.parametrize(
-    "tolerance, c", [(1e-3, 0.0), (1e-3, 0.9), (1e-9, 0.0), *([(1e-9, 0.9)] if THOROUGH else [])]
+    "tolerance, c", [(1e-9, 0.0), *[(1e-9, 0.9), (1e-3, 0.0)] * THOROUGH, (1e-3, 0.9)]
 )
 def test_the_tolerance_is_reached_and_the_estimate_honest(c, tolerance):
     changes = {"motion.c": c, "solve.tolerance": tolerance, "friction.mu_c": 1.0}
@@ -56,29 +48,6 @@ def test_no_solid_locks(nu):
     found = disagreement(result)
     assert result.verdict == "PASS"
     assert found["K_I"] <= 1e-6 and found["sigma_XX"] <= 1e-5
-
-
-def test_box_is_limited_by_its_walls():
-    result = computed("box", SINGLE | {"motion.c": 4.786e-7})
-    assert 1e-3 < disagreement(result)["K_I"] < 1e-2
-
-
-def test_given_tractions_leave_the_punch_flat():
-    result = computed("traction", SINGLE)
-    found = disagreement(result)
-    assert found["slope under the punch"] <= 1e-6 and found["sigma_XX"] <= 1e-4
-    assert result.verdict == "PASS"
-
-
-def test_a_given_uniform_traction_has_its_known_stress():
-    """Uniform σ_YY = -1 without friction at rest: σ_XX = σ_YY under the load, 0 beside it."""
-    changes = {"solve.pressure": [[-1, -1], [1, -1]], "motion.c": 0.0, "motion.X_over_L": 0.0}
-    result = computed("traction", SINGLE | changes)
-    data = result.data
-    X, σ_XX = data["surface/X_over_a"], data["surface/fem/sigma_XX"][0]
-    np.testing.assert_allclose(σ_XX, np.where(np.abs(X) < 1.0, -1.0, 0.0), atol=1e-6)
-    assert data["states/fem/normal_force"] == pytest.approx(-55.3e3, rel=1e-12)
-    assert result.verdict == "PASS"
 
 
 def test_the_two_signs_of_friction_are_mirror_images(tables_run):

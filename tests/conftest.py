@@ -21,7 +21,7 @@ from support import HOME, SCENE, command, kept
 FAST = (
     "app/plan/", "app/scene/", "app/study/test_misprints.py", "app/study/test_published.py",
     "app/study/test_statements.py", "docs/test_docs.py", "docs/test_quotes.py", "frozen/",
-    "meshes/test_charts.py", "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
+    "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
     "solvers/contact/", "solvers/solids/", "solvers/test_rational.py", "test_architecture.py",
     "test_files.py", "test_texts.py",
 )  # fmt: skip

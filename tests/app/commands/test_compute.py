@@ -1,4 +1,4 @@
-"""Commands that compute: what they write, refuse and leave undone."""
+"""Commands that begin and compute: what they write, refuse and leave undone."""
 
 import subprocess
 import sys
@@ -7,6 +7,9 @@ import h5py
 import numpy as np
 import pytest
 from support import FEW_DEGREES, HOME, SCENE, THOROUGH, clean_environment, command, here
+
+from galinx.app.scene.library import templates
+from galinx.app.scene.read import read
 
 
 def test_one_and_two_ranks_agree(archives):
@@ -67,3 +70,23 @@ def test_a_verdict_has_its_status(tmp_path, ranks):
     assert done.returncode == 1 and "verdict: FAIL" in done.stdout
     assert "outer boundary" in done.stderr
     assert all(line.startswith("warning: ") for line in done.stderr.splitlines())  # none is mpirun's
+
+
+def test_init_writes_a_scene_once(tmp_path):
+    assert here("init", "own_material", "-o", "mine.toml", cwd=tmp_path).returncode == 0
+    scene = read(tmp_path / "mine.toml")
+    assert scene.solid.E == 3.3e9 and "#:schema" not in scene.text
+    before = (tmp_path / "mine.toml").read_bytes()
+    again = here("init", "tables4_5", "-o", "mine.toml", cwd=tmp_path)
+    assert again.returncode == 2 and "exists" in again.stderr
+    assert (tmp_path / "mine.toml").read_bytes() == before
+    unknown = here("init", "fig99", cwd=tmp_path)
+    assert unknown.returncode == 2 and "did you mean fig9?" in unknown.stderr
+    unknown = here("init", "zzz", cwd=tmp_path)
+    assert unknown.returncode == 2 and "own_material" in unknown.stderr
+    listed = here("init", cwd=tmp_path).stdout
+    assert all(name in listed for name in templates())
+
+
+def test_the_schema_is_what_the_command_prints():
+    assert here("schema").stdout == (HOME / "scenes" / "scene.schema.json").read_text(encoding="utf-8")

@@ -43,7 +43,7 @@ def random_scene(seed):
     return friction, solid, rng.uniform(0.0, 0.6)
 
 
-@pytest.mark.parametrize("seed", range(20) if THOROUGH else (1, 2, 4))
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (1, 2))
 def test_both_methods_agree_within_tolerance_and_estimate(seed):
     result = slid(*random_scene(seed))
     data = result.data
@@ -70,7 +70,7 @@ def random_cylinder(seed):
     return friction, solid, rng.uniform(0.0, 0.6), {"load": f"{rng.uniform(10.0, 200.0)} N/mm"}
 
 
-@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 1, 2))
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 2))
 def test_free_ends_by_both_methods(seed):
     *of_scene, load = random_cylinder(seed)
     result = slid(*of_scene, punch={"profile": "parabolic", "radius": "50 mm"} | load)

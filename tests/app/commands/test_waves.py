@@ -1,10 +1,10 @@
 """Commands on waves: how fast those along layers run, what a punch answers to loads that oscillate."""
 
-from support import HOME, command, here
+from support import HOME, here
 
 
 def test_dispersion_of_a_scene(tmp_path):
-    done = command("dispersion", HOME / "scenes" / "coating.toml", "-o", tmp_path / "waves.png")
+    done = here("dispersion", HOME / "scenes" / "coating.toml", "-o", tmp_path / "waves.png")
     assert done.returncode == 0, done.stderr
     assert "highest speed of a punch: 919.40169 m/s" in done.stdout
     assert (tmp_path / "waves.png").stat().st_size > 10_000
@@ -15,7 +15,7 @@ def test_dispersion_of_a_scene(tmp_path):
 
 
 def test_a_scene_without_layers_has_one_speed(tmp_path):
-    done = command("dispersion", HOME / "scenes" / "tables4_5.toml", "-o", tmp_path)
+    done = here("dispersion", HOME / "scenes" / "tables4_5.toml", "-o", tmp_path)
     assert done.returncode == 2 and "found no layers" in done.stderr
     assert not list(tmp_path.iterdir())
 

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from support import command, computed, here, scene_of
+from support import computed, here, scene_of
 
 import galinx
 from galinx.app.plan import over_time
@@ -23,7 +23,7 @@ QUICK = {"time.end": 3.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
 
 def test_a_start_is_archived_judged_and_drawn(tmp_path):
     changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.every": 0.75}).items()]
-    done = command("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
+    done = here("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
     assert done.returncode == 0, done.stdout + done.stderr
     assert faults(tmp_path / "s.h5") == []
     result = galinx.load(tmp_path / "s.h5")

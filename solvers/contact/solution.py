@@ -387,7 +387,7 @@ class FreeEndContact(Contact):
     @property
     def lacks(self) -> dict[str, str]:
         reasons = super().lacks | {
-            PUNCH: "the contact has free ends",
+            PUNCH: "an end of the contact is, or may be, free",
             GIVEN_ENDS: "whose contact ends where the pressure says",
         }
         if not (exponent(self.profile) or 0.0) > 1.0:

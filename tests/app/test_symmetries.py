@@ -19,15 +19,18 @@ import galinx
 from galinx.app.scene.read import parse
 from galinx.postprocess.quantities import declared
 from galinx.postprocess.quantities.quantity import ALONG, POINT, STATE
-from galinx.solvers.contact import YIELD
+from galinx.solvers.contact import BELOW, YIELD
 
 #: Punches with kinks, under which what yields takes seconds to find.
 _SLOW = () if THOROUGH else ("cubic", "cusp", "rounded flat", "table")
 
 
 def _quick(case, method):
-    """Words that a case can be asked and are found in a moment."""
-    return tuple(w for w in words_of(case.solid, method) if w != YIELD or case.punch not in _SLOW)
+    """Words that a case can be asked and are found in a moment; below layers finite elements say it."""
+    slow = {YIELD} if case.punch in _SLOW else set()
+    if method == "exact" and case.layered and not THOROUGH:
+        slow |= {BELOW}
+    return tuple(word for word in words_of(case.solid, method) if word not in slow)
 
 
 #: By integral equations alone, which takes a moment, and by finite elements.

@@ -193,11 +193,12 @@ def run_page(page, shelf, folder):
 
 def _quoted(words, page):
     """Does a page need that a command is run: its archive, or what it says of the place it writes to?"""
-    name = words[2 if words[0] == "-n" else 0]
+    name, own = words[2 if words[0] in _ON_ITS_OWN else 0], words[0] == "-x"
     if name in _DRAWING:
+        words = words[2:] if own else words
         place, stem = words[words.index("-o") + 1] if "-o" in words else words[1], Path(words[1]).stem
         return any(f": {place}" in quote and stem in quote for quote in quotes(page))
-    if page.name in _PRINTED or name not in _OF_ARCHIVES:
+    if own or page.name in _PRINTED or name not in _OF_ARCHIVES:
         return True
     shown = "\n".join([*quotes(page), *blocks(page, "python")])
     stems = [Path(word).stem for word in words if word.endswith(".h5")]
@@ -207,7 +208,7 @@ def _quoted(words, page):
 
 def _read(words, folder):
     """Plan what a command would compute, or read its options."""
-    words = words[2:] if words[0] == "-n" else words
+    words = words[2:] if words[0] in _ON_ITS_OWN else words
     with chdir(folder):
         context = cli.commands[words[0]].make_context(words[0], [*words[1:]])
         if words[0] == "run":

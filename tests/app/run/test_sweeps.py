@@ -146,6 +146,7 @@ def test_what_no_fit_tells_well_enough_is_solved(monkeypatch, work_done):
     check(result, every, 1e-2)
 
 
+@pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
 def test_speeds_that_ask_for_different_degrees_cost_little_more_than_each_by_itself(work_done):
     """The fastest of them asks for two degrees more than the others, at which all of a fit are solved."""
     solid = Orthotropic(0.755e9, 5.85e9, 3.67e9, 0.066, -0.18, 0.1, 0.252e9, 1.67e3, 45.0, "stress")

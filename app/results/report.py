@@ -216,7 +216,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     }  # fmt: skip
     for name in surface.values if surface else ():
         assert surface
-        label = METHODS[next(iter(surface.values[name]))]
+        label = METHODS[min(surface.values[name], key=lambda method: method == FEM)]  # that of the line
         charts = [chart(panel) for panel in surface_panels(surface, name, shown, label)]
         for trace in (trace for drawn in charts for trace in drawn["data"]):
             trace["showlegend"] = bool(trace["name"])

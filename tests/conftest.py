@@ -21,7 +21,7 @@ from support import HOME, SCENE, command, kept
 FAST = (
     "app/plan/", "app/scene/", "app/study/test_misprints.py", "app/study/test_published.py",
     "app/study/test_statements.py", "docs/test_docs.py", "docs/test_quotes.py", "frozen/",
-    "meshes/test_charts.py", "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
+    "meshes/test_halfplane.py", "postprocess/", "solvers/friction/",
     "solvers/contact/", "solvers/solids/", "solvers/test_rational.py", "test_architecture.py",
     "test_files.py", "test_texts.py",
 )  # fmt: skip
@@ -33,7 +33,7 @@ FEM = (
     "app/commands/test_compute.py::test_one_and_two_ranks", "app/results/test_paraview.py::test_stresses",
     "app/run/test_fixed_degree.py::test_multigrid", "meshes/test_store.py", "mpi/",
     *(f"solvers/fem/test_{name}.py" for name in (
-        "compiler", "direct", "dolfinx_space", "element", "interior", "punch", "space", "versions",
+        "compiler", "direct", "dolfinx_space", "element", "punch", "space", "versions",
     )),
 )  # fmt: skip
 #: The longest file comes first, so that no worker has it left when the others are done.

@@ -13,6 +13,8 @@ from pathlib import Path
 from support import HOME, THOROUGH, clean_environment, here
 
 from galinx.app.cli import cli
+from galinx.app.commands import options
+from galinx.app.plan.plan import make_plan
 
 DOCS = HOME / "docs"
 PAGES = [HOME / "README.md", HOME / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
@@ -29,9 +31,13 @@ _STATUS = re.compile(r"#.*\bstatus (\d)\b")
 #: bring models, which would stay registered, or need a shell; what is left runs in this process.
 STARTED = "README.md"
 _ON_ITS_OWN = ("-n", "-x")
+#: Pages that quote what their runs print; of the others a run is planned alone whose archive no quote and
+#: no Python names, and what reads that archive has its options read.
+_PRINTED = (STARTED, "tutorial.md", "recipes.md", "howto_time.md", "howto_read_archive.md")
 #: Commands that draw, of which most pages quote nothing: their options are read, and other tests draw.
-#: Those that are quoted, or of the page above, are run, and all where GALINX_THOROUGH asks for it.
-_DRAWING = ("plot", "report", "fields")
+#: All are run where GALINX_THOROUGH asks for it.
+_DRAWING = ("plot", "report", "fields", "response", "dispersion")
+_OF_ARCHIVES = ("run", "paper", "show", "check", "compare", "csv")
 
 
 def name_of(page):
@@ -173,10 +179,8 @@ def run_page(page, shelf, folder):
         words = words_of(command)
         if words and words[0] in NOT_RUN:
             continue
-        drawn = words and words[0] in _DRAWING and page.name != STARTED
-        if drawn and not _quoted(words, page):
-            with chdir(folder):
-                cli.commands[words[0]].make_context(words[0], words[1:])
+        if words and not (THOROUGH or page.name == STARTED or _quoted(words, page)):
+            _read(words, folder)
             continue
         wanted = int((_STATUS.search(command) or [0, 0])[1])
         status, told = shelf.run(command, folder)
@@ -188,9 +192,28 @@ def run_page(page, shelf, folder):
 
 
 def _quoted(words, page):
-    """Does a page quote what a command says of the place that it writes to?"""
-    place = words[words.index("-o") + 1] if "-o" in words else words[1]
-    return THOROUGH or any(f": {place}" in quote for quote in quotes(page))
+    """Does a page need that a command is run: its archive, or what it says of the place it writes to?"""
+    name, own = words[2 if words[0] in _ON_ITS_OWN else 0], words[0] == "-x"
+    if name in _DRAWING:
+        words = words[2:] if own else words
+        place, stem = words[words.index("-o") + 1] if "-o" in words else words[1], Path(words[1]).stem
+        return any(f": {place}" in quote and stem in quote for quote in quotes(page))
+    if own or page.name in _PRINTED or name not in _OF_ARCHIVES:
+        return True
+    shown = "\n".join([*quotes(page), *blocks(page, "python")])
+    stems = [Path(word).stem for word in words if word.endswith(".h5")]
+    stems = stems or [Path(word).stem for word in words if word.endswith(".toml")]
+    return bool(stems) and all(re.search(rf"\b{stem}(_|\.h5)", shown) for stem in stems)
+
+
+def _read(words, folder):
+    """Plan what a command would compute, or read its options."""
+    words = words[2:] if words[0] in _ON_ITS_OWN else words
+    with chdir(folder):
+        context = cli.commands[words[0]].make_context(words[0], [*words[1:]])
+        if words[0] == "run":
+            given = (context.params[name] for name in ("scene", "changes", "unset"))
+            assert make_plan(options.read(*given))
 
 
 def run_python(page, folder):

@@ -169,15 +169,6 @@ def test_what_appears_or_changes_meanwhile_is_kept(made, tmp_path):
     assert path.is_fifo() and os.listdir(tmp_path) == ["a"]
 
 
-def test_a_full_disk_is_said_and_leaves_what_was_there(tmp_path):
-    (tmp_path / "a").write_bytes(FOREIGN)
-    target = Target(tmp_path / "a", overwrite=True)
-    with full_disk(100), pytest.raises(UnwritableArchive) as caught:
-        target.write(2000 * b"x")
-    assert "a: File too large; it needs 2 kB; " in str(caught.value) and "B are free" in str(caught.value)
-    assert (tmp_path / "a").read_bytes() == FOREIGN and os.listdir(tmp_path) == ["a"]
-
-
 def test_a_file_of_pieces_is_written_whole_or_not_at_all(tmp_path):
     (tmp_path / "a").write_bytes(FOREIGN)
     target = Target(tmp_path / "a", overwrite=True)

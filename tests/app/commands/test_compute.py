@@ -1,12 +1,14 @@
-"""Commands that compute: what they write, refuse and leave undone."""
+"""Commands that begin and compute: what they write, refuse and leave undone."""
 
 import subprocess
 import sys
 
 import h5py
 import numpy as np
-import pytest
-from support import FEW_DEGREES, HOME, SCENE, THOROUGH, clean_environment, command, here
+from support import HOME, SCENE, clean_environment, command, here
+
+from galinx.app.scene.library import templates
+from galinx.app.scene.read import read
 
 
 def test_one_and_two_ranks_agree(archives):
@@ -16,19 +18,6 @@ def test_one_and_two_ranks_agree(archives):
             np.testing.assert_allclose(b, a, rtol=1e-9)
         a, b = (file["surface/fem/sigma_XX"][()] for file in (one, two))
         np.testing.assert_allclose(b, a, rtol=1e-6, atol=1e-8)
-
-
-@pytest.mark.parametrize("scene", ["tables4_5", "traction"] if THOROUGH else ["tables4_5"])
-def test_more_ranks_than_speeds_agree_with_one(tmp_path, scene):
-    """They share a mesh of so few cells that not every rank has a node of the far boundary."""
-    values = []
-    for run, ranks in ((here, ()), (command, ("-n", 3))):
-        path = tmp_path / f"{len(ranks)}.h5"
-        done = run(*ranks, "run", f"scenes/{scene}.toml", "-o", path, *FEW_DEGREES)
-        assert done.returncode == 0, done.stderr
-        with h5py.File(path) as file:
-            values.append(file["surface/fem/sigma_XX"][()])
-    np.testing.assert_allclose(values[1], values[0], rtol=1e-9, atol=1e-9 * np.abs(values[0]).max())
 
 
 def test_an_archive_is_not_overwritten_unasked(archive):
@@ -59,11 +48,29 @@ def test_friction_alone_imports_nothing_slow(tmp_path):
     assert done.stdout.strip() == "[]", done.stderr
 
 
-@pytest.mark.parametrize("ranks", [(), ("-n", "2")])
-def test_a_verdict_has_its_status(tmp_path, ranks):
+def test_a_verdict_has_its_status(tmp_path):
     scene, target = HOME / "scenes" / "box.toml", tmp_path / "box.h5"
-    run = command if ranks else here
-    done = run(*ranks, "run", scene, "-o", target, "--set", "solve.tolerance=1e-3")
+    done = command("-n", 2, "run", scene, "-o", target, "--set", "solve.tolerance=1e-3")
     assert done.returncode == 1 and "verdict: FAIL" in done.stdout
     assert "outer boundary" in done.stderr
     assert all(line.startswith("warning: ") for line in done.stderr.splitlines())  # none is mpirun's
+
+
+def test_init_writes_a_scene_once(tmp_path):
+    assert here("init", "own_material", "-o", "mine.toml", cwd=tmp_path).returncode == 0
+    scene = read(tmp_path / "mine.toml")
+    assert scene.solid.E == 3.3e9 and "#:schema" not in scene.text
+    before = (tmp_path / "mine.toml").read_bytes()
+    again = here("init", "tables4_5", "-o", "mine.toml", cwd=tmp_path)
+    assert again.returncode == 2 and "exists" in again.stderr
+    assert (tmp_path / "mine.toml").read_bytes() == before
+    unknown = here("init", "fig99", cwd=tmp_path)
+    assert unknown.returncode == 2 and "did you mean fig9?" in unknown.stderr
+    unknown = here("init", "zzz", cwd=tmp_path)
+    assert unknown.returncode == 2 and "own_material" in unknown.stderr
+    listed = here("init", cwd=tmp_path).stdout
+    assert all(name in listed for name in templates())
+
+
+def test_the_schema_is_what_the_command_prints():
+    assert here("schema").stdout == (HOME / "scenes" / "scene.schema.json").read_text(encoding="utf-8")

@@ -8,6 +8,8 @@ import subprocess
 import pytest
 from support import HOME, SCENE, clean_environment, command, here, widest
 
+from galinx.app.console import Progress
+
 CLOSED = ("--set", 'solve.methods=["closed_form"]')
 #: Strokes that many waves cross: nothing is warned about.
 SLOW = ("--set", "motion.c=[1e-6, 2e-6]")
@@ -77,3 +79,11 @@ def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
         env=clean_environment(), capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.stderr == "" and done.stdout.endswith(("0\n", "141\n"))
+
+
+def test_warnings_are_heard_however_quiet_the_run_is(capsys, tmp_path):
+    for n, options in enumerate(({}, {"quiet": True}, {"verbose": True})):
+        with Progress(**options, log=tmp_path / f"{n}.log") as progress:
+            progress.warn("a mesh is damaged")
+        assert capsys.readouterr().err == "warning: a mesh is damaged\n"
+        assert "warning: a mesh is damaged" in (tmp_path / f"{n}.log").read_text(encoding="utf-8")

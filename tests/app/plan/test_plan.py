@@ -1,14 +1,19 @@
-"""What is planned of a scene, skipped, warned of and refused."""
+"""What is planned of a scene, skipped, warned of and refused; which state is which; speeds of a fit."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from random_solids import random_solid
 
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import lines, make_plan
-from galinx.app.plan.states import enumerate_states
-from galinx.solvers.solids.isotropic import Isotropic
+from galinx.app.plan.states import Order, enumerate_states
+from galinx.solvers.contact.fem_plan import LEAST, swept, variable
+from galinx.solvers.layers.layered import Layer, Layered
+from galinx.solvers.solids import Isotropic
 
 CLOSED = {"solve.methods": ["closed_form"], "output.quantities": ["friction", "sif"]}
 WEDGE = {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005}
@@ -107,3 +112,74 @@ def test_of_thousands_of_speeds_few_are_looked_at_and_named(monkeypatch):
     with pytest.raises(BadInput, match=r"\(399 in all\) is not below") as caught:
         make_plan(template("tables4_5", {"motion.c": speeds}))
     assert len(str(caught.value)) < 500
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_state_has_its_speed_and_its_load(seed):
+    rng = np.random.default_rng(seed)
+    speeds, loads, laws, places = rng.integers(1, 5, 4).tolist()
+    own = rng.choice(
+        [np.nan, 0.5, 0.6, 0.1], places, p=rng.choice([[1.0, 0, 0, 0], [0.4, 0.2, 0.2, 0.2]])
+    )
+    given = tuple((0.1 * np.arange(1, speeds + 1)).tolist())
+    N = tuple(rng.permutation(np.arange(1.0, loads + 1)).tolist())
+    order = Order(given, N, laws, own)
+    expected = [
+        (c if np.isnan(at) else at, load)
+        for c in given for load in N for _ in range(laws) for at in own
+    ]  # fmt: skip
+    assert len(order) == len(expected) and order.states * speeds == len(order)
+    assert list(zip(order.c, order.load(slice(0, len(order))))) == expected
+    assert order.load(slice(1, len(order))).tolist() == [load for _, load in expected[1:]]
+    # Every state is in one run of one speed, and each speed is met first in this order.
+    assert order.speeds == tuple(dict.fromkeys(c for c, _ in expected))
+    seen = []
+    for c, runs in zip(order.speeds, order.runs(), strict=True):
+        rows = [row for run in runs for row in range(run.start, run.stop)]
+        assert rows == sorted(rows) and {expected[row][0] for row in rows} == {c}
+        assert all(after.start > before.stop for before, after in pairwise(runs))
+        seen += rows
+    assert sorted(seen) == list(range(len(order)))
+
+
+def test_many_speeds_are_one_run_each():
+    order = Order(tuple(np.linspace(0.0, 0.9, 10**5).tolist()), (1.0,), 1, np.full(2, np.nan))
+    runs = order.runs()
+    assert next(runs) == (slice(0, 2),) and next(runs) == (slice(2, 4),) and len(order) == 2 * 10**5
+
+
+ISOTROPIC = Isotropic(E=1.0, ν=0.25, ρ=1.0)
+
+
+def responses(solid, count, most=0.95):
+    return [solid.response(c) for c in np.linspace(0.0, most * solid.limit(), count)]
+
+
+def test_few_speeds_are_solved_each_and_many_on_demand():
+    g = np.linspace(-0.5, 0.3, 40)
+    assert swept("auto", responses(ISOTROPIC, LEAST - 1), g) is None
+    assert swept("every", responses(ISOTROPIC, 100), g) is None
+    assert swept("auto", 100 * responses(ISOTROPIC, 2), g) is None  # the same over and over
+    sweep = swept("auto", responses(ISOTROPIC, LEAST), g)
+    assert len(sweep.z) == LEAST and sweep.g.tolist() == [-0.5, 0.3] and not sweep.few
+
+
+def test_few_frictions_are_sampled_themselves():
+    sweep = swept("auto", responses(ISOTROPIC, LEAST), np.array([0.2, -0.3, 0.2, 0.0]))
+    assert sweep.few and sweep.g.tolist() == [-0.3, 0.0, 0.2]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_variable_tells_speeds_of_any_solid_apart(seed):
+    solid = random_solid(seed)
+    for most in (0.99, 0.3, 1e-3, 1e-7):
+        z = variable(responses(solid, 50, most))
+        assert np.all(np.diff(z) > 0.0)
+
+
+@pytest.mark.parametrize("top", [ISOTROPIC, Isotropic(E=4.0, ν=0.3, ρ=1.5)])
+def test_over_layers_it_is_the_logarithm_of_the_distance_to_the_limit(top):
+    solid = Layered((Layer(0.5, top),), Isotropic(E=2.0, ν=0.2, ρ=1.0))
+    share = np.linspace(0.0, 0.99, 50)
+    z = variable([solid.response(c) for c in share * solid.limit()])
+    np.testing.assert_allclose(z, -np.log1p(-(share**2)), rtol=1e-9)

@@ -1,10 +1,11 @@
-"""Results in Python."""
+"""Results in Python, and in a notebook."""
 
 import numpy as np
 import pytest
-from support import command
+from support import here
 
 from galinx import load
+from galinx.app.errors import BadInput
 from galinx.postprocess.errors import Occupied
 
 
@@ -29,6 +30,19 @@ def test_saved_and_loaded_is_the_same(map_run, tmp_path):
     assert again.verdict == map_run.verdict == "PASS" and again.scene == map_run.scene
     for name, values in map_run.data.items():
         np.testing.assert_array_equal(again.data[name], values)
-    assert command("check", tmp_path / "a.h5").returncode == 0
+    assert here("check", tmp_path / "a.h5").returncode == 0
     with pytest.raises(Occupied, match="exists"):
         map_run.save(tmp_path / "a.h5")
+
+
+def test_plot_gives_a_figure_that_notebooks_show(exact_run, tmp_path, monkeypatch):
+    from matplotlib.figure import Figure
+
+    monkeypatch.chdir(tmp_path)
+    figure = exact_run.plot()
+    assert isinstance(figure, Figure) and not list(tmp_path.iterdir())
+    assert figure._repr_png_().startswith(b"\x89PNG")
+    friction = exact_run.figure("friction")
+    assert len(friction.axes) < len(figure.axes)
+    with pytest.raises(BadInput, match=r"figure 'surfcae': .*did you mean surface"):
+        exact_run.figure("surfcae")

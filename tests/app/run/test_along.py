@@ -43,7 +43,7 @@ def random_scene(seed):
     return friction, solid, rng.uniform(0.0, 0.6)
 
 
-@pytest.mark.parametrize("seed", range(20) if THOROUGH else (1, 2, 4))
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (1, 2))
 def test_both_methods_agree_within_tolerance_and_estimate(seed):
     result = slid(*random_scene(seed))
     data = result.data
@@ -70,7 +70,7 @@ def random_cylinder(seed):
     return friction, solid, rng.uniform(0.0, 0.6), {"load": f"{rng.uniform(10.0, 200.0)} N/mm"}
 
 
-@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 1, 2))
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 2))
 def test_free_ends_by_both_methods(seed):
     *of_scene, load = random_cylinder(seed)
     result = slid(*of_scene, punch={"profile": "parabolic", "radius": "50 mm"} | load)
@@ -114,7 +114,7 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert not loops_sheet(result.data, result.units()).rows
 
 
-@pytest.mark.parametrize("row", [[0.203, 0.1], [0.2011, 0.6989]])
+@pytest.mark.parametrize("row", [*[[0.203, 0.1]] * THOROUGH, [0.2011, 0.6989]])
 def test_kinks_near_each_other_have_cells_between_them(row):
     result = slid({"along": [[-1, 0.2], [0.2, 0.7], row, [1, 0.5]]}, solve={"tolerance": 1e-4})
     assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import HOME, THOROUGH, clean_environment, command, computed
+from support import HOME, THOROUGH, clean_environment, command, computed, here
 
 from galinx import template
 from galinx.app.results import check
@@ -34,7 +34,7 @@ SAID = re.compile(
 SWEEP = {
     "motion.c": [0.0, 0.2, 0.4, 0.6],
     "motion.X_over_L": [round(n / 339, 6) for n in range(340)],
-    "solve.tolerance": 1e-4,
+    "solve.tolerance": 1e-2,
 }
 
 
@@ -44,7 +44,7 @@ def sweep(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sweep")
     scene, target = folder / "sweep.toml", folder / "whole.h5"
     scene.write_text(template("tables4_5", SWEEP).text, encoding="utf-8")
-    assert command("run", scene, "-o", target).returncode == 0
+    assert here("run", scene, "-o", target).returncode == 0
     return scene, contents(target), target
 
 
@@ -152,7 +152,7 @@ def test_whoever_is_hit_the_run_ends_in_order_and_is_resumed(
         # It was done before the signal came, and tells what it tells of its scene.
         assert target.exists() and all(line.startswith("warning: ") for line in errors.splitlines())
     if resumed := not target.exists():
-        done = command(*ranks, "run", scene, "-o", target, "--resume")
+        done = (command if ranks else here)(*ranks, "run", scene, "-o", target, "--resume")
         assert done.returncode == 0, done.stderr
     same(contents(target), whole if count == 1 else on_two_ranks)
     if resumed or not process.returncode:  # or it was killed when it was about to clear up
@@ -165,18 +165,18 @@ def test_a_run_is_locked_and_when_it_is_stopped_keeps_what_is_finished(sweep, tm
     with started("run", scene, "-o", target) as process:
         wait_for_parts(tmp_path, 3)
         process.send_signal(signal.SIGSTOP)
-        second = command("run", scene, "-o", target)
+        second = here("run", scene, "-o", target)
         assert second.returncode == 3 and "another run is writing" in second.stderr
         process.send_signal(signal.SIGTERM)
         process.send_signal(signal.SIGCONT)
         _, errors = process.communicate(timeout=30)
     assert process.returncode == 3
     assert "interrupted; " in errors and "go on with --resume" in errors and "Traceback" not in errors
-    refused = command("run", scene, "-o", target)
+    refused = here("run", scene, "-o", target)
     assert refused.returncode == 3 and "an interrupted run left" in refused.stderr
     first, _, third, *_ = sorted(tmp_path.glob(".*.work/*.part"))  # of 1000 states each
     first.rename(tmp_path / "first"), third.rename(first), (tmp_path / "first").rename(third)
-    done = command("run", scene, "-o", target, "--resume")
+    done = here("run", scene, "-o", target, "--resume")
     assert done.returncode == 0 and "kept parts that are damaged: 2; computed again" in done.stderr
     same(contents(target), whole)
 
@@ -246,18 +246,18 @@ def test_a_full_disk(sweep, tiny_disk):
     scene, whole, _ = sweep
     target = tiny_disk / "out.h5"
     target.write_bytes(b"an earlier archive")
-    done = command("run", scene, "-o", target, "--overwrite")
+    done = here("run", scene, "-o", target, "--overwrite")
     assert done.returncode == 3 and "Traceback" not in done.stderr
     assert "No space left on device" in done.stderr and " are free" in done.stderr
     assert target.read_bytes() == b"an earlier archive"
     assert not list(tiny_disk.rglob("*.partial"))
     subprocess.run(["mount", "-o", "remount,size=1g", str(tiny_disk)], check=True)
-    assert command("run", scene, "-o", target, "--overwrite", "--resume").returncode == 0
+    assert here("run", scene, "-o", target, "--overwrite", "--resume").returncode == 0
     same(contents(target), whole)
 
 
 def test_a_folder_that_cannot_be_written(sweep, tiny_disk):
     scene, *_ = sweep
     subprocess.run(["mount", "-o", "remount,ro", str(tiny_disk)], check=True)
-    done = command("run", scene, "-o", tiny_disk / "out.h5")
+    done = here("run", scene, "-o", tiny_disk / "out.h5")
     assert done.returncode == 3 and "Read-only file system" in done.stderr

@@ -1,5 +1,6 @@
 """What an estimate is made of, and when a ladder of degrees ends: errors of levels are prescribed."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -12,7 +13,9 @@ from galinx.solvers.contact.fem_plan import PressureMoments
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.recovery import MOMENTS, Polynomials, Stretch
 from galinx.solvers.fem import ladder as error
-from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
+from galinx.solvers.fem.contact import PunchLevel
+from galinx.solvers.fem.ladder import Estimate, Gauge, MeasuredError, climb, to_tolerance
+from galinx.solvers.fem.sweep import Fit
 
 G = np.array([-0.5])
 FIRST = 6
@@ -82,11 +85,16 @@ def test_an_estimate_holds_rounding_and_what_a_level_knows_of_itself():
     assert estimated(left=1e-5) - estimated() == pytest.approx(1e-5, rel=1e-9)
 
 
-def test_an_estimate_holds_what_the_far_boundary_leaves_of_the_edges():
-    """Measured at far boundaries of 1e2 to 1e4 a: compliance times leaning, and 1.8 of what is left."""
+@pytest.mark.parametrize("lean", [0.0, 0.4])
+def test_an_estimate_holds_what_the_far_boundary_leaves_of_the_edges(lean, monkeypatch):
+    """Measured at far boundaries of 1e2 to 1e4 a: compliance times leaning, and 1.8 of what is left.
+
+    In a solid without mirror symmetry the pressure leans without friction, by n₁₂/n.
+    """
+    monkeypatch.setattr(TASK.response, "n12", lean * TASK.response.n)
     kind, wanted = MESHES["confocal"], Requirements(1e-3)
     innermost, far = kind.unseen(wanted, FIRST, 1, 1.0), kind.truncation(wanted, 1.0)
-    leaning = (2.0 + 0.55 * np.log(3.0)) * (0.5 + 0.1)
+    leaning = (2.0 + 0.55 * np.log(3.0)) * (0.5 + 0.5 * lean + 0.1) / abs(1.0 - 0.5 * lean)
     assert estimated() == pytest.approx(innermost + far * (leaning + 1.8 * far), rel=1e-12)
 
 
@@ -266,3 +274,28 @@ def test_rounding_inside_is_that_of_no_place_on_the_surface_nearer_to_an_edge():
 def test_errors_of_stresses_count_on_slower_convergence_than_those_of_moments():
     error = measured_error(level(0.0), level(0.0), level(0.0))
     assert (error._rate("sif").usual, error._rate("surface").usual) == (0.16, 0.5)
+
+
+def test_rounding_of_intensities_is_their_difference_from_those_of_the_mirror_image():
+    """At -g the ends change places; what is left of 3 : 2 is 2e-6 of the first."""
+    K_I = {-0.5: [[3.0, 2.0]], 0.5: [[2.0, 3.0 + 6e-6]]}
+    level = SimpleNamespace(
+        mirrored=True, twins=True, states=lambda g, load: None, fields_of=lambda states: None,
+        measured_task=SimpleNamespace(places=SimpleNamespace(X=None)), moments=None,
+        plan=SimpleNamespace(tests=PressureMoments()), work=SimpleNamespace(stresses=frozenset()),
+        punch=SimpleNamespace(states=lambda g, flat: SimpleNamespace(tested=lambda moments: g)),
+        over_flat=lambda moments, g: SimpleNamespace(K_I=np.array(K_I[float(g[0])])),
+        stress_gauges=SimpleNamespace(rounding=lambda own, noise: []),
+    )  # fmt: skip
+    assert PunchLevel.rounding(level, G) == pytest.approx([2e-6])
+
+
+def test_the_error_of_a_speed_between_is_the_larger_one_beside_it_and_that_of_the_fit():
+    beside = [Estimate(G, np.zeros(1), {"sif": np.array([[error]])}) for error in (1e-4, 3e-4)]
+    fit = SimpleNamespace(
+        speeds={}, _sweep=SimpleNamespace(z=np.array([0.0, 0.5, 1.0])), error={"sif": 5e-4},
+        estimates=dict(zip((0.0, 1.0), beside)), _work=Work(1.0, None), space=level(0.0).space,
+        level=nullcontext,
+    )  # fmt: skip
+    with Fit.solved_at(fit, SimpleNamespace(number=1), G) as solved:
+        assert solved.error.of(G)["sif"] == pytest.approx(8e-4) and solved.fitted

@@ -1,12 +1,11 @@
 """Starts from rest in scenes: archived, judged, drawn; what has no answer is refused."""
 
 import json
-import os
 import re
 
 import numpy as np
 import pytest
-from support import command, computed, here, scene_of
+from support import THOROUGH, computed, here, scene_of
 
 import galinx
 from galinx.app.plan import over_time
@@ -23,7 +22,7 @@ QUICK = {"time.end": 3.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
 
 def test_a_start_is_archived_judged_and_drawn(tmp_path):
     changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.every": 0.75}).items()]
-    done = command("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
+    done = here("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
     assert done.returncode == 0, done.stdout + done.stderr
     assert faults(tmp_path / "s.h5") == []
     result = galinx.load(tmp_path / "s.h5")
@@ -92,20 +91,6 @@ def test_a_wrong_answer_of_one_method_fails(friction, monkeypatch):
     assert computed("start_from_rest", changes).attributes["verdict"] == "FAIL"
 
 
-def test_fibres_start_by_both_methods():
-    """At an angle no solid is its own mirror image: without friction the pressure leans."""
-    fibres = {"kind": "orthotropic", "E1": "140 GPa", "E2": "10 GPa", "E3": "10 GPa", "nu12": 0.3,
-              "nu13": 0.3, "nu23": 0.45, "G12": "5 GPa", "rho": "1600 kg/m^3", "angle": 30.0}  # fmt: skip
-    solid = {f"solid.{key}": value for key, value in fibres.items()} | {"solid.E": None, "solid.nu": None}
-    more = {"friction.mu_c": 1e-9, "motion.c": 0.3, "time.end": 2.0}
-    result = computed("start_from_rest", QUICK | solid | more)
-    data = result.data
-    size = np.abs(data["time/sie/v0"]).max()
-    np.testing.assert_allclose(data["time/fem/v0"], data["time/sie/v0"], atol=1e-3 * size)
-    assert np.abs(data["time/fem/centre_of_pressure"][0, -1]) > 1e-2
-    assert result.attributes["verdict"] == "PASS"
-
-
 def test_unloading_from_steady_motion_by_both_methods():
     changes = QUICK | {"time.start": "steady", "time.load": [[0.0, 1.0], [2.0, 0.5]]}
     result = computed("start_from_rest", changes)
@@ -122,7 +107,8 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans(monkeypatch):
     monkeypatch.setattr(over_time, "_HIGHEST", 4)  # of degrees, which tells as much of this
     changes = {
         "solve.tolerance": 1e-2, "time.end": 1.0, "friction.pre_sliding": 3e-4, "time.step": 0.1,
-        "motion.X_over_L": [0.0, 0.5], "solve.methods": ["sie", "fem"], "time.every": None,
+        "motion.X_over_L": [0.0, 0.5], "solve.methods": ["sie", "fem"] if THOROUGH else ["fem"],
+        "time.every": None,
         "friction.sigma0_over_load": 4000.0,
     }  # fmt: skip
     result = computed("study_in_time", changes)
@@ -137,6 +123,8 @@ def test_a_stroke_by_its_law_is_over_before_the_pressure_leans(monkeypatch):
     assert np.abs(lean).max() < 0.3 * np.abs(data["time/steady_centres"][0, :first]).max()
     assert np.isnan(data["time/fem/K_I_left"]).all()
     assert data["time/fem/estimate"][0] > 0.0
+    if not THOROUGH:
+        return
     # The integral equation goes as far as the first turn, and both are compared up to there.
     by_sie = data["time/sie/centre_of_pressure"][0]
     np.testing.assert_array_equal(np.isnan(by_sie), t > 0.5 + 1e-9)
@@ -188,11 +176,6 @@ def test_a_coating_starts_by_both_methods():
     ]
 
 
-THOROUGH = pytest.mark.skipif(
-    "GALINX_THOROUGH" not in os.environ, reason="takes minutes: GALINX_THOROUGH=1"
-)
-
-
 def random_start(seed, end, tolerance):
     """From rest under a load that comes on within 2 to 5 a/c_s, ν to 0.4, c to 0.9 of the speed limit."""
     rng = np.random.default_rng(seed)
@@ -216,7 +199,7 @@ def random_start_by_law(seed, end, tolerance):
     }  # fmt: skip
 
 
-@THOROUGH
+@pytest.mark.skipif(not THOROUGH, reason="takes minutes: GALINX_THOROUGH=1")
 @pytest.mark.parametrize("end, tolerance, seeds", [(20.0, 1e-4, range(6)), (10.0, 1e-5, range(2))])
 @pytest.mark.parametrize("changes", [random_start, random_start_by_law])
 def test_random_starts_agree_and_the_estimate_covers_it(changes, end, tolerance, seeds):
@@ -260,7 +243,7 @@ def coating(seed):
     return scene(share * scene(1e-3).solid.limit())
 
 
-@THOROUGH
+@pytest.mark.skipif(not THOROUGH, reason="takes minutes: GALINX_THOROUGH=1")
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_random_coatings_agree_and_the_estimate_covers_it(seed):
     result = galinx.compute(coating(seed))

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from support import THOROUGH, command, computed
+from support import THOROUGH, command, computed, here
 
 import galinx
 from galinx.solvers.errors import SolveError
@@ -150,12 +150,12 @@ def test_a_file_of_models_is_run_before_a_command(tmp_path):
     assert good.returncode == 0, good.stderr
     bad = command("-x", "own.py", "plan", "s.toml", *changes, cwd=tmp_path)
     assert bad.returncode == 2 and "solid: expected cork" in bad.stderr
-    without = command("plan", "s.toml", *changes, cwd=tmp_path)
+    without = here("plan", "s.toml", *changes, cwd=tmp_path)
     assert without.returncode == 2 and "-x FILE.py" in without.stderr
     (tmp_path / "wrong.py").write_text("import galinx\n1 / 0\n", encoding="utf-8")
     for name, said in (
         ("wrong.py", "ZeroDivisionError: division by zero, line 2"),
         ("no.py", "cannot read"),
     ):
-        done = command("-x", name, "plan", "s.toml", cwd=tmp_path)
+        done = here("-x", name, "plan", "s.toml", cwd=tmp_path)
         assert done.returncode == 2 and said in done.stderr and "Traceback" not in done.stderr

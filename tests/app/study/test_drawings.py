@@ -117,34 +117,6 @@ def test_legends_name_the_values(drawings):
     assert all("SS" in legends[name][-2] and "HS" in legends[name][-1] for name in ROWS if name != "fig5")
 
 
-@pytest.mark.parametrize("name", [name for name in ROWS if name != "fig5"])
-def test_the_last_row_shows_how_far_both_methods_are_apart(name, drawings, study_run):
-    data = study_run.data
-    axis = drawings[name].figure.axes[-1]
-    lines, _ = drawn(axis)
-    known = {
-        "mu": "mu_c",
-        "sigma": "sigma0_over_load",
-        "delta": "delta",
-        "motion": "motion",
-        "X": "X_over_L",
-    }
-    for line, c in zip(lines, (SS, HS), strict=True):
-        chosen = []
-        for _, states in ROWS[name]:
-            for state in states:
-                at = data["states/c"] == c
-                for key, value in state.items():
-                    at = at & (data[f"states/{known[key]}"] == value)
-                chosen += np.flatnonzero(at).tolist()
-        assert len(chosen) == sum(len(states) for _, states in ROWS[name])
-        apart = np.abs(
-            data["surface/fem/sigma_XX"][chosen] - data["surface/closed_form/sigma_XX"][chosen]
-        )
-        largest = np.maximum(apart.max(axis=0), 1e-15)
-        np.testing.assert_allclose(line[:, 1][np.isfinite(line[:, 1])], largest[np.isfinite(largest)])
-
-
 def loops_of(axis, strokes=3):
     """Loops of a panel: its strokes one after the other, (loops, strokes) of x and y."""
     lines, _ = drawn(axis)

@@ -6,10 +6,7 @@ import h5py
 import numpy as np
 import pytest
 
-from galinx import files
-from galinx.postprocess.errors import UnwritableArchive
 from galinx.postprocess.hdf5 import archive
-from galinx.postprocess.target import Target
 
 DATA = {
     "scene/text": "title = 'σ'\n",
@@ -48,20 +45,6 @@ def test_anyone_can_verify_the_seal(tmp_path):
     assert content[512:].startswith(b"\x89HDF")
     assert hashlib.sha256(content[512:]).hexdigest().encode() in content[:512]
     archive.verify(path)
-
-
-def test_an_earlier_archive_survives_a_failing_write(tmp_path, monkeypatch):
-    path = tmp_path / "a.h5"
-    write(path, DATA)
-    before = path.read_bytes()
-
-    def fail(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(files, "synchronise", fail)
-    with pytest.raises(UnwritableArchive, match="No space left"):
-        write(Target(path, overwrite=True), DATA | {"states/f": np.zeros(2)})
-    assert path.read_bytes() == before and os.listdir(tmp_path) == ["a.h5"]
 
 
 def test_rows_come_in_any_order(tmp_path):

@@ -1,11 +1,7 @@
 import numpy as np
-import pytest
-from support import full_disk
 
 from galinx.app.results.fields import StateField
-from galinx.postprocess.errors import Occupied, UnwritableArchive
 from galinx.postprocess.hdf5 import vtkhdf
-from galinx.postprocess.target import FIELDS, Target
 
 
 def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
@@ -35,16 +31,3 @@ def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
         assert root["PointData/u"].attrs["units"] == "m"
         assert root["PointData/u"].attrs["long_name"] == "displacement"
     assert [entry.name for entry in tmp_path.iterdir()] == ["square.hdf"]
-
-
-def test_a_refused_file_is_said_and_leaves_nothing(tmp_path):
-    square = [vtkhdf.Step(0.0, [StateField(np.zeros((4, 2)), np.arange(4)[None], {})])]
-    with pytest.raises(Occupied, match=r"the folder .*no does not exist"):
-        vtkhdf.write(tmp_path / "no" / "f.hdf", square, {})
-    (tmp_path / "file.hdf").write_text("precious")
-    with pytest.raises(Occupied, match="exists; name another"):
-        vtkhdf.write(tmp_path / "file.hdf", square, {})
-    with full_disk(1000), pytest.raises(UnwritableArchive, match=r"File too large; it needs .* kB"):
-        vtkhdf.write(Target(tmp_path / "file.hdf", FIELDS, overwrite=True), square, {})
-    assert (tmp_path / "file.hdf").read_text() == "precious"
-    assert [entry.name for entry in tmp_path.iterdir()] == ["file.hdf"]

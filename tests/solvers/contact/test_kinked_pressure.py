@@ -197,3 +197,13 @@ def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side(kink):
         (np.array([-1.0, 1.0]) * (1.0 - 1e-6), 1e-5),
     ):
         np.testing.assert_allclose(pressure.σ_YY(beside)[0], under_a_kink(beside, kink), rtol=left)
+
+
+def test_samples_beside_a_kink_reach_over_its_cell_and_no_nearer_neighbour():
+    """Each side by itself: two of the long cells on the left, 0.02 of the short way to the end."""
+    ends = facets(0.8, 5)
+    s, forces = nodes_and_forces(ends, 5, lambda r: -np.sqrt(1.0 - r**2))
+    pressure = KinkedPressure(s, 5, AS_DRAWN, forces, np.array([0.8]), (0.5, 0.5), 1.0, 1e-3)
+    left, right = (pressure._series(0, side).samples.max() for side in (-1.0, 1.0))
+    cell = np.diff(ends)[np.flatnonzero(ends == 0.8)[0] - 1]
+    assert left == pytest.approx(2.0 * cell, rel=0.02) and right == pytest.approx(0.02 * 0.2, rel=0.02)

@@ -57,6 +57,8 @@ def test_a_pressure_is_recovered_from_its_nodal_forces():
     np.testing.assert_allclose(forces @ maps.moments, [-np.pi] + 8 * [0.0], atol=1e-9)
     for d, to_σ in maps.edges:
         np.testing.assert_allclose(forces @ to_σ, -1.0 / np.sqrt(d * (2.0 - d)), rtol=1e-9)
+    # Both ends are looked at alike.
+    np.testing.assert_allclose(*(np.sort(d) for d, _ in maps.edges), rtol=1e-12)
     # The second term of the pressure at an edge bends d^(-1/2) by a quarter of the distance.
     np.testing.assert_allclose(maps.exponents(forces[None]), [[-0.5, -0.5]], atol=1e-2 / 4.0)
 

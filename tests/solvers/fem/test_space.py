@@ -81,7 +81,7 @@ def test_more_ranks_than_cells():
         "np.testing.assert_allclose(v0[1], v0[0], rtol=1e-9)\n"
     )
     done = subprocess.run(
-        mpirun(6, "-m", "mpi4py", "-c", script), env=clean_environment(),
+        mpirun(5, "-m", "mpi4py", "-c", script), env=clean_environment(),
         capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

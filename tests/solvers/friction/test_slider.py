@@ -26,18 +26,6 @@ def test_lugre_sticks_and_slips_as_published():
     assert abs(found.least) < 1e-3
 
 
-def test_a_slider_under_constant_friction_swings_about_the_drive():
-    """v = V (1 - cos ωt) after breakaway at k V t = N μ, and it sticks at no time."""
-    slider = Slider(2.0, 8.0, 0.0, 0.1, 20.0)
-    ride = pull(slider, of("coulomb", mu_c=0.5), 1.0)
-    found = cycle(ride, 0.1)
-    assert found.period == pytest.approx(np.pi, rel=1e-8)
-    assert found.peak == pytest.approx(0.2, rel=1e-7) and found.least < 1e-4
-    began = 0.5 / (8.0 * 0.1)
-    later = np.maximum(ride.t - began, 0.0)
-    np.testing.assert_allclose(ride.v, 0.1 * (1.0 - np.cos(2.0 * later)), atol=1e-7)
-
-
 def test_with_a_larger_friction_at_rest_it_sticks():
     """It breaks away at N μ_S; Stribeck's curve with μ_S only at rest leaves Coulomb's motion."""
     law = of("stribeck", mu_c=0.5, mu_s=0.7, stribeck_velocity=1e-6)

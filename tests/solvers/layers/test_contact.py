@@ -16,8 +16,6 @@ from galinx.solvers.contact.contacts import contacts
 from galinx.solvers.contact.edges import weights_hilbert
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import (
-    UNIFORM,
-    Equation,
     Jacobi,
     jacobi,
 )
@@ -71,14 +69,6 @@ def test_panels_find_the_example_too(V2):
     assert np.abs(read(one) - EXAMPLE[V2]).max() <= 1e-10
 
 
-@pytest.mark.parametrize("g", [-0.9, 0.0, 0.4])
-def test_layers_of_one_solid_are_the_half_plane(g):
-    solid = Layered((Layer(0.3, COAT), Layer(0.2, COAT), Layer(1.5, COAT)), COAT)
-    one = converged_pressure(equation(solid, 0.9, g), 1e-11).pressure
-    exact = FlatPunch(COAT.response(0.9**0.5 / COAT.c_s), g)
-    assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-12
-
-
 def test_a_thick_layer_is_the_coating_alone():
     """What the substrate does falls like a/H."""
     off = []
@@ -91,27 +81,6 @@ def test_a_thick_layer_is_the_coating_alone():
     assert off[0] <= 0.05 and 9.0 < off[0] / off[1] < 12.0
 
 
-def test_graded_layer_is_the_limit_of_uniform_ones():
-    bottom = Isotropic(2.5, 0.25, 1.0)
-    graded = Layer(1.0, COAT, bottom)
-    exact = read(
-        converged_pressure(
-            equation(Layered((graded,), bottom), 0.2, -0.4, tolerance=1e-10), 1e-8
-        ).pressure
-    )
-    off = []
-    for count in (4, 8, 16) + (32,) * THOROUGH:
-        middles = (np.arange(count) + 0.5) / count
-        layers = tuple(Layer(1.0 / count, graded.at(float(s))) for s in middles)
-        one = converged_pressure(
-            equation(Layered(layers, bottom), 0.2, -0.4, tolerance=1e-9), 1e-6
-        ).pressure
-        # The exponents are those of the uppermost solid, so the middle is looked at.
-        off.append(abs(read(one)[3] / exact[3] - 1.0))
-    rates = np.log2(np.array(off[:-1]) / off[1:])
-    assert off[-1] < 1e-3 and rates.min() > 1.8
-
-
 def test_graded_solid_that_does_not_change_is_uniform():
     almost = Isotropic(7.5 * (1.0 + 1e-9), 0.3, 1.2)
     one = converged_pressure(
@@ -119,18 +88,6 @@ def test_graded_solid_that_does_not_change_is_uniform():
     )
     exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
     assert np.abs(-0.5 * one.pressure.series(ENDS) - exact.K_I).max() <= 1e-8
-
-
-def test_sharp_punch_with_a_profile():
-    """On layers of one solid as without layers."""
-    solid = Layered((Layer(0.5, COAT),), COAT)
-
-    def slope(r):
-        return 0.3 * np.asarray(r) + 0.1
-
-    one = converged_pressure(equation(solid, 0.2, -0.4, slope), 1e-11).pressure
-    exact = Equation(COAT.response(0.2**0.5 / COAT.c_s), UNIFORM, -0.4, slope).pressure(40)
-    assert np.abs(-0.5 * one.series(ENDS) - exact.K_I).max() <= 1e-10
 
 
 @pytest.mark.parametrize("H", [0.1, *(0.01,) * THOROUGH])

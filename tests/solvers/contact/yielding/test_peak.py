@@ -1,5 +1,7 @@
 """The largest stresses below a pressure, and how deep it makes the solid yield: Hertz's line contact."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from loaded import LoadedHalfPlane, yield_of
@@ -7,7 +9,8 @@ from scipy.optimize import brentq
 
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import make_contact
-from galinx.solvers.contact.stresses import von_mises
+from galinx.solvers.contact.stresses import Turns, von_mises
+from galinx.solvers.contact.yielding import InSolid, StrengthOfLayers
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
@@ -136,3 +139,28 @@ def test_an_island_on_another_side_is_found():
     for flip in (1, -1):
         pressure = LinearPressure(flip * knots[::flip], values[::flip])
         assert flip * of_pressure(pressure, [0.0]).von_mises.X[0] > 0.5
+
+
+def test_a_peak_just_beyond_the_nearest_places_beside_a_turn_is_found():
+    """Of shear stress, at 1.3 of the distance nearer than which fields are not accurate, and at it."""
+    for share in (1.0, 1.3):
+        nearest = 1e-3
+
+        def stresses(points, place=share * nearest):
+            d = np.hypot(points[..., 0] - 0.4, points[..., 1])
+            τ = np.exp(-((np.log(np.maximum(d, 1e-9) / place) / 0.1) ** 2))
+            return np.array([0.0 * τ, 0.0 * τ, τ])
+
+        turns = Turns(np.array([[0.4]]), np.zeros((3, 1, 1)))
+        body = make_contact(SOLID, Flat(1e-3), 2e6, linear(4), 1e9)
+        solid = InSolid(AT_REST, np.zeros(1), None, 1e-3, stresses, turns, nearest)
+        assert body.strength(solid).shear.value == pytest.approx(1.0, rel=1e-3)
+
+
+def test_stresses_of_layers_are_looked_at_beside_both_ends():
+    """Within the depth of an end, where no other place is."""
+    for end in (-1.0, 1.0):
+        at = end + 0.5e-3
+        one = SimpleNamespace(_stress=lambda state, X, depth: np.exp(-(((X - at) / 2e-4) ** 2)))  # noqa: B023
+        value, X = StrengthOfLayers._at_depth(one, 0, 1e-3)
+        assert value == pytest.approx(1.0, rel=1e-3) and pytest.approx(at, abs=1e-5) == X

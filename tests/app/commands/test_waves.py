@@ -1,8 +1,26 @@
-"""The command that tells what a punch answers to loads that oscillate."""
+"""Commands on waves: how fast those along layers run, what a punch answers to loads that oscillate."""
 
 from support import HOME, here
 
-SCENE = HOME / "scenes" / "start_from_rest.toml"
+
+def test_dispersion_of_a_scene(tmp_path):
+    done = here("dispersion", HOME / "scenes" / "coating.toml", "-o", tmp_path / "waves.png")
+    assert done.returncode == 0, done.stderr
+    assert "highest speed of a punch: 919.40169 m/s" in done.stdout
+    assert (tmp_path / "waves.png").stat().st_size > 10_000
+    rows = [line.split() for line in done.stdout.splitlines()[1:] if line[0].isdigit()]
+    assert len(rows) == 28 and 919.4 < float(rows[0][2]) < 935.0 and rows[-1][2] == "none"
+    assert "\nto 100     to 6.28319e-05  none\n" in done.stdout  # and no row for each wave that leaks
+    assert "none: no wave of that length is slower than the waves inside" in done.stdout
+
+
+def test_a_scene_without_layers_has_one_speed(tmp_path):
+    done = here("dispersion", HOME / "scenes" / "tables4_5.toml", "-o", tmp_path)
+    assert done.returncode == 2 and "found no layers" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+START = HOME / "scenes" / "start_from_rest.toml"
 
 
 def numbers(text):
@@ -11,7 +29,7 @@ def numbers(text):
 
 def test_response_of_a_scene(tmp_path):
     words = ["--points", "3", "--from", "0.1", "--to", "2", "--set", "motion.c=[0.0, 0.5]"]
-    done = here("response", SCENE, "-o", tmp_path / "punch.png", *words)
+    done = here("response", START, "-o", tmp_path / "punch.png", *words)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "punch.png").stat().st_size > 10_000
     found = numbers(done.stdout)
@@ -31,7 +49,7 @@ def test_what_has_no_answer_is_refused(tmp_path):
         (["--set", "solid.nu=0.499"], "expected a uniform solid"),
         (["--set", 'punch.solid.material="steel"'], "found an elastic punch"),
     ):
-        done = here("response", SCENE, "-o", tmp_path, *words)
+        done = here("response", START, "-o", tmp_path, *words)
         assert done.returncode == 2 and said in done.stderr, done.stderr
     done = here("response", HOME / "scenes" / "cylinder.toml", "-o", tmp_path)
     assert done.returncode == 2 and "expected a flat punch" in done.stderr

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
 from galinx.solvers.contact import FREE_ENDS, VARYING_FREE
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.fem_plan import (
     FITTED,

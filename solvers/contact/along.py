@@ -184,13 +184,6 @@ class ExpansionAlong(Expansion):
         ratio, H = self.friction(r), self.hilbert(r)
         return ratio[None], H[None], (self._hilbert(self._shear, r) - ratio * H)[None]
 
-    def at(self, z: NDArray) -> NDArray[np.complex128]:
-        flat = np.ravel(z).astype(complex)
-        y, right = np.log((1.0 + flat) / (1.0 - flat)), np.log(1.0 - flat)
-        y = y.real - 1j * (-y.imag % (2.0 * np.pi))
-        weight = np.exp(self.α * right + self.β * (y + right))
-        return (weight * self.functions.cauchy(self.c, y) / np.pi).reshape(np.shape(z))
-
     def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         shear = replace(self, c=self._shear)
         of_shear = response.inside(shear, 1.0, X, Y) - response.inside(shear, 0.0, X, Y)

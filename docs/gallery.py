@@ -49,7 +49,7 @@ SHOWN = {
 RECIPES = {
     "cylinder": "surface", "coated": "parameters", "crystal": "parameters", "wedge": "surface",
     "elastic": "parameters", "loop": "surface", "start": "time", "stick_slip": "slider",
-    "fast": "parameters", "bristles": "along",
+    "fast": "parameters", "bristles": "along", "small": "along",
 }  # fmt: skip
 _TEMPLATES = {"start": "start_from_rest", "stick_slip": "slider"}
 

@@ -559,5 +559,7 @@ def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, An
         }
         figures.append(rule.measure(one, load[i : i + 1] if np.ndim(load) else load) or 0.0)
     i = int(np.nanargmax(figures))
-    c, f = data[of.SPEED.path][i], data[of.FRICTION.path][i]
-    return f", in state {i} (c = {c:.4g}, f = {f:.4g})"
+    # Where friction varies along the contact the number of a state is not that of its force.
+    varies = any(row.path in data for row in of.RESULTANT_RATIO.values())
+    f = "" if varies else f", f = {data[of.FRICTION.path][i]:.4g}"
+    return f", in state {i} (c = {data[of.SPEED.path][i]:.4g}{f})"

@@ -383,7 +383,11 @@ def friction_along(of: Archive) -> Drawing:
     values = {
         "f": {CLOSED_FORM: of.scene.friction.stress_ratio * data[RATIO_ALONG.path][states][:, under]},
         "sigma_YY": pressures,
-        "over uniform": {method: p / uniform for method, p in pressures.items()},
+        # At a free end one of the two ends before the other.
+        "over uniform": {
+            method: np.divide(p, uniform, out=np.full_like(p, np.nan), where=uniform > 0.0)
+            for method, p in pressures.items()
+        },
     }
     axes = {
         "f": "friction coefficient $f$",

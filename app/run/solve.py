@@ -21,8 +21,9 @@ from galinx.solvers.errors import SolveError
 from ..methods import METHODS
 from ..plan.plan import Plan
 
-#: Clock's step for the evaluation of a method's solutions, by method.
-_STEPS = {"fem": "recovery", "closed_form": "closed form"}
+#: Clock's steps by method: what solves a speed and names no step of its own, and what evaluates solutions.
+_SOLVED = {"fem": "finite elements", "closed_form": "closed form"}
+_EVALUATED = _SOLVED | {"fem": "recovery"}
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,10 @@ class Work:
 
     def begin(self) -> None:
         """Prepare the methods for all speeds; collective, before speeds are shared out over the ranks."""
-        for method in self.methods.values():
+        for name, method in self.methods.items():
             if hasattr(method, "begin"):
-                method.begin()
+                with self.clock(_SOLVED.get(name, name)):
+                    method.begin()
 
     def batches(self, task: Task) -> list[list[slice]]:
         """Rows of a task's states that are still to be computed, in batches of at most a chunk."""
@@ -125,7 +127,8 @@ class Work:
         for name, method in self.methods.items():
             try:
                 together = self.load is None or METHODS[name].loads
-                solvers[name] = stack.enter_context(method.at(task, np.unique(g))) if together else None
+                with self.clock(_SOLVED.get(name, name)):
+                    solvers[name] = stack.enter_context(method.at(task, np.unique(g))) if together else None
             except SolveError as error:
                 reasons[name] = str(error)
         return solvers
@@ -137,7 +140,7 @@ class Work:
         """Quantities of states by path, NaN where a method fails; and True where all methods solve."""
         g, load = self.g[rows], None if self.load is None else self.load[rows]
         solved = np.ones(len(g), dtype=bool)
-        with self.clock(_STEPS["closed_form"]):
+        with self.clock(_SOLVED["closed_form"]):
             local = task.body.local_exponents(task.response, g, load)
             # Without a solution of states.
             known = SimpleNamespace(
@@ -149,7 +152,7 @@ class Work:
             if name not in solvers:
                 data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)
                 continue
-            with self.clock(_STEPS.get(name, name)):
+            with self.clock(_EVALUATED.get(name, name)):
                 values, own, why = self._by(name, solvers[name], task, g, load)
             data, solved = data | values, solved & own
             if why:

@@ -360,6 +360,10 @@ def _without_pole(k: float, ξ: NDArray) -> NDArray[Any]:
     return np.exp(k * ξ) * ratio
 
 
+#: Least distance in x from the end of a panel in its logarithm.
+_LEAST_APART = 1e-10
+
+
 def _second_kind(ζ: NDArray, from_start: NDArray, from_end: NDArray, count: int) -> NDArray[Any]:
     """Legendre's functions of the second kind Q_k(ζ), (n, count).
 
@@ -370,8 +374,9 @@ def _second_kind(ζ: NDArray, from_start: NDArray, from_end: NDArray, count: int
         from_start, from_end: distances from its ends, (n,).
         count: number of functions.
     """
-    # None is 0: infinite logarithms of two panels would not cancel.
-    start, end = (np.where(np.abs(d) < 1e-300, 1e-300, d) for d in (from_start, from_end))
+    # Two panels' logarithms cancel as far as f is continuous from one to the other: what is left of them
+    # where they meet is the jump times that of the least distance.
+    start, end = (np.where(np.abs(d) < _LEAST_APART, _LEAST_APART, d) for d in (from_start, from_end))
     first = 0.5 * np.log(start / end if np.iscomplexobj(ζ) else np.abs(start / end))
     Q = [first, ζ * first - 1.0]
     for k in range(1, count - 1):

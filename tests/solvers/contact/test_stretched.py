@@ -109,3 +109,15 @@ def test_a_node_that_rounding_moves_beyond_an_edge_counts_as_at_the_edge(graded)
     beyond = np.nextafter(ENDS, 2.0 * ENDS)
     np.testing.assert_array_equal(functions(beyond, 20), functions(ENDS, 20))
     assert np.isfinite(functions(ENDS, 20)).all()
+
+
+def test_transforms_are_as_good_where_panels_meet():
+    """What coarse panels leave between them is not multiplied by a logarithm of nothing."""
+    coarse, fine = (Panels(-0.4, -0.6, finest) for finest in (1.0, 0.1))
+    meeting = coarse.ends[np.abs(coarse.ends) < 4.0]
+    beside = meeting + 1e-3
+    off_there, off_beside = (
+        np.abs(coarse.cauchy(np.exp(4.0 * coarse.t), y) - fine.cauchy(np.exp(4.0 * fine.t), y)).max()
+        for y in (meeting, beside)
+    )
+    assert 0.0 < off_there < 20.0 * off_beside

@@ -49,7 +49,7 @@ from ..layers.kernel import REACH, Kernel, Level, Scaled
 from ..layers.layered import Layered, LayersAtSpeed
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
 from ..profiles.punches import Flat
-from .along import FlatAlong, expansion
+from .along import ExpansionAlong, FlatAlong
 from .closed_form import FlatPunch, FreeEnds, contacts, panels_of
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .panels import TO_BEND, Panels
@@ -277,7 +277,9 @@ class Equation:
         A = np.vstack([A, panels.weights])
         b = np.vstack([np.stack([slope(t) * scale for slope in slopes], axis=-1), loads])
         c = lstsq(A, b, lapack_driver="gelsy", check_finite=False)[0].T
-        return expansion(self.α, self.β, c, panels, friction)
+        if friction.varies:
+            return ExpansionAlong(self.α, self.β, c, panels, friction=friction)
+        return Expansion(self.α, self.β, c, panels)
 
 
 @dataclass(frozen=True)
@@ -654,7 +656,8 @@ class LayersUnderPunch:
             pressure, taken = kinked(equation, resolution, self.punch, m, h)
         else:
             pressure, taken = vanishing(replace(equation, kinks=places), resolution)
-            pressure = pressure.tipped(places if jumps(self.punch.profile) else ())
+            if places and jumps(self.punch.profile):
+                pressure = replace(pressure, tips=places)
         return SolvedContact(g, pressure, h, m, taken)
 
     def _tilted(self, g: float, h: float, resolution: Resolution) -> SolvedContact:

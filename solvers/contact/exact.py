@@ -72,6 +72,12 @@ class ExactSolution(Solution):
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
 
+    def _of_pressures(self, name: str) -> NDArray[np.float64]:
+        """Attribute of the pressure of every state, (states,)."""
+        return self.contacts.joined(
+            lambda group: np.full(len(group.rows), getattr(group.pressure, name))
+        )[self._rows]
+
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
@@ -89,26 +95,12 @@ class ExactSolution(Solution):
         """Middle of the contact from the punch's axis [m], (states,)."""
         return self._of("centre") * self._growth
 
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        return self._of("K_I")
-
-    @property
-    def resultant_ratio(self) -> NDArray[np.float64]:
-        """Resultant of σ_XY over that of σ_YY, of friction that varies along the contact, (states,)."""
-        return self._of_pressures("resultant_ratio")
-
-    @property
-    def pressure_centre(self) -> NDArray[np.float64]:
-        """Centre of pressure over a, of friction that varies along the contact, (states,)."""
-        return self._of_pressures("pressure_centre")
-
-    def _of_pressures(self, name: str) -> NDArray[np.float64]:
-        """Attribute of the pressure of every state by its name, (states,)."""
-        return self.contacts.joined(
-            lambda group: np.full(len(group.rows), getattr(group.pressure, name))
-        )[self._rows]
+    #: K_I at the left and the right end, 0 at a free end, (states, 2).
+    K_I = property(lambda self: self._of("K_I"))
+    #: Of friction that varies along the contact: resultant of σ_XY over that of σ_YY, (states,).
+    resultant_ratio = property(lambda self: self._of_pressures("resultant_ratio"))
+    #: Of friction that varies along the contact: centre of pressure over a, (states,).
+    pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
 
     @property
     def normal_force(self) -> NDArray[np.float64]:

@@ -180,6 +180,7 @@ class Expansion(Pressure):
         c: coefficients over N/(2a), (functions,) or (states, functions).
         functions: functions f_k, which know their integrals.
         ends: True where the left and the right end are free; None where the exponents say so.
+        tips: see :class:`Pressure`.
     """
 
     α: Any
@@ -187,6 +188,7 @@ class Expansion(Pressure):
     c: NDArray[np.float64]
     functions: Any
     ends: tuple[bool, bool] | None = None
+    tips: Sequence[float] = ()
 
     @property
     def free(self) -> NDArray[np.bool_]:
@@ -225,10 +227,6 @@ class Expansion(Pressure):
         y = y.real - 1j * (-y.imag % (2.0 * np.pi))
         weight = np.exp(self.α * right + self.β * (y + right))
         return (weight * self.functions.cauchy(self.c, y) / np.pi).reshape(np.shape(z))
-
-    def tipped(self, tips: tuple[float, ...]) -> "Expansion":
-        """Pressure that is infinite at places, of a punch with friction that varies along the contact."""
-        return self
 
     def ending(self, free: tuple[bool, bool]) -> "Expansion":
         """Pressure that falls to zero at free ends, left and right."""

@@ -49,11 +49,11 @@ from ..layers.kernel import REACH, Kernel, Level, Scaled
 from ..layers.layered import Layered, LayersAtSpeed
 from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
 from ..profiles.punches import Flat
-from .along import ExpansionAlong, FlatAlong
-from .closed_form import FlatPunch, FreeEnds, contacts, panels_of
+from .along import ExpansionAlong
+from .closed_form import FreeEnds, contacts, panels_of
 from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .panels import TO_BEND, Panels
-from .pressure import ENDS, Contacts, Expansion, Functions, Pressure, between_ends, off_tips
+from .pressure import ENDS, Expansion, Functions, Pressure, off_tips
 
 #: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
 _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
@@ -731,26 +731,3 @@ def weights_between(nodes: NDArray, g: NDArray) -> NDArray[np.float64]:
     weights = (-1.0) ** np.arange(len(nodes))
     weights[[0, -1]] /= 2.0
     return barycentric(nodes, weights, g)
-
-
-#: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
-_TERMS = 40
-
-
-def between_edges(body: Any, response: Any, g: NDArray) -> Contacts:
-    """Contacts between two sharp corners of a punch on a uniform half-plane.
-
-    Args:
-        body: see :class:`galinx.solvers.contact.solution.Contact`.
-        response: of the half-plane at a speed.
-        g: σ_XY/σ_YY, (states,).
-    """
-    pressures: list[Pressure] = [FlatPunch(response, g[:, None])]
-    if body.along:
-        pressures = [FlatAlong(response, body.along[value]) for value in g.tolist()]
-    elif not body.flat:
-        pressures = [
-            Equation(response, UNIFORM, value, body.loaded(load).slope).pressure(_TERMS)
-            for value, load in zip(g.tolist(), np.broadcast_to(body.load, g.shape).tolist())
-        ]
-    return between_ends(response, g, pressures, body.half_width)

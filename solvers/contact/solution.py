@@ -42,6 +42,8 @@ IN_PUNCH, PUNCH_STRENGTH = "elastic punch", "yield strength of the punch"
 UNIFORM, LAYERED = "uniform solid", "layers"
 
 _BOTH_ENDS = np.array([-1.0, 1.0])
+#: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
+_TERMS = 40
 
 
 @dataclass(frozen=True)
@@ -187,9 +189,23 @@ class Contact:
         Raises:
             SolveError: no contact carries the load.
         """
-        from .equation import between_edges
+        from .closed_form import FlatPunch
+        from .pressure import between_ends
 
-        return between_edges(self, response, g)
+        pressures: list[Any] = [FlatPunch(response, g[:, None])]
+        if self.along:
+            from .along import FlatAlong
+
+            pressures = [FlatAlong(response, self.along[value]) for value in g.tolist()]
+        elif not self.flat:
+            from .equation import UNIFORM as NO_LAYERS
+            from .equation import Equation
+
+            pressures = [
+                Equation(response, NO_LAYERS, value, self.loaded(load).slope).pressure(_TERMS)
+                for value, load in zip(g.tolist(), np.broadcast_to(self.load, g.shape).tolist())
+            ]
+        return between_ends(response, g, pressures, self.half_width)
 
     @property
     def yield_places(self) -> NDArray[np.float64]:

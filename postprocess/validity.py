@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .quantities import validity as of
 from .quantities.states import RATIO, SPEED
+from .units import engineering
 
 #: Wave crossings of the contact in a stroke below which steady motion is not reached.
 FEW = 30.0
@@ -44,8 +45,9 @@ class Steady:
         if not isfinite(needed) or (too_short and lasts >= needed):
             return ""
         return (
-            f"from rest it takes {needed:.3g} a/c_s ({needed * self.unit:.3g} s) to come within 1 % of "
-            f"it, at c = {c:.4g}, and the stroke lasts {lasts:.3g} a/c_s ({lasts * self.unit:.3g} s)"
+            f"from rest it takes {needed:.3g} a/c_s ({engineering(needed * self.unit, 's', 3)}) to come "
+            f"within 1 % of it, at c = {c:.4g}, and the stroke lasts {lasts:.3g} a/c_s "
+            f"({engineering(lasts * self.unit, 's', 3)})"
         )
 
 

@@ -531,13 +531,19 @@ def make_plan(
         )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, body, methods, modes)
+    given = {quantity.asked_by for quantity in quantities}
+    warnings += [
+        f"output.quantities: {of} cannot be computed: {why}"
+        for word, of in _PLACES.items()
+        if word not in given and (why := next((w for row, w in refused if row.asked_by == word), ""))
+    ]
     skipped = [
         f"{METHODS[name].about}: {why or f'{name} is not in solve.methods'}"
         for name, why in others.items()
         if contact and name not in methods
     ]
-    skipped += _skipped(scene, contact, {quantity.asked_by for quantity in quantities})
-    skipped += refused
+    skipped += _skipped(scene, contact, given)
+    skipped += [f"{quantity.path}: {why}" for quantity, why in refused]
     plan = Plan(
         scene=scene, done=done, followed=friction, body=body, places=places, methods=methods,
         quantities=quantities, tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions,
@@ -560,10 +566,10 @@ def _output_places(scene: Scene, places: Places) -> Places:
 
 def _quantities(
     scene: Scene, body: Contact, methods: tuple[str, ...], modes: tuple[str, ...]
-) -> tuple[tuple[Quantity, ...], list[str]]:
-    """Quantities that are evaluated, and messages about those that a method cannot give."""
+) -> tuple[tuple[Quantity, ...], list[tuple[Quantity, str]]]:
+    """Quantities that are evaluated, and those that a method cannot give, with the reason."""
     computed: dict[str, Quantity] = {}
-    refused = []
+    refused: list[tuple[Quantity, str]] = []
     # Quantities that are computed from others come after them, wherever they stand in the table.
     for path, quantity in sorted(QUANTITIES.items(), key=lambda row: row[1].of_data is not None):
         applies = (
@@ -576,7 +582,7 @@ def _quantities(
         )
         kind = METHODS.get(quantity.method)
         if applies and kind and (why := kind.refusal(scene, body, quantity)):
-            refused.append(f"{path}: {why}")
+            refused.append((quantity, why))
         elif applies:
             computed[path] = quantity
     return tuple(computed.values()), refused
@@ -596,7 +602,9 @@ def _skipped(scene: Scene, contact: bool, words: Collection[str]) -> Iterator[st
         yield "contact mechanics: only friction is asked for"
     else:
         yield from (
-            f"{of}: not in output.quantities" for word, of in _PLACES.items() if word not in words
+            f"{of}: not in output.quantities"
+            for word, of in _PLACES.items()
+            if word not in {*words, *scene.output.quantities}
         )
     if YIELD in words and FINITE not in scene.body.modes:
         yield (
@@ -618,6 +626,12 @@ def surface_grid() -> np.ndarray:
 _FARTHEST = 40.0
 
 
+def _from_edge(depth: float) -> np.ndarray:
+    """Distances from an edge over a, to 1 or 4 depths, an eighth of the depth or of themselves apart."""
+    steps = int(np.ceil(np.log(max(0.25 / depth, 1.0)) / np.log(9.0 / 8.0))) + 1
+    return np.append(depth * np.linspace(0.0, 4.0, 33), np.geomspace(4.0 * depth, 1.0, steps)[1:])
+
+
 def interface_grid(body: Contact, several: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Depths of interfaces over a, (interfaces,), and positions X/a along them, (places,).
 
@@ -631,7 +645,8 @@ def interface_grid(body: Contact, several: np.ndarray | None = None) -> tuple[np
     if not body.solid.layers:
         return np.empty(0), np.empty(0)
     depths = body.solid.depths / body.half_width if several is None else several
-    near = np.outer(np.minimum(depths, 1.0), np.linspace(-4.0, 4.0, 65)).ravel()
+    near = np.concatenate([_from_edge(min(depth, 1.0)) for depth in depths.tolist()])
+    near = np.concatenate([-near, near])
     far = np.geomspace(5.0, max(_FARTHEST, 5.0 * depths[-1]), 49)
     X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0, -far, far])
     return depths, np.unique(np.round(X, 9))

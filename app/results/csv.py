@@ -86,10 +86,10 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
 
 
 def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[_Column]:
-    """Columns that number states, interfaces, loops, starts and laws; the outermost begin at start."""
+    """Columns of the numbers of parts, interfaces from 1, others from 0, the outermost from start."""
     first, *others = np.indices(shape, sparse=True)
     numbers = zip(over, (first + start, *others))
-    return [(_NUMBERED[name], at) for name, at in numbers if name in _NUMBERED]
+    return [(_NUMBERED[name], at + (name == INTERFACE)) for name, at in numbers if name in _NUMBERED]
 
 
 def _parameters(data: dict[str, Any], units: Units, block: slice, axes: int) -> list[_Column]:

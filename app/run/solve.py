@@ -21,7 +21,7 @@ from galinx.solvers.errors import SolveError
 from ..methods import METHODS
 from ..plan.plan import Plan
 
-#: Clock's steps by method: what solves a speed and names no step of its own, and what evaluates solutions.
+#: Clock's steps by method: what solves a speed, and what evaluates solutions.
 _SOLVED = {"fem": "finite elements", "closed_form": "closed form"}
 _EVALUATED = _SOLVED | {"fem": "recovery"}
 
@@ -128,7 +128,9 @@ class Work:
             try:
                 together = self.load is None or METHODS[name].loads
                 with self.clock(_SOLVED.get(name, name)):
-                    solvers[name] = stack.enter_context(method.at(task, np.unique(g))) if together else None
+                    solvers[name] = (
+                        stack.enter_context(method.at(task, np.unique(g))) if together else None
+                    )
             except SolveError as error:
                 reasons[name] = str(error)
         return solvers

@@ -151,8 +151,5 @@ def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float6
     heights, places = tops(X[apart], curves[:, apart], through=ALONG)
     heights = np.column_stack([curves.max(axis=1), heights])
     places = np.column_stack([X[curves.argmax(axis=1)], places])
-    best = heights.argmax(axis=1)[:, None]
-    height, place = (
-        np.take_along_axis(of, best, 1).reshape(values.shape[:-1]) for of in (heights, places)
-    )
+    height, place = (of.reshape(values.shape[:-1]) for of in highest(heights, places))
     return sign * height, place

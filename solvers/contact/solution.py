@@ -444,7 +444,7 @@ class FreeEndContact(Contact):
     def _lacks(self) -> dict[str, str]:
         reasons = {
             FLAT: "the punch is not flat",
-            PUNCH: "the contact has free ends",
+            PUNCH: "an end of the contact is, or may be, free",
             GIVEN_ENDS: "whose contact ends where the pressure says",
         }
         if not (exponent(self.profile) or 0.0) > 1.0:

@@ -173,7 +173,7 @@ def test_strokes_are_held_against_the_time_that_steady_motion_takes():
     slow.see({"states/wave_crossings": np.array([40.0]), "states/c": np.array([0.7]),
               "states/g": np.zeros(1)})  # fmt: skip
     assert fast.words() == [
-        "the steady state is reported, but from rest it takes 90 a/c_s (9e-05 s) to come within 1 % of "
-        "it, at c = 0.9, and the stroke lasts 80 a/c_s (8e-05 s)"
+        "the steady state is reported, but from rest it takes 90 a/c_s (90 µs) to come within 1 % of "
+        "it, at c = 0.9, and the stroke lasts 80 a/c_s (80 µs)"
     ]
     assert slow.words() == []

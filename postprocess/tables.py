@@ -122,6 +122,8 @@ class Column:
 
 #: Size of places over a, and of stresses over N/(2a), up to which they are rounding of the methods.
 _LEAST, _LEAST_STRESS = 5e-6, 5e-8
+#: Relative difference of stresses up to which they are as large.
+_SAME = 1e-6
 
 _STRESS = "N/(2a)"
 
@@ -205,6 +207,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     """
     contact, count = units.contact, len(data[of.FRICTION.path])
     results, intensities = _columns(data, units, _OF_CONTACT), _columns(data, units, _K_I)
+    results = _without_tension(data, results)
     indentation, pull = _columns(data, units, [_INDENTATION]), _columns(data, units, _PULL)
     if (results or intensities or indentation) and units.half_width is contact.half_width:
         length = units.scale(CONTACT)
@@ -266,9 +269,7 @@ def _columns(
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
     columns: list[Column] = []
-    lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
-    least = dict.fromkeys(lengths, _LEAST * float(np.max(units.length.factor)))
-    least[_STRESS] = _LEAST_STRESS * float(np.max(units.stress.factor))
+    least = _least(units)
     for head, rows, digits, taken in specs:
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
@@ -289,6 +290,26 @@ def _columns(
     return columns
 
 
+def _least(units: Units) -> dict[str, float]:
+    """Sizes up to which numbers are rounding, by their unit or scale."""
+    lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
+    least = dict.fromkeys(lengths, _LEAST * float(np.max(units.length.factor)))
+    return least | {_STRESS: _LEAST_STRESS * float(np.max(units.stress.factor))}
+
+
+def _without_tension(data: Mapping[str, Any], columns: list[Column]) -> list[Column]:
+    """Columns without a tension where σ_XX is less than 0 and largest at the end of what is output."""
+    row, place = (preferred(data, rows) for rows in (stresses.HIGHEST, stresses.HIGHEST_X))
+    if not row or not place:
+        return columns
+    none = (np.abs(data[place.path]) >= stresses.FARTHEST) & (data[row.path] < 0.0)
+    return [
+        replace(column, values=np.where(none, np.nan, column.values))
+        if none.any() and column.path in (row.path, place.path) else column
+        for column in columns
+    ]  # fmt: skip
+
+
 def _resultant(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Column of the resultant of a prescribed pressure; none where it is the load N."""
     row = preferred(data, of.RESULTANT | {FEM: of.NORMAL_FORCE})
@@ -306,7 +327,8 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     high, high_X, low, low_X = layers.INTERFACE_EXTREMES[rows.method][4:8]
     largest, lowest = np.abs(data[high.path]), np.abs(data[low.path])
     shear = units.stress.of(np.maximum(largest, lowest))
-    X = units.position.of(np.where(lowest > largest, data[low_X.path], data[high_X.path]))
+    lower = lowest > largest * (1.0 + _SAME)  # of two that are as large always the same one
+    X = units.position.of(np.where(lower, data[low_X.path], data[high_X.path]))
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
         depths_differ = swept.INTERFACE_DEPTHS.path in data
@@ -322,7 +344,7 @@ def _placed(units: Units, head: str, name: str, stress: Any, **places: Any) -> l
     at = [
         Column(
             f"at {axis}{'/a' * units.dimensionless}", values, units.length.unit, f"{name}_{axis}",
-            place=True,
+            place=True, least=_least(units)[X_OVER_A],
         )
         for axis, values in places.items()
     ]  # fmt: skip

@@ -186,7 +186,8 @@ class Units:
             unit, factor = "s", contact.half_width / contact.solid.c_s
             size = factor * np.max(self.data.get(over_time.TIMES.path, 1.0))
         elif kind == "N/(2mu)":
-            unit, factor, size = "m", contact.displacement, contact.displacement
+            unit, factor = "m", contact.displacement
+            size = factor * self._largest(kind, row)
         elif kind in ("N^2/(4mu)", "N*a"):
             unit, size = "J/m", contact.load * contact.displacement / 2.0
             factor = size if kind != "N*a" else contact.load * contact.half_width

@@ -7,7 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
-from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from contextlib import chdir, closing, contextmanager, redirect_stderr, redirect_stdout
 from functools import cache
 from pathlib import Path
 from unittest.mock import patch
@@ -236,6 +236,16 @@ def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
     comm, kind = comm or MPI.COMM_SELF, MESHES[mesh]
     cells = None if comm.rank else kind.build(refinement)
     return Space(*distribute(cells, comm), TAGS, kind.chart, degree, form, 0 if kind.walls else 8)
+
+
+def state_field(scene, number, extent=10.0, degree=None):
+    """Field of a state in SI from one factorisation, on rank 0; None on the others."""
+    from galinx.app.results.fields import in_si, solve_states
+
+    with closing(solve_states(scene, [number], [degree], extent)) as states:
+        solved = next(states)
+        whole = solved.sampled(extent).gathered(solved.comm)
+        return None if whole is None else in_si(solved, whole)
 
 
 def small_punch(c=0.6, **options):

@@ -47,44 +47,38 @@ def film(of: Archive) -> Drawing:
         BadInput: there are too few states along the strokes.
     """
     if not _has_strokes(of) and motion.has_film(of):
-        made, left_out = motion.film(of)
-        return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
+        moving, left_out = motion.film(of)
+        return Drawing(FILM, "", moving.figure, left_out=left_out, film=moving)
     labels, frames = of.labels, _frames(of)
     if len(frames) < _LEAST_FRAMES:
         raise BadInput(
             f"a film needs at least {_LEAST_FRAMES} states along strokes, found {len(frames)}; give "
             "motion.X_over_L more places"
         )
-    if not stresses.surface_names(of) and not stresses.map_names(of):
+    if _has(stresses.surface_names)(of):  # by one method
+        surface, x = stresses.stresses_along(of).alone, stresses.position_name(of, "")
+        made = [stresses.surface_panels(surface, name, frames, x=x) for name in surface.values]
+    elif stresses.map_names(of):
+        fields, shown = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
+        made = [fields.panels(name, frames, level=0.0, equal=False) for name in shown]
+    else:
         raise BadInput('a film needs stresses; add "surface" to output.quantities, or output.map')
     loop = Loops(of).of(frames[0])
     if loop is None:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
     f, X = of.data[FRICTION.path], labels.values(PLACE)
     base = loop_panel([replace(loop, label="")])
-    beside = _stresses_of(of, frames)
 
     def panels(frame: int) -> list[Panel]:
         i = frames[frame]
         dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form=MARKERS)
         title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
-        return [replace(base, curves=[*base.curves, dot], title=title), *beside[frame]]
+        beside = (of_name[frame] for of_name in made)
+        return [replace(base, curves=[*base.curves, dot], title=title), *beside]
 
+    moving = Film(panels, len(frames), of.size)
     left_out = of.not_shown(frames, "--figure film --states")
-    made = Film(panels, len(frames), of.size)
-    return Drawing(FILM, "", made.figure, left_out=left_out, film=made)
-
-
-def _stresses_of(of: Archive, frames: list[int]) -> list[tuple[Panel, ...]]:
-    """Panels of every frame: stresses along the surface by one method, or maps where there are none or
-    they are chosen."""
-    if _has(stresses.surface_names)(of):
-        surface, x = stresses.stresses_along(of).alone, stresses.position_name(of, "")
-        made = [stresses.surface_panels(surface, name, frames, x=x) for name in surface.values]
-    else:
-        fields, names_ = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
-        made = [fields.panels(name, frames, level=0.0, equal=False) for name in names_]
-    return list(zip(*made))
+    return Drawing(FILM, "", moving.figure, left_out=left_out, film=moving)
 
 
 def _has_strokes(of: Archive) -> bool:
@@ -119,29 +113,27 @@ def _holds(*rows: Quantity) -> Callable[[Archive], bool]:
     return lambda of: of.has(*rows)
 
 
-def _always(of: Archive) -> bool:
-    return True
-
-
+#: A figure that is drawn without being named, and options of figures of stresses.
+_ALWAYS = _holds()
 _STRESSES = frozenset({"states", "quantities", "method"})
 
 #: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
     "surface": _Figure(
-        stresses.surface, _has(stresses.surface_names), _STRESSES | {"measured"}, _always
+        stresses.surface, _has(stresses.surface_names), _STRESSES | {"measured"}, _ALWAYS
     ),
     "along": _Figure(
-        stresses.friction_along, _holds(RATIO_ALONG), frozenset({"states", "method"}), _always
+        stresses.friction_along, _holds(RATIO_ALONG), frozenset({"states", "method"}), _ALWAYS
     ),
-    "inside": _Figure(stresses.inside, _has(stresses.map_names), _STRESSES, _always),
+    "inside": _Figure(stresses.inside, _has(stresses.map_names), _STRESSES, _ALWAYS),
     "parameters": _Figure(
-        sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _always
+        sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _ALWAYS
     ),
     "friction": _Figure(
         friction.friction, friction.varies, frozenset({"states", "measured"}), friction.has_loop
     ),
-    "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_always),
-    "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_always),
+    "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_ALWAYS),
+    "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_ALWAYS),
     "interfaces": _Figure(stresses.interfaces, _has(stresses.interface_names), _STRESSES),
     "pressures": _Figure(motion.pressures, _holds(*motion.PRESSURES)),
     "stresses": _Figure(motion.stresses, motion.has_surface),

@@ -21,7 +21,6 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
 from galinx.texts import number, plain
 
-from ..scene.sections import Time
 from .choice import Archive, Drawing, both, drive_label, explained, fewer, named, spread
 from .render import MARKERS, Curve, Film, Panel, Size, note, render
 from .stresses import SHOWN, Shown, Surface, limits, position_name, surface_panel
@@ -98,20 +97,18 @@ def time(of: Archive) -> Drawing:
         f"From {'steady motion on' if settings.steady else 'rest to steady sliding'}, "
         f"{' and '.join(METHODS[m] for m in methods)}: centre of the pressure, whose dotted line "
         "is that of steady motion by the friction of the same time, indentation since the first"
-        f"{', and K_I at both ends by the full load' * with_K_I}, over time. {_history(settings)}"
+        f"{', and K_I at both ends by the full load' * with_K_I}, over time."
     )
+    if settings.load:
+        caption += " The load changes as the scene says."
+    elif not settings.steady:
+        caption += f" The load comes on within {settings.load_ramp:g} a/c_s."
+    caption += " Friction follows its law along the strokes." * settings.by_law
     if len(shown) == 1:
         caption += f" At {plain(drive_label(*motions[0]))}."
     columns = 2 if not of.size or of.size.width > 3.0 else 1
     figure = render(panels, of.size, columns, explained(methods))
     return Drawing("time", caption, figure, left_out=_left_out(of, len(shown)))
-
-
-def _history(settings: Time) -> str:
-    load = f"The load comes on within {settings.load_ramp:g} a/c_s." * (
-        not settings.load and not settings.steady
-    ) or "The load changes as the scene says." * bool(settings.load)
-    return " ".join(filter(None, [load, "Friction follows its law along the strokes." * settings.by_law]))
 
 
 def energies(of: Archive) -> Drawing:
@@ -181,43 +178,33 @@ def _steady(of: Archive, held: Surface, start: int, steps: NDArray | list[int]) 
     return replace(held, values={name: {SIE: values[name]} for name in held.values})
 
 
-def _at_chosen_times(of: Archive) -> Surface:
-    """Stresses of the first start along the surface at the chosen times."""
+def _at_chosen_times(of: Archive) -> tuple[Surface, NDArray[np.int64]]:
+    """Stresses of the first start along the surface at the chosen times, and the steps that end then."""
     methods = [name for name in (SIE, FEM) if of.has(rows.SURFACE_IN_PLANE[name])]
     stresses = {"sigma_YY": rows.SURFACE_PRESSURE, "sigma_XX": rows.SURFACE_IN_PLANE}
-    return _held(
-        of, rows.SURFACE_PLACES,
-        {name: {method: row[method] for method in methods} for name, row in stresses.items()},
-    )  # fmt: skip
-
-
-def _steps(of: Archive) -> NDArray[np.int64]:
-    """Numbers of the steps at whose ends stresses along the surface are held."""
+    by_method = {name: {method: row[method] for method in methods} for name, row in stresses.items()}
     t, times = of.data[rows.SURFACE_TIMES.path], of.data[rows.TIMES.path]
-    return np.asarray(np.abs(np.subtract.outer(t, times)).argmin(axis=1))
+    steps = np.asarray(np.abs(np.subtract.outer(t, times)).argmin(axis=1))
+    return _held(of, rows.SURFACE_PLACES, by_method), steps
 
 
-def _leaning(of: Archive) -> tuple[int, Surface]:
-    """Start whose steady pressure leans most, and its pressures at all times."""
+def _leaning(of: Archive) -> tuple[int, Surface, tuple[float, float]]:
+    """Start whose steady pressure leans most, its pressures at all times, and limits of these."""
     start = int(np.abs(of.data[rows.STEADY_CENTRE.path]).argmax())
-    return start, _held(of, rows.PLACES, {"sigma_YY": {SIE: rows.PRESSURE}}, start)
-
-
-def _pressures_shown(of: Archive) -> tuple[float, float]:
-    """Limits of the pressure under the punch."""
-    return 0.0, _TOP * float(np.max(of.scaled(rows.PRESSURE).factor))
+    held = _held(of, rows.PLACES, {"sigma_YY": {SIE: rows.PRESSURE}}, start)
+    return start, held, (0.0, _TOP * float(np.max(of.scaled(rows.PRESSURE).factor)))
 
 
 def pressures(of: Archive) -> Drawing:
     """Figure of the pressure of the start whose steady pressure leans most, at times that double up."""
-    start, held = _leaning(of)
+    start, held, ylim = _leaning(of)
     t = of.data[rows.TIMES.path]
     c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
     at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)]).tolist()
     shown = [Shown(held, i, look, _at_time(of, t[i])) for i, look in zip(at, looks(len(at), True))]
     if steady := _steady(of, held, start, [-1]):
         shown.append(Shown(steady, 0, _STEADY, "steady", 0.8))
-    panel = surface_panel("sigma_YY", shown, _pressures_shown(of))
+    panel = surface_panel("sigma_YY", shown, ylim)
     caption = (
         f"Contact pressure under the punch at c = {c:.4g}, σ_XY/σ_YY = {g:.4g}, by the integral "
         "equation, at times after it touched; dashed in steady motion. While the load comes on the "
@@ -235,11 +222,11 @@ def has_surface(of: Archive) -> bool:
 def stresses(of: Archive) -> Drawing:
     """Figure of the stresses along the surface of the first start, at chosen times from the first to the
     last, beside those of steady motion with the friction and the load of these times."""
-    held, t = _at_chosen_times(of), of.data[rows.SURFACE_TIMES.path]
+    (held, steps), t = _at_chosen_times(of), of.data[rows.SURFACE_TIMES.path]
     at = np.unique(np.linspace(0, len(t) - 1, _SURFACE_TIMES).round().astype(int))
     styles, called = looks(len(at), True), [_at_time(of, t[i]) for i in at]
     columns = {"in time": [Shown(held, *each) for each in zip(at.tolist(), styles, called)]}
-    if steady := _steady(of, held, 0, _steps(of)[at]):
+    if steady := _steady(of, held, 0, steps[at]):
         columns["steady motion of that time's friction and load"] = steady.shown(styles, called)
     panels: list[Panel] = []
     for name in held.values:
@@ -273,13 +260,13 @@ def film(of: Archive) -> tuple[Film, str]:
     steady pressure leans most, beside the centre of the pressure; and what it leaves out."""
     label, t = _time(of)
     if has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= _LEAST_FRAMES:
-        start, held, steps = 0, _at_chosen_times(of), _steps(of)
+        start, (held, steps) = 0, _at_chosen_times(of)
         method = [*held.values["sigma_XX"]][-1]
         ylims = {name: limits(held.X, values[method]) for name, values in held.values.items()}
         frames = list(range(len(steps)))
     else:
-        start, held = _leaning(of)
-        method, ylims = SIE, {"sigma_YY": _pressures_shown(of)}
+        start, held, ylim = _leaning(of)
+        method, ylims = SIE, {"sigma_YY": ylim}
         steps = np.array(spread(range(len(t)), _FRAMES))
         frames = steps.tolist()
     # All by one method, as lines.

@@ -75,20 +75,20 @@ def problem_figure() -> Figure:
 
 #: Boxes of the procedure: middle and width [in], colour, lines.
 _BOXES = {
-    "motion": (0.85, 1.3, GREY, ("motion", "$X/L$ along", "FM1, BM1, FM2;", "speed $V$, $c = V/c_s$")),
+    "motion": (0.75, 1.3, GREY, ("motion", "$X/L$ along", "FM1, BM1, FM2;", "speed $V$, $c = V/c_s$")),
     "friction": (
-        2.5, 1.45, _ORANGE, ("Dahl's law (2–5)", "by its solution or", "Runge–Kutta (46–51)", "$f = F/N$")
+        2.4, 1.45, _ORANGE, ("Dahl's law (2–5)", "by its solution or", "Runge–Kutta (46–51)", "$f = F/N$")
     ),
     "exact": (
-        4.35, 1.65, _BLUE,
+        4.2, 1.65, _BLUE,
         ("integral equation (30)", "closed form (38–43)", "response at $c$", r"$\alpha$, $\beta$"),
     ),
     "fem": (
-        4.35, 1.65, _GREEN,
+        4.2, 1.65, _GREEN,
         ("finite elements", "weak form of (15, 16)", "friction under the punch", "pressure unknown"),
     ),
     "stresses": (
-        6.15, 1.35, "black",
+        5.95, 1.35, "black",
         ("contact stress (55)", "in-plane stress (32)", "$K_I$ (56–58)", "compared"),
     ),
 }  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import Quantity, stresses
+from galinx.postprocess.quantities import stresses
 from galinx.postprocess.quantities.layers import ALONG_X
 from galinx.postprocess.quantities.quantity import (
     ALONG,
@@ -101,19 +101,9 @@ def places_of(of: Archive, states: Sequence[int]) -> list[tuple[float, float]]:
     return [(float(a), float(b)) for a, b in each]
 
 
-def window(places: Sequence[tuple[float, float]], half: float) -> tuple[float, float]:
-    """Limits of positions that show contacts with so much beside each, over a."""
-    return min(b - half * a for a, b in places), max(b + half * a for a, b in places)
-
-
-def _contacts(places: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Ends of contacts, each once."""
-    return sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
-
-
 @dataclass(frozen=True)
 class Surface:
-    """Stresses along the surface by name and by method; a row is of a state, or of a time.
+    """Stresses along the surface or an interface by name and method; a row is of a state, or of a time.
 
     Attributes:
         X: positions over a, (points,).
@@ -121,6 +111,8 @@ class Surface:
         values: numbers in the figure's units by name and by method, (rows, points).
         places: factor and offset that turn X into positions in the figure, of each row.
         position: name of the axis of positions.
+        half: positions over a that are shown; 0 for those that the contact needs, where lines
+            break at its edges.
     """
 
     X: NDArray[np.float64]
@@ -128,6 +120,7 @@ class Surface:
     values: dict[str, dict[str, NDArray]]
     places: Sequence[tuple[float, float]]
     position: str = "position on the surface $X/a$"
+    half: float = 0.0
 
     @property
     def alone(self) -> "Surface":
@@ -140,17 +133,17 @@ class Surface:
         """Methods of all stresses."""
         return {method for values in self.values.values() for method in values}
 
-    def drawn(self, name: str) -> NDArray[np.float64]:
-        """A stress by the first method, after which panels are laid out, (rows, points)."""
-        return next(iter(self.values[name].values()))
+    def limits(self, name: str, rows: Sequence[int]) -> tuple[float, float]:
+        """Limits of a stress by the first method."""
+        return limits(self.X, next(iter(self.values[name].values()))[list(rows)])
 
     def shown(
-        self, looks: Sequence[Look], labels: Sequence[str] = (), width: float = 1.0
-    ) -> list["Shown"]:
-        """The first rows with their looks and their names in the legend."""
-        return [
-            Shown(self, row, look, labels[row] if labels else "", width) for row, look in enumerate(looks)
-        ]
+        self, looks: Sequence[Look], labels: Sequence[str] = (), width: float = 1.0,
+        rows: Sequence[int] = (),
+    ) -> list["Shown"]:  # fmt: skip
+        """Some rows, by default the first, with their looks and their names in the legend."""
+        numbered = zip(rows or range(len(looks)), looks, labels or [""] * len(looks))
+        return [Shown(self, *each, width) for each in numbered]
 
 
 class Shown(NamedTuple):
@@ -179,7 +172,7 @@ def surface_panel(
     for k, (surface, row, look, label, width) in enumerate(shown):
         X, values = surface.X, {method: y[row] for method, y in surface.values[name].items()}
         every = np.array(list(values.values()))
-        own = _UNDER if np.isnan(every[:, ~under_punch(X)]).all() else _BESIDE
+        own = surface.half or (_UNDER if np.isnan(every[:, ~under_punch(X)]).all() else _BESIDE)
         half, inside = max(half, own), np.abs(X) <= own
         ranges.append(limits(X, every[:1]))
         places.append(surface.places[row])
@@ -187,19 +180,21 @@ def surface_panel(
         for curve in both(X, values, look, label, k / len(shown)):
             x, y = X[inside], np.asarray(curve.y)[inside]
             thin = width
-            if curve.form == JOINED:  # markers, and a line that breaks between them
+            if curve.form == JOINED and not surface.half:  # markers, and a line that breaks between them
                 at = spaced(x, curve.turn)
                 curves.append(replace(curve, form=MARKERS, label="", x=b + a * x[at], y=y[at]))
                 curve, thin = replace(curve, form=LINE), 0.6 * width
-            if curve.form == LINE:
+            if curve.form == LINE and not surface.half:
                 x, y = broken(X, np.asarray(curve.y))
             curves.append(replace(curve, x=b + a * x, y=y, width=thin))
     low, high = np.array(ranges).T
-    ends = _contacts(places)
+    ends = sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
+    same = half == _BESIDE and np.allclose(ends, ends[0], rtol=1e-9)
     panel = Panel(
         shown[0].surface.position, shown[0].surface.axes[name], curves=curves,
-        xlim=window(places, half), ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
-        bands=ends[:1] if half == _BESIDE and np.allclose(ends, ends[0], rtol=1e-9) else (),
+        xlim=(min(b - half * a for a, b in places), max(b + half * a for a, b in places)),
+        ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
+        bands=ends if shown[0].surface.half else ends[:1] * same,
     )  # fmt: skip
     return replace(panel, **options)
 
@@ -208,7 +203,7 @@ def surface_panels(
     surface: Surface, name: str, states: Sequence[int], label: str = "", **options: Any
 ) -> list[Panel]:
     """A panel for each of some states, all with the same limits; arguments as for surface_panel."""
-    ylim, (look,) = limits(surface.X, surface.drawn(name)[list(states)]), looks(1)
+    ylim, (look,) = surface.limits(name, states), looks(1)
     return [surface_panel(name, [Shown(surface, i, look, label)], ylim, **options) for i in states]
 
 
@@ -224,11 +219,6 @@ def stresses_along(of: Archive) -> Surface:
         values[name] = {each: sign * of.values(row) for each, row in rows.items()}
     places = places_of(of, range(len(of.labels.all)))
     return Surface(of.data[SURFACE_X.path], axes, values, places, position_name(of))
-
-
-def _with_measured(of: Archive, panel: Panel, name: str) -> Panel:
-    measured = of.choice.measured
-    return measured.over_stress(panel, name, of.units) if measured else panel
 
 
 #: Ends of captions by the ends of the contact.
@@ -249,15 +239,15 @@ def surface(of: Archive) -> Drawing:
     panels: list[Panel] = []
     for n, name in enumerate(stressed.values):
         # The same limits for all columns, unless a few would hardly be visible then.
-        ranges = [limits(stressed.X, stressed.drawn(name)[numbers]) for _, numbers, _ in groups]
+        ranges = [stressed.limits(name, numbers) for _, numbers, _ in groups]
         low, high = min(y[0] for y in ranges), max(y[1] for y in ranges)
         alike = high - low <= _APART * min(y[1] - y[0] for y in ranges)
         for column, (title, numbers, names) in enumerate(groups):
-            styles = labels.looks(numbers, names)
             called = [labels.label(i, names) if len(every) > 1 else "" for i in numbers]
-            shown = [Shown(stressed, *each) for each in zip(numbers, styles, called)]
+            shown = stressed.shown(labels.looks(numbers, names), called, rows=numbers)
             ylim = (low, high) if alike else ranges[column]
-            panel = _with_measured(of, surface_panel(name, shown, ylim, title="" if n else title), name)
+            panel = surface_panel(name, shown, ylim, title="" if n else title)
+            panel = choice.measured.over_stress(panel, name, of.units) if choice.measured else panel
             panels.append(replace(panel, y=None) if column and alike else panel)
     columns = len(groups)
     if columns == 1 and width > 4.5 and len(stressed.values) > 1:  # side by side
@@ -335,7 +325,8 @@ def compared(
             if name in surface.values
             for order, k in enumerate(chosen)
         ]  # fmt: skip
-        panels.append(_with_measured(archives[0], surface_panel(name, shown), name))
+        panel, measured = surface_panel(name, shown), archives[0].choice.measured
+        panels.append(measured.over_stress(panel, name, archives[0].units) if measured else panel)
     methods = {method for surface in surfaces for method in surface.methods}
     try:
         figure = render(panels, None, min(2, len(panels)), explained(methods))
@@ -346,12 +337,9 @@ def compared(
     return Drawing("compare", caption, figure, left_out=left_out)
 
 
-#: Curves of friction along the contact that can be told apart.
-_FRICTIONS = 4
-
-
-#: Accuracy of the pressure with one friction beside that with friction along the contact.
-_DRAWN = 1e-4
+#: Curves of friction along the contact that can be told apart, and accuracy of pressures
+#: with one friction beside those.
+_FRICTIONS, _DRAWN = 4, 1e-4
 
 
 def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[np.float64]:
@@ -451,9 +439,11 @@ def interfaces(of: Archive) -> Drawing:
         for i, (depth, same) in enumerate(zip(over_a, alike), 1)
     ]
     columns = spread(range(len(over_a)), max(1, int(width / _LEAST_INTERFACE)))
-    available = of.by_method(STATE, INTERFACE, ALONG)
+    available, position = (
+        of.by_method(STATE, INTERFACE, ALONG), position_name(of, "position along the interface ")
+    )  # fmt: skip
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
-    X, places = of.data[ALONG_X.path], places_of(of, numbers)
+    X, places = of.data[ALONG_X.path], places_of(of, range(len(labels.all)))
     panels: list[Panel] = []
     notes, methods = list[Any](), set[str]()
     for of_sides, words in _AT_INTERFACES.items():
@@ -463,21 +453,17 @@ def interfaces(of: Archive) -> Drawing:
         if len(rows) > 1:
             notes = [note(Look(GREY, line, ""), f"{side} the interface") for side, line in _SIDES.items()]
         for i in columns if rows else ():
+            drawn: list[Shown] = []
+            axis = named(words, of.scaled(next(iter(rows[0].values()))).unit) if i == columns[0] else ""
             half = max(_OVER_A, _OVER_DEPTH * float(over_a[i]))
-            inside, curves = np.abs(X) <= half, []
-            for side, by_method in zip(_SIDES, values):
-                for k, (state, look, (a, b)) in enumerate(zip(numbers, styles, places)):
-                    at = {method: y[state, i][inside] for method, y in by_method.items()}
-                    label = called[k] if side == "above" else ""
-                    own, turn = look._replace(line=_SIDES[side]), k / len(numbers)
-                    curves += both(b + a * X[inside], at, own, label, turn)
+            for (side, line), by_method in zip(_SIDES.items(), values):
+                own = {method: y[:, i] for method, y in by_method.items()}
+                along = Surface(X, {"": axis}, {"": own}, places, position, half)
+                on_side = [look._replace(line=line) for look in styles]
+                drawn += along.shown(on_side, called if side == "above" else (), rows=numbers)
             titled = len(panels) < len(columns) and (len(over_a) > 1 or not panels)
-            label = named(words, of.scaled(next(iter(rows[0].values()))).unit)
-            panels.append(Panel(
-                position_name(of, "position along the interface "), label if i == columns[0] else "",
-                curves=curves, title=titles[i] if titled else "",
-                xlim=window(places, half), bands=_contacts(places), at_y=(0.0,),
-            ))  # fmt: skip
+            title = titles[i] if titled else ""
+            panels.append(replace(surface_panel("", drawn, title=title), ylim=None))
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
     caption = (
         "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
@@ -509,40 +495,55 @@ _MAPS = {
 #: the rest; and the clipped ends of a colour bar, by whether the least and the largest value are clipped.
 _SHARE = 0.985
 _CLIPPED = {(True, True): "both", (False, True): "max", (True, False): "min", (False, False): "neither"}
-#: What names of quantities in an elastic punch begin with.
-_PUNCH = "punch_"
+#: What names of quantities in an elastic punch begin with, and the components of stress.
+_PUNCH, _COMPONENTS = "punch_", ("sigma_XX", "sigma_YY", "sigma_XY")
 
 
 class Fields:
     """Stresses inside on the grid of an archive."""
 
     def __init__(self, of: Archive) -> None:
-        self._of, data = of, of.data
-        self._shape = tuple(data[stresses.MAP.path].tolist())
-        every = of.by_method(STATE, INSIDE)
-        punch = {name: rows for name, rows in every.items() if name.startswith(_PUNCH)}
-        self._quantities = {name: rows for name, rows in every.items() if name not in punch}
-        self._in_punch = {row.path: row for rows in punch.values() for row in rows.values()}
-        self.methods = [m for m in METHODS if any(m in rows for rows in self._quantities.values())]
-        X, Y = (self._on_grid(data[row.path]) for row in (stresses.INSIDE_X, stresses.INSIDE_Y))
+        self._of, self._shape = of, tuple(of.data[stresses.MAP.path].tolist())
+        self._rows = of.by_method(STATE, INSIDE)
+        below = [rows for name, rows in self._rows.items() if not name.startswith(_PUNCH)]
+        self.methods = [method for method in METHODS if any(method in rows for rows in below)]
+        X, Y = (self._on_grid(of.data[row.path]) for row in (stresses.INSIDE_X, stresses.INSIDE_Y))
         #: Positions over a along both axes.
         self.X, self.Y = X[0], Y[:, 0]
 
     @property
     def names(self) -> list[str]:
         """Names of all stresses inside that can be mapped."""
-        components = {"sigma_XX", "sigma_YY", "sigma_XY"} <= self._quantities.keys()
-        return [*dict.fromkeys([*self._quantities, *(_MAPS if components else ())])]
+        every = dict.fromkeys([*self._rows, *(_MAPS if self._rows.keys() >= {*_COMPONENTS} else ())])
+        return [name for name in every if not name.startswith(_PUNCH)]
+
+    def _values(self, name: str, method: str, states: Sequence[int], body: str = "") -> NDArray | None:
+        """A stress of states below the punch, or in the body "punch_", in the figure's units, (states,
+        rows, columns); None where there is none."""
+        of, held = self._of, method in self._rows.get(body + name, ())
+        rows = [self._rows.get(body + one, {}).get(method) for one in ((name,) if held else _COMPONENTS)]
+        if None in rows or (body and not held and name != "max_shear"):
+            return None
+        values = (self._on_grid(of.data[row.path][list(states)]) for row in rows if row)
+        each = [of.scaled(row).of(own, list(states)) for row, own in zip(rows, values) if row]
+        if held or name == "max_shear":
+            return each[0] if held else maximum_shear(*each)
+        solids = [of_state(of.scene, state)[0].solid for state in states]
+        XX, YY, XY = each
+        ZZ = [solid.σ_ZZ(*components) for solid, *components in zip(solids, XX, YY, XY)]
+        return von_mises(XX, YY, XY, np.array(ZZ))
+
+    def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
+        """A stress of states, (states, rows, columns), and the largest with its own colour."""
+        values = self._values(name, method, states)
+        assert values is not None
+        return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
 
     def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
-        """One quantity of a state in an elastic punch at -Y, and its strength; None without."""
-        names = ("sigma_XX", "sigma_YY", "sigma_XY") if name == "max_shear" else (name,)
-        rows = [self._in_punch.get(f"interior/{method}/{_PUNCH}{part}") for part in names]
-        each = [self._values(row, [state])[0] for row in rows if row]
-        if len(each) < len(names):
-            return None
-        level = self._level(name, of_state(self._of.scene, state)[0].solid.punch_strength)
-        return (maximum_shear(*each) if len(each) > 1 else each[0]), level
+        """A stress of a state in an elastic punch at -Y, and its strength; None without."""
+        values = self._values(name, method, [state], _PUNCH)
+        strength = of_state(self._of.scene, state)[0].solid.punch_strength if values is not None else None
+        return None if values is None else (values[0], self._level(name, strength))
 
     def _level(self, name: str, strength: float | None) -> float:
         """Yield strength [Pa] in the figure's units where a map shows von Mises stresses, 0 for none."""
@@ -551,29 +552,9 @@ class Fields:
             return 0.0
         return strength * of.units.of_pascals
 
-    def _values(self, row: Quantity, states: Sequence[int]) -> NDArray:
-        """A quantity of states in the figure's units, (states, rows, columns)."""
-        held = self._on_grid(self._of.data[row.path][list(states)])
-        return self._of.scaled(row).of(held, list(states))
-
-    def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
-        """One quantity of states in the figure's units, (states, rows, columns), and the largest with its
-        own colour."""
-        held = self._quantities.get(name, {}).get(method)
-        rows = [held] if held else stresses.STRESSES_INSIDE[method]
-        values, *others = (self._values(row, states) for row in rows)
-        if not held and name == "max_shear":
-            values = maximum_shear(values, *others)
-        elif not held:
-            YY, XY = others
-            solids = [of_state(self._of.scene, state)[0].solid for state in states]
-            ZZ = [solid.σ_ZZ(*stresses) for solid, *stresses in zip(solids, values, YY, XY)]
-            values = von_mises(values, YY, XY, np.array(ZZ))
-        return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
-
     def label(self, name: str) -> str:
         """Label of the colour bar of a quantity."""
-        row = next(iter((self._quantities.get(name) or next(iter(self._quantities.values()))).values()))
+        row = next(iter((self._rows.get(name) or self._rows[self.names[0]]).values()))
         return named(_MAPS.get(name) or short_name(row), self._of.scaled(row).unit)
 
     def panel(self, name: str, values: NDArray, state: int, limit: float, **options: Any) -> Panel:
@@ -590,10 +571,8 @@ class Fields:
         level = self._level(name, of_state(of.scene, state)[0].half_plane.yield_strength)
         shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
         x = position_name(of, "")
-        return Panel(
-            x, x.replace("X", "Y"), map=Map(b + a * self.X, a * self.Y, values, limit=limit, **shown),
-            bar=(b - a, b + a),
-        )  # fmt: skip
+        drawn = Map(b + a * self.X, a * self.Y, values, limit=limit, **shown)
+        return Panel(x, x.replace("X", "Y"), map=drawn, bar=(b - a, b + a))
 
     def panels(self, name: str, states: Sequence[int], **options: Any) -> list[Panel]:
         """A panel for each of some states by the first method, all with the same colours."""
@@ -619,7 +598,7 @@ def inside(of: Archive) -> Drawing:
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
-    dashes, panels, off, yields, both = _interfaces(of), [], 0.0, False, False
+    dashes, panels, off = _interfaces(of), list[Panel](), 0.0
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
         clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
@@ -627,20 +606,20 @@ def inside(of: Archive) -> Drawing:
             beside = fields.of_states(name, other, states)[0]
             off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
         for k, state in enumerate(states):
-            label = fields.label(name) if k == len(states) - 1 else ""
-            above = fields.above(name, method, state)
-            options = {"extend": _CLIPPED[clipped], "lines": alone, "label": label, "above": above}
-            panel = fields.panel(name, every[k], state, limit, **options)
-            assert panel.map
-            bodies = [(panel.map.values, panel.map.level), *([above] if above else ())]
-            yields |= any(0.0 < level < field.max() for field, level in bodies)
-            both |= above is not None
+            panel = fields.panel(
+                name, every[k], state, limit, extend=_CLIPPED[clipped], lines=alone,
+                above=fields.above(name, method, state),
+                label=fields.label(name) * (k == len(states) - 1),
+            )  # fmt: skip
             panels.append(replace(
                 panel, x=panel.x if not wide or n == len(names) - 1 else None,
                 y=panel.y if k == 0 else None, dashes=dashes,
                 title=labels.label(state, apart) if n == 0 or not wide else "",
             ))  # fmt: skip
     maps = [panel.map for panel in panels if panel.map]
+    both = any(m.above for m in maps)
+    bodies = [body for m in maps for body in ((m.values, m.level), m.above) if body]
+    yields = any(0.0 < level < values.max() for values, level in bodies)
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
     panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1

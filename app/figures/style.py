@@ -61,21 +61,16 @@ _STYLE = {
 }
 
 
-def _defaults() -> dict[str, Any]:
-    """Matplotlib's own settings, without what somebody has set for other figures, as text by LaTeX."""
-    import matplotlib  # a slow import, for nothing where texts alone are typeset
-
-    return {key: value for key, value in matplotlib.rcParamsDefault.items() if "backend" not in key}
-
-
 def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
     """Decorator of what draws or saves: in this style, and none of it is left to whoever draws next."""
 
     @wraps(draw)
     def in_style(*arguments: Any, **options: Any) -> Any:
-        from matplotlib import rc_context
+        import matplotlib  # a slow import, for nothing where texts alone are typeset
 
-        with rc_context({**_defaults(), **_STYLE}):
+        # What somebody has set for other figures, as text by LaTeX, is not for these.
+        defaults = {k: value for k, value in matplotlib.rcParamsDefault.items() if "backend" not in k}
+        with matplotlib.rc_context(defaults | _STYLE):
             return draw(*arguments, **options)
 
     return in_style

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, column, layers, states, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import FEM, STATE
-from galinx.postprocess.quantities.states import FRICTION, VELOCITY
+from galinx.postprocess.quantities.states import VELOCITY
 from galinx.texts import plain
 
 from ..errors import BadInput
@@ -31,7 +31,7 @@ from .style import COLUMN, looks
 #: Values of a parameter that make a curve, and those of two that make a map; curves that can be told
 #: apart, and panels of a page.
 _VALUES, _OF_MAP, _CURVES, _PANELS = 3, 5, 6, 12
-#: Relative change below which numbers count as constant or, up to a factor, as those of another column.
+#: Relative change below which numbers count as constant.
 _SAME = 1e-5
 #: Axes are logarithmic where numbers span more than this, that of the parameter where it spans more than
 #: that, by steps that are equal ratios rather than differences.
@@ -43,17 +43,21 @@ def _names(*rows: Quantity) -> list[str]:
 
 
 #: Where answers do not hold, and the speed once more: drawn on request only.
-_LIMITS = set(_names(
+_LIMITS = _names(
     VELOCITY, validity.CROSSINGS, *validity.SLIP_REVERSED, *validity.STRAIN,
     *validity.TENSION.values(), *validity.TENSION_X.values(),
-))  # fmt: skip
+)  # fmt: skip
+#: Drawn as a loop along strokes.
+_FRICTIONS = _names(states.FRICTION, states.RATIO)
 #: Largest shear at any interface, which is no column of its own.
 _INTERFACE_SHEAR = "interface_shear"
-#: What people ask for: drawn by itself where there is any of it.
+_INTENSITIES = _names(*states.K_I_LEFT.values(), *states.K_I_RIGHT.values())
+#: What people ask for, and what is drawn where there is none of it.
 _ANSWERS = [
     *_names(*states.LARGEST.values(), *stresses.HIGHEST.values(), *yielding.VON_MISES.values()),
     _INTERFACE_SHEAR, *_names(*states.HALF_WIDTH.values()),
 ]  # fmt: skip
+_OF_EDGES = [*_names(states.ALPHA, states.BETA), *_INTENSITIES, *_names(states.INDENTATION)]
 #: Another name of the speed, in m/s.
 _SPEED = "speed"
 
@@ -99,8 +103,6 @@ def parameters(of: Archive) -> Drawing:
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
     at = f" at {of.labels.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
     caption = f"What follows from {plain(sweep.label)}{at}."
-    if sweep.same:
-        caption += f" Not drawn, being constant or the same up to a factor: {', '.join(sweep.same)}."
     left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
@@ -119,8 +121,7 @@ class _Sweep:
         groups: label and states of each curve.
         fixed: other parameters that differ between states, and the values at which they are held.
         drawn: names of columns.
-        same: names of columns that are constant, or proportional to a drawn one.
-        more: names of columns for which a page has no room, or which nobody asked for.
+        more: names of columns that change as well.
     """
 
     def __init__(self, of: Archive) -> None:
@@ -142,12 +143,22 @@ class _Sweep:
             values = spread(labels.distinct(self.by, states), _CURVES)
             own = [labels.where(states, **{self.by: value}) for value in values]
             self.groups = [(labels.label(int(numbers[0]), [self.by]), numbers) for numbers in own]
-        self.same: list[str] = []
-        drawn, more = [require_one_of("y", y, self.columns) for y in choice.y], list[str]()
-        if not drawn:
-            drawn, more = self._changing(np.concatenate([numbers for _, numbers in self.groups]))
-        most = len(choice.y) or _PANELS
-        self.drawn, self.more = drawn[:most], [*drawn[most:], *more]
+        self.drawn, self.more = [require_one_of("y", y, self.columns) for y in choice.y], list[str]()
+        if not self.drawn:
+            apart = [self.name, *_LIMITS, *_FRICTIONS * (self.name == PLACE)]
+            changing = [
+                name for name, column in self.columns.items()
+                if name not in apart and any(_varies(column.best[own]) for _, own in self.groups)
+            ]  # fmt: skip
+            answers = [name for name in _ANSWERS if name in changing]
+            asked = [*answers, *_INTENSITIES] if answers else _OF_EDGES
+            shown = [name for name in asked if name in changing] or changing
+            if {*_INTENSITIES} <= {*shown}:  # over N both ends of a flat punch have the same
+                left, right = (self.columns[name].best for name in _INTENSITIES)
+                if np.allclose(left, right, rtol=_SAME, atol=0.0, equal_nan=True):
+                    shown.remove(_INTENSITIES[1])
+            self.drawn = shown[:_PANELS]
+            self.more = [name for name in changing if name not in self.drawn]
 
     def _over(self, selected: NDArray) -> tuple[str, str, NDArray]:
         """Parameter or quantity that numbers are drawn over, the name of its axis, and its numbers."""
@@ -175,32 +186,6 @@ class _Sweep:
         symbol, factor, unit = labels.scale(name)
         about = f"speed ${symbol}$" if name == C and unit != "1" else _label(labels.parameters[name])
         return named(about, unit), factor * labels.values(name)
-
-    def _changing(self, selected: NDArray) -> tuple[list[str], list[str]]:
-        """Names of columns that change along a curve and are worth a panel, and of those that are not."""
-        numbers = {
-            name: column.best[selected]
-            for name, column in self.columns.items()
-            if name not in {self.name, *_LIMITS}
-        }
-        changing = {
-            name
-            for name in numbers
-            if any(_varies(self.columns[name].best[states]) for _, states in self.groups)
-        }
-        asked = [name for name in _ANSWERS if name in changing]
-        if asked:
-            asked += [name for name in ("K_I_left", "K_I_right") if name in changing]
-            return asked, [name for name in self.columns if name in changing and name not in asked]
-        # Along strokes friction is drawn as a loop.
-        twins = [self.x[selected], *([self._of.data[FRICTION.path][selected]] * (self.name == PLACE))]
-        drawn = set()
-        for name in sorted(numbers, key=lambda name: -len(self.columns[name].values)):
-            if name in changing and not any(_proportional(numbers[name], other) for other in twins):
-                drawn.add(name)
-                twins.append(numbers[name])
-        self.same = [name for name in numbers if name not in drawn]
-        return [name for name in numbers if name in drawn], []
 
     def curves(self) -> list[Panel]:
         """A panel for each column that is drawn, with a curve for each group."""
@@ -304,14 +289,6 @@ def _swept(labels: StateLabels, selected: NDArray) -> list[str]:
 def _varies(values: NDArray) -> bool:
     finite = values[np.isfinite(values)]
     return len(finite) > 1 and np.ptp(finite) > _SAME * np.abs(finite).max()
-
-
-def _proportional(first: NDArray, second: NDArray) -> bool:
-    sizes = np.abs(first).max(), np.abs(second).max()
-    if not all(0.0 < size < np.inf for size in sizes):
-        return False
-    first, second = first / sizes[0], second / sizes[1]
-    return any(np.allclose(first, sign * second, rtol=0.0, atol=_SAME) for sign in (1.0, -1.0))
 
 
 def _spans(values: NDArray, more_than: float) -> bool:

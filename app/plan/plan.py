@@ -614,10 +614,10 @@ def _skipped(scene: Scene, contact: bool, words: Collection[str]) -> Iterator[st
 
 
 def surface_grid() -> np.ndarray:
-    """Positions X/a of archived surface stresses: to ±5, clustered at ±1, without ±1 itself."""
+    """Positions X/a of archived surface stresses, clustered at ±1, without ±1 itself."""
     near = np.geomspace(1e-6, 0.1, 31)
     inside = np.concatenate([1.0 - near, np.linspace(0.0, 0.88, 23)])
-    outside = 1.0 + np.concatenate([near, np.geomspace(0.1, 4.0, 25)[1:]])
+    outside = 1.0 + np.concatenate([near, np.geomspace(0.1, stresses.FARTHEST - 1.0, 25)[1:]])
     right = np.concatenate([inside, outside])
     return np.unique(np.concatenate([-right, right]))
 

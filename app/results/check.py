@@ -54,9 +54,9 @@ from ..run.solve import Work
 from ..scene import read as scenes
 from ..scene.scene import Scene
 
-#: States that are computed again: under flat punches, smooth ones and ones with kinks, over layers, and
-#: where the largest stress is searched for; and numbers of them.
-_FLAT, _SMOOTH, _KINKED, _LAYERED, _YIELD, _NUMBERS = 2000, 24, 6, 4, 3, 1_000_000
+#: States of a method that are computed again, all of them under flat punches up to so many, and so many
+#: numbers of these.
+_FEW, _FLAT, _NUMBERS = 6, 2000, 1_000_000
 #: Relative difference of closed forms, absolute one of places over a, and tolerances that equations are
 #: apart which were solved with other frictions beside them.
 _SAME_AGAIN, _PLACE, _TOLERANCES = 1e-6, 1e-3, 10.0
@@ -99,24 +99,25 @@ def _of_part(part: _Part) -> Iterator[str]:
     plan = part.plan
     if runs.RECORD["c"].path in part.data and not len(part.data[runs.FAILURES.path]):
         yield from _of_record(part.data, plan)
-    most_of_all = _most(plan.body.profile) if FLAT in plan.body.lacks else _FLAT
+    few = _spread(plan.states, _FEW)
     for method in (CLOSED_FORM, SIE):
+        by = (method, LOCAL) if method == CLOSED_FORM else (method,)
         # Residuals may be rounding alone; comparisons have them.
-        own = [row for row in plan.quantities if row.of and row.method == method and row.mode != ALONE]
-        if method == CLOSED_FORM:
-            own += [row for row in plan.quantities if row.method == LOCAL]
-        largest = [row for row in own if row.asked_by == YIELD]
-        others = [row for row in own if row not in largest]
-        numbers = sum(int(np.prod(plan.shape(row))) for row in others)
-        most = min(most_of_all, max(_NUMBERS // max(numbers, 1), _YIELD))
-        for rows, few in ((others, _LAYERED if method == SIE else most), (largest, _YIELD)):
-            methods, selected = (method,) * (method in plan.methods), _spread(plan.states, few)
-            for states_, computed in _computed(part, methods, selected, rows) if rows else ():
-                yield from _different(part, states_, computed)
+        rows = [row for row in plan.quantities if row.of and row.method in by and row.mode != ALONE]
+        slow = [row for row in rows if row.asked_by == YIELD]
+        quick = [row for row in rows if row not in slow]
+        many = max(_NUMBERS // max(sum(int(np.prod(plan.shape(row))) for row in quick), 1), _FEW)
+        flat = method == CLOSED_FORM and FLAT not in plan.body.lacks
+        for rows, selected in (
+            (quick, _spread(plan.states, min(_FLAT, many)) if flat else few),
+            (slow, few),
+        ):
+            methods = (method,) * (method in plan.methods)
+            for numbers, computed in _computed(part, methods, selected, rows) if rows else ():
+                yield from _different(part, numbers, computed)
     if plan.fem and not part.scene.layers:
-        selected = _spread(plan.states, _most(plan.body.profile))
-        yield from _of_invariants(part, selected)
-        yield from _of_finite_elements(part, selected)
+        yield from _of_invariants(part, few)
+        yield from _of_finite_elements(part, few)
 
 
 #: Words of earlier archives, and those that stand for them now.
@@ -159,11 +160,6 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
                 f"{runs.RECORD['unknowns'].path}: found {record['unknowns'].tolist()}, meshes of the "
                 f"degrees in {runs.RECORD['degree'].path} have {sizes}"
             )
-
-
-def _most(profile: Any) -> int:
-    """Number of states at most whose slow closed form is computed again."""
-    return _SMOOTH if smooth(profile) else _KINKED
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
@@ -221,12 +217,10 @@ def _is_place(path: str) -> bool:
 def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
     """Differences of finite elements from the closed form, even if the scene asks for none."""
     data, scene, plan, body = part.data, part.scene, part.plan, part.plan.body
-    closed_form = METHODS[CLOSED_FORM]
-    if (
-        part.attributes["verdict"] == "FAIL"
-        or closed_form.refusal(scene, body, None)
-        or body.solid.limit() <= max(plan.tasks.order.speeds)
-    ):
+    refusal = METHODS[CLOSED_FORM].refusal
+    if part.attributes["verdict"] == "FAIL" or refusal(scene, body, None):
+        return
+    if body.solid.limit() <= max(plan.tasks.order.speeds):
         return
     assert plan.fem
     if states.INDENTATION.path in data and plan.fem.terms:
@@ -237,17 +231,15 @@ def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[st
     ):
         yield f"{' and '.join(loads)} are not near each other"
     twins = {
-        quantity: quantity.path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
-        for quantity in QUANTITIES.values()
-        if quantity.of and quantity.method == CLOSED_FORM and quantity.mode in scene.modes
-        and not _is_place(quantity.path)
+        path: path.replace(f"/{CLOSED_FORM}/", f"/{FEM}/")
+        for path, row in QUANTITIES.items()
+        if row.of and row.method == CLOSED_FORM and row.mode in scene.modes and not _is_place(path)
         # Next to kinks numbers are infinite, or nearly so; and of yield a few states were looked at.
-        and (smooth(body.profile) or quantity.over == (STATE,)) and quantity.asked_by != YIELD
-        and not closed_form.refusal(scene, body, quantity)
+        and (smooth(body.profile) or row.over == (STATE,)) and row.asked_by != YIELD
+        and not refusal(scene, body, row)
     }  # fmt: skip
-    both = {quantity.path: other for quantity, other in twins.items() if other in part.names}
-    quantities = [QUANTITIES[path] for path in both]
-    for rows, computed in _computed(part, (CLOSED_FORM,), selected, quantities):
+    twins = {path: other for path, other in twins.items() if other in part.names}
+    for rows, computed in _computed(part, (CLOSED_FORM,), selected, [QUANTITIES[path] for path in twins]):
         intensities = [abs(values) for path, values in computed.items() if "K_I" in path]
         for path, exact in computed.items():
             size = np.max(intensities, axis=0) if "K_I" in path else np.abs(exact)
@@ -257,10 +249,10 @@ def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[st
                 finite = np.where(np.isfinite(exact), np.abs(exact), 0.0)
                 size = np.maximum(size, np.median(finite, axis=1, keepdims=True))
             allowed = max(_FROM_EXACT, _TOLERANCES * plan.tolerance) * np.where(size > 0.0, size, 1.0)
-            far = np.abs(part.held(both[path], rows) - exact) > allowed
+            far = np.abs(part.held(twins[path], rows) - exact) > allowed
             if far.any():
                 state = rows[far.reshape(len(rows), -1).any(axis=1)][0]
-                yield f"{both[path]} is not near the closed form of state {state}"
+                yield f"{twins[path]} is not near the closed form of state {state}"
 
 
 def _of_invariants(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:

@@ -5,7 +5,7 @@ A state of a scene is solved once more, whatever the scene asks for and by which
 are given in SI on the mesh of the solid, or on small quadrilaterals within it.
 """
 
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -23,7 +23,6 @@ from galinx.postprocess.quantities.stresses import STRESSES_INSIDE
 from galinx.postprocess.target import Target
 from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.contact.edges import under_punch
-from galinx.solvers.contact.fem_plan import FemPlan
 from galinx.solvers.contact.solution import GIVEN_ENDS, Task
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 
@@ -32,7 +31,7 @@ from ..console import Progress
 from ..errors import BadInput, finite_elements_installed, listed
 from ..methods import METHODS
 from ..plan.elements import farthest_inside
-from ..plan.plan import Plan, make_plan
+from ..plan.plan import make_plan
 from ..plan.states import enumerate_states, order
 from ..plan.variants import of_state
 from ..scene.scene import FRICTIONS, Scene
@@ -103,44 +102,43 @@ def solve_states(
             raise BadInput(
                 f"state {number}: no such state; expected 0 to {count - 1}, the scene has {count}"
             )
-    if scene.variants:
-        own = [of_state(scene, number) for number in numbers]
-        if any(variant is not own[0][0] for variant, _ in own):
-            raise BadInput(
-                f"states: found {listed([*map(str, numbers)])}, expected states of one solid and one "
-                f"punch, with the same {listed([*scene.swept])}"
-            )
-        alone = solve_states(own[0][0], [number for _, number in own], degrees, extent, shared)
-        return (replace(solved, number=number) for solved, number in zip(alone, numbers))
-    degrees = degrees or [None] * len(numbers)
+    own = [of_state(scene, number) for number in numbers]
+    if any(variant is not own[0][0] for variant, _ in own):
+        raise BadInput(
+            f"states: found {listed([*map(str, numbers)])}, expected states of one solid and one "
+            f"punch, with the same {listed([*scene.swept])}"
+        )
+    scene, rows, degrees = own[0][0], [row for _, row in own], degrees or [None] * len(numbers)
     _refuse(scene, degrees)
-    states = enumerate_states(scene)
-    columns = {name: values[list(numbers)].tolist() for name, values in states.columns.items()}
-    plan = make_plan(_for_finite_elements(scene, set(columns["c"])))
+    columns = {name: values[rows] for name, values in enumerate_states(scene).columns.items()}
+    plan = make_plan(_for_finite_elements(scene, {*columns["c"].tolist()}))
     assert plan.fem
-    plan = replace(plan, fem=replace(_reaching(plan.fem, extent, plan.tasks), shared_speeds=not shared))
+    corner = extent * max(abs(X + task.response.contraction) for task in plan.tasks for X in (-1.0, 1.0))
+    fem = replace(plan.fem, shared_speeds=not shared)
+    if not fem.kind.walls and corner > fem.kind.reach(fem.wanted):
+        wider = replace(fem.wanted, farthest=corner)
+        fem = replace(fem, wanted=wider, refinement=fem.kind.refinement(wider))
     with finite_elements_installed():
         from galinx.solvers.fem.method import FiniteElements
-    return _solved(FiniteElements(plan, Progress(), Clock()), scene, plan, numbers, columns, degrees)
 
-
-def _solved(
-    method: Any, scene: Scene, plan: Plan, numbers: Sequence[int], columns: dict[str, list[Any]],
-    degrees: Sequence[int | None],
-) -> Generator[Solved, None, None]:  # fmt: skip
-    """Solutions of states, whose parameters stand in columns."""
-    assert plan.fem
+    method: Any = FiniteElements(replace(plan, fem=fem), Progress(), Clock())
     tasks = {task.response.c: task for task in plan.tasks}
     # Prescribed tractions are solved one degree above the rule: no measured error corrects it here.
     more = scene.solve.mode == "traction"
-    for i, number in enumerate(numbers):
-        parameters = {name: values[i] for name, values in columns.items()}
-        task = tasks[parameters["c"]]
-        task = replace(task, body=task.body.loaded(parameters.get("load")))
-        degree = degrees[i] or plan.fem.degrees[task.number] + more
-        with method.one_state(task, parameters["g"], degree) as (space, fields, weights, pressure):
-            comm = method.work.comm
-            yield Solved(scene, number, parameters, task, degree, space, fields, weights, pressure, comm)
+
+    def solved() -> Generator[Solved, None, None]:
+        for i, number in enumerate(numbers):
+            parameters = {name: values[i].item() for name, values in columns.items()}
+            task = tasks[parameters["c"]]
+            task = replace(task, body=task.body.loaded(parameters.get("load")))
+            degree = degrees[i] or fem.degrees[task.number] + more
+            with method.one_state(task, parameters["g"], degree) as (space, fields, weights, pressure):
+                comm = method.work.comm
+                yield Solved(
+                    scene, number, parameters, task, degree, space, fields, weights, pressure, comm
+                )
+
+    return solved()
 
 
 def _refuse(scene: Scene, degrees: Sequence[int | None]) -> None:
@@ -170,15 +168,6 @@ def _refuse(scene: Scene, degrees: Sequence[int | None]) -> None:
             f"solid: found {scene.solid.words()}, expected ν <= 0.49 for stresses inside from finite "
             "elements"
         )
-
-
-def _reaching(fem: FemPlan, extent: float, tasks: Iterable[Task]) -> FemPlan:
-    """Plan of finite elements with a mesh that holds |X|, |Y| <= extent, over a, if it has no walls."""
-    corner = max(abs(X + task.response.contraction) for task in tasks for X in (-1.0, 1.0)) * extent
-    if fem.kind.walls or corner <= fem.kind.reach(fem.wanted):
-        return fem
-    wider = replace(fem.wanted, farthest=corner)
-    return replace(fem, wanted=wider, refinement=fem.kind.refinement(wider))
 
 
 def _for_finite_elements(scene: Scene, speeds: set[float]) -> Scene:
@@ -307,82 +296,57 @@ def write_fields(
 ) -> None:
     """Compute states of a scene and write them for ParaView, several as a series over their numbers.
 
-    Collective over MPI's world; rank 0 writes. Nothing is replaced by a path alone. Arguments and
-    failures are those of :func:`state_field`, with a list for each number.
-
-    Raises:
-        Occupied: something is there that may not be replaced.
-        UnwritableArchive: the file system refused.
-    """
-    _check(scene, extent)
-    states = solve_states(scene, numbers, degrees, extent)
-    from mpi4py import MPI
-
-    if MPI.COMM_WORLD.rank > 0:
-        for solved in states:
-            solved.comm.send(_in_si(solved, solved.sampled(extent)), 0)
-        return
-    from galinx.postprocess.hdf5 import vtkhdf
-
-    def pieces(solved: Solved) -> Iterable[StateField]:
-        """Pieces of the field of all ranks, of which rank 0 holds one of another at a time."""
-        others = (solved.comm.recv(source=rank) for rank in range(1, solved.comm.size))
-        return chain([_in_si(solved, solved.sampled(extent))], others)
-
-    steps = (vtkhdf.Step(float(solved.number), pieces(solved), _attributes(solved)) for solved in states)
-    vtkhdf.write(path, steps, ABOUT, COLOURED, series=len(numbers) > 1)
-
-
-def state_field(
-    scene: Scene, number: int, extent: float = 10.0, degree: int | None = None
-) -> StateField | None:
-    """Field of a state from one factorisation, on rank 0; None on the others. Collective.
-
-    Whatever the scene asks for and by whichever method, this is done with finite elements.
+    Collective over MPI's world; rank 0 writes. Nothing is replaced by a path alone.
 
     Args:
-        scene: the scene.
-        number: of the state, as in :func:`solve_states`.
-        extent: the field is cut at |X|, |Y| = extent, over a.
-        degree: polynomial degree; None for the degree that the scene's tolerance suggests.
+        scene, numbers, degrees: as for :func:`solve_states`.
+        path: the file.
+        extent: fields are cut at |X|, |Y| = extent, over a.
 
     Raises:
         BadInput: there is no such state, or finite elements have no answer for it.
+        Occupied: something is there that may not be replaced.
         SolveError: the equations could not be solved.
+        UnwritableArchive: the file system refused.
     """
-    _check(scene, extent)
-    with closing(solve_states(scene, [number], [degree], extent)) as states:
-        solved = next(states)
-        whole = solved.sampled(extent).gathered(solved.comm)
-        return None if whole is None else _in_si(solved, whole)
-
-
-def _check(scene: Scene, extent: float) -> None:
     limit = farthest_inside(scene)
     if not 0.0 < extent <= limit:
         raise BadInput(
             f"extent: found {extent:g} a, expected more than 0 and at most {limit:g} a with the "
             f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
         )
+    states = solve_states(scene, numbers, degrees, extent)
+    from mpi4py import MPI
+
+    if MPI.COMM_WORLD.rank > 0:
+        for solved in states:
+            solved.comm.send(in_si(solved, solved.sampled(extent)), 0)
+        return
+    from galinx.postprocess.hdf5 import vtkhdf
+
+    def step(solved: Solved) -> Any:
+        """A state and the pieces of its field of all ranks, of which rank 0 holds one of another at a
+        time."""
+        body = solved.task.body
+        attributes = {
+            "title": solved.scene.title,
+            "state": solved.number,
+            **solved.parameters,
+            "speed": solved.parameters["c"] * body.solid.c_s,
+            "load": body.load,
+            "half_width": body.half_width,
+            "mean_pressure": body.stress,
+            "degree": solved.degree,
+            "program": f"galinx {__version__}",
+        }
+        others = (solved.comm.recv(source=rank) for rank in range(1, solved.comm.size))
+        pieces = chain([in_si(solved, solved.sampled(extent))], others)
+        return vtkhdf.Step(float(solved.number), pieces, attributes)
+
+    vtkhdf.write(path, map(step, states), ABOUT, COLOURED, series=len(numbers) > 1)
 
 
-def _attributes(solved: Solved) -> dict[str, Any]:
-    """Attributes of a state in a file beside its fields; numbers in SI."""
-    body = solved.task.body
-    return {
-        "title": solved.scene.title,
-        "state": solved.number,
-        **solved.parameters,
-        "speed": solved.parameters["c"] * body.solid.c_s,
-        "load": body.load,
-        "half_width": body.half_width,
-        "mean_pressure": body.stress,
-        "degree": solved.degree,
-        "program": f"galinx {__version__}",
-    }
-
-
-def _in_si(solved: Solved, sampled: Any) -> StateField:
+def in_si(solved: Solved, sampled: Any) -> StateField:
     """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa."""
     scene, task = solved.scene, solved.task
     body = task.body

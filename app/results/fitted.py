@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import product
 from math import isfinite
 from pathlib import Path
 from time import perf_counter
@@ -20,13 +21,13 @@ from galinx.postprocess.tables import Sheet
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction import fit as solver
 from galinx.solvers.friction.fit import FittedLaw, Measured
-from galinx.solvers.parameters import Parameter, parameters
+from galinx.solvers.parameters import parameters
 
 from ..console import Progress
 from ..errors import BadInput, excerpt, listed, nearest, short
 from ..scene import read as scenes
 from ..scene.values import Choice, Number, Rows
-from ..text_table import TextTable, read_table
+from ..text_table import read_table
 
 #: Names of columns by what they are; a friction with a unit of force is a force.
 _NAMES = {
@@ -71,13 +72,17 @@ def read(path: Path) -> Table:
         BadInput: it is none; the message names the line.
     """
     table, notes = read_table(path, _FORM), []
-    forces = [_unit_of_force(table, column) for column in range(len(table.names))]
+    forces: dict[int, str] = {}  # SI units of columns of forces
+    for n, unit in product(range(len(table.names)), _FORCES):
+        with suppress(BadInput):
+            if table.units[n] not in ("", "1", "-") and table.factor(n, unit):
+                forces[n] = unit
     columns: dict[str, int] = {}
-    for n, (name, unit) in enumerate(zip(table.names, forces)):
+    for n, name in enumerate(table.names):
         kind = next((kind for kind, valid in _NAMES.items() if name in valid), "")
-        if kind == "friction" and unit:  # F [N] is a force, N without a unit of one no load
+        if kind == "friction" and n in forces:  # F [N] is a force, N without a unit of one no load
             kind = "force"
-        if name != "n" or unit:
+        if name != "n" or n in forces:
             columns.setdefault(kind, n)
 
     def numbers(kind: str, unit: str) -> NDArray[np.float64]:
@@ -99,9 +104,8 @@ def read(path: Path) -> Table:
         raise BadInput(f"{path}, line 1: found a friction force without a load, expected {_FORM}")
     else:
         both = columns["force"], columns["load"]
-        units = {forces[n] for n in both}
-        (unit,) = units if len(units) == 1 else ("",)
-        if not unit:
+        unit = forces.get(both[0], "")
+        if not unit or unit != forces.get(both[1]):
             found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
             raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")
         force, load = (table.numbers(n, unit) for n in both)
@@ -124,15 +128,6 @@ def read(path: Path) -> Table:
         clock = X = np.append(0.0, X)
         f = np.append(np.nan, f)
     return Table(path.name, Measured(clock, X, f), timed, tuple(notes))
-
-
-def _unit_of_force(table: TextTable, column: int) -> str | None:
-    """SI unit of a column of forces; None for anything else."""
-    for unit in _FORCES if table.units[column] not in ("", "1", "-") else ():
-        with suppress(BadInput):
-            table.factor(column, unit)
-            return unit
-    return None
 
 
 #: Name that stands for every law.
@@ -399,20 +394,18 @@ def _section(one: Fit) -> str:
             text = [[float(f"{number:.9g}") for number in row] for row in value]
         elif not isinstance(value, str):
             text = f"{value:.9g} {parameter.unit}" if parameter.unit else float(f"{value:.9g}")
-        lines.append(f"{key} = {json.dumps(text)}  # {_comment(one, parameter)}")
+        unit = (
+            "in SI" if parameter.columns else parameter.unit or "dimensionless" * (not parameter.options)
+        )
+        # The unit, and the deviation of each number.
+        said = [
+            ("not determined" + f" (± {error:.2g})" * isfinite(error))
+            if name in one.not_determined
+            else f"± {error:.2g}"
+            for name, error in one.deviations.items()
+            if name.partition("[")[0] == key
+        ]
+        unit = "in SI" if parameter.columns else unit
+        comment = ", ".join(filter(None, [unit, *(said or ["given"])]))
+        lines.append(f"{key} = {json.dumps(text)}  # {comment}")
     return "\n".join(lines) + "\n"
-
-
-def _comment(one: Fit, parameter: Parameter) -> str:
-    """Comment on a parameter: its unit, and the deviation of each number or that it was given."""
-    mine = {
-        name: error for name, error in one.deviations.items() if name.partition("[")[0] == parameter.key
-    }
-    unit = "in SI" if parameter.columns else parameter.unit or "dimensionless" * (not parameter.options)
-    said = ", ".join(
-        ("not determined" + f" (± {error:.2g})" * isfinite(error))
-        if name in one.not_determined
-        else f"± {error:.2g}"
-        for name, error in mine.items()
-    )
-    return ", ".join(text for text in (unit, said or "given") if text)

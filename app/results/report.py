@@ -216,7 +216,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     }  # fmt: skip
     for name in surface.values if surface else ():
         assert surface
-        label = METHODS[next(iter(surface.values[name]))]
+        label = METHODS[min(surface.values[name], key=lambda method: method == FEM)]  # that of the line
         charts = [chart(panel) for panel in surface_panels(surface, name, shown, label)]
         for trace in (trace for drawn in charts for trace in drawn["data"]):
             trace["showlegend"] = bool(trace["name"])
@@ -350,6 +350,12 @@ def page(
     few = len(data[states.FRICTION.path]) <= BESIDE
     tables = [states_sheet(data, units, "Every state", _WIDE)] if few else []
     tables += [f(data, units, _WIDE * few) for f in (starts_sheet, limits_sheet)]
+    # The study's tables that the archive has all states of, for the study's solid.
+    published = [
+        intensities(name, rows, limit_of_steady_motion(name, data, scene.body.half_width))
+        for name in (INTENSITIES if has_study_digits(scene.solid) else ())
+        if (rows := intensity_rows(name, data))
+    ]
     versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
     parts = {
         "title": attributes["title"] or "A sliding punch",
@@ -359,7 +365,7 @@ def page(
         "warnings": json.loads(attributes["warnings"]),
         "reasons": json.loads(attributes["verdict_reasons"]),
         "tables": [sheet for sheet in tables if sheet.rows],
-        "sheets": _published(data, scene) if sheets is None else sheets,
+        "sheets": published if sheets is None else sheets,
         "states": None if few else states_table(data, units),
         "explorer": large,
         "pictures": shown,
@@ -383,15 +389,3 @@ def page(
     environment.filters["typeset"] = markup
     template = environment.get_template("page.html")
     return template.render(parts | {"terms": terms, "plotly": _plotly()})
-
-
-def _published(data: dict[str, Any], scene: Scene) -> list[Sheet]:
-    """The study's tables that the archive has all states of, for the study's solid."""
-    if not has_study_digits(scene.solid):
-        return []
-    a, rows_by_name = scene.body.half_width, {name: intensity_rows(name, data) for name in INTENSITIES}
-    return [
-        intensities(name, rows, limit_of_steady_motion(name, data, a))
-        for name, rows in rows_by_name.items()
-        if rows
-    ]

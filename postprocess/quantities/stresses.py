@@ -71,6 +71,8 @@ IN_PLANE = by_method(
     }, asked_by=ON_SURFACE,
 )  # fmt: skip
 
+#: Distance over a from the middle up to which stresses along the surface are output.
+FARTHEST = 5.0
 _METHODS = (CLOSED_FORM, FEM, SIE)
 
 

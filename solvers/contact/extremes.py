@@ -59,7 +59,7 @@ def between(turns: NDArray, x: NDArray = GRADED) -> NDArray[np.float64]:
 def largest(
     function: Callable[[NDArray], NDArray], pieces: Sequence[NDArray], ends: bool = True, refined: int = 5
 ) -> tuple[float, float]:
-    """Largest value of a function of one variable, and its place.
+    """Largest value of a function of one variable, and its place, of two as large the one on the left.
 
     Args:
         function: of places, (n,).
@@ -74,14 +74,15 @@ def largest(
         padded = np.pad(y, 1, constant_values=-np.inf if ends else np.inf)
         i = np.flatnonzero((y >= padded[:-2]) & (y >= padded[2:]))
         tops += zip(y[i], x[i], x[np.maximum(i - 1, 0)], x[np.minimum(i + 1, len(x) - 1)])
-    best = max([(value, place) for value, place, *_ in tops], default=(-np.inf, np.nan))
+    best = [max([(value, place) for value, place, *_ in tops], default=(-np.inf, np.nan))]
     for _, _, low, high in sorted(tops, reverse=True)[:refined]:
         if high - low <= _CLOSEST * max(abs(low), abs(high)):
             continue
         u = (low + high) / 2.0 + (high - low) / 2.0 * _NODES
         height, place = summit(u[None], function(u)[None], np.array([low]), np.array([high]))
-        best = max(best, (height[0], place[0]))
-    return float(best[0]), float(best[1])
+        best.append((height[0], place[0]))
+    (value,), (place,) = highest(*np.array(best).T[:, None])
+    return float(value), float(place)
 
 
 def tops(

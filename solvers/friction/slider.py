@@ -144,8 +144,9 @@ STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
     "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
     "no whole cycle yet",
 )  # fmt: skip
-#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a stop.
-_STEADY, _STOPPED = 1e-3, 1e-6
+#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
+#: sticks; under laws of the logarithm of the speed it creeps, and never stops.
+_STEADY, _STOPPED = 1e-3, 1e-2
 
 
 def outcome(ride: Ride, drive_speed: float) -> str:

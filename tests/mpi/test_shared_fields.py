@@ -6,10 +6,10 @@ import h5py
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import space_on
+from support import space_on, state_field
 
 from galinx import template
-from galinx.app.results.fields import Solved, solve_states, state_field, write_fields
+from galinx.app.results.fields import Solved, solve_states, write_fields
 from galinx.meshes.rings import Refinement
 from galinx.solvers.fem.export import sample
 from galinx.solvers.fem.punch import SlidingPunch

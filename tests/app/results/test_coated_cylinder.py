@@ -54,3 +54,14 @@ def test_the_table_of_a_coated_cylinder_is_right_to_a_thousandth(tmp_path):
     for head, value in expected.items():
         assert float(row[head]) == pytest.approx(value, rel=1e-3), head
     assert row["von_mises_below_yields [of the yield strength]"] == "yes, 127 %"
+
+
+def test_a_table_without_friction_has_no_tension_and_no_rounding(tmp_path):
+    """σ_XX is less than 0 all along, and largest at the end of what is seen: no tension."""
+    (tmp_path / "tin.toml").write_text(SCENE.replace("0.15", "0.0").replace("20 µm", "5 µm"))
+    here("run", "tin.toml", "-o", "tin.h5", cwd=tmp_path)
+    (row,) = csv.DictReader(io.StringIO(here("csv", "tin.h5", cwd=tmp_path).stdout))
+    assert row["sie_sigma_XX_max [MPa]"] == row["sie_sigma_XX_max_X [µm]"] == ""
+    assert float(row["interface_shear_X [µm]"]) > 0.0  # that where σ_XY > 0, of two as large
+    told = here("show", "tin.h5", cwd=tmp_path).stdout
+    assert "von Mises below the layers" in told and "at X = 0 µm, Y = -34.8" in told and "e-1" not in told

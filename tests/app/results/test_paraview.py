@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from loaded import under
-from support import areas
+from support import areas, state_field
 
 from galinx import template
 from galinx.app.errors import BadInput
 from galinx.app.plan.states import enumerate_states
 from galinx.app.results import fields
-from galinx.app.results.fields import ABOUT, state_field, write_fields
+from galinx.app.results.fields import ABOUT, write_fields
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -49,7 +49,7 @@ def test_what_has_no_field_is_bad_input():
     box = template("tables4_5", {"solve.mesh": "box"})
     for extent in (90.0, 0.0, np.nan):
         with pytest.raises(BadInput, match="at most 60 a with the box mesh"):
-            state_field(box, 0, extent)
+            write_fields(box, [0], "none.hdf", extent)
     with pytest.raises(BadInput, match="degree: found 40, expected 4 to 13"):
         state_field(given, 0, degree=40)
 

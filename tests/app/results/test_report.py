@@ -94,6 +94,17 @@ def test_a_report_has_every_state_and_its_curves(page, map_run):
                 assert len(at) > 50
 
 
+def test_a_line_has_the_name_of_its_method(tmp_path):
+    """Over layers that of the integral equation, which archives hold after finite elements."""
+    changes = {"solve.methods": ["sie", "fem"], "solve.tolerance": 1e-2}
+    compute(template("coating", changes | {"output.quantities": ["surface"]})).report(
+        tmp_path / "coating.html"
+    )
+    for charts in data_of(tmp_path / "coating.html", "explorer")["surface"]:
+        names = {trace["mode"]: trace["name"] for trace in charts[0]["data"]}
+        assert names == {"lines": "integral equation", "markers": "finite elements"}
+
+
 def test_what_is_rounding_alone_is_0_on_a_page(map_run):
     data = dict(map_run.data)
     largest = data["states/fem/sigma_XX_max"] = data["states/fem/sigma_XX_max"].copy()

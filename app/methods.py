@@ -84,10 +84,8 @@ _OF_FLAT_PUNCHES = {
 
 
 def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
-    if scene.layers:
-        return "the solid has layers, and no closed form"
-    if VARYING in body.modes and not body.flat:
-        return "friction varies along the contact of a punch that is not flat; sie and fem solve it"
+    if body.no_closed_form:
+        return body.no_closed_form
     lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
     if scene.elastic_punch and scene.elastic_punch.speed:
         lacks = lacks | {row.path: "the punch's surface moves, too" for row in SLIP_REVERSED}
@@ -95,8 +93,8 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
 
 
 def _layers_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
-    by_closed_form = CLOSED_FORM in scene.solve.methods and body.flat
-    if not scene.layers and (VARYING not in body.modes or by_closed_form):
+    wanted = VARYING in body.modes and CLOSED_FORM not in scene.solve.methods
+    if not body.no_closed_form and not wanted:
         return "the solid has no layers, and closed_form knows the solution"
     return _refusal(quantity, body, {})
 

@@ -51,9 +51,7 @@ PURE = {
 #: pressure has that.
 TRACTION, FORMULA = "solvers/fem/traction.py", "solvers.contact.closed_form"
 SOLUTIONS = (
-    FORMULA, "solvers.contact.exact",
-    "solvers.contact.equation", "solvers.contact.contacts", "solvers.contact.on_layers",
-    "solvers.friction",
+    FORMULA, "solvers.contact.exact", "solvers.contact.equation", "solvers.friction",
 )  # fmt: skip
 #: What both share, and so has no solution either.
 SHARED = "solvers/contact/pressure.py"

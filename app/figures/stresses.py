@@ -25,7 +25,7 @@ from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFAC
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
 from galinx.postprocess.tables import preferred
 from galinx.solvers.contact.edges import from_edge, under_punch
-from galinx.solvers.contact.on_layers import under_punch as half_plane_under_punch
+from galinx.solvers.contact.equation import under_punch as half_plane_under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.texts import number, plain

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
 from galinx.solvers.contact import FREE_ENDS, VARYING_FREE
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import EdgeExponents
+from galinx.solvers.contact.ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.fem_plan import (
     FITTED,
     NEAR_FREE_END,
@@ -33,7 +34,6 @@ from galinx.solvers.contact.fem_plan import (
     unknowns,
     with_friction_kinks,
 )
-from galinx.solvers.contact.free_ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,

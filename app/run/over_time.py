@@ -19,7 +19,7 @@ from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
+from galinx.solvers.contact.equation import LayersUnderPunch, weights_between
 from galinx.solvers.contact.pressure import Pressure
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, from_edge, under_punch
-from .panels import Panels, stretched
+from .panels import stretched
 from .pressure import ENDS, Expansion, Pressure
 from .recovery import Polynomials
 from .residual import Rule
@@ -141,11 +141,9 @@ class ExpansionAlong(Expansion):
 
     Attributes:
         friction: σ_XY/σ_YY over X/a.
-        tips: see :class:`.pressure.Pressure`.
     """
 
     friction: Along = constant(0.0)
-    tips: tuple[float, ...] = ()
 
     @property
     def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
@@ -159,9 +157,6 @@ class ExpansionAlong(Expansion):
         lengths = np.minimum(1.0 / np.maximum(slope, 1.0), at_kinks)
         c = self.functions.continued(self.c, free, tuple(lengths.tolist()))
         return replace(self, c=c, ends=free)
-
-    def tipped(self, tips: tuple[float, ...]) -> "ExpansionAlong":
-        return replace(self, tips=tips)
 
     @cached_property
     def _shear(self) -> NDArray[np.float64]:
@@ -183,13 +178,6 @@ class ExpansionAlong(Expansion):
     def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         ratio, H = self.friction(r), self.hilbert(r)
         return ratio[None], H[None], (self._hilbert(self._shear, r) - ratio * H)[None]
-
-    def at(self, z: NDArray) -> NDArray[np.complex128]:
-        flat = np.ravel(z).astype(complex)
-        y, right = np.log((1.0 + flat) / (1.0 - flat)), np.log(1.0 - flat)
-        y = y.real - 1j * (-y.imag % (2.0 * np.pi))
-        weight = np.exp(self.α * right + self.β * (y + right))
-        return (weight * self.functions.cauchy(self.c, y) / np.pi).reshape(np.shape(z))
 
     def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         shear = replace(self, c=self._shear)
@@ -213,13 +201,6 @@ class ExpansionAlong(Expansion):
         """Centre of pressure over a."""
         forces = self.c * self.functions.weights
         return float(forces @ self.functions.t / forces.sum())
-
-
-def expansion(α: float, β: float, c: NDArray, panels: Panels, friction: Along) -> Expansion:
-    """Pressure, or several, by values c on panels, (n,) or (states, n), with a friction."""
-    if friction.varies:
-        return ExpansionAlong(α, β, c, panels, friction=friction)
-    return Expansion(α, β, c, panels)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,11 @@ are exact: with X(z) = (z - 1)^α (z + 1)^β and q = A + B s
 exponents of the pressure, N̂ = n + g n₁₂ and C(y) of :mod:`.panels`, where w = (1 - s)^-a (1 + s)^-b,
 
     Φ(z) = -(sin πa/(π N̂)) X(z) ∫ w f/(t - z) dt = -(sin πa/(π N̂)) e^(-iπa) C(y).
+
+The ends of such a contact, s over its half-width h from its middle m, meet two conditions for any convex
+profile P, which :mod:`galinx.solvers.contact.ends` solves:
+
+    ∫ P'(m + h s)/w ds = 0,        N/μ = h (sin πa/N̂) ∫ s P'(m + h s)/w ds.
 """
 
 from collections.abc import Sequence
@@ -27,9 +32,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import SolveError
+from ..profiles import check_reach, cusp, jumps
+from ..profiles.punches import Flat, Parabolic
+from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
-from .panels import Panels, stretched
-from .pressure import Pressure
+from .ends import Punch, Rule, free_ends
+from .panels import Panels, panels_of_slope, stretched
+from .pressure import Contacts, Group, Pressure
 
 #: Newton's steps for the logarithm of a distance; at a double root they halve the error.
 _STEPS = 80
@@ -262,3 +272,136 @@ class FreeEnds(Pressure):
         y = np.log((1.0 + flat) / (1.0 - flat))
         C = self.panels.cauchy(self.f, y.real - 1j * (-y.imag % (2.0 * np.pi)))
         return (-self._factor * np.exp(-1j * np.pi * self.α) * C).reshape(np.shape(z))
+
+
+#: First half-width in the search for the ends [m].
+_FIRST = 1e-3
+
+
+def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:
+    """Contacts of a punch with free ends.
+
+    Args:
+        response: of the half-plane at a speed.
+        g: σ_XY/σ_YY under the punch, (states,).
+        profile: profile of the punch, with a free end at least.
+        load: N/μ [m], a number or one for each state, (states,).
+
+    Raises:
+        SolveError: no contact carries the load, or the contact reaches beyond what is known of the punch.
+    """
+    g = np.atleast_1d(np.asarray(g, dtype=float))
+    n, load = response.n + g * response.n12, np.broadcast_to(load, g.shape)
+    if not np.all(n > 0.0):
+        raise SolveError(
+            f"at c = {response.c:g} and σ_XY/σ_YY = {g[np.argmin(n)]:g} the surface does not resist a "
+            "punch (not below the Rayleigh speed): no contact of finite width carries a load"
+        )
+    if isinstance(profile, Flat):
+        return Contacts(_tilted(response, g, n, profile, load))
+    if isinstance(profile, Parabolic):
+        return Contacts((_parabolas(response, g, n, profile, load),))
+    return Contacts(tuple(_by_quadrature(response, g, n, profile, load)))
+
+
+def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
+    flat = FlatPunch(response, g)
+    a, b = 1.0 + flat.α, 1.0 + flat.β
+    h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
+    A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
+    pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
+    return Group(response, np.arange(len(g)), g, pressure, h, h * (b - a))
+
+
+def _tilted(
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Flat, load: NDArray
+) -> tuple[Group, ...]:
+    """Contacts of a tilted flat punch: both edges in contact, or one lifted off."""
+    flat, half, θ = FlatPunch(response, g), profile.half_width, profile.rise
+    sin, α, β = flat._sin, flat.α, flat.β
+    a, b = 1.0 + α, 1.0 + β
+    A, B = 2.0 * sin / np.pi, -θ * sin / n * (2.0 * half / load)
+    lifted = (A + 2.0 * a * B > 0.0) | (A - 2.0 * b * B > 0.0)
+    order = np.where(lifted, 0, -1)
+    # One end is sharp, one free: the contact starts at the lower edge.
+    share = a if θ > 0.0 else b
+    h = np.where(lifted, load * n / (2.0 * np.pi * share * abs(θ)) if θ else half, half)
+    centre = np.where(lifted, np.sign(θ) * (h - half), 0.0)
+    α, β = (np.where(lifted, α + (θ > 0.0), α), np.where(lifted, β + (θ < 0.0), β))
+    A = np.where(lifted, sin / (np.pi * share), A + B * (flat.α - flat.β))
+    B = np.where(lifted, 0.0, B)
+    groups = []
+    for kind in (-1, 0):
+        rows = np.flatnonzero(order == kind)
+        if len(rows):
+            column = np.s_[rows, None]
+            pressure = Weighted(α[column], β[column], A[column], B[column], kind)
+            groups.append(Group(response, rows, g[rows], pressure, h[rows], centre[rows]))
+    return tuple(groups)
+
+
+def _by_quadrature(
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Any, load: NDArray
+) -> Sequence[Group]:
+    """Contacts of any convex profile, state after state; equal states are solved once."""
+    a, groups = 1.0 + FlatPunch(response, g).α, []
+    m, h = None, _FIRST
+    _, first, inverse = np.unique(
+        np.column_stack([load, g]), axis=0, return_index=True, return_inverse=True
+    )
+    inverse = inverse.ravel()  # some versions of NumPy keep an axis
+    for k, i in enumerate(first.tolist()):
+        punch = Punch(profile, 1.0, float(load[i]))
+        rule = rule_of_ends(profile, float(a[i]), float(n[i]))
+        m, h = free_ends(punch, lambda _: rule, h, m)  # noqa: B023
+        check_reach(profile, m - h, m + h)
+        pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
+        rows = np.flatnonzero(inverse == k)
+        half_width, centre = np.full(len(rows), h), np.full(len(rows), m)
+        groups.append(Group(response, rows, g[rows], pressure, half_width, centre))
+    return groups
+
+
+def rule_of_ends(profile: Any, a: float, n: float) -> Rule:
+    """Quadrature of the conditions on both ends of a contact on a uniform half-plane.
+
+    Args:
+        profile: profile of the punch.
+        a: exponent of the pressure at the right end.
+        n: n + g n₁₂ of the half-plane.
+    """
+
+    def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        panels = panels_of(profile, a, kinks)
+        return panels.t, panels.weights, np.sin(np.pi * a) / n * panels.weights * panels.t
+
+    return rule
+
+
+def pressure_of(punch: Punch, a: float, response: HalfPlane, g: float, m: float, h: float) -> FreeEnds:
+    """Pressure of a contact with given ends.
+
+    Args:
+        punch: the punch and its load.
+        a: exponent of the pressure at the right end.
+        response: of the half-plane.
+        g: σ_XY/σ_YY under the punch.
+        m, h: middle and half-width of the contact.
+    """
+    places, slope = punch.kinks(m, h), punch.slope(m, h)
+    panels, n = panels_of(punch.profile, a, places), response.n + g * response.n12
+    tips = places if jumps(punch.profile) else ()
+    return FreeEnds(panels, slope(panels.t), slope, n, g * response.q, places, tips, cusp(punch.profile))
+
+
+def panels_of(profile: Any, a: float, kinks: Sequence[float]) -> Panels:
+    """Quadrature over a contact of a punch.
+
+    Args:
+        profile: profile of the punch.
+        a: exponent of the pressure at the right end.
+        kinks: places over the half-width at which the slope or its derivative jumps.
+    """
+    # Beside its kink a power is not smooth; wedges and parabolas are.
+    k = getattr(profile, "exponent", 1.0)
+    return panels_of_slope(a, kinks, not jumps(profile) and k != round(k))

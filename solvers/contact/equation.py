@@ -1,4 +1,4 @@
-"""The singular integral equation of a punch on a layered half-plane.
+"""The singular integral equation of a punch on a layered half-plane, and contacts that it determines.
 
     (n̂/π) ⨍ σ(t)/(t - r) dt - g q σ(r) + ∫ K(r - t) σ(t) dt = μ v,X(r),   ∫ σ dr = -2,
 
@@ -8,14 +8,33 @@ their weight; its integrals with K are done by Gauss's rule. Where K is rough, w
 at 0, the pressure without its weight has terms like (1 - t) log(1 - t) towards the ends, which no
 polynomial follows: values on panels replace them.
 
-A prescribed pressure is linear between knots (:mod:`.prescribed_pressure`). It is integrated by Gauss's
-rule on pieces between knots, as short as the kernel requires; where the kernel has a logarithm, graded
-towards it. The part of the half-plane of the surface's solid is known exactly.
+**Frictions.** Any number of frictions at one speed share the kernels, which do not depend on friction. A
+pressure without its weight is an analytic function of g = σ_XY/σ_YY: beyond a few frictions the equation
+is solved at Chebyshev's points in g, and what is linear in the pressure is interpolated between them.
+
+**Two free ends, any convex profile.** With T the operator of the equation, its adjoint is, but for the
+sign, that of the same contact seen from the other side. Let ρ₁ be the pressure of a flat punch there, and
+ρ₂ that under the slope 1 without a resultant. A pressure σ that vanishes at both ends under the slope f,
+T σ = f, then has ∫ ρ f = -∫ (-T* ρ) σ, so that
+
+    ∫ ρ₁ P'(m + h s) ds = 0,        N/μ = h ∫ ρ₂ P'(m + h s) ds.
+
+These conditions on the slope alone (:func:`rule_of_ends`) give both ends, by
+:mod:`galinx.solvers.contact.ends`. Both ρ are smooth functions over w = (1 - s)^a (1 + s)^b, whatever the
+profile is; without layers ρ₁ is 1/w and ρ₂ is s/w but for factors.
+
+**A tilted punch one edge of which lifts off.** The contact starts at the other edge, and the intensity at
+its free end vanishes for one sum of two pressures, that of a flat punch and that under the slope 1.
+
+**Slopes that jump, or whose derivative jumps** (:class:`Kinked`). What a kink does to the pressure is of
+the surface's solid alone: with f the slope less the mean by which the pressure σ₀ of
+:mod:`galinx.solvers.contact.panels` vanishes at both ends, what layers add is a pressure under that mean
+and under the slope -∫ K(r - t) σ₀(t) dt by which σ₀ bends the layers, which no kink makes rough.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -23,11 +42,18 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq
 from scipy.special import roots_jacobi
 
+from ..approximation import barycentric
 from ..errors import SolveError
 from ..friction.along import Along, constant
-from .along import expansion
+from ..layers.kernel import REACH, Kernel, Level, Scaled
+from ..layers.layered import Layered, LayersAtSpeed
+from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
+from ..profiles.punches import Flat
+from .along import ExpansionAlong
+from .closed_form import FreeEnds, contacts, panels_of
+from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .panels import TO_BEND, Panels
-from .pressure import ENDS, Expansion, Functions
+from .pressure import ENDS, Expansion, Functions, Pressure, off_tips
 
 #: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
 _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
@@ -251,7 +277,9 @@ class Equation:
         A = np.vstack([A, panels.weights])
         b = np.vstack([np.stack([slope(t) * scale for slope in slopes], axis=-1), loads])
         c = lstsq(A, b, lapack_driver="gelsy", check_finite=False)[0].T
-        return expansion(self.α, self.β, c, panels, friction)
+        if friction.varies:
+            return ExpansionAlong(self.α, self.β, c, panels, friction=friction)
+        return Expansion(self.α, self.β, c, panels)
 
 
 @dataclass(frozen=True)
@@ -340,3 +368,366 @@ def resolutions(rough: bool) -> Iterator[Resolution]:
         yield terms
         terms = int(_MORE * terms)
     yield MOST
+
+
+#: Longest panel for a sum of so many polynomials, times their number, and at most.
+_PANEL, _LONGEST = 16.0, 0.7
+
+
+def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
+    """Quadrature of the conditions on both ends of contacts of one half-width.
+
+    Args:
+        equation: of such a contact; its slope is not used.
+        resolution: number of polynomials, or longest panel.
+    """
+    adjoint = replace(equation, adjoint=True)
+    ρ = adjoint.pressures(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
+
+    def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
+        panels = Panels(ρ.α, ρ.β, finest(resolution), kinks)
+        lifting, carrying = panels.weights * ρ.series(panels.t)
+        return panels.t, -lifting, carrying
+
+    return rule
+
+
+def vanishing(
+    equation: Equation, resolution: Resolution, resultant: float = -2.0
+) -> tuple[Expansion, float]:
+    """Pressure of a contact between two free ends, at which it vanishes.
+
+    An intensity left by the resolution is removed by a little of a flat punch and of the slope 1.
+
+    Args:
+        equation: of the contact, with its slope.
+        resolution: number of polynomials, or longest panel.
+        resultant: ∫ σ_YY dr.
+
+    Returns:
+        The pressure, and the correction: the larger of the change of its resultant over that of a punch,
+        and the change of its slope over that by which one end alone would carry such a resultant.
+    """
+    slopes = (equation.slope, np.zeros_like, np.ones_like)
+    parts = equation.pressures(resolution, slopes, (resultant, -2.0, 0.0))
+    K = parts.series(ENDS).T
+    little = np.linalg.solve(K[:, 1:], -K[:, 0])
+    moved = np.abs(little) * np.abs(K[:, 1:]).max(axis=0) / np.abs(K[:, 1]).max()
+    return parts.sum(np.append(1.0, little)).ending((True, True)), float(moved.max())
+
+
+def finest(resolution: Resolution) -> float:
+    """Longest panel that resolves a pressure of this resolution."""
+    return min(resolution if isinstance(resolution, float) else _PANEL / resolution, _LONGEST)
+
+
+@dataclass(frozen=True)
+class Kinked(Pressure):
+    """Pressure between free ends under a slope with kinks.
+
+    Attributes:
+        α, β: exponents of edges.
+        alone: σ₀, the pressure on the surface's solid alone.
+        on_panels: σ₀ over the weight of edges.
+        more: the pressure that layers add.
+        near, kinks, tips: see :class:`galinx.solvers.contact.pressure.Pressure`.
+    """
+
+    α: float
+    β: float
+    alone: FreeEnds
+    on_panels: Expansion
+    more: Expansion
+    near: float
+    kinks: tuple[float, ...]
+    tips: tuple[float, ...]
+
+    #: Both ends are free.
+    free = np.array([True, True])  # type: ignore[assignment]
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return _without_weight(self.alone, off_tips(r, self.tips)) + self.more.series(r)
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        values, under = self.more.rest(r, near), np.abs(r) < 1.0
+        # cot(πα) = Q/n turns σ₀ under the punch into f/n.
+        values[under] += self.alone.slope(r[under]) / self.alone.n
+        values[~under] += self.alone.hilbert(r[~under])
+        return values
+
+    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+        return self.more.integral(kernel, r) + self.on_panels.integral(kernel, r)
+
+    def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        panels: Panels = self.on_panels.functions
+        fine = _on_panels(self.alone, replace(panels, finest=min(finest, panels.finest)))
+        (t, σ), (t_alone, σ_alone) = self.more.points(finest), fine.points(np.inf)
+        return np.append(t, t_alone), np.append(σ, σ_alone)
+
+
+def _without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:
+    """σ₀ over the weight of edges, whose exponents are 1 less, which is 0 from both ends on."""
+    return (1.0 - r) * (1.0 + r) * alone.series(r)
+
+
+def _on_panels(alone: FreeEnds, panels: Panels) -> Expansion:
+    """σ₀ over the weight of edges by its values on panels."""
+    return Expansion(panels.α, panels.β, _without_weight(alone, panels.t), panels)
+
+
+def kinked(
+    equation: Equation, resolution: Resolution, punch: Punch, m: float, h: float
+) -> tuple[Pressure, float]:
+    """Pressure of a contact with kinks, and its correction as of :func:`vanishing`.
+
+    Args:
+        equation: of the contact, with its slope.
+        resolution: number of polynomials, or longest panel.
+        punch: the punch.
+        m, h: middle and half-width.
+    """
+    a, profile, places = 1.0 + equation.α, punch.profile, punch.kinks(m, h)
+    panels = panels_of(profile, a, places)
+    whole = equation.slope(panels.t)
+    mean = float(panels.weights @ whole / panels.weights.sum())
+
+    def slope(r: NDArray) -> NDArray[np.float64]:
+        return equation.slope(r) - mean
+
+    alone = FreeEnds(
+        panels, whole - mean, slope, equation.n, equation.Q, places, cusp=cusp(profile),
+    )  # fmt: skip
+    carried = -np.sin(np.pi * a) / equation.n * float(panels.weights @ (panels.t * (whole - mean)))
+    fine = Panels(equation.α, equation.β, finest(resolution), places, rough=equation.kernel.rough)
+    on_panels = _on_panels(alone, fine)
+
+    def of_layers(r: NDArray) -> NDArray[np.float64]:
+        return mean - on_panels.integral(equation.K, r)[:, 0]
+
+    more = replace(equation, slope=of_layers, kinks=places)
+    tips = places if jumps(profile) else ()
+    added, taken = vanishing(more, resolution, -2.0 - carried)
+    return Kinked(added.α, added.β, alone, on_panels, added, added.near, places, tips), taken
+
+
+#: Accuracy of a half-width at rest, over which others are given.
+_AT_REST = 1e-5
+#: Accuracy with which an edge counts as lifted off.
+OF_ENDS = 1e-6
+#: Reach of tabulated kernels over that which the largest contact so far needs.
+_KERNEL_MARGIN = 1.5
+#: Depths whose fields are kept.
+_LEVELS = 256
+#: Chebyshev's points in g at first and at most; the last coefficients estimate the error; places at which
+#: pressures are compared for that.
+_FEW, _MANY, _LAST, _COMPARED = 9, 65, 2, np.array([-1.0, -0.6, 0.0, 0.6, 1.0])
+
+
+@dataclass(frozen=True)
+class LayersUnderPunch:
+    """A half-plane at a speed under a punch: kernels, and contacts with any friction, which share these.
+
+    Attributes:
+        response: of the surface's solid.
+        stack: layers with their substrate, lengths over the punch's unit; None without layers.
+        tolerance: relative.
+        punch: the punch, whose unit is the half-width where both its ends are sharp.
+        every: solve each friction, however many there are.
+        friction: σ_XY/σ_YY over the contact by the number g of a state and the half-width [m].
+    """
+
+    response: Any
+    stack: LayersAtSpeed | None
+    tolerance: float
+    punch: Punch
+    every: bool = False
+    friction: Callable[[float, float], Along] = lambda g, h: constant(g)
+
+    #: Largest error of stresses at each height over a at which they were evaluated.
+    errors: dict[float, float] = field(default_factory=dict)
+
+    @cached_property
+    def level(self) -> Callable[[float, float], Level]:
+        """Fields at a depth, up to a distance from their load; lengths over the unit."""
+        assert self.stack
+        stack = self.stack
+        return lru_cache(_LEVELS)(lambda depth, reach: Level(stack, depth, reach, self.tolerance))
+
+    @cached_property
+    def _kernels(self) -> list[Any]:
+        return [Kernel(self.stack, self.tolerance / 1e3) if self.stack else UNIFORM]
+
+    @property
+    def kernel(self) -> Any:
+        """The kernel with lengths over the shared unit."""
+        return self._kernels[-1]
+
+    def scaled(self, h: float) -> Any:
+        """The kernel of a contact of the half-width h; a longer table is made where one is needed."""
+        if not self.stack:
+            return UNIFORM
+        if (needed := REACH * h) > self.kernel.reach:
+            self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
+        return Scaled(self.kernel, h)
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of the pressure by that of the kernel."""
+        return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
+
+    def solved(self, g: NDArray) -> tuple[list[SolvedContact], float | None]:
+        """Contacts from which those with all of ``g`` follow, and the error where they are interpolated.
+
+        Args:
+            g: σ_XY/σ_YY, sorted, (states,).
+        """
+        profile = self.punch.profile
+        # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
+        rough = has_free_end(profile) and (isinstance(profile, Flat) or len(kinks(profile)))
+        if self.every or rough or len(g) <= _FEW:
+            return self._each(g), None
+        count = _FEW
+        middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
+        while True:
+            each = self._each(middle + half * np.cos(np.pi * np.arange(count) / (count - 1)))
+            error = _unresolved(each)
+            if error <= self.tolerance / 10.0 or count >= _MANY or count >= len(g):
+                return each, error
+            count = 2 * count - 1
+
+    def _each(self, g: NDArray) -> list[SolvedContact]:
+        contacts: list[SolvedContact] = []
+        for value in g.tolist():
+            contacts.append(self.contact(value, contacts[-1].half_width if contacts else 1.0))
+        return contacts
+
+    def contact(self, g: float, h: float = 1.0, checked: bool = True) -> SolvedContact:
+        """The contact with a friction.
+
+        Args:
+            g: σ_XY/σ_YY.
+            h: half-width to begin with.
+            checked: the contact may not be wider than what is known of the punch.
+
+        Raises:
+            SolveError: no contact carries the load, or it is not resolved.
+        """
+        profile, unit = self.punch.profile, self.punch.unit
+        solve: Callable[..., SolvedContact] = self._between_edges
+        if has_free_end(profile):
+            solve = self._tilted if isinstance(profile, Flat) else self._between_free_ends
+
+        def at_resolution(resolution: Resolution) -> SolvedContact:
+            nonlocal h
+            contact = solve(g, h, resolution)
+            h = contact.half_width
+            return contact
+
+        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance)
+        m, h = contact.centre, contact.half_width
+        if checked:
+            check_reach(profile, unit * (m - h), unit * (m + h))
+        return contact
+
+    def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
+        friction = self.friction(g, self.punch.unit * h)
+        return Equation(self.response, self.scaled(h), friction, slope)
+
+    def _between_edges(self, g: float, _: float, resolution: Resolution) -> SolvedContact:
+        """Contact between two sharp corners at a resolution."""
+        return SolvedContact(g, self._equation(g, 1.0, self.punch.slope(0.0, 1.0)).pressure(resolution))
+
+    def _between_free_ends(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
+        """Contact between two free ends at a resolution, from the half-width h on."""
+        rules: dict[float, Rule] = {}
+        # On a uniform solid all half-widths share one rule, unless friction has a length.
+        share = not self.stack and not self.friction(g, self.punch.unit).has_length
+
+        def of_half_width(h: float) -> Rule:
+            own = 1.0 if share else h
+            if own not in rules:
+                rules[own] = rule_of_ends(self._equation(g, own), resolution)
+            return rules[own]
+
+        m, h = free_ends(self.punch, of_half_width, h)
+        equation = self._equation(g, h, self.punch.slope(m, h))
+        places = self.punch.kinks(m, h)
+        if places and not equation.friction.varies:
+            pressure, taken = kinked(equation, resolution, self.punch, m, h)
+        else:
+            pressure, taken = vanishing(replace(equation, kinks=places), resolution)
+            if places and jumps(self.punch.profile):
+                pressure = replace(pressure, tips=places)
+        return SolvedContact(g, pressure, h, m, taken)
+
+    def _tilted(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
+        """Contact of a tilted flat punch, the higher edge of which may have lifted off."""
+        punch = self.punch
+        whole, rise = punch.profile.half_width / punch.unit, punch.profile.rise
+        side = 1 if rise > 0.0 else 0
+        each: dict[float, tuple[Expansion, float]] = {}
+
+        def load(h: float) -> float:
+            """Logarithm of the load under which the higher end of the contact has no intensity."""
+            equation = self._equation(g, h)
+            parts = equation.pressures(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
+            flat, bent = parts.series(ENDS)[:, side]
+            # The slope over N/(2h) that leaves no intensity is (2h/(N/μ)) θ.
+            slope = float(-flat / bent)
+            each[h] = parts, slope
+            carried = 2.0 * h * punch.unit * rise / punch.compression
+            return logarithm_of_load(carried / slope) if slope else np.inf
+
+        if load(whole) <= 0.0:
+            slope = 2.0 * whole * punch.unit / punch.compression * rise
+            return SolvedContact(g, each[whole][0].sum(np.array([1.0, slope])), whole)
+        h = half_width_of_load(load, min(h, whole), punch)
+        parts, slope = each[h]
+        m = float(np.sign(rise)) * (h - whole)
+        pressure = parts.sum(np.array([1.0, slope])).ending((side == 0, side == 1))
+        return SolvedContact(g, pressure, h, m)
+
+
+def under_punch(body: Any, response: Any, tolerance: float, every: bool = False) -> LayersUnderPunch:
+    """A half-plane under the punch of a contact, with or without layers; lengths over its half-width."""
+    unit = body.half_width
+    stack = response.stack(unit) if body.solid.layers else None
+    punch = Punch(body.profile, unit, body.compression)
+    return LayersUnderPunch(response, stack, tolerance, punch, every, body.friction)
+
+
+@lru_cache(maxsize=256)
+def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> float:
+    """Half-width [m] of a contact at rest without friction, to five digits, over which others are given.
+
+    Args:
+        solid: the layers.
+        profile: of the punch.
+        compression: N/μ [m].
+
+    Raises:
+        SolveError: no contact carries the load.
+    """
+    response = solid.response(0.0)
+    # That on the surface's solid alone is near enough to measure lengths by.
+    (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
+    punch = Punch(profile, unit, compression)
+    layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
+    return unit * layers.contact(0.0, checked=False).half_width
+
+
+def _unresolved(each: Sequence[SolvedContact]) -> float:
+    """Relative error of contacts interpolated in g, from their last Chebyshev coefficients."""
+    pressures = np.array([contact.pressure.series(_COMPARED) for contact in each])
+    lengths = np.array([[contact.half_width, contact.centre] for contact in each])
+    values = np.column_stack([pressures / np.abs(pressures).max(), lengths / lengths[:, 0].max()])
+    x = np.cos(np.pi * np.arange(len(each)) / (len(each) - 1))
+    c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
+    return float(np.abs(c[-_LAST:]).max() / np.abs(values).max())
+
+
+def weights_between(nodes: NDArray, g: NDArray) -> NDArray[np.float64]:
+    """Weights that interpolate values at Chebyshev's points in g to others, (states, nodes)."""
+    weights = (-1.0) ** np.arange(len(nodes))
+    weights[[0, -1]] /= 2.0
+    return barycentric(nodes, weights, g)

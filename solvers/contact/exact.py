@@ -1,28 +1,28 @@
 """Methods without a mesh: closed form on uniform half-planes, integral equation over layered ones.
 
-Contacts differ by their pressure alone, see :mod:`galinx.solvers.contact.contacts`.
+Contacts differ by their pressure alone, see :class:`galinx.solvers.contact.pressure.Contacts`.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..layers.kernel import Level
 from ..profiles import jumps, kinks
-from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, VARYING, stresses
+from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
-from .contacts import Contacts, Group
 from .edges import EdgeExponents, Exponents
-from .equation import SolvedContact
-from .on_layers import LayersUnderPunch, Nodes, mixture, under_punch
+from .equation import LayersUnderPunch, SolvedContact, under_punch, weights_between
 from .prescribed_pressure import COARSE, FINE
-from .pressure import ENDS
+from .pressure import ENDS, Contacts, Group, Pressure
 from .residual import of_contact, of_field
-from .solution import Solution, Solver, Task, solved_once
+from .solution import Solution, Task, solved_once
 from .stresses import Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import InSolid
 
@@ -42,20 +42,11 @@ class ClosedForm:
 
     solution: Callable[[Task, NDArray, NDArray | None], Any]
 
-    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Solver]:
-        return nullcontext(_AtSpeed(task, self.solution))
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
+        def states(g: NDArray, load: NDArray | None = None) -> Any:
+            return self.solution(task, g, load)
 
-
-@dataclass(frozen=True)
-class _AtSpeed:
-    task: Task
-    solution: Callable[[Task, NDArray, NDArray | None], Any]
-
-    def states(self, g: NDArray, load: NDArray | None = None) -> Any:
-        return self.solution(self.task, g, load)
-
-    def record(self) -> dict[str, Any]:
-        return {}
+        return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
 class ExactSolution(Solution):
@@ -81,6 +72,12 @@ class ExactSolution(Solution):
     def _of(self, name: str) -> NDArray[np.float64]:
         return self.contacts.of(name)[self._rows]
 
+    def _of_pressures(self, name: str) -> NDArray[np.float64]:
+        """Attribute of the pressure of every state, (states,)."""
+        return self.contacts.joined(
+            lambda group: np.full(len(group.rows), getattr(group.pressure, name))
+        )[self._rows]
+
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
@@ -98,26 +95,12 @@ class ExactSolution(Solution):
         """Middle of the contact from the punch's axis [m], (states,)."""
         return self._of("centre") * self._growth
 
-    @property
-    def K_I(self) -> NDArray[np.float64]:
-        """K_I at the left and the right end, 0 at a free end, (states, 2)."""
-        return self._of("K_I")
-
-    @property
-    def resultant_ratio(self) -> NDArray[np.float64]:
-        """Resultant of σ_XY over that of σ_YY, of friction that varies along the contact, (states,)."""
-        return self._of_pressures("resultant_ratio")
-
-    @property
-    def pressure_centre(self) -> NDArray[np.float64]:
-        """Centre of pressure over a, of friction that varies along the contact, (states,)."""
-        return self._of_pressures("pressure_centre")
-
-    def _of_pressures(self, name: str) -> NDArray[np.float64]:
-        """Attribute of the pressure of every state by its name, (states,)."""
-        return self.contacts.joined(
-            lambda group: np.full(len(group.rows), getattr(group.pressure, name))
-        )[self._rows]
+    #: K_I at the left and the right end, 0 at a free end, (states, 2).
+    K_I = property(lambda self: self._of("K_I"))
+    #: Of friction that varies along the contact: resultant of σ_XY over that of σ_YY, (states,).
+    resultant_ratio = property(lambda self: self._of_pressures("resultant_ratio"))
+    #: Of friction that varies along the contact: centre of pressure over a, (states,).
+    pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
 
     @property
     def normal_force(self) -> NDArray[np.float64]:
@@ -272,99 +255,183 @@ class Layers:
 
     tolerance: float
 
-    @contextmanager
-    def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
+    def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
         body = task.body
         # A place inside is in one layer with one friction and in another with the next.
         every = bool(len(task.places.points) or len(task.places.around)) and body.found
-        every |= VARYING in body.modes
-        layers = under_punch(body, task.response, self.tolerance, every)
+        layers = under_punch(body, task.response, self.tolerance, every or bool(body.along))
         if body.knots:  # a prescribed pressure needs no equation
             pressure: Any = body.pressure
-            length, rough = float(layers.stack.layers[0].H), layers.kernel.rough
+            length, rough = float(layers.stack.layers[0].H), layers.kernel.rough  # type: ignore[union-attr]
             fine, coarse = (
                 replace(pressure, nodes=nodes, length=length, rough=rough) for nodes in (FINE, COARSE)
             )
-            yield _OverLayers(task, layers, [SolvedContact(0.0, fine, before=coarse)])
+            solved, interpolated = [SolvedContact(0.0, fine, before=coarse)], None
         else:
-            yield _OverLayers(task, layers, *layers.solved(g))
+            solved, interpolated = layers.solved(g)
+        states = partial(LayeredSolution, task, layers, solved, interpolated)
+        return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
 @dataclass(frozen=True)
-class _OverLayers:
-    """Contacts at one speed.
+class OnLayers(Group):
+    """States over layers whose pressure is of one kind, and their stresses.
 
     Attributes:
-        task: the speed.
-        layers: the layers under the punch.
-        solved: contacts at the frictions that were solved; one under a prescribed pressure.
-        interpolated: error of the interpolation over frictions, relative; None where each is solved.
+        layers: the layers, with kernels.
     """
 
-    task: Task
     layers: LayersUnderPunch
-    solved: list[SolvedContact]
-    interpolated: float | None = None
 
-    def states(self, g: NDArray) -> "LayeredSolution":
-        return LayeredSolution(self, g)
-
-    def record(self) -> dict[str, Any]:
-        return {}
+    def read(self, values: "Callable[[OnLayers], NDArray]") -> NDArray[np.float64]:
+        """Values that are linear in the pressure, given for states that were solved, (..., rows, n)."""
+        return values(self)
 
     @property
-    def shared(self) -> float:
-        """Relative error of all that is linear in the pressure by interpolation and by the kernel."""
-        return (self.interpolated or 0.0) + self.layers.rounding
+    def size(self) -> float:
+        """Half-width of the contacts over the unit of the layers."""
+        return float(self.half_width[0]) / self.layers.punch.unit
 
-    @cached_property
-    def estimate(self) -> float:
-        """Estimated error of the pressure, relative."""
-        return max(contact.change for contact in self.solved) + self.shared
+    def strain(self, r: NDArray) -> NDArray[np.float64]:
+        return self.read(lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size), r))
 
-    @cached_property
-    def _nodes(self) -> tuple[Nodes, Nodes]:
-        """Contacts that were solved, and those with fewer unknowns."""
-        each = [self._groups(contact, np.array([contact.g]), np.zeros(1, int)) for contact in self.solved]
-        fine, coarse = zip(*each)
-        return Nodes(fine), Nodes(coarse)
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n), at an interface those above it: (3, rows, n)."""
+        X, Y = X[0], Y[0]
+        σ = np.empty((3, len(self.rows), len(X)))
+        for height in np.unique(Y).tolist():
+            there = height == Y
+            at_height = partial(OnLayers._at_height, X=X[there], height=height)
+            σ[..., there] = self.read(at_height)
+        return σ
 
-    def _groups(self, contact: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Group, Group]:
-        """States of a contact that was solved, and with fewer unknowns."""
-        h, m = (
-            np.full(len(rows), length * self.layers.punch.unit)
-            for length in (contact.half_width, contact.centre)
+    def _at_height(self, X: NDArray, height: float) -> NDArray[np.float64]:
+        h, errors = self.size, self.layers.errors
+        level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
+        error = h * level.error * max(1.0, level.media[0].modulus)
+        errors[height] = max(errors.get(height, 0.0), error)
+        return self._along(X, level, 1)[[2, 0, 1]]
+
+    def at_interface(self, X: NDArray, level: Level) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,): (4, rows, n)."""
+        return self.read(lambda of: of._along(X, level, 2))
+
+    def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
+        """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
+        t, forces = self.pressure.points(level.depth / self.size)
+        g, ratios = self.pressure.ratios(self.g, t)
+        u_X, σ_YY, σ_XY = level.read(t, forces, g, X, self.size, ratios)
+        media = [(medium.modulus, medium.response) for medium in level.media[:sides]]
+        return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
+
+
+@dataclass(frozen=True)
+class Interpolated(Pressure):
+    """Pressures of states whose smooth factors are interpolated between those of nodes.
+
+    Attributes:
+        nodes: contacts at Chebyshev's points in g, one state each.
+        weights: of the nodes in each state, (states, nodes).
+        α, β: exponents at the right and the left end, (states, 1).
+    """
+
+    nodes: Sequence[OnLayers]
+    weights: NDArray[np.float64]
+    α: Any
+    β: Any
+
+    def read(self, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
+        """Values of all states by those of the nodes, (..., 1, n) each."""
+        return np.asarray(self.weights @ np.concatenate([values(node) for node in self.nodes], axis=-2))
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        return np.asarray(self.nodes[0].pressure.free)
+
+    @property
+    def near(self) -> float:  # type: ignore[override]
+        return float(min(node.pressure.near for node in self.nodes))
+
+    def series(self, r: NDArray) -> NDArray[np.float64]:
+        return self.read(lambda node: node.pressure.series(r)[None])
+
+    def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
+        return self.read(lambda node: node.pressure.rest(r, near)[None])
+
+    def states(self) -> Iterator[Pressure]:
+        rows = zip(self.weights, self.α[:, 0].tolist(), self.β[:, 0].tolist())
+        return (replace(self, weights=row, α=α, β=β) for row, α, β in rows)
+
+
+@dataclass(frozen=True)
+class Mixture(OnLayers):
+    """States interpolated between nodes."""
+
+    def read(self, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
+        return np.asarray(self.pressure.read(values))
+
+    @classmethod
+    def between(cls, nodes: Sequence[OnLayers], g: NDArray) -> "Mixture":
+        """States with frictions between those of nodes, (states,)."""
+        g_nodes, h, m = (
+            np.concatenate([getattr(node, name) for node in nodes])
+            for name in ("g", "half_width", "centre")
         )
-        fine = self.layers.states(rows, g[rows], contact.pressure, h, m)
-        return fine, replace(fine, pressure=contact.before)
-
-    def contacts(self, g: NDArray) -> tuple[Contacts, Contacts]:
-        """Contacts with frictions (states,), and those with fewer unknowns."""
-        if self.interpolated is not None:
-            edges = EdgeExponents(self.task.response, g)
-            fine, coarse = (Contacts((mixture(nodes, edges),)) for nodes in self._nodes)
-            return fine, coarse
-        which = np.searchsorted([contact.g for contact in self.solved], g)
-        which = np.minimum(which, len(self.solved) - 1)  # one pressure is prescribed for all
-        each = [self._groups(self.solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
-        fine, coarse = (Contacts(groups) for groups in zip(*each))
-        return fine, coarse
+        layers, edges = nodes[0].layers, EdgeExponents(nodes[0].response, g[:, None])
+        weights = weights_between(g_nodes, g)
+        # Exact where all nodes have one half-width.
+        half_width = h[0] + weights @ (h - h[0])
+        pressure = Interpolated(nodes, weights, edges.α, edges.β)
+        rows = np.arange(len(g))
+        return cls(layers.response, rows, g, pressure, half_width, weights @ m, layers)
 
 
 class LayeredSolution(ExactSolution):
     """States of contacts over layers.
 
     Args:
-        at: their speed.
+        task: their speed.
+        layers: the layers under the punch.
+        solved: contacts at the frictions that were solved; one under a prescribed pressure.
+        interpolated: error of the interpolation over frictions, relative; None where each is solved.
         g: σ_XY/σ_YY, (states,).
     """
 
     contacts: Contacts
 
-    def __init__(self, at: _OverLayers, g: NDArray) -> None:
-        super().__init__(at.task, g)
-        self._at = at
-        self.contacts, self._coarse = self._both = at.contacts(g)
+    def __init__(
+        self, task: Task, layers: LayersUnderPunch, solved: list[SolvedContact],
+        interpolated: float | None, g: NDArray,
+    ) -> None:  # fmt: skip
+        super().__init__(task, g)
+        self._layers, self._solved, self._interpolated = layers, solved, interpolated
+        self.contacts, self._coarse = self._both = self._contacts()
+
+    def _contacts(self) -> tuple[Contacts, Contacts]:
+        """Contacts of the states, and those with fewer unknowns."""
+        g, solved = self.g, self._solved
+        if self._interpolated is not None:
+            nodes = zip(*(self._groups(of, np.array([of.g]), np.zeros(1, int)) for of in solved))
+            fine, coarse = (Contacts((Mixture.between(each, g),)) for each in nodes)
+            return fine, coarse
+        which = np.searchsorted([of.g for of in solved], g)
+        which = np.minimum(which, len(solved) - 1)  # one pressure is prescribed for all
+        groups = [self._groups(solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+        fine, coarse = (Contacts(each) for each in zip(*groups))
+        return fine, coarse
+
+    def _groups(self, of: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Any, Any]:
+        """States of a contact that was solved, and with fewer unknowns."""
+        layers = self._layers
+        kind: Any = partial(OnLayers, layers=layers) if layers.stack else Group
+        h, m = (np.full(len(rows), length * layers.punch.unit) for length in (of.half_width, of.centre))
+        fine = kind(layers.response, rows, g[rows], of.pressure, h, m)
+        return fine, replace(fine, pressure=of.before)
+
+    @property
+    def _shared(self) -> float:
+        """Relative error of all that is linear in the pressure by interpolation and by the kernel."""
+        return (self._interpolated or 0.0) + self._layers.rounding
 
     def _limits(self, surface: Surface) -> Turns | None:
         """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
@@ -382,8 +449,9 @@ class LayeredSolution(ExactSolution):
 
         Arrays (2, 4, states, interfaces, n) and (interfaces,).
         """
-        layers, X, σ, errors = self._at.layers, self.places.along, [], []
-        widest = max(contact.half_width for contact in self._at.solved)
+        layers, X, σ, errors = self._layers, self.places.along, [], []
+        assert layers.stack
+        widest = max(contact.half_width for contact in self._solved)
         for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
             level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
             σ.append([each.joined(lambda group: group.at_interface(X, level), 1) for each in self._both])  # noqa: B023
@@ -410,7 +478,7 @@ class LayeredSolution(ExactSolution):
     def σ_ZZ(self) -> NDArray[np.float64]:  # type: ignore[override]
         """Normal stress out of the plane at points inside, over N/(2a), (states, m)."""
         Y = self.places.points[:, 1]
-        sizes = self.half_width / self._at.layers.punch.unit
+        sizes = self.half_width / self._layers.punch.unit
         σ_ZZ = np.empty(self.inside.shape[1:])
         for h in np.unique(sizes).tolist():
             rows = sizes == h
@@ -425,20 +493,24 @@ class LayeredSolution(ExactSolution):
         return alone.inside(*points.T[:, None])[:, 0]
 
     @property
-    def estimates(self) -> "_Estimates":
+    def estimates(self) -> "_Evaluated":
         """Estimated relative errors, (states,), by word of output.quantities.
 
         They add the change with the number of unknowns, the effect of the kernels' and the tables'
         errors, and the error of the interpolation over frictions.
         """
-        return _Estimates(
+        return _Evaluated(
             {
-                INTENSITIES: lambda: np.full(len(self.g), self._at.estimate),
+                INTENSITIES: self._of_pressure,
                 ON_SURFACE: self._on_surface,
                 AT_INTERFACES: self._at_interfaces,
                 BELOW: self._below,
             }
         )
+
+    def _of_pressure(self) -> NDArray[np.float64]:
+        change = max(contact.change for contact in self._solved)
+        return np.full(len(self.g), change + self._shared)
 
     def _on_surface(self) -> NDArray[np.float64]:
         X = self.places.X
@@ -449,7 +521,7 @@ class LayeredSolution(ExactSolution):
             lambda group: np.full((len(group.rows), 1), (*group.pressure.tips, np.inf)[0])
         )
         change = np.where(stresses.off_tips(X, tips), np.abs(now - before), 0.0)
-        return self._relative(change, 2.0 * self._at.layers.kernel.error, size)
+        return self._relative(change, 2.0 * self._layers.kernel.error, size)
 
     def _at_interfaces(self) -> NDArray[np.float64]:
         (now, before), errors = self.both_interfaces
@@ -459,7 +531,7 @@ class LayeredSolution(ExactSolution):
     def _below(self) -> NDArray[np.float64]:
         now, before = self.both_inside
         X, Y = self.places.points.T
-        tables = np.array([self._at.layers.errors.get(height, 0.0) for height in Y.tolist()])
+        tables = np.array([self._layers.errors.get(height, 0.0) for height in Y.tolist()])
         size = stresses.of_inside(now, X, Y)
         return self._relative(stresses.largest(now - before), tables, size)
 
@@ -468,18 +540,11 @@ class LayeredSolution(ExactSolution):
         relative = (change + tables) / size
         if relative.ndim == 4:
             relative = np.moveaxis(relative, 1, 0)
-        return relative.reshape(len(self.g), -1).max(axis=1) + self._at.shared
+        return relative.reshape(len(self.g), -1).max(axis=1) + self._shared
 
 
-@dataclass(frozen=True)
-class _Estimates:
-    """Estimated relative errors, (states,), each computed when it is read.
+class _Evaluated(dict[str, Callable[[], NDArray[np.float64]]]):
+    """Values by name, each computed when it is read."""
 
-    Attributes:
-        of: gives them by word of output.quantities.
-    """
-
-    of: dict[str, Callable[[], NDArray]]
-
-    def __getitem__(self, word: str) -> NDArray[np.float64]:
-        return self.of[word]()
+    def __getitem__(self, name: str) -> Any:
+        return super().__getitem__(name)()

@@ -1,11 +1,15 @@
-"""Contact pressure, by whatever method: a weight at both ends times a smooth factor.
+"""Contact pressure, by whatever method, a weight at both ends times a smooth factor; and its contacts.
 
 What all pressures have in common is their value, their intensities and the search for the largest.
 Methods differ in how they find the factor.
+
+What differs between contacts without a mesh is the pressure alone. Lengths are over the half-width of
+each contact, from its middle, stresses over N/(2a) of that half-width.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,6 +20,8 @@ from .extremes import FINER, between, largest
 
 #: Both ends of a contact, over its half-width.
 ENDS = np.array([-1.0, 1.0])
+#: Positions nearer than this to a place of infinite pressure are taken at this distance, over a.
+NEXT_TO_TIP = 1e-6
 
 
 class Pressure:
@@ -126,7 +132,7 @@ class Pressure:
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
-        raise NotImplementedError("stresses inside below a profile come from finite elements only")
+        raise NotImplementedError
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
@@ -152,6 +158,10 @@ class Functions:
         """Σ c_k f_k at r, in the shape of r; of each state where c is (states, functions)."""
         return np.tensordot(c, self.values(r, c.shape[-1]), (-1, -1))
 
+    def cauchy(self, c: NDArray, y: NDArray) -> NDArray[Any]:
+        """Cauchy's integral over the weight, see :mod:`galinx.solvers.contact.panels`, (points,)."""
+        raise NotImplementedError("stresses inside below a profile come from finite elements only")
+
     def near(self, count: int) -> float:
         """|r| up to which sums of so many functions can be evaluated."""
         return 1.0
@@ -170,6 +180,7 @@ class Expansion(Pressure):
         c: coefficients over N/(2a), (functions,) or (states, functions).
         functions: functions f_k, which know their integrals.
         ends: True where the left and the right end are free; None where the exponents say so.
+        tips: see :class:`Pressure`.
     """
 
     α: Any
@@ -177,6 +188,7 @@ class Expansion(Pressure):
     c: NDArray[np.float64]
     functions: Any
     ends: tuple[bool, bool] | None = None
+    tips: Sequence[float] = ()
 
     @property
     def free(self) -> NDArray[np.bool_]:
@@ -199,7 +211,7 @@ class Expansion(Pressure):
         return (replace(self, α=α[i], β=β[i], c=row) for i, row in enumerate(c))
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        return np.asarray(self.functions.rest(self.c, r, near))
+        return np.reshape(self.functions.rest(self.c, r.ravel(), near), (*self.c.shape[:-1], *r.shape))
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         return np.asarray(self.functions.integral(self.c, kernel, r))
@@ -208,9 +220,13 @@ class Expansion(Pressure):
         t, forces = self.functions.points(self.c, finest)
         return t, forces
 
-    def tipped(self, tips: tuple[float, ...]) -> "Expansion":
-        """Pressure that is infinite at places, of a punch with friction that varies along the contact."""
-        return self
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        flat = np.ravel(z).astype(complex)
+        y, right = np.log((1.0 + flat) / (1.0 - flat)), np.log(1.0 - flat)
+        # The weight is continuous across the surface beside the contact, as fields near a plane need it.
+        y = y.real - 1j * (-y.imag % (2.0 * np.pi))
+        weight = np.exp(self.α * right + self.β * (y + right))
+        return (weight * self.functions.cauchy(self.c, y) / np.pi).reshape(np.shape(z))
 
     def ending(self, free: tuple[bool, bool]) -> "Expansion":
         """Pressure that falls to zero at free ends, left and right."""
@@ -229,3 +245,160 @@ class Expansion(Pressure):
             length: misplacement of each edge over a.
         """
         return np.asarray(self.functions.moved_edges(self, r, length))
+
+
+@dataclass(frozen=True)
+class Group:
+    """States at one speed whose pressure is of one kind, and their stresses.
+
+    Attributes:
+        response: half-plane at that speed, :class:`galinx.solvers.solids.half_plane.HalfPlane`.
+        rows: numbers of these states, (rows,).
+        g: σ_XY/σ_YY, (rows,).
+        pressure: pressure of all these states or of the only one.
+        half_width, centre: half-width and centre of the contact [m], (rows,).
+    """
+
+    response: Any
+    rows: NDArray[np.int64]
+    g: NDArray[np.float64]
+    pressure: Any
+    half_width: NDArray[np.float64]
+    centre: NDArray[np.float64]
+
+    @property
+    def K_I(self) -> NDArray[np.float64]:
+        """Intensities at the left and the right end, (rows, 2)."""
+        return np.broadcast_to(self.pressure.K_I, (len(self.rows), 2))
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """True where the left and the right end are free, (rows, 2)."""
+        return np.broadcast_to(self.pressure.free, (len(self.rows), 2))
+
+    @property
+    def α(self) -> NDArray[np.float64]:
+        """Exponent of the pressure at the right end, (rows,)."""
+        return np.broadcast_to(np.ravel(self.pressure.α), self.rows.shape)
+
+    @property
+    def β(self) -> NDArray[np.float64]:
+        """Exponent of the pressure at the left end, (rows,)."""
+        return np.broadcast_to(np.ravel(self.pressure.β), self.rows.shape)
+
+    def contact_stress(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_YY over N/(2a) at r in (-1, 1), also next to infinite values, (rows, points)."""
+        stress = self.pressure.σ_YY(r)
+        return np.broadcast_to(stress, (len(self.rows), stress.shape[-1]))
+
+    def surface(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY, 0 beside the contact, at r off the ends, (points,) or (rows, points).
+
+        The result is (2, rows, points).
+        """
+        r = off_tips(r, self.pressure.tips)
+        σ_YY = np.where(np.abs(r) < 1.0, self.pressure.σ_YY(r), 0.0)
+        ratio, H, C = self.pressure.transforms(self.g[:, None], r)
+        σ_XX = self.response.in_plane(ratio, σ_YY, H, self.response.m * C + self.strain(r))
+        return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
+
+    def strain(self, r: NDArray) -> Any:
+        """Strain μ u,X over N/(2a) that layers add on the surface at r, (rows, points)."""
+        return 0.0
+
+    def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
+        return self.pressure.inside(self.response, self.g[:, None], X, Y)
+
+    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n), on the surface, too: (3, rows, n)."""
+        on = Y == 0.0
+        σ = self.inside(X, np.where(on, -1.0, Y))
+        columns = on.any(axis=0)
+        if columns.any():
+            σ_XX, σ_YY = self.surface(X[:, columns])
+            g, ratios = self.pressure.ratios(self.g, X[:, columns])
+            on_surface = [σ_XX, σ_YY, g[:, None] * ratios * σ_YY]
+            σ[..., columns] = np.where(on[:, columns], on_surface, σ[..., columns])
+        return σ
+
+
+def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:
+    """Positions r over the half-width, moved off tips, where the pressure is infinite."""
+    for tip in tips:
+        side = np.where(r < tip, -1.0, 1.0)
+        r = np.where(np.abs(r - tip) < NEXT_TO_TIP, tip + side * NEXT_TO_TIP, r)
+    return r
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts at one speed with several frictions.
+
+    Attributes:
+        groups: all states by the kind of their pressure.
+    """
+
+    groups: tuple[Group, ...]
+
+    def of(self, name: str) -> NDArray[np.float64]:
+        """Attribute of every state by its name, as ``α``, ``free``, ``half_width``, ``K_I``."""
+        return self.joined(lambda group: getattr(group, name))
+
+    def joined(self, values: Callable[[Any], NDArray], axis: int = 0) -> NDArray[np.float64]:
+        """Values of all states from those of every group, along an axis of states."""
+        if len(self.groups) == 1:
+            return values(self.groups[0])
+        each = np.concatenate([values(group) for group in self.groups], axis=axis)
+        return each.take(self.order, axis)
+
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """Number of each state among those of all groups, one group after the other, (states,)."""
+        return np.argsort(np.concatenate([group.rows for group in self.groups]))
+
+    @property
+    def in_punch(self) -> "Contacts":
+        """The same pressures on the half-plane of an elastic punch, mirrored at Y = 0.
+
+        There σ_XY has the other sign, and so has the friction.
+        """
+        return Contacts(
+            tuple(replace(of, response=of.response.punch, g=-of.g) for of in self.groups)  # type: ignore[attr-defined]
+        )
+
+    def on_surface(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY, 0 beside the contact, on the surface off the ends, (2, states, points)."""
+        return self.joined(lambda group: group.surface(r), 1)
+
+    def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY over N/(2a), (3, states, n), at points with Y <= 0, on the surface, too.
+
+        Points are (n,), or of each state (states, n).
+        """
+        X, Y = np.broadcast_arrays(np.atleast_2d(X), np.atleast_2d(Y))
+        return self.joined(
+            lambda group: group.stresses(*(x[group.rows] if len(x) > 1 else x for x in (X, Y))), 1
+        )
+
+    def largest(self) -> NDArray[np.float64]:
+        """Largest contact pressure over N/(2a), and its place; NaN if infinite: (2, states)."""
+        return self.joined(
+            lambda group: np.broadcast_to(group.pressure.largest(), (2, len(group.rows))), 1
+        )
+
+
+def between_ends(response: Any, g: NDArray, pressures: Sequence[Pressure], half_width: Any) -> Contacts:
+    """Contacts from -a to a of given pressures.
+
+    Args:
+        response: of the half-plane at a speed.
+        g: σ_XY/σ_YY, (states,).
+        pressures: one for all states, or one for each.
+        half_width: a [m].
+    """
+    groups = []
+    for rows, pressure in zip(np.array_split(np.arange(len(g)), len(pressures)), pressures):
+        zero = np.zeros(len(rows))
+        groups.append(Group(response, rows, g[rows], pressure, zero + half_width, zero))
+    return Contacts(tuple(groups))

@@ -722,77 +722,20 @@ class KinkedPressure(Pressure):
         return self._facets.stress(self._density, r)
 
 
-@dataclass(frozen=True)
-class StressesBelow:
-    """Stresses of a uniform half-plane below the recovered pressure of one state, without kinks.
+def on_panels(pressure: Pressure, row: int, α: float, β: float) -> Expansion:
+    """Pressure of one of several states by its values on panels, with the field below it; without kinks.
 
-    With the weight w = (1 - z)^(α - i) (1 + z)^(β - j), whose exponents add up to -1, Cauchy's integral
-    is that of the smooth factor times (1 - t)^i (1 + t)^j, see :mod:`galinx.solvers.contact.panels`.
+    Where an end is free a factor 1 - r or 1 + r of the weight is one of the values.
 
-    Attributes:
-        half_plane: the half-plane.
-        g: σ_XY/σ_YY on its surface.
+    Args:
         pressure: of several states.
         row: number of the state among these.
         α, β: exponents of its pressure at the right and the left end.
     """
-
-    half_plane: Any
-    g: float
-    pressure: Pressure
-    row: int
-    α: float
-    β: float
-
-    @cached_property
-    def _panels(self) -> Panels:
-        panels = panels_of_slope(-self._weight[0], (), False)
-        return replace(panels, β=self._weight[1])
-
-    @property
-    def _weight(self) -> tuple[float, float]:
-        return self.α - (self.α > 0.0), self.β - (self.β > 0.0)
-
-    @cached_property
-    def _factor(self) -> NDArray[np.float64]:
-        """Pressure over the weight at the panels' points, (n,)."""
-        t, (α, β) = self._panels.t, self._weight
-        inner = np.clip(t, -self.pressure.near, self.pressure.near)
-        factor = np.atleast_2d(self.pressure.series(inner))[self.row]
-        # 1 - t = 2/(1 + e^x) has all its digits next to an end.
-        right, left = (2.0 / (1.0 + np.exp(sign * self._panels.x)) for sign in (1.0, -1.0))
-        return np.asarray(factor * right ** (self.α - α) * left ** (self.β - β))
-
-    def _cauchy(self, z: NDArray, y: NDArray) -> NDArray[Any]:
-        """(1/π) ∫ σ_YY/(t - z) dt, (n,).
-
-        By its y the weight is continuous across the surface beside the contact, over which fields of
-        nearly equal planes are continued.
-        """
-        α, β = self._weight
-        return np.exp(β * y) * (1.0 - z) ** (α + β) * self._panels.cauchy(self._factor, y) / np.pi
-
-    def at(self, z: NDArray) -> NDArray[np.complex128]:
-        """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
-        flat = np.ravel(z).astype(complex)
-        y = np.log((1.0 + flat) / (1.0 - flat))
-        return self._cauchy(flat, y.real - 1j * (-y.imag % (2.0 * np.pi))).reshape(np.shape(z))
-
-    def __call__(self, points: NDArray) -> NDArray[np.float64]:
-        """σ_XX, σ_YY, σ_XY over N/(2a), (3, n), at points over a with Y <= 0, (n, 2)."""
-        (X, Y), of = points.T, self.half_plane
-        σ, on = np.empty((3, len(points))), Y == 0.0
-        if not on.all():
-            σ[:, ~on] = of.inside(self, self.g, X[~on], Y[~on])
-        r = np.where(np.abs(np.abs(X[on]) - 1.0) < _AT_END, np.sign(X[on]) * (1.0 - _AT_END), X[on])
-        under = under_punch(r)
-        σ_YY, H = np.zeros(len(r)), np.empty(len(r))
-        σ_YY[under] = np.atleast_2d(self.pressure.σ_YY(r[under]))[self.row]
-        H[under] = self._cauchy(r[under], np.log1p(r[under]) - np.log1p(-r[under]))
-        H[~under] = self.at(r[~under] - 0.0j).real
-        σ[:, on] = of.in_plane(self.g, σ_YY, H), σ_YY, self.g * σ_YY
-        return σ
-
-
-#: Distance over a from an end at which stresses of the end itself are evaluated.
-_AT_END = 1e-15
+    sharp_α, sharp_β = α - (α > 0.0), β - (β > 0.0)
+    panels = replace(panels_of_slope(-sharp_α, (), False), β=sharp_β)
+    inner = np.clip(panels.t, -pressure.near, pressure.near)
+    # 1 - t = 2/(1 + e^x) has all its digits next to an end.
+    right, left = (2.0 / (1.0 + np.exp(sign * panels.x)) for sign in (1.0, -1.0))
+    factor = np.atleast_2d(pressure.series(inner))[row]
+    return Expansion(sharp_α, sharp_β, factor * right ** (α - sharp_α) * left ** (β - sharp_β), panels)

@@ -41,10 +41,14 @@ IN_PUNCH, PUNCH_STRENGTH = "elastic punch", "yield strength of the punch"
 #: A solid without layers, or with some.
 UNIFORM, LAYERED = "uniform solid", "layers"
 
+_BOTH_ENDS = np.array([-1.0, 1.0])
+#: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
+_TERMS = 40
+
 
 @dataclass(frozen=True)
 class Contact:
-    """Punch and half-plane in SI; :func:`make_contact` makes the kind by the ends and the solid.
+    """Contact between two sharp corners of a punch, in SI; :func:`make_contact` makes other kinds, too.
 
     The units of results are numbers for a single load, and arrays (states,) for a load of each state.
 
@@ -54,21 +58,13 @@ class Contact:
         load: N per depth [N/m], a number, or that of each state, (states,).
         pressure: prescribed pressure; None where the punch determines it.
         yield_strength: uniaxial yield strength of the solid [Pa]; None where it is not given.
+        along: σ_XY/σ_YY over X/a by the number g that stands for it in a state, its mean; empty where it
+            is that number all along the contact.
         ends: ``SHARP``, ``FREE``, ``ONE_FREE`` or ``PRESCRIBED``.
         found: True if an end of the contact is free: the half-width then depends on the state.
-        fem_mode: mode of finite elements, "" where that depends on the profile and the solid.
-        modes: modes by which quantities and rules that apply are selected.
-        flat: True if the punch is flat and not tilted.
-        finite: True if all stresses are finite: both ends are free, and the profile has no tip.
-        growth_exponent: exponent of the load by which similar contacts grow, those of a flat punch, of a
-            power of |X| on a uniform solid, and under a prescribed pressure; None if other loads make
-            others.
-        layered: True if the half-plane has layers.
         knots: positions X/a between which a prescribed pressure is linear; none under a punch.
         yield_knots: positions X/a that stand for a finite pressure where the largest stress below it is
             searched for; none where stresses are infinite.
-        friction_kinks: positions X/a at which friction along the contact is not smooth, in any state.
-        weak_friction_kinks: those at which only a higher derivative of it jumps.
         tips: positions from the punch's axis [m] at which stresses inside the contact are infinite.
     """
 
@@ -77,30 +73,57 @@ class Contact:
     load: Any
     pressure: LinearPressure | None = None
     yield_strength: float | None = None
+    along: Mapping[float, Along] = field(default_factory=dict)
 
-    ends: ClassVar[str]
+    ends: ClassVar[Any] = SHARP
     found: ClassVar[bool] = False
-    fem_mode: ClassVar[str] = ""
-    modes: ClassVar[Any] = (PUNCH,)
-    flat: ClassVar[Any] = False
-    finite: ClassVar[Any] = False
-    growth_exponent: ClassVar[Any] = None
-    layered: ClassVar[bool] = False
     knots: ClassVar[Any] = ()
     yield_knots: ClassVar[Any] = ()
-    friction_kinks: ClassVar[Any] = ()
-    weak_friction_kinks: ClassVar[Any] = ()
     tips: ClassVar[Any] = ()
 
     @property
-    def half_width(self) -> Any:
-        """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
-        return half_width(self.profile)
+    def modes(self) -> tuple[str, ...]:
+        """Modes by which quantities and rules that apply are selected."""
+        return (PUNCH, VARYING) if self.along else (PUNCH,)
+
+    @property
+    def fem_mode(self) -> str:
+        """Mode of finite elements, "" where that depends on the profile and the solid."""
+        return VARYING if self.along else ""
+
+    @cached_property
+    def flat(self) -> bool:
+        """True if the slope of the punch vanishes at 101 positions."""
+        return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
+
+    @property
+    def finite(self) -> bool:
+        """True if all stresses are finite: both ends are free, and the profile has no tip."""
+        return False
+
+    @property
+    def growth_exponent(self) -> float | None:
+        """Exponent of the load by which similar contacts grow; None if other loads make others."""
+        return 0.0 if self.flat else None
 
     @property
     def alike(self) -> bool:
         """True if contacts under all loads are similar: they differ in size alone."""
         return self.growth_exponent is not None
+
+    @property
+    def no_closed_form(self) -> str:
+        """Reason why no closed form solves the contact, "" where one does."""
+        if self.solid.layers:
+            return "the solid has layers, and no closed form"
+        if self.along and not self.flat:
+            return "friction varies along the contact of a punch that is not flat; sie and fem solve it"
+        return ""
+
+    @property
+    def half_width(self) -> Any:
+        """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
+        return half_width(self.profile)
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -109,9 +132,7 @@ class Contact:
         Keys are requirements, as ``FLAT``, modes, as ``PUNCH``, or words of output.quantities, as
         :data:`galinx.solvers.contact.YIELD`.
         """
-        reasons = {LAYERED: "the solid has no layers"}
-        if not self.flat:
-            reasons[FLAT] = "the punch is not flat"
+        reasons = self._lacks
         if not self.solid.knows_σ_ZZ:
             reasons[OUT_OF_PLANE] = "σ_ZZ is not known without solid.stiffness_Z"
         if all(strength is None for strength in self.strengths):
@@ -122,7 +143,22 @@ class Contact:
             reasons[IN_PUNCH] = "σ_ZZ of the punch is not known without punch.solid.stiffness_Z"
         if self.solid.punch_strength is None:
             reasons[PUNCH_STRENGTH] = "no punch.solid.yield_strength is given"
+        if self.solid.layers:
+            reasons[UNIFORM] = "the solid has layers, each with a strength of its own"
+            if not self.finite:
+                reasons.setdefault(
+                    YIELD, "over layers it is known below punches with two free ends and no tip"
+                )
+        else:
+            reasons[LAYERED] = "the solid has no layers"
+        if self.along:
+            reasons |= dict.fromkeys((FLAT, YIELD), "friction varies along the contact")
         return reasons
+
+    @property
+    def _lacks(self) -> dict[str, str]:
+        """Reasons of :attr:`lacks` by the ends of the contact."""
+        return {} if self.flat else {FLAT: "the punch is not flat"}
 
     @property
     def strengths(self) -> tuple[float | None, ...]:
@@ -141,10 +177,10 @@ class Contact:
         Raises:
             ValueError: a wave in the half-plane is not faster than this speed.
         """
-        return self.solid.response(c)
+        return self.solid.response(c, self.half_width) if self.solid.layers else self.solid.response(c)
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
-        """Contacts over a uniform half-plane, see :class:`galinx.solvers.contact.contacts.Contacts`.
+        """Contacts over a uniform half-plane, see :class:`galinx.solvers.contact.pressure.Contacts`.
 
         Args:
             response: of the half-plane at a speed.
@@ -153,16 +189,34 @@ class Contact:
         Raises:
             SolveError: no contact carries the load.
         """
-        raise NotImplementedError
+        from .closed_form import FlatPunch
+        from .pressure import between_ends
+
+        pressures: list[Any] = [FlatPunch(response, g[:, None])]
+        if self.along:
+            from .along import FlatAlong
+
+            pressures = [FlatAlong(response, self.along[value]) for value in g.tolist()]
+        elif not self.flat:
+            from .equation import UNIFORM as NO_LAYERS
+            from .equation import Equation
+
+            pressures = [
+                Equation(response, NO_LAYERS, value, self.loaded(load).slope).pressure(_TERMS)
+                for value, load in zip(g.tolist(), np.broadcast_to(self.load, g.shape).tolist())
+            ]
+        return between_ends(response, g, pressures, self.half_width)
 
     @property
     def yield_places(self) -> NDArray[np.float64]:
         """Places X, Y over a at which the stresses of every state are sampled for yield, (n, 2)."""
+        if self.solid.layers:
+            return places_in_layers(self.solid.depths / self.half_width)
         return places_below(self.yield_knots)
 
     def strength(self, solution: Any) -> Any:
         """Yield of a solution's states; the loads are theirs, [N/m], (states,) or a number."""
-        return Strength(solution, self)
+        return (StrengthOfLayers if self.solid.layers else Strength)(solution, self)
 
     def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """Normal stress out of the plane, (..., n), in the unit of the stresses in it.
@@ -171,11 +225,13 @@ class Contact:
             σ: σ_XX, σ_YY, σ_XY, (3, ..., n).
             Y: heights over a, not above 0, (n,).
         """
+        if self.solid.layers:
+            return self.solid.σ_ZZ_at(-Y * self.half_width, σ)  # type: ignore[attr-defined, no-any-return]
         return self.solid.σ_ZZ(*σ)
 
     def friction(self, g: float, a: float) -> Along:
         """σ_XY/σ_YY over a contact of the half-width a [m], of a state with the number g."""
-        return constant(g)
+        return self.along[g].at(a) if self.along else constant(g)
 
     def ratio(self, g: NDArray, X: NDArray, a: Any = None) -> NDArray[np.float64]:
         """σ_XY/σ_YY under the punch at X over a, (states, n) or (states, 1), of states with numbers g.
@@ -185,11 +241,30 @@ class Contact:
             X: positions over a, (n,).
             a: half-widths of the contacts [m], (states,); None for that of this contact.
         """
-        return np.asarray(g)[:, None]
+        g = np.asarray(g)
+        if not self.along:
+            return g[:, None]
+        each = zip(g.tolist(), np.broadcast_to(self.half_width if a is None else a, g.shape).tolist())
+        return np.stack([self.friction(*state)(X) for state in each])
 
-    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Any:
-        """Local analysis of sharp ends with frictions of :meth:`ratio`: exponents α and β, (states,)."""
-        return EdgeExponents(response, g)
+    @property
+    def friction_kinks(self) -> tuple[float, ...]:
+        """Positions X/a at which friction along the contact is not smooth, in any state."""
+        return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
+
+    @property
+    def weak_friction_kinks(self) -> tuple[float, ...]:
+        """Positions X/a at which only a higher derivative of friction along the contact jumps."""
+        return tuple(sorted({kink for along in self.along.values() for kink in along.weak_kinks}))
+
+    @property
+    def _friction_has_length(self) -> bool:
+        return self.found and any(along.has_length for along in self.along.values())
+
+    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Exponents:
+        """Exponents of sharp ends with frictions of :meth:`ratio`, (states,)."""
+        at = self.ratio(g, _BOTH_ENDS, a)
+        return Exponents(EdgeExponents(response, at[:, -1]).α, EdgeExponents(response, at[:, 0]).β)
 
     def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Half-widths [m] on which frictions depend, (states,), to a millionth; None where none does.
@@ -197,9 +272,11 @@ class Contact:
         Args:
             response, g, load: as of :meth:`local_exponents`.
         """
-        return None
+        if not self._friction_has_length:
+            return None
+        return np.array([unit * contact.half_width for unit, contact in self._each(response, g, load)])
 
-    def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
+    def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Exponents:
         """Exponents of the pressure at the ends of states.
 
         Args:
@@ -213,7 +290,30 @@ class Contact:
 
     def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
         """True where the left and the right end of states are free, (states, 2)."""
-        return np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
+        free = np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
+        if self.ends == ONE_FREE:
+            with suppress(SolveError):  # the method that solves reports it
+                if not self.solid.layers:
+                    return np.asarray(self.loaded(load).contacts(response, g).of("free"))
+                return np.array([contact.pressure.free for _, contact in self._each(response, g, load)])
+        return free
+
+    def _each(self, response: HalfPlane, g: NDArray, load: Any) -> list[tuple[float, Any]]:
+        """Contacts by the integral equation to a millionth, and the units [m] of their lengths."""
+        from .equation import OF_ENDS, under_punch
+
+        each, solved = [], self._solved
+        for value, N in zip(g.tolist(), np.broadcast_to(self.loaded(load).load, g.shape).tolist()):
+            state = response.c, value, N
+            if state not in solved:
+                at_speed = under_punch(self.loaded(N), response, OF_ENDS)
+                solved[state] = at_speed.punch.unit, at_speed.contact(value, checked=False)
+            each.append(solved[state])
+        return each
+
+    @cached_property
+    def _solved(self) -> dict[tuple[float, float, float], tuple[float, Any]]:
+        return {}
 
     @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:
@@ -279,79 +379,10 @@ class Contact:
         return self.load / (2.0 * self.half_width)
 
 
-class SharpContact(Contact):
-    """Contact between two sharp corners of a punch."""
-
-    ends = SHARP
-
-    @cached_property
-    def flat(self) -> bool:
-        """True if the slope of the punch vanishes at 101 positions."""
-        return not np.any(self.profile.slope(self.half_width * np.linspace(-1.0, 1.0, 101)))
-
-    @property
-    def growth_exponent(self) -> float | None:
-        return 0.0 if self.flat else None
-
-    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
-        from .contacts import between_edges  # SciPy's special functions, a slow import
-
-        return between_edges(self, response, g)
-
-
-@dataclass(frozen=True)
-class VaryingContact(Contact):
-    """Contact with friction that varies along it.
-
-    Attributes:
-        along: σ_XY/σ_YY over X/a by the number g that stands for it in a state, its mean.
-    """
-
-    along: Mapping[float, Along] = field(default_factory=dict)
-
-    @property
-    def lacks(self) -> dict[str, str]:
-        reason = "friction varies along the contact"
-        return super().lacks | {FLAT: reason, YIELD: reason}
-
-    def friction(self, g: float, a: float) -> Along:
-        return self.along[g].at(a)
-
-    def ratio(self, g: NDArray, X: NDArray, a: Any = None) -> NDArray[np.float64]:
-        g = np.asarray(g)
-        each = zip(g.tolist(), np.broadcast_to(self.half_width if a is None else a, g.shape).tolist())
-        return np.stack([self.friction(*state)(X) for state in each])
-
-    @property
-    def friction_kinks(self) -> tuple[float, ...]:
-        return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
-
-    @property
-    def weak_friction_kinks(self) -> tuple[float, ...]:
-        return tuple(sorted({kink for along in self.along.values() for kink in along.weak_kinks}))
-
-    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Exponents:
-        at = self.ratio(g, np.array([-1.0, 1.0]), a)
-        return Exponents(EdgeExponents(response, at[:, 1]).α, EdgeExponents(response, at[:, 0]).β)
-
-
-class VaryingSharpContact(VaryingContact, SharpContact):
-    """Contact between two sharp corners with friction that varies along it."""
-
-    modes, fem_mode = (PUNCH, VARYING), VARYING
-
-    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
-        from .along import FlatAlong
-        from .contacts import between_given_ends
-
-        each = [FlatAlong(response, self.along[value]) for value in g.tolist()]
-        return between_given_ends(self, response, g, each)
-
-
-class PrescribedContact(SharpContact):
+class PrescribedContact(Contact):
     """Prescribed pressure between two given ends."""
 
-    ends, modes, growth_exponent = PRESCRIBED, (OWN_PRESSURE, FINITE), 0.0
+    ends, modes, growth_exponent = PRESCRIBED, (OWN_PRESSURE, FINITE), 0.0  # type: ignore[assignment]
     pressure: LinearPressure
 
     @property
@@ -363,30 +394,56 @@ class PrescribedContact(SharpContact):
         return self.pressure.knots
 
     @property
-    def lacks(self) -> dict[str, str]:
-        return super().lacks | {SOLVED: "the pressure is prescribed"}
+    def _lacks(self) -> dict[str, str]:
+        return super()._lacks | {SOLVED: "the pressure is prescribed"}
 
     def infinite_ends(self, local: Any) -> NDArray[np.bool_]:
         return np.tile(self.pressure.values[[0, -1]] != 0.0, (len(local.α), 1))
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
-        from .contacts import between_given_ends
+        from .pressure import between_ends
 
-        return between_given_ends(self, response, g, [self.pressure])
+        return between_ends(response, g, [self.pressure], self.half_width)
 
 
 class FreeEndContact(Contact):
-    """Contact of which the pressure determines an end, or both."""
+    """Contact of which the pressure determines an end, or both; its ends are those of the profile."""
 
-    found = True
+    found, flat = True, False  # type: ignore[assignment]
+
+    @property
+    def ends(self) -> str:
+        return ONE_FREE if any(self.profile.sharp) else FREE  # type: ignore[attr-defined]
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        return (PUNCH, FREE_ENDS, *(FINITE,) * self.finite, *(VARYING,) * bool(self.along))
+
+    @property
+    def fem_mode(self) -> str:
+        return VARYING_FREE if self.along else ""
+
+    @property
+    def finite(self) -> bool:
+        return self.ends == FREE and not self.tips
 
     @property
     def tips(self) -> tuple[float, ...]:
         return tuple(kinks(self.profile)) if jumps(self.profile) else ()
 
     @property
-    def lacks(self) -> dict[str, str]:
-        reasons = super().lacks | {
+    def yield_knots(self) -> Any:
+        return SMOOTH if self.finite else ()
+
+    @property
+    def growth_exponent(self) -> float | None:
+        k = exponent(self.profile)
+        return None if not k or self.solid.layers or self._friction_has_length else 1.0 / k
+
+    @property
+    def _lacks(self) -> dict[str, str]:
+        reasons = {
+            FLAT: "the punch is not flat",
             PUNCH: "an end of the contact is, or may be, free",
             GIVEN_ENDS: "whose contact ends where the pressure says",
         }
@@ -414,178 +471,18 @@ class FreeEndContact(Contact):
 
     def _at_rest(self, load: NDArray) -> NDArray[np.float64]:
         """Half-widths [m] at rest and without friction, under loads N per depth [N/m], (loads,)."""
+        if self.solid.layers:
+            from .equation import half_width_at_rest
+
+            contact: tuple[Any, Any] = self.solid, self.profile
+            return np.array([half_width_at_rest(*contact, N / self.solid.μ) for N in load.tolist()])
         at_rest = self.loaded(load).contacts(self.solid.response(0.0), np.zeros(len(load)))
         return np.asarray(at_rest.of("half_width"))
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
-        from .contacts import contacts
+        from .closed_form import contacts
 
         return contacts(response, g, self.profile, self.compression)
-
-
-class OneFreeContact(FreeEndContact):
-    """Contact between a sharp corner of the punch and an end that is free where the punch lifts off."""
-
-    ends, modes = ONE_FREE, (PUNCH, FREE_ENDS)
-
-    def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
-        with suppress(SolveError):  # the method that solves reports it
-            return np.asarray(self.loaded(load).contacts(response, g).of("free"))
-        return super()._free_ends(response, g, load)
-
-
-class FreeContact(FreeEndContact):
-    """Contact between two free ends, of a convex punch."""
-
-    ends = FREE
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        return (PUNCH, FREE_ENDS, *(FINITE,) * self.finite)
-
-    @property
-    def finite(self) -> bool:
-        return not self.tips
-
-    @property
-    def yield_knots(self) -> Any:
-        return SMOOTH if self.finite else ()
-
-    @property
-    def growth_exponent(self) -> float | None:
-        k = exponent(self.profile)
-        return 1.0 / k if k else None
-
-
-class OnLayers(Contact):
-    """Contact over layers, whose half-plane has a length: that of their thickness."""
-
-    solid: Any
-    profile: Any
-    layered = True
-
-    @property
-    def lacks(self) -> dict[str, str]:
-        reasons = super().lacks | {UNIFORM: "the solid has layers, each with a strength of its own"}
-        del reasons[LAYERED]
-        reason = "over layers it is known below punches with two free ends and no tip"
-        return reasons if self.finite else {YIELD: reason} | reasons
-
-    def response(self, c: float) -> HalfPlane:
-        return self.solid.response(c, self.half_width)
-
-    @property
-    def yield_places(self) -> NDArray[np.float64]:
-        return places_in_layers(self.solid.depths / self.half_width)
-
-    def strength(self, solution: Any) -> Any:
-        return StrengthOfLayers(solution, self)
-
-    def σ_ZZ(self, σ: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        return self.solid.σ_ZZ_at(-Y * self.half_width, σ)
-
-
-class FreeEndOnLayers(OnLayers, FreeEndContact):
-    """Contact over layers of which the pressure determines an end: loads change more than its size."""
-
-    growth_exponent = None
-
-    def _at_rest(self, load: NDArray) -> NDArray[np.float64]:
-        from .on_layers import half_width_at_rest
-
-        μ, profile = self.solid.μ, self.profile
-        return np.array([half_width_at_rest(self.solid, profile, N / μ) for N in load.tolist()])
-
-    def contacts(self, response: HalfPlane, g: NDArray) -> Any:
-        raise NotImplementedError("see galinx.solvers.contact.on_layers.LayersUnderPunch")
-
-
-class SharpOnLayers(OnLayers, SharpContact):
-    """Contact over layers between two sharp corners of a punch."""
-
-
-class PrescribedOnLayers(OnLayers, PrescribedContact):
-    """Prescribed pressure over layers."""
-
-
-class OneFreeOnLayers(FreeEndOnLayers, OneFreeContact):
-    """Contact over layers between a sharp corner and an end that is free where the punch lifts off."""
-
-    def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
-        from .on_layers import OF_ENDS, LayersUnderPunch, Punch
-
-        free, unit = Contact._free_ends(self, response, g, load), self.half_width
-        compressions = np.broadcast_to(self.loaded(load).compression, g.shape).tolist()
-        stack = response.stack(unit)  # type: ignore[attr-defined]
-        for i, (value, compression) in enumerate(zip(g.tolist(), compressions)):
-            punch = Punch(self.profile, unit, compression)
-            with suppress(SolveError):
-                contact = LayersUnderPunch(response, stack, OF_ENDS, punch).contact(value)
-                free[i] = contact.pressure.free
-        return free
-
-
-class FreeOnLayers(FreeEndOnLayers, FreeContact):
-    """Contact over layers between two free ends, of a convex punch."""
-
-
-_ON_LAYERS: dict[type[Contact], type[Contact]] = {
-    SharpContact: SharpOnLayers,
-    PrescribedContact: PrescribedOnLayers,
-    OneFreeContact: OneFreeOnLayers,
-    FreeContact: FreeOnLayers,
-}
-
-
-class VaryingFreeContact(VaryingContact, FreeContact):
-    """Contact between two free ends with friction that varies along it."""
-
-    fem_mode = VARYING_FREE
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        return (*super().modes, VARYING)
-
-    @property
-    def _has_length(self) -> bool:
-        return any(along.has_length for along in self.along.values())
-
-    @property
-    def growth_exponent(self) -> float | None:  # type: ignore[override]
-        return None if self._has_length else super().growth_exponent
-
-    def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
-        if not self._has_length:
-            return None
-        from .on_layers import half_width_of
-
-        each, known = [], self._half_widths
-        for value, N in zip(g.tolist(), np.broadcast_to(self.loaded(load).load, g.shape).tolist()):
-            state = response.c, value, N
-            if state not in known:
-                known[state] = half_width_of(self.loaded(N), response, value)
-            each.append(known[state])
-        return np.array(each)
-
-    @cached_property
-    def _half_widths(self) -> dict[tuple[float, float, float], float]:
-        return {}
-
-
-class VaryingSharpOnLayers(VaryingSharpContact, SharpOnLayers):
-    """Contact over layers between two sharp corners with friction that varies along it."""
-
-
-class VaryingFreeOnLayers(VaryingFreeContact, FreeOnLayers):  # type: ignore[misc]
-    """Contact over layers between two free ends with friction that varies along it."""
-
-
-_VARYING: dict[type[Contact], Any] = {
-    SharpContact: VaryingSharpContact,
-    FreeContact: VaryingFreeContact,
-    SharpOnLayers: VaryingSharpOnLayers,
-    FreeOnLayers: VaryingFreeOnLayers,
-}
 
 
 def make_contact(
@@ -602,14 +499,10 @@ def make_contact(
 
     Where an end is free the punch determines the pressure, and a prescribed one is left out.
     """
-    kind: type[Contact] = PrescribedContact if pressure else SharpContact
+    kind: type[Contact] = PrescribedContact if pressure else Contact
     if has_free_end(profile):
-        kind, pressure = OneFreeContact if any(profile.sharp) else FreeContact, None
-    if len(solid.depths):
-        kind = _ON_LAYERS[kind]
-    if along:
-        return _VARYING[kind](solid, profile, load, None, yield_strength, along)  # type: ignore[no-any-return]
-    return kind(solid, profile, load, pressure, yield_strength)
+        kind, pressure = FreeEndContact, None
+    return kind(solid, profile, load, pressure, yield_strength, along or {})
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from ..contact import FREE_ENDS, INTENSITIES, VARYING, VARYING_FREE
 from ..contact.along import Splines
 from ..contact.edges import EdgeExponents
-from ..contact.free_ends import SHAPES, free_ends, heights_of_shapes, slopes_of_shapes
+from ..contact.ends import SHAPES, end_conditions, heights_of_shapes, slopes_of_shapes
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
     ContactFacets,
@@ -469,7 +469,7 @@ def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
     """Amplitudes of v = -v₀ + the punch's height with the load, and without intensity at both ends."""
     punch, few = body.profile, slice(1 + SHAPES)
     units = np.broadcast_to(body.displacement, len(loads)).tolist()
-    conditions, near = free_ends(local, K[..., few], loads[:, few]), None
+    conditions, near = end_conditions(local, K[..., few], loads[:, few]), None
     ends, slopes = [], []
     for condition, unit in zip(conditions, units):
         near = condition.solve(punch, unit, near)

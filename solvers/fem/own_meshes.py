@@ -31,7 +31,7 @@ from galinx.meshes.rings import Refinement, rings_at_kinks, with_kinks
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents
-from ..contact.ends import Punch, half_width_of_load
+from ..contact.ends import SHAPES, Punch, end_conditions, half_width_of_load
 from ..contact.fem_plan import (
     NEAR_FREE_END,
     OWN_MESHES_KEPT,
@@ -42,7 +42,6 @@ from ..contact.fem_plan import (
     pressure_moments,
     requirements,
 )
-from ..contact.free_ends import SHAPES, free_ends
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task, make_contact
@@ -147,7 +146,7 @@ class EndsLevel(FreeLevel):
         """
         body, last, each = self.task.body, None, []
         _, N, K = self.parts(g)
-        conditions = free_ends(EdgeExponents(self.task.response, g), K, N)
+        conditions = end_conditions(EdgeExponents(self.task.response, g), K, N)
         loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
         for state, condition in zip(zip(g.tolist(), loads), conditions):
             start = self._near.get(state, last)

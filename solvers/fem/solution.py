@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from ..contact import solution
 from ..contact.edges import Exponents
-from ..contact.recovery import StressesBelow
+from ..contact.pressure import Group
+from ..contact.recovery import on_panels
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
 from ..contact.stresses import Surface, Turns, together
@@ -26,6 +27,8 @@ from .punch import ContactStates
 
 #: Least distance over a from an end or a kink at which stresses of an elastic punch are evaluated.
 _NEAREST = 1e-7
+#: Distance over a from an end at which stresses of the end itself are evaluated.
+_AT_END = 1e-15
 
 
 @dataclass(frozen=True)
@@ -221,21 +224,26 @@ class Solution(solution.Solution):
         return max(states.level.nearest(states) for states in self.solved)
 
     @cached_property
-    def _punch(self) -> list[StressesBelow]:
-        """Stresses of each solved state in an elastic punch, mirrored at Y = 0, below its pressure."""
-        punch = self.task.response.punch  # type: ignore[attr-defined]
+    def _punch(self) -> list[Group]:
+        """Each solved state on an elastic punch, mirrored at Y = 0."""
+        punch, one, unit = self.task.response.punch, np.zeros(1, dtype=int), np.ones(1)  # type: ignore[attr-defined]
         return [
-            StressesBelow(punch, -g, states.pressure, i, α, β)
+            Group(punch, one, np.array([-g]), on_panels(states.pressure, i, α, β), unit, 0.0 * unit)
             for states in self.solved
             for i, (g, α, β) in enumerate(zip(states.contact.g, states.local.α, states.local.β))
         ]
 
     def _stresses_of_punch(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
+        X, Y = np.moveaxis(points, 2, 0)
+        X = np.where(np.abs(np.abs(X) - 1.0) < _AT_END, np.sign(X) * (1.0 - _AT_END), X)
         if len(points) == 1:
-            σ = np.stack([of(points[0]) for of in self._punch], axis=1)[:, self.rows]
+            σ = np.concatenate([of.stresses(X, Y) for of in self._punch], axis=1)[:, self.rows]
         else:
-            σ = np.stack([self._punch[row](own) for row, own in zip(self.rows, points)], axis=1)
+            each = enumerate(self.rows)
+            σ = np.concatenate(
+                [self._punch[row].stresses(X[i : i + 1], Y[i : i + 1]) for i, row in each], axis=1
+            )
         return σ * [[[1.0]], [[1.0]], [[-1.0]]]
 
     @cached_property
@@ -246,7 +254,7 @@ class Solution(solution.Solution):
     @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
-        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self._punch[0].half_plane
+        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self._punch[0].response
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
         punch = InSolid(
             response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST

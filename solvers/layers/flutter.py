@@ -1,11 +1,5 @@
 """Flutter of layers by wavelength: the friction from which on waves of one length grow on a rigid flat.
 
-Waves e^(ik(X - Ct)) with k < 0 have in each layer two fields that decay downwards, u,Y = G₁ u,X, and two
-that decay upwards, G₂. With E₁ = e^(-ikG₁H), E₂ = e^(ikG₂H) and tractions Z u,X on the layer's lower face
-those on its upper face are (L₁ + δ) u,X with
-
-    r = (L₂ - Z)⁻¹ (Z - L₁),   W = E₂ r E₁,   δ = (L₂ - L₁) W (1 + W)⁻¹.
-
 The threshold is that of :mod:`galinx.solvers.solids.flutter`, with the stiffness of the surface at this
 wavenumber. Waves shorter than a layer do not come to the threshold of its solid: echoes of its lower face
 let them grow at less friction, at a rate that does not rise with the wavenumber. That of the solid itself
@@ -19,10 +13,9 @@ from numpy.typing import NDArray
 
 from ..solids.admittance import Admittance
 from ..solids.flutter import Side, thresholds
-from ..solids.half_plane import exponential
 from ..solids.solid import Solid
-from .layered import Layered
-from .stiffness import inverse
+from .layered import Layered, LayersAtSpeed
+from .stiffness import Medium, Uniform
 
 #: Distance of speeds from the real axis over their size, which selects waves that carry energy away; a
 #: threshold below which it is 0.
@@ -74,15 +67,14 @@ class LayeredSide(Side):
 
     def stiffness(self, C: NDArray) -> NDArray[np.complex128]:
         C = np.where(np.imag(C) == 0.0, C * (1.0 - 1j * _OFF_AXIS * np.sign(np.real(C))), C)
-        *layers, last = self.parts
-        L = last.μ * last.admittance.waves(C / last.c_s).L
-        for part in reversed(layers):
-            down = part.admittance.waves(C / part.c_s)
-            up = part.admittance.waves(C.conj() / part.c_s).conjugate
-            kH, one = np.full(len(C), part.H), np.eye(2)
-            L_down, L_up = part.μ * down.L, part.μ * up.L
-            W = exponential(up, -kH) @ inverse(L_up - L) @ (L - L_down) @ exponential(down, kH)
-            L = L_down + (L_up - L_down) @ W @ inverse(one + W)
+        # The stiffness of layers is that at k > 0, whose fields are the conjugates.
+        media = [
+            Medium(of.waves(C.conj() / part.c_s), part.μ, of.waves(C / part.c_s).conjugate)
+            for part in self.parts
+            for of in (part.admittance,)
+        ]
+        layers = [Uniform(medium, part.H) for medium, part in zip(media[:-1], self.parts)]
+        L = 1j * LayersAtSpeed(layers, media[-1]).stiffness(np.ones(len(C))).conj()
         return np.array([L[:, 0, 0], L[:, 1, 0], L[:, 0, 0] * L[:, 1, 1] - L[:, 0, 1] * L[:, 1, 0]])
 
 

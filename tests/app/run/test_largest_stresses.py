@@ -7,7 +7,7 @@ from support import THOROUGH, computed
 
 import galinx
 from galinx.app.scene.read import parse
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
 from galinx.solvers.errors import SolveError

@@ -22,9 +22,8 @@ from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.solvers.contact import residual
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.equation import Equation
-from galinx.solvers.contact.on_layers import LayersUnderPunch, rule_of_ends
-from galinx.solvers.contact.solution import FreeOnLayers
+from galinx.solvers.contact.equation import Equation, LayersUnderPunch, rule_of_ends
+from galinx.solvers.contact.solution import FreeEndContact
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
@@ -372,8 +371,8 @@ def test_finite_elements_know_nothing_of_the_integral_equation(monkeypatch):
     """But where to begin: from another half-width they find the same."""
     asked = CYLINDER | {"solve.methods": ["fem"], "solve.tolerance": 1e-3}
     one = coated(asked).data
-    true = FreeOnLayers._at_rest
-    monkeypatch.setattr(FreeOnLayers, "_at_rest", lambda self, load: 1.7 * true(self, load))
+    true = FreeEndContact._at_rest
+    monkeypatch.setattr(FreeEndContact, "_at_rest", lambda self, load: 1.7 * true(self, load))
     other = coated(asked).data
     for name in ("half_width", "centre"):
         found = one[f"states/fem/{name}"], other[f"states/fem/{name}"]

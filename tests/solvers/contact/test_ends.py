@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from galinx.solvers.contact.contacts import rule_of_ends
+from galinx.solvers.contact.closed_form import rule_of_ends
 from galinx.solvers.contact.ends import NoRoot, Punch, free_ends, half_width_of_load, root
 from galinx.solvers.errors import SolveError
 

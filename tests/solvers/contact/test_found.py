@@ -11,8 +11,7 @@ from scipy.integrate import quad
 from stroh import Stroh
 from support import THOROUGH
 
-from galinx.solvers.contact.closed_form import FlatPunch, Weighted
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import FlatPunch, Weighted, contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids.half_plane import mean_and_difference

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from galinx.solvers.contact.free_ends import SHAPES, EndConditions
+from galinx.solvers.contact.ends import SHAPES, EndConditions
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles.punches import Parabolic, Power, RoundedFlat, Table, Wedge
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from random_solids import random_solid
 
-from galinx.solvers.contact.contacts import contacts
-from galinx.solvers.contact.on_layers import under_punch
+from galinx.solvers.contact.closed_form import contacts
+from galinx.solvers.contact.equation import under_punch
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl

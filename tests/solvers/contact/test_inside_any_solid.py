@@ -7,7 +7,7 @@ from loaded import LoadedHalfPlane
 from random_solids import anisotropic, cubic, orthotropic, stiffness
 from support import THOROUGH
 
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.profiles.punches import Flat, Parabolic, Power, Table, Wedge
 

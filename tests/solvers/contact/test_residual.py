@@ -5,10 +5,9 @@ import pytest
 from random_solids import random_solid
 
 from galinx.solvers.contact import residual
-from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import FlatPunch, contacts
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.on_layers import LayersUnderPunch
+from galinx.solvers.contact.equation import LayersUnderPunch
 from galinx.solvers.layers.kernel import Kernel, Scaled
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles.punches import Flat, Parabolic, Wedge

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from stroh import admittances
 
-from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import FlatPunch, contacts
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS, Isotropic
 from galinx.solvers.solids.pair import Pair

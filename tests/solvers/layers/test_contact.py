@@ -11,15 +11,15 @@ from layers_reference import admittance, plane_strain, punch
 from scipy.special import eval_jacobi
 from support import THOROUGH
 
-from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.contacts import contacts
+from galinx.solvers.contact.closed_form import FlatPunch, contacts
 from galinx.solvers.contact.edges import weights_hilbert
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import (
     Jacobi,
+    LayersUnderPunch,
     jacobi,
+    weights_between,
 )
-from galinx.solvers.contact.on_layers import LayersUnderPunch, weights_between
 from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.solution import make_contact

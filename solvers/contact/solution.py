@@ -292,10 +292,15 @@ class Contact:
         """True where the left and the right end of states are free, (states, 2)."""
         free = np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
         if self.ends == ONE_FREE:
-            with suppress(SolveError):  # the method that solves reports it
-                if not self.solid.layers:
+            # The method that solves reports a contact that fails.
+            if not self.solid.layers:
+                with suppress(SolveError):
                     return np.asarray(self.loaded(load).contacts(response, g).of("free"))
-                return np.array([contact.pressure.free for _, contact in self._each(response, g, load)])
+                return free
+            for i, N in enumerate(np.broadcast_to(self.loaded(load).load, g.shape).tolist()):
+                with suppress(SolveError):
+                    ((_, contact),) = self._each(response, g[[i]], N)
+                    free[i] = contact.pressure.free
         return free
 
     def _each(self, response: HalfPlane, g: NDArray, load: Any) -> list[tuple[float, Any]]:

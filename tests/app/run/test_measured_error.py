@@ -285,7 +285,7 @@ def test_rounding_of_intensities_is_their_difference_from_those_of_the_mirror_im
         plan=SimpleNamespace(tests=PressureMoments()), work=SimpleNamespace(stresses=frozenset()),
         punch=SimpleNamespace(states=lambda g, flat: SimpleNamespace(tested=lambda moments: g)),
         over_flat=lambda moments, g: SimpleNamespace(K_I=np.array(K_I[float(g[0])])),
-        stress_gauges=SimpleNamespace(rounding=lambda own, noise: []),
+        rounding_of_stresses=lambda own, noise: [],
     )  # fmt: skip
     assert PunchLevel.rounding(level, G) == pytest.approx([2e-6])
 

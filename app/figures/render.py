@@ -1,6 +1,7 @@
-"""The one renderer of figures: panels of curves and maps in rows, by matplotlib's constrained layout.
+"""The one renderer of figures: panels of curves and maps, laid out by what they measure.
 
-Texts are folded, and ticks chosen, for the size of panels; a figure is as tall as its panels need, and no
+A figure is a list of panels in rows. Letters, ticks, titles, colour bars and legends are measured as they
+are printed, and panels take the room that is left: nothing is cut, nothing overlaps, and a figure is no
 taller than a page.
 """
 
@@ -16,21 +17,23 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
-from matplotlib.transforms import Bbox, ScaledTranslation
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from galinx.texts import folded, in_tex, plain
 
 from .style import GREY, PAGE, SMALL, TALLEST, Look, styled
 
-#: Least side of a legible panel, free space around it, and what names of axes of y may be longer [in].
-_LEAST, _EDGE, _OVER = 0.35, 0.04, 0.25
+#: Least side of a legible panel, and free space around a figure, between columns and between rows [in].
+_LEAST, _EDGE, _ASIDE, _BELOW = 0.35, 0.04, 0.1, 0.05
 #: Height that panels have at least where a page has room [in], and markers along a curve.
 _LOW, _MARKERS = 0.95, 16
+#: Distance of names of axes from their numbers, and of a title from its panel [in].
+_PAD = 2.5 / 72.0
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
-#: Times that the room around panels is measured, and what a figure is larger meanwhile [in].
-_ROUNDS, _SPARE = 2, 9.0
+#: Times that panels are measured: texts are folded, and ticks chosen, by the room that they leave.
+_ROUNDS = 2
 
 #: Forms of curves: solutions are lines, finite elements markers; both joined where they are alone.
 LINE, MARKERS, JOINED, DOTS = "line", "markers", "joined", "dots"
@@ -177,16 +180,15 @@ def render(
     size = size or Size(PAGE)
     columns = min(columns or across(size.width, len(panels)), len(panels))
     rows = ceil(len(panels) / columns)
-    figure = Figure((size.width, size.height or TALLEST), layout="constrained")
+    figure = Figure((size.width, size.height or TALLEST))
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(rows, columns, height_ratios=[panel.tall for panel in panels[::columns]])
-    drawn = []
+    made = []
     for n, panel in enumerate(panels):
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
-        drawn.append(_Drawn(figure.add_subplot(grid[divmod(n, columns)]), panel, letter))
+        made.append(_Drawn(figure.add_axes((0.0, 0.0, 1.0, 1.0), label=str(n)), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
-    foot = _legend(figure, [_entry(curve) for curve in (*named.values(), *notes)])
-    _arrange(drawn, size, (rows, columns), high, foot)
+    handles = [_entry(curve) for curve in (*named.values(), *notes)]
+    _arrange(figure, made, size, (rows, columns), high, _legend(figure, handles))
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
 
@@ -236,8 +238,10 @@ class _Drawn:
     def __init__(self, axis: Axes, panel: Panel, letter: str) -> None:
         self.axis, self.panel, self.letter = axis, panel, letter
         self.legend = self.bar = self.other = None
-        # Nothing stands above most panels, where matplotlib would look for it at every drawing.
-        self.title = axis.set_title("", loc="left", y=None if panel.beside else 1.0)
+        # Nothing is to be placed by matplotlib, which measures everything for it at every drawing.
+        self.title = axis.set_title("", loc="left", y=1.0)
+        axis.xaxis.set_label_coords(0.5, 0.0)
+        axis.yaxis.set_label_coords(0.0, 0.5)
         self.power = _power(panel)
         for low, high in panel.bands:
             axis.axvspan(low, high, color="#F2F2F2", linewidth=0.0, zorder=-1)
@@ -249,8 +253,8 @@ class _Drawn:
         if panel.map:
             _draw_map(axis, panel.map)
         if panel.map and panel.map.label:
-            beside = axis.inset_axes((1.0, 0.0, 1.0, 1.0))
-            beside.set_axes_locator(lambda *_: _aside(axis))
+            beside = axis.inset_axes((1.04, 0.0, 0.04, 1.0))
+            beside.set_axes_locator(self._beside)
             self.bar = axis.figure.colorbar(axis.images[0], cax=beside, extend=panel.map.extend)
             self.bar.ax.tick_params(labelsize=SMALL)
             self.bar.set_label(panel.map.label, fontsize=SMALL)
@@ -283,6 +287,12 @@ class _Drawn:
                     columnspacing=1.2,
                 )  # fmt: skip
 
+    def _beside(self, axis: Axes, renderer: Any) -> Bbox:
+        """Place of the colour bar."""
+        x, y, w, h = self.axis.get_position().bounds
+        wide = self.axis.figure.get_figwidth()
+        return Bbox.from_bounds(x + w + 0.06 / wide, y, 0.09 / wide, h)
+
     def _curve(self, curve: Curve) -> Line2D:
         x, y, look = np.asarray(curve.x), np.asarray(curve.y) / 10.0**self.power, curve.look
         style: dict[str, Any] = {
@@ -306,40 +316,62 @@ class _Drawn:
                 style |= {"markerfacecolor": look.colour, "markeredgewidth": 0.0, "rasterized": True}
         return self.axis.plot(x, y, **style)[0]
 
-    def fit(self, wide: float, tall: float) -> None:
-        """Choose ticks, and fold texts, for a panel so wide and so tall [in]."""
+    def measure(self, wide: float, tall: float, beside: float) -> "_Room":
+        """Choose ticks, and fold texts, for a panel so wide and so tall, with so much beside it [in]."""
         axis, panel, figure = self.axis, self.panel, self.axis.figure
+        renderer, dpi = figure.canvas.get_renderer(), figure.dpi
+        axis.set_position((0.0, 0.0, wide / figure.get_figwidth(), tall / figure.get_figheight()))
         for one, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
+            one.label.set_text("")
             if one.get_scale() == "linear":
                 whole = panel.whole and one is axis.xaxis
                 count = max(2, min(8, int(side / apart)))
                 one.set_major_locator(MaxNLocator(count, integer=whole, steps=[1, 2, 2.5, 5, 10]))
         if self.bar is not None:
             assert panel.map
-            fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + _OVER)
+            fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + 0.25)
             self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
             self.bar.update_ticks()
         if self.other is not None:
             self.other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
+        boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
+        box = Bbox.union([axis.bbox, *filter(None, boxes)])
+        left, below, right, above = np.abs(np.subtract(box.extents, axis.bbox.extents)) / dpi
         unit = in_tex(panel.unit)
         if self.power:
             unit = f"$10^{{{self.power}}}${' ' + unit if unit else ''}"
         y = panel.y and (f"{panel.y} ({unit})" if unit else panel.y)
-        fit_text(self.title, self.letter + panel.title, wide + _EDGE)
-        fit_text(axis.xaxis.label, panel.x or "", wide + _EDGE)
-        fit_text(axis.yaxis.label, y or "", tall + _OVER * bool(self.letter))
+        over = fit_text(self.title, self.letter + panel.title, wide + (_ASIDE if self.letter else 0.3))
+        name = fit_text(axis.xaxis.label, panel.x or "", wide + beside)
+        upright = fit_text(axis.yaxis.label, y or "", tall + 0.25)
+        legend = (0.0, 0.0)
         if self.legend is not None:
-            ticks = axis.xaxis.get_tightbbox(figure.canvas.get_renderer())
-            lower = (ticks.y0 - axis.bbox.y0) / figure.dpi - _EDGE
-            below = axis.transAxes + ScaledTranslation(0.0, lower, figure.dpi_scale_trans)
-            self.legend.set_bbox_to_anchor((0.5, 0.0), below)
+            legend = self.legend.get_window_extent(renderer).size / dpi + (0.0, 0.03)
+        aside = (max(name[0], legend[0]) - wide) / 2.0
+        return _Room(
+            left, right, above, below, upright[0], over[1], name[1] + legend[1],
+            (upright[1] - tall) / 2.0, aside, max(aside, over[0] - wide),
+        )  # fmt: skip
 
+    def place(self, box: tuple[float, float, float, float], room: "_Room") -> None:
+        """Put a panel and its texts into their places.
 
-def _aside(axis: Axes) -> Bbox:
-    """Place of the colour bar of a panel."""
-    x, y, w, h = axis.get_position().bounds
-    wide = axis.figure.get_figwidth()
-    return Bbox.from_bounds(x + w + 0.06 / wide, y, 0.09 / wide, h)
+        Args:
+            box: its left and lower end, width and height [in].
+            room: around it; numbers of axes as wide as in its row and column.
+        """
+        axis, (x, y, wide, tall) = self.axis, box
+        width, height = axis.figure.get_size_inches()
+        axis.set_position((x / width, y / height, wide / width, tall / height))
+        self.title.set_y(1.0 + room.above / tall)
+        axis.xaxis.set_label_coords(0.5, -(room.below + _PAD) / tall)
+        axis.yaxis.set_label_coords(-(room.left + _PAD) / wide, 0.5)
+        if self.legend is not None:
+            high = self.legend.get_window_extent(axis.figure.canvas.get_renderer()).height
+            below = room.below + room.name - high / axis.figure.dpi
+            self.legend.set_bbox_to_anchor((0.5, -below / tall), axis.transAxes)
+        for curve, line in zip(self.panel.curves, self.lines):
+            _draw_arrows(axis, line, curve.arrows)
 
 
 def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
@@ -364,15 +396,28 @@ def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> 
     return min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
 
 
-def fit_text(text: Text, words: str, room: float) -> None:
-    """Set a text, in as many lines as it needs where it has so much room [in]."""
+def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:
+    """Set a text, in as many lines as it needs where it has so much room [in].
+
+    Returns:
+        Its width and height [in], across lines with its distance from what is beside it; 0 for no words.
+    """
     along, renderer = int(text.get_rotation() > 0.0), text.figure.canvas.get_renderer()
-    text.set_text(words)
-    lines = ceil(text.get_window_extent(renderer).size[along] / text.figure.dpi / room)
-    for count in range(lines, lines + 3) if lines > 1 and words.strip() else ():
-        text.set_text(folded(words, max(6, ceil(len(plain(words)) / count * 1.12))))
-        if text.get_window_extent(renderer).size[along] / text.figure.dpi <= room:
+
+    def measured(words: str) -> NDArray[np.float64]:
+        text.set_text(words)
+        return text.get_window_extent(renderer).size / text.figure.dpi
+
+    if not words.strip():
+        return np.zeros(2)
+    size = measured(words)
+    lines = ceil(size[along] / room)
+    for count in range(lines, lines + 3) if lines > 1 else ():
+        size = measured(folded(words, max(6, ceil(len(plain(words)) / count * 1.12))))
+        if size[along] <= room:
             break
+    size[1 - along] += _PAD
+    return size
 
 
 def _draw_map(axis: Axes, shown: Map) -> None:
@@ -417,53 +462,80 @@ def _legend(figure: Figure, handles: Sequence[Line2D]) -> float:
     return legend.get_window_extent(figure.canvas.get_renderer()).height / dpi + 0.05
 
 
+class _Room(NamedTuple):
+    """Room around a panel [in].
+
+    Attributes:
+        left, right, above, below: of numbers of axes, and colour bars.
+        upright, title, name: of the name of the axis of y, of the title, and of the name of the axis of x
+            with the panel's legend.
+        taller, aside, beyond: over the panel's ends, of texts along y, and of those along x on the left
+            and on the right.
+    """
+
+    left: Any
+    right: Any
+    above: Any
+    below: Any
+    upright: Any
+    title: Any
+    name: Any
+    taller: Any
+    aside: Any
+    beyond: Any
+
+
 def _arrange(
-    drawn: Sequence[_Drawn], size: Size, shape: tuple[int, int], high: float, foot: float
+    figure: Figure, drawn: Sequence[_Drawn], size: Size, shape: tuple[int, int], high: float, foot: float
 ) -> None:
     """Give panels the room that texts and the legend leave, and a figure the height that panels need.
+
+    All panels are equally wide, and as tall as their rows; names of axes of y are aligned in a column.
 
     Raises:
         TooSmall: panels would not be legible.
     """
-    (rows, columns), figure = shape, drawn[0].axis.figure
-    talls = sum(one.panel.tall for one in drawn[::columns])
+    rows, columns = shape
+    talls = np.array([one.panel.tall for one in drawn[::columns]])
     maps = [one.axis for one in drawn if one.panel.map and one.panel.map.equal]
     ratio = float(np.ptp(maps[0].get_ylim()) / np.ptp(maps[0].get_xlim())) if maps else high
-    figure.align_ylabels()
-
-    def arranged(width: float, height: float) -> tuple[float, float]:
-        """Width and height around all columns and rows of panels on such a figure [in]."""
-        figure.set_size_inches(width, height)
-        engine, share = figure.get_layout_engine(), foot / height
-        engine.set(w_pad=_EDGE, h_pad=_EDGE, hspace=0.0, wspace=0.0, rect=(0.0, share, 1.0, 1.0 - share))
-        engine.execute(figure)
-        sides = np.array([one.axis.get_position(original=True).size for one in drawn])
-        return width * (1.0 - sides[:columns, 0].sum()), height * (1.0 - sides[::columns, 1].sum())
-
+    beside = 0.35 if all(one.panel.y for one in drawn) else 0.1
     wide = size.width / columns - 0.8
-    tall = ((size.height - foot) / rows - 0.5) if size.height else max(wide * ratio, _LOW)
+    tall = max(wide * ratio, _LOW)
+    if size.height:
+        tall = min(tall, (size.height - foot) / talls.sum() - 0.5)
+    room = np.zeros((rows * columns, len(_Room._fields)))
     for _ in range(_ROUNDS):
-        for one in drawn:
-            one.fit(max(wide, _LEAST), max(tall * one.panel.tall, _LEAST))
-        across_, along = arranged(size.width + _SPARE, TALLEST + _SPARE)
+        wide, tall = max(wide, _LEAST), max(tall, _LEAST)
+        room[: len(drawn)] = [one.measure(wide, tall * one.panel.tall, beside) for one in drawn]
+        of_columns, of_rows = (_Room(*room.reshape(rows, columns, -1).max(axis=n).T) for n in (0, 1))
+        left, right = of_columns.left + of_columns.upright, of_columns.right.copy()
+        left[0], right[-1] = max(left[0], of_columns.aside[0]), max(right[-1], of_columns.beyond[-1])
+        top = np.maximum(of_rows.above + of_rows.title, of_rows.taller)
+        bottom = np.maximum(of_rows.below + of_rows.name, of_rows.taller)
+        across_ = left.sum() + right.sum() + 2.0 * _EDGE + (columns - 1) * _ASIDE
+        along = top.sum() + bottom.sum() + 2.0 * _EDGE + (rows - 1) * _BELOW + foot
         wide = (size.width - across_) / columns
-        height = size.height or min(along + talls * max(wide * ratio, 0.0 if maps else _LOW), TALLEST)
-        tall = (height - along) / talls
+        wanted = along + talls.sum() * max(wide * ratio, 0.0 if maps else _LOW)
+        height = size.height or min(wanted, TALLEST)
+        tall = (height - along) / talls.sum()
         if maps:
             wide, tall = min(wide, tall / ratio), min(tall, wide * ratio)
     if min(wide, tall) < _LEAST:
         needed = f"{across_ + columns * _LEAST / min(ratio, 1.0):.1f} in"
         if size.height is not None:
-            needed = f"{across_ + columns * _LEAST:.1f} in x {along + talls * _LEAST:.1f} in"
+            needed = f"{across_ + columns * _LEAST:.1f} in x {along + talls.sum() * _LEAST:.1f} in"
         raise TooSmall(f"expected at least {needed} for {rows} x {columns} panels")
-    figure.set_layout_engine("compressed")  # maps that are narrower than their room stay together
-    for axis in maps:
-        axis.set_box_aspect(ratio)
-    arranged(size.width, height)
-    figure.set_layout_engine("none")  # which would arrange them again at every drawing
-    for one in drawn:
-        for curve, line in zip(one.panel.curves, one.lines):
-            _draw_arrows(one.axis, line, curve.arrows)
+    figure.set_size_inches(size.width, height)
+    spare = (size.width - across_ - columns * wide) / 2.0  # maps may be narrower than their room
+    x = _EDGE + spare + np.cumsum(left + np.append(0.0, right[:-1] + _ASIDE + wide))
+    y = height - _EDGE - np.cumsum(top + talls * tall + np.append(0.0, bottom[:-1] + _BELOW))
+    for n, one in enumerate(drawn):
+        i, j = divmod(n, columns)
+        around = _Room(*room[n])._replace(
+            left=of_columns.left[j], above=of_rows.above[i], below=of_rows.below[i]
+        )
+        one.place((x[j], y[i], wide, tall * one.panel.tall), around)
 
 
 class Film:

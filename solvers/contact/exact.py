@@ -269,7 +269,10 @@ class Layers:
             solved, interpolated = [SolvedContact(0.0, fine, before=coarse)], None
         else:
             solved, interpolated = layers.solved(g)
-        states = partial(LayeredSolution, task, layers, solved, interpolated)
+        nodes: Any = ()
+        if interpolated is not None:
+            nodes = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))
+        states = partial(LayeredSolution, task, layers, solved, interpolated, [*map(Nodes, nodes)])
         return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
@@ -283,8 +286,13 @@ class OnLayers(Group):
 
     layers: LayersUnderPunch
 
-    def read(self, values: "Callable[[OnLayers], NDArray]") -> NDArray[np.float64]:
-        """Values that are linear in the pressure, given for states that were solved, (..., rows, n)."""
+    def read(self, what: Any, values: "Callable[[OnLayers], NDArray]") -> NDArray[np.float64]:
+        """Values that are linear in the pressure, (..., rows, n).
+
+        Args:
+            what: a name of the values, by which they are kept.
+            values: gives them for states that were solved, (..., rows, n).
+        """
         return values(self)
 
     @property
@@ -293,7 +301,8 @@ class OnLayers(Group):
         return float(self.half_width[0]) / self.layers.punch.unit
 
     def strain(self, r: NDArray) -> NDArray[np.float64]:
-        return self.read(lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size), r))
+        name = "strain", r.tobytes()
+        return self.read(name, lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size), r))
 
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n), at an interface those above it: (3, rows, n)."""
@@ -302,7 +311,7 @@ class OnLayers(Group):
         for height in np.unique(Y).tolist():
             there = height == Y
             at_height = partial(OnLayers._at_height, X=X[there], height=height)
-            σ[..., there] = self.read(at_height)
+            σ[..., there] = self.read(("inside", height, X[there].tobytes()), at_height)
         return σ
 
     def _at_height(self, X: NDArray, height: float) -> NDArray[np.float64]:
@@ -314,7 +323,7 @@ class OnLayers(Group):
 
     def at_interface(self, X: NDArray, level: Level) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,): (4, rows, n)."""
-        return self.read(lambda of: of._along(X, level, 2))
+        return self.read(("interface", level.depth, X.tobytes()), lambda of: of._along(X, level, 2))
 
     def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
         """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
@@ -325,38 +334,70 @@ class OnLayers(Group):
         return np.array([σ_YY, σ_XY, *(M * solid.σ_XX(u_X, σ_YY / M, σ_XY / M) for M, solid in media)])
 
 
+def groups_of(layers: LayersUnderPunch, of: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Any, Any]:
+    """States ``rows`` of a contact that was solved, and with fewer unknowns; g of all states."""
+    kind: Any = partial(OnLayers, layers=layers) if layers.stack else Group
+    h, m = (np.full(len(rows), length * layers.punch.unit) for length in (of.half_width, of.centre))
+    fine = kind(layers.response, rows, g[rows], of.pressure, h, m)
+    return fine, replace(fine, pressure=of.before)
+
+
+#: Values of all nodes that are kept.
+_KEPT = 64
+
+
+class Nodes:
+    """Contacts at Chebyshev's points in g, between which all states of a speed are interpolated.
+
+    Args:
+        groups: contacts, one state each.
+    """
+
+    def __init__(self, groups: Sequence[OnLayers]) -> None:
+        self.groups = groups
+        self._read: dict[Any, NDArray] = {}
+
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
+        """Values of all nodes, (..., nodes, n); the last ones are kept, for other states."""
+        if what not in self._read:
+            if len(self._read) >= _KEPT:
+                self._read.clear()
+            self._read[what] = np.concatenate([values(group) for group in self.groups], axis=-2)
+        return self._read[what]
+
+
 @dataclass(frozen=True)
 class Interpolated(Pressure):
     """Pressures of states whose smooth factors are interpolated between those of nodes.
 
     Attributes:
-        nodes: contacts at Chebyshev's points in g, one state each.
+        nodes: contacts at some frictions.
         weights: of the nodes in each state, (states, nodes).
         α, β: exponents at the right and the left end, (states, 1).
     """
 
-    nodes: Sequence[OnLayers]
+    nodes: Nodes
     weights: NDArray[np.float64]
     α: Any
     β: Any
 
-    def read(self, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
-        """Values of all states by those of the nodes, (..., 1, n) each."""
-        return np.asarray(self.weights @ np.concatenate([values(node) for node in self.nodes], axis=-2))
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
+        """Values of all states by those of the nodes, (..., 1, n) each; see :meth:`OnLayers.read`."""
+        return np.asarray(self.weights @ self.nodes.read(what, values))
 
     @property
     def free(self) -> NDArray[np.bool_]:
-        return np.asarray(self.nodes[0].pressure.free)
+        return np.asarray(self.nodes.groups[0].pressure.free)
 
     @property
     def near(self) -> float:  # type: ignore[override]
-        return float(min(node.pressure.near for node in self.nodes))
+        return float(min(node.pressure.near for node in self.nodes.groups))
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self.read(lambda node: node.pressure.series(r)[None])
+        return self.read(("p", r.tobytes()), lambda node: node.pressure.series(r)[None])
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        return self.read(lambda node: node.pressure.rest(r, near)[None])
+        return self.read(("rest", r.tobytes(), near), lambda node: node.pressure.rest(r, near)[None])
 
     def states(self) -> Iterator[Pressure]:
         rows = zip(self.weights, self.α[:, 0].tolist(), self.β[:, 0].tolist())
@@ -367,17 +408,17 @@ class Interpolated(Pressure):
 class Mixture(OnLayers):
     """States interpolated between nodes."""
 
-    def read(self, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
-        return np.asarray(self.pressure.read(values))
+    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
+        return np.asarray(self.pressure.read(what, values))
 
     @classmethod
-    def between(cls, nodes: Sequence[OnLayers], g: NDArray) -> "Mixture":
+    def between(cls, nodes: Nodes, g: NDArray) -> "Mixture":
         """States with frictions between those of nodes, (states,)."""
         g_nodes, h, m = (
-            np.concatenate([getattr(node, name) for node in nodes])
+            np.concatenate([getattr(node, name) for node in nodes.groups])
             for name in ("g", "half_width", "centre")
         )
-        layers, edges = nodes[0].layers, EdgeExponents(nodes[0].response, g[:, None])
+        layers, edges = nodes.groups[0].layers, EdgeExponents(nodes.groups[0].response, g[:, None])
         weights = weights_between(g_nodes, g)
         # Exact where all nodes have one half-width.
         half_width = h[0] + weights @ (h - h[0])
@@ -394,6 +435,7 @@ class LayeredSolution(ExactSolution):
         layers: the layers under the punch.
         solved: contacts at the frictions that were solved; one under a prescribed pressure.
         interpolated: error of the interpolation over frictions, relative; None where each is solved.
+        nodes: contacts between which states are interpolated, and those with fewer unknowns; or none.
         g: σ_XY/σ_YY, (states,).
     """
 
@@ -401,32 +443,24 @@ class LayeredSolution(ExactSolution):
 
     def __init__(
         self, task: Task, layers: LayersUnderPunch, solved: list[SolvedContact],
-        interpolated: float | None, g: NDArray,
+        interpolated: float | None, nodes: Sequence[Nodes], g: NDArray,
     ) -> None:  # fmt: skip
         super().__init__(task, g)
         self._layers, self._solved, self._interpolated = layers, solved, interpolated
-        self.contacts, self._coarse = self._both = self._contacts()
+        self.contacts, self._coarse = self._both = self._contacts(nodes)
 
-    def _contacts(self) -> tuple[Contacts, Contacts]:
+    def _contacts(self, nodes: Sequence[Nodes]) -> tuple[Contacts, Contacts]:
         """Contacts of the states, and those with fewer unknowns."""
         g, solved = self.g, self._solved
-        if self._interpolated is not None:
-            nodes = zip(*(self._groups(of, np.array([of.g]), np.zeros(1, int)) for of in solved))
+        if nodes:
             fine, coarse = (Contacts((Mixture.between(each, g),)) for each in nodes)
             return fine, coarse
         which = np.searchsorted([of.g for of in solved], g)
         which = np.minimum(which, len(solved) - 1)  # one pressure is prescribed for all
-        groups = [self._groups(solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+        of = [(solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+        groups = [groups_of(self._layers, *each) for each in of]
         fine, coarse = (Contacts(each) for each in zip(*groups))
         return fine, coarse
-
-    def _groups(self, of: SolvedContact, g: NDArray, rows: NDArray) -> tuple[Any, Any]:
-        """States of a contact that was solved, and with fewer unknowns."""
-        layers = self._layers
-        kind: Any = partial(OnLayers, layers=layers) if layers.stack else Group
-        h, m = (np.full(len(rows), length * layers.punch.unit) for length in (of.half_width, of.centre))
-        fine = kind(layers.response, rows, g[rows], of.pressure, h, m)
-        return fine, replace(fine, pressure=of.before)
 
     @property
     def _shared(self) -> float:

@@ -82,7 +82,8 @@ class PunchLevel(Level):
     def _solved(self) -> Punch:
         """The punch, solved for all states that are still to do."""
         plan, least = self.plan, LEAST
-        if self.space.degree < plan.degrees[self.task.number]:  # it measures an error, no more
+        # It measures an error, no more; a fit interpolates between frictions, to a few 1e-12.
+        if not plan.sweep and self.space.degree < plan.degrees[self.task.number]:
             least = max(min(_OF_TOLERANCE * plan.tolerance, _ROUGH), LEAST)
         punch = sliding_punch(
             self.space, self.task.response, plan.solver, self.heights(), self.along(), least=least

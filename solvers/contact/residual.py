@@ -155,7 +155,8 @@ def of_contact(
         return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
 
     layers = _kernels(response, h) if len(response.depths) else []
-    kinks = [*kinks, *body.friction_kinks, *body.weak_friction_kinks]
+    of_friction = {kink for along in body.along.values() for kink in (*along.kinks, *along.weak_kinks)}
+    kinks = [*kinks, *of_friction]
     exponents = local.α, local.β
     return of_pressure(
         response, lambda r: body.ratio(g, r, h), exponents, slope, pressure, kinks, breaks, layers

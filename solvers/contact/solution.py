@@ -462,18 +462,14 @@ class FreeEndContact(Contact):
             growth = first.growth(self.load)
             if growth is not None:
                 return first.half_width * growth
-        rest = self._at_rest(np.atleast_1d(self.load))
-        return rest if np.ndim(self.load) else float(rest[0])
-
-    def _at_rest(self, load: NDArray) -> NDArray[np.float64]:
-        """Half-widths [m] at rest and without friction, under loads N per depth [N/m], (loads,)."""
         if self.solid.layers:
             from .equation import half_width_at_rest
 
-            contact: tuple[Any, Any] = self.solid, self.profile
-            return np.array([half_width_at_rest(*contact, N / self.solid.μ) for N in load.tolist()])
-        at_rest = self.loaded(load).contacts(self.solid.response(0.0), np.zeros(len(load)))
-        return np.asarray(at_rest.of("half_width"))
+            solid, compressions = self.solid, np.ravel(self.compression).tolist()
+            rest = np.array([half_width_at_rest(solid, self.profile, N) for N in compressions])  # type: ignore[arg-type]
+        else:
+            rest = self.contacts(self.solid.response(0.0), np.zeros(np.size(self.load))).of("half_width")
+        return rest if np.ndim(self.load) else float(rest[0])
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .closed_form import contacts

@@ -97,15 +97,12 @@ class ExactSolution(Solution):
 
     #: K_I at the left and the right end, 0 at a free end, (states, 2).
     K_I = property(lambda self: self._of("K_I"))
+    #: Normal force of a prescribed pressure over N/2, (states,).
+    normal_force = property(lambda self: self._of_pressures("resultant"))
     #: Of friction that varies along the contact: resultant of σ_XY over that of σ_YY, (states,).
     resultant_ratio = property(lambda self: self._of_pressures("resultant_ratio"))
     #: Of friction that varies along the contact: centre of pressure over a, (states,).
     pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
-
-    @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force of a prescribed pressure over N/2, (states,)."""
-        return np.full(len(self.g), self.contacts.groups[0].pressure.resultant)
 
     def strained_within(self, strain: float) -> NDArray[np.float64]:
         """Distances over a from X = -a and X = a within which -u,X exceeds a strain, (states, 2).

@@ -555,11 +555,6 @@ class LayersUnderPunch:
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
 
-    @property
-    def rounding(self) -> float:
-        """Relative error of the pressure by that of the kernel."""
-        return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
-
     def solved(self, g: NDArray) -> tuple[list[SolvedContact], float | None]:
         """Contacts from which those with all of ``g`` follow, and the error where they are interpolated.
 

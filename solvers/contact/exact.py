@@ -443,7 +443,8 @@ class LayeredSolution(ExactSolution):
         super().__init__(task, g)
         self._layers, self._solved = layers, solved
         #: Relative error of all that is linear in the pressure by interpolation and by the kernel.
-        self._shared = interpolation + layers.rounding
+        of_kernel = 2.0 * np.pi * layers.kernel.error / abs(layers.response.n)
+        self._shared = interpolation + of_kernel
         if nodes:
             self._both = tuple(each.between(g) for each in nodes)
         else:

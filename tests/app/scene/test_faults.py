@@ -131,7 +131,7 @@ FAULTS = {
          "output.quantities: found …expected ν <= 0.49"),
         (_POINT | {"output.points": [[0.0, -90.0]], "solve.mesh": "box"},
          "coordinate of 90 a, expected at most 60 a with the box mesh"),
-        (_WEDGE | FEM | {"solve.degree": 6}, 'fem: such a contact needs meshes of its own: mesh = "confocal", and no degree'),
+        (_WEDGE | FEM | {"solve.degree": 6}, 'fem: …mesh = "confocal", and no degree'),
         (_PARABOLA | _TRACTION, "whose contact ends where the pressure says"),
         (_NO_WIDTH | {"punch.profile": "table", "punch.shape": _TABLE},
          "not convex at X = 0.001 m…two contacts"),

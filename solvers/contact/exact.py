@@ -225,13 +225,16 @@ def _turns_of(contacts: Contacts) -> Turns | None:
     """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
     each = []
     for group in contacts.groups:
-        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
-        X = np.concatenate([ENDS[ends], kinks])
+        kinks = sorted(group.pressure.bends)
+        # A weight that is infinite at a free end, times 0 there, has no value at that end.
+        known = np.array([group.β[0], group.α[0]]) > 0.0
+        X = np.concatenate([ENDS[known], kinks])
         σ_XX, σ_YY = group.surface(X)
         between = None
         if kinks:
             places = np.array([-1.0, *kinks, 1.0])
-            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            left, right = ~group.free[0]
+            infinite = np.array([left, *[False] * len(kinks), right])
             _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
         σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
         each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))

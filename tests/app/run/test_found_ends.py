@@ -311,18 +311,20 @@ def test_over_layers_no_contact_is_wider_than_its_punch_is_known(lean, known):
 
 
 @pytest.mark.parametrize(
-    "punch",
+    ("punch", "frictions"),
     [
-        "half_width = 1e-3",
-        "half_width = 1e-3\ntilt = 0.05",
-        'profile = "parabolic"\nradius = 0.02',
-        'profile = "wedge"\nslope = 0.01',
+        ("half_width = 1e-3", 2),
+        ("half_width = 1e-3", 30),  # more than are solved one by one
+        ("half_width = 1e-3\ntilt = 0.05", 2),
+        ('profile = "parabolic"\nradius = 0.02', 2),
+        ('profile = "wedge"\nslope = 0.01', 2),
     ],
 )
-def test_the_integral_equation_alone_solves_uniform_solids(punch):
+def test_the_integral_equation_alone_solves_uniform_solids(punch, frictions):
     output = '["sif", "surface", "interior"]\npoints = [[0.0, -0.5]]'
+    at = np.linspace(0.1, 0.7, frictions).tolist()
     by = {
-        method: galinx.compute(scene(punch, solve=f'methods = ["{method}"]', output=output))
+        method: galinx.compute(scene(punch, solve=f'methods = ["{method}"]', output=output, X_over_L=at))
         for method in ("sie", "closed_form")
     }
     assert by["sie"].verdict == by["closed_form"].verdict == "PASS"

@@ -337,6 +337,10 @@ class Contact:
         k = self.growth_exponent
         return None if k is None else (load / self.load) ** k
 
+    def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
+        """Loads [N/m], of several, under which contacts differ in more than their size."""
+        return loads if self.growth_exponent is None else loads[:1]
+
     @property
     def compression(self) -> Any:
         """Load over the shear modulus, N/μ [m]."""
@@ -530,7 +534,8 @@ class Task:
         Returns:
             Frictions, and loads [N/m], None for the task's, (states,) each.
         """
-        ends = sorted({min(self.loads), max(self.loads)})[: 1 if self.body.alike else 2]
+        loads = self.body.dissimilar(self.loads)
+        ends = sorted({min(loads), max(loads)})
         if len(ends) == 1:
             return g, None
         return np.tile(g, len(ends)), np.repeat(ends, len(g))

@@ -23,9 +23,9 @@ from galinx.solvers.contact.edges import under_punch
 
 from .quantities import layers as on_layers
 from .quantities import over_time as in_time
+from .quantities import preferred, table
 from .quantities import states as of
 from .quantities import stresses as at
-from .quantities import table
 from .quantities import yielding as to
 from .quantities.quantity import (
     ANYWHERE,
@@ -560,6 +560,6 @@ def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, An
         figures.append(rule.measure(one, load[i : i + 1] if np.ndim(load) else load) or 0.0)
     i = int(np.nanargmax(figures))
     # Where friction varies along the contact the number of a state is not that of its force.
-    varies = any(row.path in data for row in of.RESULTANT_RATIO.values())
+    varies = preferred(data, of.RESULTANT_RATIO)
     f = "" if varies else f", f = {data[of.FRICTION.path][i]:.4g}"
     return f", in state {i} (c = {data[of.SPEED.path][i]:.4g}{f})"

@@ -164,7 +164,7 @@ class Units:
             return Scaled("", archived.get(kind, kind))
         unit, factor, offset, size = self._in_si(kind, row)
         sizes = [size, *(other._in_si(kind, row)[3] for other in self.beside)]
-        name, of_si = prefixed(unit, float(max(sizes)))
+        name, of_si = prefixed(unit, float(max(sizes)) or 1.0)
         return Scaled("", name, factor / of_si, offset / of_si)
 
     def _in_si(self, kind: str, row: Quantity | None) -> tuple[str, Any, Any, Any]:
@@ -187,7 +187,7 @@ class Units:
             size = factor * np.max(self.data.get(over_time.TIMES.path, 1.0))
         elif kind == "N/(2mu)":
             unit, factor = "m", contact.displacement
-            size = factor * self._largest(kind, row)
+            size = factor * (self._largest(kind, row) or 1.0)
         elif kind in ("N^2/(4mu)", "N*a"):
             unit, size = "J/m", contact.load * contact.displacement / 2.0
             factor = size if kind != "N*a" else contact.load * contact.half_width
@@ -216,7 +216,7 @@ class Units:
         return self.scale(OVER_A)
 
     def _largest(self, kind: str, row: Quantity | None) -> float:
-        """Largest number of the archive's quantities of a unit that stand in one section with a row."""
+        """Largest number of the quantities of a unit in the section of a row; 0 for none."""
         if row is None:
             return 1.0
         section = row.path.partition("/")[0]
@@ -231,7 +231,7 @@ class Units:
         if row.symbol:
             values = [self.data[row.path]] if row.path in self.data else []
         finite = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in map(np.asarray, values)]
-        return float(max(finite, default=0.0)) or 1.0
+        return float(max(finite, default=0.0))
 
     def _intensity(self, row: Quantity, name: str) -> Scaled | None:
         """K_I: the limit of the pressure times (2π distance)^-exponent, whose unit has that power.

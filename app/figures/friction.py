@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import column, runs
+from galinx.postprocess.quantities import column, preferred, runs
 from galinx.postprocess.quantities.states import RESULTANT_RATIO
+from galinx.postprocess.tables import states_of_sliders
 from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.motion import names
 
-from ..plan.states import order
 from .choice import Archive, C, Drawing, N, fewer, named, spread
 from .render import DOTS, Curve, Panel, Size, across, note, render
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
@@ -144,9 +144,8 @@ def varies(of: Archive) -> bool:
 
 def has_loop(of: Archive) -> bool:
     """Return True if friction changes along a stroke, or between strokes, but not along the contact."""
-    if any(of.has(row) for row in RESULTANT_RATIO.values()):
-        return False
-    return of.scene.slider is None and any(loop.varies for loop in Loops(of).few)
+    along = preferred(of.data, RESULTANT_RATIO)
+    return not along and of.scene.slider is None and any(loop.varies for loop in Loops(of).few)
 
 
 def friction(of: Archive) -> Drawing:
@@ -200,9 +199,8 @@ def slider(of: Archive) -> Drawing:
     laws = spread(list(range(count)), _SLIDERS)
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
-    # States of a load follow one another, as its sliders do.
-    each = order(scene).shape[-1]
-    labels = [loops.labels.label(law * each, called) if called and len(laws) > 1 else "" for law in laws]
+    states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)
+    labels = [loops.labels.label(states[law], called) for law in laws]
     ordered = len(called) == 1 and loops.labels.numeric(called[0])
     t, v, cycle_v = (of.values(row) for row in (runs.TIMES, runs.VELOCITY, runs.CYCLE_VELOCITY))
     cycle_f = data[runs.CYCLE_FRICTION.path]

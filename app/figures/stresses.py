@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities import preferred, stresses
 from galinx.postprocess.quantities.layers import ALONG_X
 from galinx.postprocess.quantities.quantity import (
     ALONG,
@@ -23,7 +23,6 @@ from galinx.postprocess.quantities.quantity import (
 from galinx.postprocess.quantities.states import CENTRE, HALF_WIDTH, LOAD, RESULTANT_RATIO, SPEED
 from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFACE_X
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
-from galinx.postprocess.tables import preferred
 from galinx.solvers.contact.edges import from_edge, under_punch
 from galinx.solvers.contact.equation import under_punch as half_plane_under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact

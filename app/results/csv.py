@@ -1,7 +1,7 @@
 """Archives as comma-separated values: one tidy table, read and written some rows at a time."""
 
 import csv
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.quantities import Quantity, over_time, runs, table
 from galinx.postprocess.quantities.quantity import ALONG, FRICTION_ALONE, INSIDE, INTERFACE, POINT, STATE
-from galinx.postprocess.quantities.states import FRICTION, LOAD
-from galinx.postprocess.tables import parameters, state_columns
+from galinx.postprocess.quantities.states import FRICTION, LOAD, MOTION, POSITION, SPEED
+from galinx.postprocess.tables import parameters, state_columns, states_of_sliders
 from galinx.postprocess.units import Units
 from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 
@@ -75,6 +75,9 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 data = {**archive.data, **(archive.rows(block, large) if large else {})}
                 columns += _parameters(archive.data, units, block, len(over)) if large else []
                 columns += _over(data, rows, units, block, over)
+                if over[0] == runs.LAW:
+                    own = states_of_sliders(archive.data)[block]
+                    columns += _parameters(archive.data, units, own, len(over), (SPEED, MOTION, POSITION))
             else:
                 columns += [(head, values[block]) for head, values in _of_states(archive.data, units)]
             if start == 0:
@@ -92,12 +95,14 @@ def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[
     return [(_NUMBERED[name], at + (name == INTERFACE)) for name, at in numbers if name in _NUMBERED]
 
 
-def _parameters(data: dict[str, Any], units: Units, block: slice, axes: int) -> list[_Column]:
-    """Columns that tell states apart, and their load."""
+def _parameters(
+    data: dict[str, Any], units: Units, block: Any, axes: int, without: Collection[Quantity] = ()
+) -> list[_Column]:
+    """Columns that tell some states apart, and their load."""
     columns = [
         (scaled.head, scaled.of(data[path]))
         for path, row in parameters(data).items()
-        if path != LOAD.path and (scaled := units(row))
+        if path != LOAD.path and row not in without and (scaled := units(row))
     ]
     load = units.scale(LOAD.unit)
     columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))

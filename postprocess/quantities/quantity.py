@@ -1,6 +1,6 @@
 """Quantity of an archive: what it is, how it is read off a solution and judged; and the table of all."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,6 +42,8 @@ SWEPT = "fitted speeds"
 #: Word of a scene's output.quantities that asks for no dataset of its own, beside ``INTENSITIES``.
 FRICTION_ALONE = "friction"
 
+
+NOT_NEGATIVE = Range(at_least=0.0)
 
 #: What a dimensionless quantity is over: the half-width; the half-width, along X from the contact's
 #: middle; the wave speed; the load; load and half-width to the power of an edge's exponent.
@@ -114,20 +116,25 @@ def entry(of: Callable[[Any], NDArray], *index: Any) -> Callable[[Any, Any], NDA
 
 
 def by_method(
-    path: str, unit: str, about: str, over: tuple[str, ...],
-    of: Callable[[Any, Any], NDArray] | None, own: Mapping[str, Mapping[str, Any]], **options: Any,
+    path: str, unit: str, about: str, over: tuple[str, ...], of: Callable[[Any, Any], NDArray] | None,
+    own: Mapping[str, Mapping[str, Any]] | Sequence[str], rule: str = "", **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity that several methods give, by method.
 
     Args:
         path, unit, about, over, of: as of a quantity; ``{method}`` in the path stands for the method.
-        own: what each method has of its own, other attributes by name, by method.
+        own: the methods, or what each has of its own, other attributes by name, by method.
+        rule: by which finite elements are judged; that of the integral equation goes on "over layers".
         options: further attributes, the same for all methods.
     """
     common: dict[str, Any] = {"unit": unit, "about": about, "over": over, "of": of} | options
+    attributes = own if isinstance(own, Mapping) else {method: {} for method in own}
+    if rule:
+        rules = (rule, f"{rule} over layers")[: 1 + (SIE in own)]
+        attributes = {**attributes, FEM: {"compared": rules}}
     return {
-        method: Quantity(**common | {"path": path.format(method=method), "method": method, **attributes})
-        for method, attributes in own.items()
+        method: Quantity(**common | {"path": path.format(method=method), "method": method} | each)
+        for method, each in attributes.items()
     }
 
 

@@ -1,7 +1,6 @@
 """Quantities of stresses on the surface and inside."""
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from .quantity import (
     FEM,
     INSIDE,
     LOCAL,
+    NOT_NEGATIVE,
     OVER_A,
     POINT,
     QUANTITIES,
@@ -78,21 +78,17 @@ _METHODS = (CLOSED_FORM, FEM, SIE)
 
 def _extreme(end: str, sign: float, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
     """Quantities of the highest or the lowest in-plane stress, and of its place."""
-    path, rules = (
-        f"states/{{method}}/sigma_XX_{end}",
-        ("extremes of sigma_XX", "extremes of sigma_XX over layers"),
-    )
-    own: dict[str, Any] = {method: {} for method in _METHODS}
+    path = f"states/{{method}}/sigma_XX_{end}"
     value = by_method(
         path, "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], own | {FEM: {"compared": rules}},
-        asked_by=ON_SURFACE,
+        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], _METHODS,
+        "extremes of sigma_XX", asked_by=ON_SURFACE,
     )  # fmt: skip
     place = by_method(
         f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
-        lambda s, body: extreme_in_plane(s, body, sign)[1], own, asked_by=ON_SURFACE, scale=X_OVER_A,
+        lambda s, body: extreme_in_plane(s, body, sign)[1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
     )  # fmt: skip
     return value, place
 
@@ -113,7 +109,7 @@ def estimate(word: str, name: str, **own: tuple[str, str]) -> dict[str, Quantity
         f"states/{{method}}/estimate_{name}", "1", "", (STATE,), lambda s, _: s.estimates[word],
         {method: {"about": f"estimated error of {about}", "compared": (rule,)}
          for method, (about, rule) in own.items()},
-        asked_by=word, range=Range(at_least=0.0), accuracy=True,
+        asked_by=word, range=NOT_NEGATIVE, accuracy=True,
     )  # fmt: skip
 
 
@@ -137,7 +133,7 @@ RESIDUAL_INSIDE = Quantity(
     "residual of stresses inside, their difference from sums of line loads at some of the points and "
     "that of their resultants at a depth from equilibrium, over the largest",
     (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, compared=("residual inside",),
-    range=Range(at_least=0.0), accuracy=True,
+    range=NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 INSIDE_X = Quantity(
@@ -178,7 +174,7 @@ _INVARIANTS: tuple[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...
     ("sigma_1", "larger principal stress in the plane", lambda s, _: principal(*s.inside)[0], ()),
     ("sigma_2", "smaller principal stress in the plane", lambda s, _: principal(*s.inside)[1], ()),
     ("von_mises", "von Mises stress, sigma_ZZ included",
-     lambda s, _: von_mises(s.inside[0], s.inside[1], s.inside[2], s.σ_ZZ), (OUT_OF_PLANE,)),
+     lambda s, _: von_mises(*s.inside, s.σ_ZZ), (OUT_OF_PLANE,)),
 )  # fmt: skip
 #: Principal stresses and von Mises inside, by method.
 INVARIANTS_INSIDE = {
@@ -193,30 +189,26 @@ INVARIANTS_INSIDE = {
 }  # fmt: skip
 
 
-def _component_in_punch(i: int, solution: Any, _: Any) -> NDArray[np.float64]:
-    return np.asarray(solution.inside_punch[i])
-
-
-def _in_punch(method: str) -> Iterator[Quantity]:
-    """Quantities of the stresses in an elastic punch: components, and von Mises."""
-
-    def quantity(name: str, what: str, of: Callable[[Any, Any], NDArray], *rules: str) -> Quantity:
-        return Quantity(
-            f"interior/{method}/punch_{name}", "N/(2a)",
-            f"{what} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of, method,
-            asked_by=BELOW, requires=(IN_PUNCH,), compared=rules * (method == FEM),
-        )  # fmt: skip
-
-    def of_von_mises(s: Any, body: Any) -> NDArray[np.float64]:
-        XX, YY, XY = s.inside_punch
-        return von_mises(XX, YY, XY, body.of_punch.solid.σ_ZZ(XX, YY, XY))
-
-    for i, (ij, what) in enumerate(_COMPONENTS.items()):
-        yield quantity(f"sigma_{ij}", what, partial(_component_in_punch, i), "stresses in the punch")
-    yield quantity("von_mises", "von Mises stress, sigma_ZZ included,", of_von_mises)
-
-
+#: Names of stresses in an elastic punch, their meaning, how they are read, and their rules.
+_IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...]]] = [
+    *(
+        (f"sigma_{ij}", what, entry(lambda s: s.inside_punch, i), ("stresses in the punch",))
+        for i, (ij, what) in enumerate(_COMPONENTS.items())
+    ),
+    ("von_mises", "von Mises stress, sigma_ZZ included,",
+     lambda s, body: von_mises(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch)), ()),
+]  # fmt: skip
 #: σ_XX, σ_YY, σ_XY and von Mises in an elastic punch, by method.
-STRESSES_IN_PUNCH = {method: tuple(_in_punch(method)) for method in (CLOSED_FORM, FEM)}
+STRESSES_IN_PUNCH = {
+    method: tuple(
+        Quantity(
+            f"interior/{method}/punch_{name}", "N/(2a)",
+            f"{about} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of,
+            method, asked_by=BELOW, requires=(IN_PUNCH,), compared=rules * (method == FEM),
+        )
+        for name, about, of, rules in _IN_PUNCH
+    )
+    for method in (CLOSED_FORM, FEM)
+}  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -193,13 +193,13 @@ def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDA
 WORKS, BALANCE = "works over time", "energy over time"
 
 #: Terms of the balance: works and energy that come in, and energies that are held or radiated.
-_DONE = rows.OF_LOAD[FEM], rows.OF_FRICTION[FEM], rows.CARRIED
-_HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
+DONE = rows.OF_LOAD[FEM], rows.OF_FRICTION[FEM], rows.CARRIED
+HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
 
 
 def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
     """Work less energy, over the largest work of a motion, (motions, times)."""
-    done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
+    done, held = (sum(data[row.path] for row in kind) for kind in (DONE, HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
 
 
@@ -284,7 +284,7 @@ for _name, _rule in {
         SIE, _until_turn, f"works of load and friction {_AGAINST}", rows.OF_LOAD, rows.OF_FRICTION
     ),
     BALANCE: Rule(
-        "work without its energy over time, over the largest work", (*_DONE, *_HELD),
+        "work without its energy over time, over the largest work", (*DONE, *HELD),
         lambda data, _: float(np.abs(energy_imbalance(data)).max()), tolerances=1.0,
     ),
     ALONG: against(SIE, _along, f"σ_XX and σ_YY along the surface {_AGAINST} {_FAR}", *SURFACE),

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.over_time import energy_imbalance
+from galinx.postprocess.over_time import DONE, HELD, energy_imbalance
 from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities import over_time as rows
-from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
@@ -38,11 +37,10 @@ _OVER_TIME = (
     (rows.K_I_LEFT, "$K_I$ at $X = -a$"),
     (rows.K_I_RIGHT, "$K_I$ at $X = a$"),
 )  # fmt: skip
-#: Works and energies by the names of their curves.
-_DONE = {"load": OF_LOAD[FEM], "friction": OF_FRICTION[FEM], "being carried past the punch": rows.CARRIED}
-_HELD = {"strain near": rows.STRAIN, "motion near": rows.KINETIC, "radiated": rows.RADIATED}
+#: Names of the curves of works and energies.
+_WORKS = ("load", "friction", "being carried past the punch"), ("strain near", "motion near", "radiated")
 #: Quantities that an archive of energies, and of pressures over time, has.
-ENERGIES, PRESSURES = (*_DONE.values(), *_HELD.values()), (rows.PRESSURE, rows.PLACES)
+ENERGIES, PRESSURES = (*DONE, *HELD), (rows.PRESSURE, rows.PLACES)
 _STEADY, _SUM = Look(GREY, "--", ""), Look(GREY, "-", "")
 
 
@@ -116,11 +114,11 @@ def energies(of: Archive) -> Drawing:
     label, t = _time(of)
     styles = iter(looks(len(ENERGIES)))
     panels = []
-    for what, kinds in (("work", _DONE), ("energy", _HELD)):
-        values = {name: of.values(row)[0] for name, row in kinds.items()}
+    for what, kinds, names in zip(("work", "energy"), (DONE, HELD), _WORKS):
+        values = {name: of.values(row)[0] for name, row in zip(names, kinds)}
         curves = [Curve(t, np.sum(list(values.values()), axis=0), _SUM, width=1.8)]
         curves += [Curve(t, y, next(styles), name) for name, y in values.items()]
-        unit = of.scaled(next(iter(kinds.values()))).unit
+        unit = of.scaled(kinds[0]).unit
         over = r" over $N^2/4\mu$" if unit.startswith("N^2") else f" ({unit})"
         panels.append(Panel(
             label, rf"{what} since $t = 0${over}", curves=curves, at_y=(0.0,), xlim=(0.0, float(t[-1]))
@@ -223,9 +221,9 @@ def stresses(of: Archive) -> Drawing:
     """Figure of the stresses along the surface of the first start, at chosen times from the first to the
     last, beside those of steady motion with the friction and the load of these times."""
     (held, steps), t = _at_chosen_times(of), of.data[rows.SURFACE_TIMES.path]
-    at = np.unique(np.linspace(0, len(t) - 1, _SURFACE_TIMES).round().astype(int))
+    at = spread(range(len(t)), _SURFACE_TIMES)
     styles, called = looks(len(at), True), [_at_time(of, t[i]) for i in at]
-    columns = {"in time": [Shown(held, *each) for each in zip(at.tolist(), styles, called)]}
+    columns = {"in time": held.shown(styles, called, rows=at)}
     if steady := _steady(of, held, 0, steps[at]):
         columns["steady motion of that time's friction and load"] = steady.shown(styles, called)
     panels: list[Panel] = []

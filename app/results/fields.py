@@ -272,21 +272,6 @@ _BRIGHT = 2.0
 _SURFACE = 1e-14
 
 
-@dataclass(frozen=True)
-class StateField:
-    """Field of a state of a scene on small quadrilaterals, in SI.
-
-    Attributes:
-        points: positions [m], (n, 2).
-        quads: points of each quadrilateral counterclockwise, (m, 4); a triangle's last is doubled.
-        data: quantities of ``ABOUT`` at the points, (n,), or (n, 3) for the displacement.
-    """
-
-    points: NDArray[np.float64]
-    quads: NDArray[np.int64]
-    data: dict[str, NDArray[np.float64]]
-
-
 def write_fields(
     scene: Scene,
     numbers: Sequence[int],
@@ -346,8 +331,14 @@ def write_fields(
     vtkhdf.write(path, map(step, states), ABOUT, COLOURED, series=len(numbers) > 1)
 
 
-def in_si(solved: Solved, sampled: Any) -> StateField:
-    """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa."""
+def in_si(solved: Solved, sampled: Any) -> Any:
+    """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa.
+
+    Returns:
+        A :class:`galinx.postprocess.hdf5.vtkhdf.Piece` with the quantities of ``ABOUT``.
+    """
+    from galinx.postprocess.hdf5.vtkhdf import Piece
+
     scene, task = solved.scene, solved.task
     body = task.body
     stresses = task.response.stresses(sampled.gradient)
@@ -380,4 +371,4 @@ def in_si(solved: Solved, sampled: Any) -> StateField:
         error = np.full(len(points), np.nan)
         error[~on] = np.abs(stresses[:, ~on] - exact).max(axis=0)
         data["sigma_error"] = body.stress * error
-    return StateField(body.half_width * points, sampled.quads, data)
+    return Piece(body.half_width * points, sampled.quads, data)

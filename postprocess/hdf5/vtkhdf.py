@@ -7,7 +7,7 @@ when all of it is on the disk.
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import h5py
 import numpy as np
@@ -30,7 +30,8 @@ _SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 _OFFSETS = ("PointOffsets", "CellOffsets", "ConnectivityIdOffsets")
 
 
-class Piece(Protocol):
+@dataclass(frozen=True)
+class Piece:
     """A part of an unstructured grid of quadrilaterals.
 
     Attributes:
@@ -40,12 +41,9 @@ class Piece(Protocol):
         data: arrays at the points by name, (n,) or (n, 3); the same names in every piece.
     """
 
-    @property
-    def points(self) -> NDArray: ...
-    @property
-    def quads(self) -> NDArray: ...
-    @property
-    def data(self) -> Mapping[str, NDArray]: ...
+    points: NDArray
+    quads: NDArray
+    data: Mapping[str, NDArray]
 
 
 @dataclass(frozen=True)

@@ -36,11 +36,6 @@ class Scaled(NamedTuple):
         """Head of a column: name and unit, which is 1 for dimensionless."""
         return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
 
-    @property
-    def label(self) -> str:
-        """Name and unit for people; nothing stands for dimensionless."""
-        return self.name if self.unit in ("1", "none") else f"{self.name} [{self.unit}]"
-
     def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
         """Values in this scale, (states, …).
 
@@ -127,11 +122,6 @@ class Units:
         self.c_s: Any = data.get(swept.WAVE_SPEED.path, contact.solid.c_s)
         self.load: Any = data.get(states.LOAD.path, contact.load)
 
-    @property
-    def alike(self) -> bool:
-        """True where all states have the same contact and load, and so the same scale."""
-        return not (np.ndim(self.half_width) or np.ndim(self.load))
-
     def __call__(self, row: Quantity, name: str | None = None) -> Scaled | None:
         """Name, unit and scale of a quantity; None for one that equals another one in these units.
 
@@ -199,11 +189,6 @@ class Units:
     def stress(self) -> Scaled:
         """Scale of stresses of states: MPa for N/(2a)."""
         return self.scale("N/(2a)")
-
-    @property
-    def of_pascals(self) -> float:
-        """Factor of strengths in Pa to the unit of stresses of states."""
-        return float(np.max(self.stress.factor * 2.0 * self.half_width / self.load))
 
     @property
     def position(self) -> Scaled:

@@ -123,9 +123,9 @@ class Validity:
                 f"{states['crossings']}: the reported steady state is a limit that such a stroke "
                 f"{reached}" + f"; {text}" * bool(text)
             )
-        for stroke in self._fastest if self._steady else ():
-            if text := self._steady.words(*stroke, too_short=True):
-                yield f"the steady state is reported, but {text}"
+        fast = self._steady.words(*self._fastest[0], True) if self._steady and self._fastest else ""
+        if fast:
+            yield f"the steady state is reported, but {fast}"
         if "ratio" in worst:
             up_to, steep = f"|σ_XY/σ_YY| is up to {worst['ratio']}", sorted(self._steep)
             if steep[0] > 0.0:

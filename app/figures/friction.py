@@ -41,11 +41,6 @@ class Loop:
     f: NDArray
     strokes: Sequence[tuple[str, slice]]
 
-    @property
-    def varies(self) -> bool:
-        """True where friction changes along a stroke."""
-        return any(_changes(self.f[part]) for _, part in self.strokes)
-
 
 def _changes(f: NDArray) -> bool:
     return bool(len(f) and np.ptp(f) > 1e-6 * np.abs(f).max())
@@ -145,7 +140,9 @@ def varies(of: Archive) -> bool:
 def has_loop(of: Archive) -> bool:
     """Return True if friction changes along a stroke, or between strokes, but not along the contact."""
     along = preferred(of.data, RESULTANT_RATIO)
-    return not along and of.scene.slider is None and any(loop.varies for loop in Loops(of).few)
+    if along or of.scene.slider is not None:
+        return False
+    return any(_changes(loop.f[part]) for loop in Loops(of).few for _, part in loop.strokes)
 
 
 def friction(of: Archive) -> Drawing:

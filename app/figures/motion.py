@@ -147,18 +147,12 @@ def _held(
     for name, by_method in stresses.items():
         label, sign = SHOWN[name]
         axes[name] = named(label, of.scaled(next(iter(by_method.values()))).unit)
-        values[name] = {
-            method: sign * _cut(name, places, of.values(row)[start]) for method, row in by_method.items()
-        }
+        shown = np.where(under_punch(places) | (name != "sigma_YY"), sign, np.nan)
+        values[name] = {method: shown * of.values(row)[start] for method, row in by_method.items()}
     times = len(next(iter(values["sigma_YY"].values())))
     place = float(np.max(scale.factor)), float(np.max(scale.offset))
     words = "position " if X is rows.PLACES else "position on the surface "
     return Surface(places, axes, values, [place] * times, position_name(of, words))
-
-
-def _cut(name: str, X: NDArray, values: NDArray) -> NDArray[np.float64]:
-    """Stresses along the surface; of the pressure those under the punch alone."""
-    return np.where(under_punch(X) | (name != "sigma_YY"), values, np.nan)
 
 
 def _steady(of: Archive, held: Surface, start: int, steps: NDArray | list[int]) -> Surface | None:
@@ -170,7 +164,7 @@ def _steady(of: Archive, held: Surface, start: int, steps: NDArray | list[int]) 
     X, stress = held.X, float(np.max(of.scaled(rows.SURFACE_PRESSURE[SIE]).factor))
     load = stress * of.data[rows.LOAD.path][steps][:, None]
     values = {
-        "sigma_YY": -load * _cut("sigma_YY", X, np.array([punch.σ_YY(X) for punch in punches])),
+        "sigma_YY": -load * np.where(under_punch(X), [punch.σ_YY(X) for punch in punches], np.nan),
         "sigma_XX": load * np.array([punch.σ_XX(X) for punch in punches]),
     }
     return replace(held, values={name: {SIE: values[name]} for name in held.values})

@@ -370,17 +370,13 @@ class _Drawn:
             high = self.legend.get_window_extent(axis.figure.canvas.get_renderer()).height
             below = room.below + room.name - high / axis.figure.dpi
             self.legend.set_bbox_to_anchor((0.5, -below / tall), axis.transAxes)
+        style = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
         for curve, line in zip(self.panel.curves, self.lines):
-            _draw_arrows(axis, line, curve.arrows)
-
-
-def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
-    """Draw arrows along a curve, once its panel has its place."""
-    style = {"arrowstyle": "-|>", "color": line.get_color(), "shrinkA": 0, "shrinkB": 0}
-    points = line.get_xydata()
-    for share in shares:
-        at = point_along(axis.transData.transform(points).T, share)
-        axis.annotate("", points[at + 1], points[at], arrowprops=style | {"mutation_scale": 9})
+            points = line.get_xydata()
+            for share in curve.arrows:
+                at = point_along(axis.transData.transform(points).T, share)
+                own = style | {"color": line.get_color()}
+                axis.annotate("", points[at + 1], points[at], arrowprops=own)
 
 
 def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> int:

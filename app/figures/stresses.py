@@ -541,15 +541,16 @@ class Fields:
     def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
         """A stress of a state in an elastic punch at -Y, and its strength; None without."""
         values = self._values(name, method, [state], _PUNCH)
-        strength = of_state(self._of.scene, state)[0].solid.punch_strength if values is not None else None
-        return None if values is None else (values[0], self._level(name, strength))
+        if values is None:
+            return None
+        return values[0], self._level(name, of_state(self._of.scene, state)[0].solid.punch_strength)
 
     def _level(self, name: str, strength: float | None) -> float:
         """Yield strength [Pa] in the figure's units where a map shows von Mises stresses, 0 for none."""
-        of = self._of
-        if name != "von_mises" or not strength or of.scene.layers or of.units.stress.unit == "N/(2a)":
+        of, units = self._of, self._of.units
+        if name != "von_mises" or not strength or of.scene.layers or units.dimensionless:
             return 0.0
-        return strength * of.units.of_pascals
+        return strength * float(np.max(units.stress.factor * 2.0 * units.half_width / units.load))
 
     def label(self, name: str) -> str:
         """Label of the colour bar of a quantity."""

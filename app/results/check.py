@@ -202,16 +202,13 @@ def _different(part: _Part, rows: NDArray[np.int64], computed: Mapping[str, NDAr
             axes = tuple(range(1, values.ndim))
             size = np.maximum(finite, 0.0 if values.ndim == 1 else finite.max(axis=axes, keepdims=True))
             allowed = _TOLERANCES * part.plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
-            near = np.abs(held - values) <= allowed * size + _PLACE * _is_place(path)
+            # The place of a largest value may lie anywhere where the values are flat.
+            is_place = path.endswith(("_position", "_over_a", "_X", "_Y"))
+            near = np.abs(held - values) <= allowed * size + _PLACE * is_place
         same = near | (held == values) | (np.isnan(held) & np.isnan(values))
         if not same.all():
             i = int(np.flatnonzero(~same.reshape(len(rows), -1).all(axis=1))[0])
             yield f"{path} is not what is computed of state {rows[i]}"
-
-
-def _is_place(path: str) -> bool:
-    """True for the place of a largest value, which may lie anywhere where the values are flat."""
-    return path.endswith(("_position", "_over_a", "_X", "_Y"))
 
 
 def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:

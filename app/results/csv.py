@@ -54,7 +54,7 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
         BadInput: it holds no such table.
     """
-    over, word = TABLES[which]
+    (over, word), quantities = TABLES[which], table()
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
         units = Units(scene.body, archive.data, dimensionless)
@@ -64,13 +64,20 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 f"{path} holds nothing for --{which}; a scene asks for it by "
                 f'output.quantities = ["{word}"]'
             )
-        sizes = [_size(archive, name) for name in over]
+        lengths = {STATE: len(archive.data[FRICTION.path])}
+        for name, values in archive.data.items():
+            lengths = dict(zip(quantities[name].over, np.shape(values))) | lengths
+        sizes = [lengths[name] for name in over]
         large = [row.path for row in rows if STATE in row.over] if word else []
         together = max(1, _TOGETHER // max(1, int(np.prod(sizes[1:]))))
         for start in range(0, sizes[0], together):
             block = slice(start, min(start + together, sizes[0]))
             shape = block.stop - block.start, *sizes[1:]
-            columns = _numbers(over, shape, start)
+            rows_, *others = np.indices(shape, sparse=True)
+            columns: list[_Column] = [  # numbers of interfaces are from 1, others from 0
+                (_NUMBERED[name], at + (name == INTERFACE))
+                for name, at in zip(over, (rows_ + start, *others)) if name in _NUMBERED
+            ]  # fmt: skip
             if word:
                 data = {**archive.data, **(archive.rows(block, large) if large else {})}
                 columns += _parameters(archive.data, units, block, len(over)) if large else []
@@ -86,13 +93,6 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
             for first in range(0, int(np.prod(shape)), _TOGETHER):
                 part = slice(first, first + _TOGETHER)
                 yield _text(zip(*(_cells(values[part], dimensionless) for values in whole)))
-
-
-def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[_Column]:
-    """Columns of the numbers of parts, interfaces from 1, others from 0, the outermost from start."""
-    first, *others = np.indices(shape, sparse=True)
-    numbers = zip(over, (first + start, *others))
-    return [(_NUMBERED[name], at + (name == INTERFACE)) for name, at in numbers if name in _NUMBERED]
 
 
 def _parameters(
@@ -164,17 +164,6 @@ def _over(
             held = scaled.of(held, block)
         columns.append((scaled.head, held))
     return columns
-
-
-def _size(archive: reader.Archive, name: str) -> int:
-    """Length of a dimension of an archive's datasets."""
-    if name == STATE:
-        return len(archive.data[FRICTION.path])
-    rows = table()
-    for path, values in archive.data.items():
-        if path in rows and name in rows[path].over:
-            return int(np.shape(values)[rows[path].over.index(name)])
-    raise AssertionError(name)
 
 
 def _cells(values: NDArray, exact: bool) -> list[Any]:

@@ -133,7 +133,7 @@ def by_method(
         rules = (rule, f"{rule} over layers")[: 1 + (SIE in own)]
         attributes = {**attributes, FEM: {"compared": rules}}
     return {
-        method: Quantity(**common | {"path": path.format(method=method), "method": method} | each)
+        method: Quantity(**common | {"path": path.format(method=method), "method": method, **each})
         for method, each in attributes.items()
     }
 

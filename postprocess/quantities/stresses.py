@@ -174,7 +174,7 @@ _INVARIANTS: tuple[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...
     ("sigma_1", "larger principal stress in the plane", lambda s, _: principal(*s.inside)[0], ()),
     ("sigma_2", "smaller principal stress in the plane", lambda s, _: principal(*s.inside)[1], ()),
     ("von_mises", "von Mises stress, sigma_ZZ included",
-     lambda s, _: von_mises(*s.inside, s.σ_ZZ), (OUT_OF_PLANE,)),
+     lambda s, _: von_mises(*(*s.inside, s.σ_ZZ)), (OUT_OF_PLANE,)),
 )  # fmt: skip
 #: Principal stresses and von Mises inside, by method.
 INVARIANTS_INSIDE = {
@@ -196,7 +196,7 @@ _IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...]]]
         for i, (ij, what) in enumerate(_COMPONENTS.items())
     ),
     ("von_mises", "von Mises stress, sigma_ZZ included,",
-     lambda s, body: von_mises(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch)), ()),
+     lambda s, body: von_mises(*(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch))), ()),
 ]  # fmt: skip
 #: σ_XX, σ_YY, σ_XY and von Mises in an elastic punch, by method.
 STRESSES_IN_PUNCH = {

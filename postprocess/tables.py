@@ -125,9 +125,6 @@ class Column:
 
 #: Size of places over a, and of stresses over N/(2a), up to which they are rounding of the methods.
 _LEAST, _LEAST_STRESS = 5e-6, 5e-8
-#: Relative difference of stresses up to which they are as large.
-_SAME = 1e-6
-
 _STRESS = "N/(2a)"
 
 
@@ -314,11 +311,8 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     rows = preferred(data, {method: of_all[4] for method, of_all in layers.INTERFACE_EXTREMES.items()})
     if rows is None:
         return []
-    high, high_X, low, low_X = layers.INTERFACE_EXTREMES[rows.method][4:8]
-    largest, lowest = np.abs(data[high.path]), np.abs(data[low.path])
-    shear = units.stress.of(np.maximum(largest, lowest))
-    lower = lowest > largest * (1.0 + _SAME)  # of two that are as large always the same one
-    X = units.position.of(np.where(lower, data[low_X.path], data[high_X.path]))
+    shear, X = layers.largest_shear(data, rows.method)
+    shear, X = units.stress.of(shear), units.position.of(X)
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
         depths_differ = swept.INTERFACE_DEPTHS.path in data

@@ -60,8 +60,7 @@ def _at_time(of: Archive, t: float) -> str:
 def _over_a(of: Archive, words: str, row: Any) -> str:
     """Name of an axis of a quantity, over what it is over where it is dimensionless."""
     unit = of.scaled(row).unit
-    over = {"N/(2mu)": "$/(N/2\\mu)$", "1": "$/a$" if row.scale else ""}
-    return words + over[unit] if unit in over else named(words, unit)
+    return f"{words}$/a$" if unit == "1" and row.scale else named(words, unit)
 
 
 def _left_out(of: Archive, shown: int = 1) -> str:
@@ -118,11 +117,8 @@ def energies(of: Archive) -> Drawing:
         values = {name: of.values(row)[0] for name, row in zip(names, kinds)}
         curves = [Curve(t, np.sum(list(values.values()), axis=0), _SUM, width=1.8)]
         curves += [Curve(t, y, next(styles), name) for name, y in values.items()]
-        unit = of.scaled(kinds[0]).unit
-        over = r" over $N^2/4\mu$" if unit.startswith("N^2") else f" ({unit})"
-        panels.append(Panel(
-            label, rf"{what} since $t = 0${over}", curves=curves, at_y=(0.0,), xlim=(0.0, float(t[-1]))
-        ))  # fmt: skip
+        axis = named(f"{what} since $t = 0$", of.scaled(kinds[0]).unit)
+        panels.append(Panel(label, axis, curves=curves, at_y=(0.0,), xlim=(0.0, float(t[-1]))))
     every = np.concatenate([curve.y for panel in panels for curve in panel.curves])
     room = 0.05 * np.ptp(every)
     panels = [replace(panel, ylim=(every.min() - room, every.max() + room)) for panel in panels]

@@ -405,7 +405,6 @@ def _section(one: Fit) -> str:
             for name, error in one.deviations.items()
             if name.partition("[")[0] == key
         ]
-        unit = "in SI" if parameter.columns else unit
         comment = ", ".join(filter(None, [unit, *(said or ["given"])]))
         lines.append(f"{key} = {json.dumps(text)}  # {comment}")
     return "\n".join(lines) + "\n"

@@ -1,5 +1,6 @@
 """Quantities at the interfaces of layered half-planes."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,9 @@ ALONG_X = Quantity(
     "interfaces/X_over_a", "1", "positions along interfaces over the half-width", (ALONG,),
     asked_by=AT_INTERFACES, scale=X_OVER_A,
 )  # fmt: skip
+
+#: Relative difference of stresses up to which they are as large.
+_SAME = 1e-6
 
 _PARTS = {
     "sigma_YY": "normal traction at",
@@ -91,6 +95,13 @@ INTERFACE_EXTREMES = {
     )
     for method in (SIE, FEM)
 }
+
+
+def largest_shear(data: Mapping[str, Any], method: str) -> tuple[NDArray, NDArray]:
+    """Largest |σ_XY| along interfaces over N/(2a), and its place over a, (states, interfaces) each."""
+    high, high_X, low, low_X = (data[row.path] for row in INTERFACE_EXTREMES[method][4:8])
+    lower = np.abs(low) > np.abs(high) * (1.0 + _SAME)  # of two that are as large always the same one
+    return np.maximum(np.abs(high), np.abs(low)), np.where(lower, low_X, high_X)
 
 
 _ALONG = "stresses at interfaces over the largest along each, layered half-plane"

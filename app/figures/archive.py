@@ -56,8 +56,9 @@ def film(of: Archive) -> Drawing:
             "motion.X_over_L more places"
         )
     if _has(stresses.surface_names)(of):  # by one method
-        surface, x = stresses.stresses_along(of).alone, stresses.position_name(of, "")
-        made = [stresses.surface_panels(surface, name, frames, x=x) for name in surface.values]
+        stressed, x = stresses.stresses_along(of).values(), stresses.position_name(of, "")
+        alone = [replace(along, values=dict([*along.values.items()][:1])) for along in stressed]
+        made = [stresses.surface_panels(along, frames, x=x) for along in alone]
     elif stresses.map_names(of):
         fields, shown = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
         made = [fields.panels(name, frames, level=0.0, equal=False) for name in shown]

@@ -444,7 +444,8 @@ def both(
     return curves
 
 
-def explained(methods: Collection[str]) -> list[Any]:
-    """Handles that explain lines and markers, where a figure has both."""
+def explained(*of: Collection[str]) -> list[Any]:
+    """Handles that explain lines and markers, where the methods of all curves of a figure have both."""
+    methods = {method for each in of for method in each}
     lines = next((METHODS[name] for name in METHODS if name in methods and name != FEM), "")
     return lines_and_markers(lines, METHODS[FEM]) if lines and FEM in methods else []

@@ -205,19 +205,19 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     labels, below = of.labels, map_names(of)
     if not surface_names(of) and not below:
         return None
-    surface = stresses_along(of) if surface_names(of) else None
+    surface = stresses_along(of) if surface_names(of) else {}
     fields = Fields(of) if below else None
-    sizes = [4 * len(surface.X) if surface else 1, fields.X.size * fields.Y.size if fields else 1]
+    inside = fields.X.size * fields.Y.size if fields else 1
+    sizes = [inside, *(4 * len(along.X) for along in surface.values())]
     shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
     varied = labels.varied()
     made: dict[str, Any] = {
         "states": [f"state {i}{': ' * bool(varied)}{labels.text(i, varied)}" for i in shown],
         "of": len(labels.all), "surface": [], "maps": [],
     }  # fmt: skip
-    for name in surface.values if surface else ():
-        assert surface
-        label = METHODS[min(surface.values[name], key=lambda method: method == FEM)]  # that of the line
-        charts = [chart(panel) for panel in surface_panels(surface, name, shown, label)]
+    for along in surface.values():
+        label = METHODS[min(along.values, key=lambda method: method == FEM)]  # that of the line
+        charts = [chart(panel) for panel in surface_panels(along, shown, label)]
         for trace in (trace for drawn in charts for trace in drawn["data"]):
             trace["showlegend"] = bool(trace["name"])
         made["surface"].append(charts)

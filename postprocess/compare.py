@@ -2,8 +2,8 @@
 
 Each rule measures one figure. Rules compare finite elements with the closed form, or on layers with the
 integral equation, in stress intensities, stresses, ends of the contact and yield. They hold nodal forces
-against their balance, and judge the estimated errors of each method. Rules are registered by name, and
-quantities name those that apply to them.
+against their balance, and judge the estimated errors of each method. Rules are registered by name; one
+applies where all quantities that it needs are computed.
 
 Nothing is compared next to a tip of a punch, where stresses are infinite. A NaN or an infinity is a fault
 wherever the table of quantities does not allow it.

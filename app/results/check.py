@@ -350,11 +350,13 @@ def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[
     """Attributes, positions and names of datasets that differ from those of the scene."""
     plan = plans[0]
     attributes, data = archive.attributes, archive.data
-    given = scene_attributes(scene) | {"rules": json.dumps(sorted(plan.rules))}
-    for name, value in given.items():
+    for name, value in scene_attributes(scene).items():
         if name in attributes and attributes[name] != value:  # older layouts have fewer
             archived = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {archived!r}, its scene gives {value!r}"
+    rules = frozenset[str]().union(*(each.rules for each in plans))
+    if not rules <= {*json.loads(attributes["rules"])}:
+        yield f"rules says {attributes['rules']!r}, its scene gives {json.dumps(sorted(rules))!r}"
     for name, positions in joined_positions(plans).items():
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"

@@ -79,7 +79,6 @@ INTERFACES = {
         Quantity(
             f"interfaces/{method}/{name}", "N/(2a)", f"{what} each interface", (STATE, INTERFACE, ALONG),
             entry(lambda s: s.interfaces, i), method, asked_by=AT_INTERFACES,
-            compared=("stresses at interfaces",) * (method == FEM),
         )
         for i, (name, what) in enumerate(_PARTS.items())
     )
@@ -108,7 +107,7 @@ _ALONG = "stresses at interfaces over the largest along each, layered half-plane
 #: Estimates of stresses at interfaces, by method.
 ESTIMATE_AT_INTERFACES = estimate(
     AT_INTERFACES, "interfaces",
-    **{method: (_ALONG, f"estimate at interfaces, {method}") for method in (SIE, FEM)},
+    **dict.fromkeys((SIE, FEM), _ALONG),
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -70,7 +70,6 @@ class Quantity:
         of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
         needs: paths.
         nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
-        compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
         whole: its numbers are integers. None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
@@ -91,7 +90,6 @@ class Quantity:
     of_data: Callable[[dict[str, Any]], NDArray] | None = None
     needs: tuple[str, ...] = ()
     nan_allowed: str = NEVER
-    compared: tuple[str, ...] = ()
     symbol: str = ""
     whole: bool = False
     range: Range = Range()
@@ -117,21 +115,17 @@ def entry(of: Callable[[Any], NDArray], *index: Any) -> Callable[[Any, Any], NDA
 
 def by_method(
     path: str, unit: str, about: str, over: tuple[str, ...], of: Callable[[Any, Any], NDArray] | None,
-    own: Mapping[str, Mapping[str, Any]] | Sequence[str], rule: str = "", **options: Any,
+    own: Mapping[str, Mapping[str, Any]] | Sequence[str], **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity that several methods give, by method.
 
     Args:
         path, unit, about, over, of: as of a quantity; ``{method}`` in the path stands for the method.
         own: the methods, or what each has of its own, other attributes by name, by method.
-        rule: by which finite elements are judged; that of the integral equation goes on "over layers".
         options: further attributes, the same for all methods.
     """
     common: dict[str, Any] = {"unit": unit, "about": about, "over": over, "of": of} | options
     attributes = own if isinstance(own, Mapping) else {method: {} for method in own}
-    if rule:
-        rules = (rule, f"{rule} over layers")[: 1 + (SIE in own)]
-        attributes = {**attributes, FEM: {"compared": rules}}
     return {
         method: Quantity(**common | {"path": path.format(method=method), "method": method, **each})
         for method, each in attributes.items()

@@ -86,9 +86,8 @@ def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
     return by_method(
         f"states/{{method}}/K_I_{side}", "1", about, (STATE,), lambda s, _: s.K_I[:, i], {
             CLOSED_FORM: {"requires": (SOLVED,)},
-            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments", "compared": ("K_I",)},
-            SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane",
-                  "compared": ("K_I over layers",)},
+            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments"},
+            SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane"},
         }, scale=EDGE,
     )  # fmt: skip
 
@@ -99,17 +98,17 @@ FITTED_ALPHA, FITTED_BETA = (
     Quantity(
         f"states/fem/{name}", "1", f"{about}, fitted from the raw pressure", (STATE,),
         entry(lambda s: s.exponents, ..., i), FEM, _CONTACT, nan_allowed=ANYWHERE,
-        compared=("exponents",), requires=(PUNCH,),
+        requires=(PUNCH,),
     )
     for i, (name, about) in enumerate(_EXPONENTS.items())
 )  # fmt: skip
 NORMAL_FORCE = Quantity(
     "states/fem/normal_force", "N/m", "resultant of the nodal normal forces under the punch", (STATE,),
-    lambda s, body: s.normal_force * body.force, FEM, compared=("force balance",), accuracy=True,
+    lambda s, body: s.normal_force * body.force, FEM, accuracy=True,
 )  # fmt: skip
 TANGENTIAL_FORCE = Quantity(
     "states/fem/tangential_force", "N/m", "resultant of the nodal tangential forces under the punch",
-    (STATE,), lambda s, body: s.tangential_force * body.force, FEM, compared=("force balance",),
+    (STATE,), lambda s, body: s.tangential_force * body.force, FEM,
 )  # fmt: skip
 INDENTATION = Quantity(
     "states/fem/v0", "m", "indentation relative to the surface far away", (STATE,),
@@ -119,10 +118,10 @@ ESTIMATE = by_method(
     "states/{method}/estimate", "1",
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], {
-        FEM: {"mode": _CONTACT, "compared": ("estimate",)},
+        FEM: {"mode": _CONTACT},
         SIE: {
             "about": "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's "
-            "error", "compared": ("estimate of the integral equation",), "requires": (SOLVED,),
+            "error", "requires": (SOLVED,),
         },
     }, range=NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
@@ -135,17 +134,17 @@ FITTED = Quantity(
 
 HALF_WIDTH = by_method(
     "states/{method}/half_width", "m", "half-width of the contact, over which the state's lengths are",
-    (STATE,), lambda s, _: s.half_width, _METHODS, "ends", mode=FREE_ENDS, range=Range(above=0.0),
+    (STATE,), lambda s, _: s.half_width, _METHODS, mode=FREE_ENDS, range=Range(above=0.0),
     scale=CONTACT,
 )  # fmt: skip
 CENTRE = by_method(
     "states/{method}/centre", "m",
     "middle of the contact, from the punch's axis; the state's positions are from there",
-    (STATE,), lambda s, _: s.centre, _METHODS, "ends", mode=FREE_ENDS, scale=CONTACT,
+    (STATE,), lambda s, _: s.centre, _METHODS, mode=FREE_ENDS, scale=CONTACT,
 )  # fmt: skip
 LARGEST = by_method(
     "states/{method}/largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
-    (STATE,), lambda s, _: s.largest[0], _METHODS, "largest pressure", mode=FREE_ENDS,
+    (STATE,), lambda s, _: s.largest[0], _METHODS, mode=FREE_ENDS,
     nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
 LARGEST_X = by_method(
@@ -159,18 +158,17 @@ LARGEST_X = by_method(
 RESULTANT = by_method(
     "states/{method}/normal_force", "N/m", "resultant of the prescribed pressure", (STATE,),
     lambda s, body: s.normal_force * body.force,
-    {CLOSED_FORM: {"compared": ("resultant",)}, SIE: {"compared": ("resultant over layers",)}},
-    mode=OWN_PRESSURE, accuracy=True,
+    (CLOSED_FORM, SIE), mode=OWN_PRESSURE, accuracy=True,
 )  # fmt: skip
 
 #: Resultant and centre of the tractions where friction varies along the contact, by method.
 RESULTANT_RATIO = by_method(
     "states/{method}/resultant_ratio", "1", "resultant of sigma_XY over that of sigma_YY", (STATE,),
-    lambda s, _: s.resultant_ratio, _METHODS, "resultant_ratio", mode=VARYING,
+    lambda s, _: s.resultant_ratio, _METHODS, mode=VARYING,
 )  # fmt: skip
 PRESSURE_CENTRE = by_method(
     "states/{method}/pressure_centre", "1", "centre of pressure over the half-width", (STATE,),
-    lambda s, _: s.pressure_centre, _METHODS, "pressure_centre", mode=VARYING, scale=X_OVER_A,
+    lambda s, _: s.pressure_centre, _METHODS, mode=VARYING, scale=X_OVER_A,
 )  # fmt: skip
 
 #: Share of the larger intensity below which an error is over this share rather than over itself.
@@ -201,14 +199,13 @@ RESIDUAL = by_method(
     "residual of the integral equation at the contact pressure, by a rule of its own, over the "
     "pressure's part in it",
     (STATE,), lambda s, _: s.residual,
-    {CLOSED_FORM: {"compared": ("residual",)}, FEM: {"compared": ("residual of finite elements",)}},
-    mode=ALONE, range=NOT_NEGATIVE, accuracy=True, requires=(SOLVED,),
+    (CLOSED_FORM, FEM), mode=ALONE, range=NOT_NEGATIVE, accuracy=True, requires=(SOLVED,),
 )  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",
     (STATE,), lambda s, _: flatness(s.surface), FEM, asked_by="surface",
-    compared=("slope under the punch",), range=NOT_NEGATIVE, accuracy=True, requires=(FLAT,),
+    range=NOT_NEGATIVE, accuracy=True, requires=(FLAT,),
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -49,11 +49,8 @@ PRESSURE = by_method(
         CLOSED_FORM: {"about": "contact stress, NaN outside the contact (Eq 55)"},
         FEM: {
             "about": "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
-            "compared": ("tension", "sigma_YY", "sigma_YY of found ends",
-                         "sigma_YY of found ends over layers"),
         },
-        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane",
-              "compared": ("sigma_YY over layers",)},
+        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane"},
     }, asked_by=ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 RAW_PRESSURE = Quantity(
@@ -65,9 +62,8 @@ IN_PLANE = by_method(
     "surface/{method}/sigma_XX", "N/(2a)", "in-plane stress on the surface", (STATE, POINT),
     lambda s, _: s.surface.σ_XX, {
         CLOSED_FORM: {"about": "in-plane stress on the surface (Eq 32)"},
-        FEM: {"compared": ("sigma_XX",)},
-        SIE: {"about": "in-plane stress on the surface, layered half-plane",
-              "compared": ("sigma_XX over layers",)},
+        FEM: {},
+        SIE: {"about": "in-plane stress on the surface, layered half-plane"},
     }, asked_by=ON_SURFACE,
 )  # fmt: skip
 
@@ -84,7 +80,7 @@ def _extreme(end: str, sign: float, what: str) -> tuple[dict[str, Quantity], dic
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
         (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], _METHODS,
-        "extremes of sigma_XX", asked_by=ON_SURFACE,
+        asked_by=ON_SURFACE,
     )  # fmt: skip
     place = by_method(
         f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
@@ -97,43 +93,42 @@ HIGHEST, HIGHEST_X = _extreme("max", 1.0, "highest")
 LOWEST, LOWEST_X = _extreme("min", -1.0, "lowest")
 
 
-def estimate(word: str, name: str, **own: tuple[str, str]) -> dict[str, Quantity]:
+def estimate(word: str, name: str, **own: str) -> dict[str, Quantity]:
     """Estimates of the error of the stresses that a word of output.quantities asks for, by method.
 
     Args:
         word: the word.
         name: end of the quantity's name.
-        own: what is estimated, in words, and the name of the rule, by method.
+        own: what is estimated, in words, by method.
     """
     return by_method(
         f"states/{{method}}/estimate_{name}", "1", "", (STATE,), lambda s, _: s.estimates[word],
-        {method: {"about": f"estimated error of {about}", "compared": (rule,)}
-         for method, (about, rule) in own.items()},
+        {method: {"about": f"estimated error of {about}"} for method, about in own.items()},
         asked_by=word, range=NOT_NEGATIVE, accuracy=True,
     )  # fmt: skip
 
 
+_FAR, _NOT_USED = "further than 0.01 a from the edges", "no closed form used"
+_LAYERED = "layered half-plane"
 ESTIMATE_IN_PLANE = estimate(
-    ON_SURFACE, "sigma_XX",
-    fem=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
-         "from the edges, no closed form used", "estimate of sigma_XX"),
-    sie=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
-         "from the edges, layered half-plane", "estimate of sigma_XX, sie"),
-)  # fmt: skip
+    ON_SURFACE,
+    "sigma_XX",
+    fem=f"sigma_XX on the surface over the larger of itself and its largest value {_FAR}, {_NOT_USED}",
+    sie=f"sigma_XX on the surface over the larger of itself and its largest value {_FAR}, {_LAYERED}",
+)
 ESTIMATE_INSIDE = estimate(
-    BELOW, "inside",
-    fem=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
-         "no closed form used", "estimate inside"),
-    sie=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
-         "layered half-plane", "estimate inside, sie"),
-)  # fmt: skip
+    BELOW,
+    "inside",
+    fem=f"stresses inside over the larger of the largest there and {_FAR}, {_NOT_USED}",
+    sie=f"stresses inside over the larger of the largest there and {_FAR}, {_LAYERED}",
+)
 
 RESIDUAL_INSIDE = Quantity(
     "states/closed_form/residual_inside", "1",
     "residual of stresses inside, their difference from sums of line loads at some of the points and "
     "that of their resultants at a depth from equilibrium, over the largest",
-    (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, compared=("residual inside",),
-    range=NOT_NEGATIVE, accuracy=True,
+    (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, range=NOT_NEGATIVE,
+    accuracy=True,
 )  # fmt: skip
 
 INSIDE_X = Quantity(
@@ -162,7 +157,6 @@ STRESSES_INSIDE = {
         Quantity(
             f"interior/{method}/sigma_{ij}", "N/(2a)", f"{what} inside, {source}", (STATE, INSIDE),
             entry(lambda s: s.inside, i), method, asked_by=BELOW,
-            compared=("stresses inside", "stresses inside over layers") * (method == FEM),
         )
         for i, (ij, what) in enumerate(_COMPONENTS.items())
     )
@@ -189,14 +183,14 @@ INVARIANTS_INSIDE = {
 }  # fmt: skip
 
 
-#: Names of stresses in an elastic punch, their meaning, how they are read, and their rules.
-_IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...]]] = [
+#: Names of stresses in an elastic punch, their meaning, and how they are read.
+_IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray]]] = [
     *(
-        (f"sigma_{ij}", what, entry(lambda s: s.inside_punch, i), ("stresses in the punch",))
+        (f"sigma_{ij}", what, entry(lambda s: s.inside_punch, i))
         for i, (ij, what) in enumerate(_COMPONENTS.items())
     ),
     ("von_mises", "von Mises stress, sigma_ZZ included,",
-     lambda s, body: von_mises(*(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch))), ()),
+     lambda s, body: von_mises(*(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch)))),
 ]  # fmt: skip
 #: σ_XX, σ_YY, σ_XY and von Mises in an elastic punch, by method.
 STRESSES_IN_PUNCH = {
@@ -204,9 +198,9 @@ STRESSES_IN_PUNCH = {
         Quantity(
             f"interior/{method}/punch_{name}", "N/(2a)",
             f"{about} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of,
-            method, asked_by=BELOW, requires=(IN_PUNCH,), compared=rules * (method == FEM),
+            method, asked_by=BELOW, requires=(IN_PUNCH,),
         )
-        for name, about, of, rules in _IN_PUNCH
+        for name, about, of in _IN_PUNCH
     )
     for method in (CLOSED_FORM, FEM)
 }  # fmt: skip

@@ -88,10 +88,7 @@ class _Part:
 
     def held(self, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         """Archived values of some states, (states, …)."""
-        if path in self.data:
-            return np.asarray(self.data[path][rows])
-        each = (slice(row, row + 1) for row in (rows + self._first).tolist())
-        return np.concatenate([self._archive.rows(row, [path])[path] for row in each])
+        return np.asarray(self._archive.rows(rows + self._first, [path])[path])
 
 
 def _of_part(part: _Part) -> Iterator[str]:

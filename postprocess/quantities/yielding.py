@@ -32,6 +32,7 @@ from .quantity import (
     X_OVER_A,
     Quantity,
     by_method,
+    entry,
 )
 
 _BELOW = Range(at_most=0.0)
@@ -112,17 +113,14 @@ FIRST_LOAD = _both(
     "infinite",
     lambda s, _: s.strength.first_load, FINITE, requires=(POWER, STRENGTH, UNIFORM),
 )  # fmt: skip
-REACH_LEFT = _both(
-    "yield_reach_left", "1",
-    "reach of yield from X = -a, the largest distance on its side of the middle, at the load, over the "
-    f"half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 0], PUNCH, scale=OVER_A,
-)  # fmt: skip
-REACH_RIGHT = _both(
-    "yield_reach_right", "1",
-    "reach of yield from X = a, the largest distance on its side of the middle, at the load, over the "
-    f"half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 1], PUNCH, scale=OVER_A,
+REACH_LEFT, REACH_RIGHT = (
+    _both(
+        f"yield_reach_{side}", "1",
+        f"reach of yield from {at}, the largest distance on its side of the middle, at the load, over "
+        f"the half-width; {_BEYOND}",
+        entry(lambda s: s.strength.reach, ..., i), PUNCH, scale=OVER_A,
+    )
+    for i, (side, at) in enumerate((("left", "X = -a"), ("right", "X = a")))
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",

@@ -107,9 +107,6 @@ def not_finite(data: dict[str, Any]) -> list[str]:
     return paths
 
 
-#: Share of the mean pressure; where a pressure is smaller, its error is relative to this share instead.
-_VANISHING = 0.1
-
 #: Quantity by method, or several.
 _Rows = Mapping[str, Any]
 
@@ -177,7 +174,8 @@ def _pressure(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float | Non
     if of.HALF_WIDTH[SIE].path in data:
         return None  # the ends are free, and another rule compares
     under = under_punch(data[at.SURFACE_X.path])
-    off = np.abs(np.subtract(fem, exact)) / np.maximum(np.abs(exact), _VANISHING)
+    # Where a pressure is smaller than a tenth of the mean, its error is relative to that.
+    off = np.abs(np.subtract(fem, exact)) / np.maximum(np.abs(exact), 0.1)
     return off[..., under].max()
 
 

@@ -22,8 +22,6 @@ from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
 #: Loops that can be told apart in a panel, and sliders in a figure.
 _LOOPS, _SLIDERS = 6, 6
-#: Variation of friction, over its size, from which on zero is on the axis.
-_LEVEL = 0.2
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,7 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
     alone = len(loops) == 1
     f = np.array([loop.f for loop in loops])
     low, high = float(f.min()), float(f.max())
-    if high - low > _LEVEL * max(abs(low), abs(high)):  # else zero would flatten all loops
+    if high - low > 0.2 * max(abs(low), abs(high)):  # else zero would flatten all loops
         low, high = min(0.0, low), max(0.0, high)
     margin = 0.06 * (high - low) or 1.0
     curves = []

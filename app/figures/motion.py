@@ -27,10 +27,8 @@ from .style import COLUMN, GREY, Look, looks
 
 #: Starts that can be told apart in a figure, times that are drawn of one, and frames of a film at most.
 _STARTS, _TIMES, _SURFACE_TIMES, _FRAMES = 6, 6, 5, 160
-#: Frames that make a film of stresses.
-_LEAST_FRAMES = 4
-#: Pressure over the largest that is drawn, over N/(2a): it is infinite at the ends.
-_TOP = 2.5
+#: Frames that make a film.
+LEAST_FRAMES = 4
 #: What is drawn over time, and what it is called.
 _OVER_TIME = (
     (rows.CENTRE, "centre of pressure"), (rows.V0, "indentation $v_0$"),
@@ -183,7 +181,8 @@ def _leaning(of: Archive) -> tuple[int, dict[str, Along], tuple[float, float]]:
     """Start whose steady pressure leans most, its pressures at all times, and limits of these."""
     start = int(np.abs(of.data[rows.STEADY_CENTRE.path]).argmax())
     held = _held(of, rows.PLACES, {"sigma_YY": {SIE: rows.PRESSURE}}, start)
-    return start, held, (0.0, _TOP * float(np.max(of.scaled(rows.PRESSURE).factor)))
+    highest = 2.5  # over N/(2a): at the ends it is infinite
+    return start, held, (0.0, highest * float(np.max(of.scaled(rows.PRESSURE).factor)))
 
 
 def pressures(of: Archive) -> Drawing:
@@ -243,7 +242,7 @@ def stresses(of: Archive) -> Drawing:
 
 def has_film(of: Archive) -> bool:
     """Return True if an archive holds stresses along the surface or pressures at enough times."""
-    enough = has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= _LEAST_FRAMES
+    enough = has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= LEAST_FRAMES
     return enough or of.has(*PRESSURES)
 
 
@@ -251,7 +250,7 @@ def film(of: Archive) -> tuple[Film, str]:
     """Film of the stresses along the surface of the first start, or of the pressure of the start whose
     steady pressure leans most, beside the centre of the pressure; and what it leaves out."""
     label, t = _time(of)
-    if has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= _LEAST_FRAMES:
+    if has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= LEAST_FRAMES:
         start, (held, steps) = 0, _at_chosen_times(of)
         method = [*held["sigma_XX"].values][-1]
         ylims = {name: limits(along.X, along.values[method]) for name, along in held.items()}

@@ -32,8 +32,6 @@ _LOW, _MARKERS = 0.95, 16
 _PAD = 2.5 / 72.0
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
-#: Times that panels are measured: texts are folded, and ticks chosen, by the room that they leave.
-_ROUNDS = 2
 
 #: Forms of curves: solutions are lines, finite elements markers; both joined where they are alone.
 LINE, MARKERS, JOINED, DOTS = "line", "markers", "joined", "dots"
@@ -501,7 +499,7 @@ def _arrange(
     if size.height:
         tall = min(tall, (size.height - foot) / talls.sum() - 0.5)
     room = np.zeros((rows * columns, len(_Room._fields)))
-    for _ in range(_ROUNDS):
+    for _ in range(2):  # texts are folded, and ticks chosen, by the room that they leave
         wide, tall = max(wide, _LEAST), max(tall, _LEAST)
         room[: len(drawn)] = [one.measure(wide, tall * one.panel.tall, beside) for one in drawn]
         of_columns, of_rows = (_Room(*room.reshape(rows, columns, -1).max(axis=n).T) for n in (0, 1))

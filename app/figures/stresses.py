@@ -53,10 +53,6 @@ from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.0
 #: Positions shown of a stress all along the surface, and of one under the punch alone [a].
 _BESIDE, _UNDER = 2.0, 1.04
-#: Distance over a from an edge within which stresses may run out of the picture.
-_EDGE = 0.09
-#: Columns whose ranges differ more have limits of their own.
-_APART = 4.0
 
 #: Stresses that are shown by default along the surface: what axes call them, and their sign.
 SHOWN = {
@@ -66,8 +62,9 @@ SHOWN = {
 
 
 def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
-    """Room for the regular part of values, (curves, points); singular ends run out of the picture."""
-    regular = values[:, from_edge(X) > _EDGE]
+    """Room for values further than 0.09 a from the edges, (curves, points); singular ends run out of the
+    picture."""
+    regular = values[:, from_edge(X) > 0.09]
     if np.nanmax(np.abs(values)) <= 1.05 * np.nanmax(np.abs(regular)):
         regular = values  # nothing runs out: the ends of the contact are smooth
     low, high = np.nanmin(regular), np.nanmax(regular)
@@ -221,10 +218,10 @@ def surface(of: Archive) -> Drawing:
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
     for n, (name, along) in enumerate(stressed.items()):
-        # The same limits for all columns, unless a few would hardly be visible then.
+        # The same limits for all columns, unless some would fill less than a quarter of them.
         ranges = [along.limits(numbers) for _, numbers, _ in groups]
         low, high = min(y[0] for y in ranges), max(y[1] for y in ranges)
-        alike = high - low <= _APART * min(y[1] - y[0] for y in ranges)
+        alike = high - low <= 4.0 * min(y[1] - y[0] for y in ranges)
         for column, (title, numbers, names) in enumerate(groups):
             called = [labels.label(i, names) if len(every) > 1 else "" for i in numbers]
             shown = along.shown(labels.looks(numbers, names), called, rows=numbers)
@@ -269,10 +266,6 @@ def _groups(
     return groups
 
 
-#: States of each archive that can be told apart.
-_COMPARED = 3
-
-
 def compared(
     archives: Sequence[Archive], labels: Sequence[str], pairs: Sequence[Sequence[int]],
     titles: Sequence[str],
@@ -293,7 +286,7 @@ def compared(
             raise BadInput(
                 f'{label} holds no stresses along the surface; add "surface" to output.quantities'
             )
-    chosen, styles = spread(range(len(pairs)), _COMPARED), looks(len(archives))
+    chosen, styles = spread(range(len(pairs)), 3), looks(len(archives))  # states that can be told apart
     of_all, several = [stresses_along(of) for of in archives], len(chosen) > 1
     panels = []
     for name in dict.fromkeys(name for stressed in of_all for name in stressed):
@@ -467,9 +460,7 @@ _MAPS = {
     "sigma_XY": r"shear $\sigma_{XY}$",
     "max_shear": r"largest shear $\tau_{\mathrm{max}}$",
 }
-#: Share of values that have colours of their own: those at the edges of the punch would leave none for
-#: the rest; and the clipped ends of a colour bar, by whether the least and the largest value are clipped.
-_SHARE = 0.985
+#: Clipped ends of a colour bar, by whether the least and the largest value are clipped.
 _CLIPPED = {(True, True): "both", (False, True): "max", (True, False): "min", (False, False): "neither"}
 #: What names of quantities in an elastic punch begin with, and the components of stress.
 _PUNCH, _COMPONENTS = "punch_", ("sigma_XX", "sigma_YY", "sigma_XY")
@@ -513,7 +504,8 @@ class Fields:
         """A stress of states, (states, rows, columns), and the largest with its own colour."""
         values = self._values(name, method, states)
         assert values is not None
-        return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
+        # The largest values, at the edges of the punch, would leave no colours for the rest.
+        return values, float(np.quantile(np.abs(values), 0.985)) or 1.0
 
     def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
         """A stress of a state in an elastic punch at -Y, and its strength; None without."""

@@ -265,12 +265,6 @@ ABOUT = {
 #: Quantity by which viewers colour a field by default.
 COLOURED = "von_mises_for_colours"
 
-#: Stress over N/(2a) beyond which that quantity has one colour.
-_BRIGHT = 2.0
-
-#: Depth over a above which a point counts as on the surface, where the potentials do not hold.
-_SURFACE = 1e-14
-
 
 def write_fields(
     scene: Scene,
@@ -347,7 +341,7 @@ def in_si(solved: Solved, sampled: Any) -> Any:
     mises = von_mises(XX, YY, XY, ZZ)
     displacement, points = body.displacement * sampled.displacement, sampled.points
     X, Y = points.T
-    on = -_SURFACE * np.maximum(1.0, np.abs(X)) <= Y
+    on = -1e-14 * np.maximum(1.0, np.abs(X)) <= Y  # on the surface the potentials do not hold
     # Pressure under the punch, 0 beside it, NaN at its edges and inside.
     under, pressure = on & under_punch(X), np.full(len(points), np.nan)
     pressure[on & (np.abs(X) > 1.0)] = 0.0
@@ -359,7 +353,7 @@ def in_si(solved: Solved, sampled: Any) -> Any:
         "sigma_XY": XY,
         "sigma_ZZ": ZZ,
         "von_mises": mises,
-        COLOURED: np.minimum(mises, _BRIGHT * body.stress),
+        COLOURED: np.minimum(mises, 2.0 * body.stress),  # N/a
         "maximum_shear": maximum_shear(XX, YY, XY),
         "contact_pressure": body.stress * pressure,
     }

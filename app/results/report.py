@@ -107,8 +107,6 @@ _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "mar
 _SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open",
             "x": "x", "_": "line-ew-open", ".": "circle"}  # fmt: skip
 _DASHES = {"-": "solid", "--": "dash", ":": "dot", "none": "solid"}
-#: Characters of a line along a chart's height.
-_LINE = 34
 
 
 def chart(panel: Panel) -> dict[str, Any]:
@@ -118,8 +116,8 @@ def chart(panel: Panel) -> dict[str, Any]:
     layout: dict[str, Any] = {
         "title": {"text": _label(panel.title)} if panel.title else {},
         "xaxis": _axis(_label(panel.x or ""), panel.xlim, "x" in panel.log),
-        # In lines that are no longer than a chart is high.
-        "yaxis": _axis(_label(folded((panel.y or "") + unit, _LINE)), panel.ylim, "y" in panel.log),
+        # In lines of 34 letters, which are no longer than a chart is high.
+        "yaxis": _axis(_label(folded((panel.y or "") + unit, 34)), panel.ylim, "y" in panel.log),
         "shapes": [_shape("y", "rect", "x", *band) for band in panel.bands]
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],

@@ -23,8 +23,6 @@ from .archive import PatientFile
 _ALONE, _SERIES = (1, 0), (2, 0)
 #: VTK's numbers of triangles and quadrilaterals.
 _TRIANGLE, _QUAD = 5, 9
-#: Rows of a dataset that lie together on the disk, at most.
-_TOGETHER = 2**16
 #: Sizes of a grid, as VTK names them, and where in a series a grid's rows begin.
 _SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 _OFFSETS = ("PointOffsets", "CellOffsets", "ConnectivityIdOffsets")
@@ -176,7 +174,7 @@ def _text(item: h5py.HLObject, name: str, text: str) -> None:
 def _append(root: h5py.Group, name: str, values: NDArray) -> h5py.Dataset:
     """Add rows to a dataset, which the first of them make."""
     if name not in root:
-        rows = min(max(len(values), 1), _TOGETHER)
+        rows = min(max(len(values), 1), 2**16)  # that lie together on the disk
         shape, chunks = (0, *values.shape[1:]), (rows, *values.shape[1:])
         root.create_dataset(name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=chunks)
     dataset = root[name]

@@ -41,9 +41,6 @@ ALONG_X = Quantity(
     asked_by=AT_INTERFACES, scale=X_OVER_A,
 )  # fmt: skip
 
-#: Relative difference of stresses up to which they are as large.
-_SAME = 1e-6
-
 _PARTS = {
     "sigma_YY": "normal traction at",
     "sigma_XY": "shear traction at",
@@ -99,7 +96,7 @@ INTERFACE_EXTREMES = {
 def largest_shear(data: Mapping[str, Any], method: str) -> tuple[NDArray, NDArray]:
     """Largest |σ_XY| along interfaces over N/(2a), and its place over a, (states, interfaces) each."""
     high, high_X, low, low_X = (data[row.path] for row in INTERFACE_EXTREMES[method][4:8])
-    lower = np.abs(low) > np.abs(high) * (1.0 + _SAME)  # of two that are as large always the same one
+    lower = np.abs(low) > np.abs(high) * (1.0 + 1e-6)  # of two that are as large always the same one
     return np.maximum(np.abs(high), np.abs(low)), np.where(lower, low_X, high_X)
 
 

@@ -17,7 +17,6 @@ from galinx.app.results.report import markup, states_table
 from galinx.postprocess.tables import BESIDE, state_columns
 
 CHROMIUM = shutil.which("chromium")
-CLOSED = {"solve.methods": ["closed_form"]}
 
 
 @pytest.fixture(scope="module")

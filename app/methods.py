@@ -47,7 +47,8 @@ class MethodKind:
         refusal: reason why it does not give a quantity of a scene and a body, "" where it does; for the
             quantity None the reason why it gives no quantity at all.
         loads: True where its solvers take states under several loads; else each load has its own solver.
-        of_layers: True for a method of layered solids alone, which plans of uniform solids omit.
+        of_layers: True for a method that serves uniform solids only where no other is named; their plans
+            omit it.
     """
 
     about: str
@@ -93,10 +94,14 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
 
 
 def _layers_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
-    wanted = VARYING in body.modes and CLOSED_FORM not in scene.solve.methods
-    if not body.no_closed_form and not wanted:
+    if not body.no_closed_form and CLOSED_FORM in scene.solve.methods:
         return "the solid has no layers, and closed_form knows the solution"
-    return _refusal(quantity, body, {})
+    lacks = (
+        {}
+        if body.no_closed_form
+        else dict.fromkeys((BELOW, YIELD), "in a uniform solid closed_form gives it")
+    )
+    return _refusal(quantity, body, lacks)
 
 
 #: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
@@ -183,9 +188,7 @@ METHODS: Registry[MethodKind] = Registry(
     "method",
     {
         CLOSED_FORM: MethodKind("closed form", _closed_form, refusal=_closed_form_refusal, loads=True),
-        SIE: MethodKind(
-            "singular integral equation of layers", _layers, refusal=_layers_refusal, of_layers=True
-        ),
+        SIE: MethodKind("singular integral equation", _layers, refusal=_layers_refusal, of_layers=True),
         FEM: MethodKind(
             "mesh and finite elements", _finite_elements, refusal=_finite_elements_refusal, loads=True
         ),

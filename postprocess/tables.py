@@ -629,7 +629,7 @@ def _numbers(count: int) -> list[str]:
 def _when(time: float, end: float, scaled: Scaled) -> str:
     """Time in words; with ~ where it is extrapolated beyond the end."""
     if isnan(time):
-        return "later than can be told"
+        return "after the end"
     return scaled.text(scaled.factor * time, 3) if time <= end else f"~ {_rounded(time, scaled)}"
 
 

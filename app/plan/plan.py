@@ -228,7 +228,7 @@ def too_many(states: int) -> Iterator[str]:
 
 
 def _faults(
-    scene: Scene, body: Contact, methods: Collection[str], places: Places, named: Collection[str]
+    scene: Scene, body: Contact, methods: Collection[str], places: Places, refusals: dict[str, str]
 ) -> Iterator[str]:
     """Faults of outputs without an answer by the scene's methods, one sentence each.
 
@@ -236,7 +236,8 @@ def _faults(
         scene, body: the scene and its contact.
         methods: that solve the contact.
         places: points where stresses are output.
-        named: methods that the scene names for outputs that need contact mechanics.
+        refusals: of the methods that the scene names for outputs that need contact mechanics, with the
+            reasons why they do not solve it, "" for those that do.
     """
     states, solve = order(scene), scene.solve
     yield from too_many(len(states))
@@ -255,17 +256,14 @@ def _faults(
                 f"{listed(wrong)}, expected numbers from {_LEAST:.0e} to {_MOST:.0e}"
             )
     if scene.layers:
-        yield from _faults_of_layers(scene, body, unsolved=bool(named) and not methods)
+        yield from _faults_of_layers(scene, body, unsolved=bool(refusals) and not methods)
     if GIVEN_ENDS in body.lacks:
         about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
         if solve.mode == "traction":
             yield f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch'
-        if named and not methods:
-            yield (
-                f"solve.methods: {about}; finite elements find the ends of all but parabolic and tilted "
-                'flat punches on meshes of their own: take mesh = "confocal" without degree, or add '
-                '"closed_form"'
-            )
+    if refusals and not methods and not scene.layers:
+        reasons = "; ".join(f"{name}: {why}" for name, why in refusals.items())
+        yield f"solve.methods: none of them solves this contact: {reasons}"
     if FEM in solve.methods and solve.assembler == DOLFINX:
         if solve.own_pressure:
             yield (
@@ -510,7 +508,7 @@ def make_plan(
     points = np.reshape(scene.output.inside, (-1, 2))
     depths, positions = interface_grid(body)
     places = Places(surface_grid(), points, around, depths, positions if along is None else along)
-    for fault in _faults(scene, body, methods, places, named):
+    for fault in _faults(scene, body, methods, places, {name: refusals[name] for name in named}):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
     # Whoever names all methods wants those that solve it; and a uniform solid has no method of layers.

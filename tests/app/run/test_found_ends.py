@@ -308,3 +308,28 @@ def test_over_layers_no_contact_is_wider_than_its_punch_is_known(lean, known):
     with nullcontext() if known else pytest.raises(SolveError, match="the punch is known from"):
         task = SimpleNamespace(body=SimpleNamespace(load=1e5, half_width=1e-3, profile=body.profile))
         OverLayers._solved(search, np.array([0.3]), task)
+
+
+@pytest.mark.parametrize(
+    "punch",
+    [
+        "half_width = 1e-3",
+        "half_width = 1e-3\ntilt = 0.05",
+        'profile = "parabolic"\nradius = 0.02',
+        'profile = "wedge"\nslope = 0.01',
+    ],
+)
+def test_the_integral_equation_alone_solves_uniform_solids(punch):
+    output = '["sif", "surface", "interior"]\npoints = [[0.0, -0.5]]'
+    by = {
+        method: galinx.compute(scene(punch, solve=f'methods = ["{method}"]', output=output))
+        for method in ("sie", "closed_form")
+    }
+    assert by["sie"].verdict == by["closed_form"].verdict == "PASS"
+    for name in ("sigma_XX", "sigma_YY"):
+        value, exact = (result.data[f"surface/{method}/{name}"] for method, result in by.items())
+        assert value == pytest.approx(exact, rel=1e-8, abs=1e-8 * np.nanmax(np.abs(exact)), nan_ok=True)
+    assert not any(name.startswith("interior") for name in by["sie"].data)
+    assert "stresses inside cannot be computed: in a uniform solid closed_form gives it" in str(
+        by["sie"].attributes["warnings"]
+    )

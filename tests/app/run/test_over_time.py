@@ -59,7 +59,7 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert here("plot", tmp_path / "s.h5", *words).returncode == 0
     assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
     shown = here("show", tmp_path / "s.h5").stdout
-    assert "In time, at the end" in shown and "later than can be told" in shown
+    assert "In time, at the end" in shown and "after the end" in shown
     assert re.search(r"by formula +59 µs", shown)
 
 

@@ -127,12 +127,11 @@ FAULTS = {
         ({"output.quantities": ["yield"]}, '"yield": expected solid.yield_strength'),
         ({"output.quantities": ["yield"], "solid.material": "BK7"}, "expected solid.yield_strength"),
         (_POINT | FEM | {"solid.nu": 0.5}, "expected ν <= 0.49"),
-        (_POINT | {"solid.nu": 0.5, "solve.methods": ["sie", "fem"]}, "expected ν <= 0.49"),  # of layers
         (FEM | {"solid.material": "T302", "solid.nu": 0.5, "output.quantities": ["sif", "yield"]},
          "output.quantities: found …expected ν <= 0.49"),
         (_POINT | {"output.points": [[0.0, -90.0]], "solve.mesh": "box"},
          "coordinate of 90 a, expected at most 60 a with the box mesh"),
-        (_WEDGE | FEM | {"solve.degree": 6}, 'mesh = "confocal" without degree'),
+        (_WEDGE | FEM | {"solve.degree": 6}, 'fem: …mesh = "confocal", and no degree'),
         (_PARABOLA | _TRACTION, "whose contact ends where the pressure says"),
         (_NO_WIDTH | {"punch.profile": "table", "punch.shape": _TABLE},
          "not convex at X = 0.001 m…two contacts"),

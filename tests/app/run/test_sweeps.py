@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from random_solids import random_solid
-from support import HOME, THOROUGH, command, here, scene_of, section_of
+from support import THOROUGH, scene_of, section_of
 
 import galinx
 from galinx.postprocess.tables import solved_speeds
@@ -142,26 +142,6 @@ def test_what_no_fit_tells_well_enough_is_solved(monkeypatch, work_done):
     every = of_speeds(ISOTROPIC, c, 1e-2, SIF, EVERY)
     assert spent <= 1.1 * np.sum(np.array(work_done) ** 4)
     check(result, every, 1e-2)
-
-
-def test_two_ranks_tell_what_one_does(tmp_path):
-    asked = {"quantities": ["sif", "surface", "interior"], "points": [[0.0, -0.5], [0.9, -0.2]]}
-    text = scene(ISOTROPIC, np.linspace(0.0, 0.8, 16), 1e-2, {"output": asked}).text
-    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
-    found = []
-    for ranks in ((), ("-n", "2")):
-        path = tmp_path / f"{len(ranks)}.h5"
-        done = (command if ranks else here)(*ranks, "run", tmp_path / "scene.toml", "-o", path, cwd=HOME)
-        assert done.returncode == 0 and "speeds solved, the others by a fit" in done.stdout
-        found.append(galinx.load(path).data)
-    for path in (
-        "states/fem/K_I_left",
-        "states/fem/estimate",
-        "surface/fem/sigma_XX",
-        "interior/fem/sigma_XY",
-        "states/fem/fitted",
-    ):
-        np.testing.assert_allclose(found[1][path], found[0][path], rtol=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(12) if THOROUGH else [6])

@@ -83,7 +83,7 @@ def test_panels_hold_the_waves_of_short_steps():
     found, finer = (
         punch.sinking(basis := punch.basis(-0.4), basis.tests)
         for punch in (
-            Transformed(solid.response(0.6), solid.limit(), s, 4, *finest) for finest in ((), (2.5e-3,))
+            Transformed(solid.response(0.6), solid.limit(), s, 2, *finest) for finest in ((), (2.5e-3,))
         )
     )
     np.testing.assert_allclose(found, finer, rtol=0.0, atol=1e-6 * np.abs(finer).max())

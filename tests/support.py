@@ -21,8 +21,6 @@ HOME = Path(__file__).parent.parent
 THOROUGH = bool(os.environ.get("GALINX_THOROUGH"))
 #: The scene of the study's Tables 4 and 5.
 SCENE = HOME / "scenes" / "tables4_5.toml"
-#: With these a run compiles the forms of three degrees only.
-FEW_DEGREES = ("--set", "motion.c=0.3", "--set", "solve.tolerance=1e-3")
 
 
 class Hang(BaseException):

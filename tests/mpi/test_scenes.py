@@ -29,6 +29,12 @@ SCENES["graded coating"] = scene_of("coating", {
     "output.quantities": ["sif", "interfaces"],
 })  # fmt: skip
 
+#: So many speeds that few are solved, and the others fitted.
+SCENES["many speeds"] = scene_of("tables4_5", {
+    "motion.c": np.linspace(0.0, 0.8, 16).tolist(), "solve.tolerance": 1e-2,
+    "output.quantities": ["sif"],
+})  # fmt: skip
+
 
 def kinds():
     """Names of scenes by finite elements; of those that differ in numbers alone one."""
@@ -36,7 +42,7 @@ def kinds():
     for name, scene in SCENES.items():
         if fem := make_plan(scene).fem:
             solid = type(scene.solid), bool(scene.layers)
-            kind = fem.mode, scene.solve.mesh, *solid, *sorted(scene.output.quantities)
+            kind = fem.mode, bool(fem.sweep), scene.solve.mesh, *solid, *sorted(scene.output.quantities)
             found.setdefault(name if THOROUGH else kind, name)
     return list(found.values())
 

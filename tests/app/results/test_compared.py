@@ -57,6 +57,13 @@ def by_name(columns):
     return {column.name: column for column in columns}
 
 
+def test_what_one_result_alone_has_is_in_its_own_units(light):
+    """Only finite elements give an indentation, whose size nothing else has."""
+    fem = computed("tables4_5", PLAIN | {"solve.methods": ["fem"]})
+    columns = by_name(Comparison([light, fem]).columns())
+    assert columns["fem_v0_2"].unit == "µm" and "fem_v0_1" not in columns
+
+
 def test_states_are_paired_by_their_parameters(light, heavy):
     columns = by_name(galinx.compare(light, heavy))
     for name in ("motion", "X_over_L"):
@@ -72,28 +79,6 @@ def test_states_are_paired_by_their_parameters(light, heavy):
     assert np.isnan(columns[K_I].values).all()  # of edges with other exponents
     plain = by_name(galinx.compare(light, heavy, dimensionless=True))
     assert np.isfinite(plain[K_I].values).all()
-
-
-def test_the_swapped_order_is_the_mirror(light, heavy):
-    there, back = (by_name(galinx.compare(*pair)) for pair in ((light, heavy), (heavy, light)))
-    assert there.keys() - {n for n in there if "difference" in n} == {
-        re.sub(r"_[12]$", lambda m: {"_1": "_2", "_2": "_1"}[m[0]], name)
-        for name in back
-        if "difference" not in name
-    }
-    compared = 0
-    for name, column in there.items():
-        mirrored = re.sub(r"_1$", "_2", name)
-        if name.endswith("_1"):
-            assert column.unit == back[mirrored].unit
-            np.testing.assert_array_equal(column.values, back[mirrored].values)
-        elif name.endswith("_difference") and not column.place:
-            a, b = (there[name.replace("_2_difference", f"_{n}")].values for n in (1, 2))
-            np.testing.assert_allclose(
-                column.values * np.abs(a), -back[name].values * np.abs(b), rtol=1e-9
-            )
-            compared += 1
-    assert compared > 5
 
 
 @pytest.mark.parametrize(

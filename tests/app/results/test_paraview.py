@@ -54,15 +54,6 @@ def test_what_has_no_field_is_bad_input():
         state_field(given, 0, degree=40)
 
 
-def test_lengths_and_stresses_scale_with_the_punch():
-    changes = {"punch.half_width": 2e-3, "punch.load": 3.0 * 55.3e3}
-    scenes = template("tables4_5"), template("tables4_5", changes)
-    small, large = (state_field(scene, 0, 2.0, 5) for scene in scenes)
-    np.testing.assert_allclose(large.points, 2.0 * small.points, rtol=1e-14)
-    np.testing.assert_allclose(large.data["von_mises"], 1.5 * small.data["von_mises"], rtol=1e-12)
-    np.testing.assert_allclose(large.data["displacement"], 3.0 * small.data["displacement"], rtol=1e-12)
-
-
 def test_vtk_reads_what_was_written(tmp_path):
     reading = pytest.importorskip("vtkmodules.vtkIOHDF")
     from vtkmodules.util.numpy_support import vtk_to_numpy

@@ -34,26 +34,17 @@ def solids():
         yield pytest.param(Orthotropic(E1, 1e9, 1e9, 0.3, 0.3, 0.4, G12, 1500.0, angle), share, id=str(i))
 
 
-def check(solid, share, tolerance):
+ALL = list(solids())
+
+
+@pytest.mark.parametrize("solid, share", ALL if THOROUGH else ALL[3::6])
+@pytest.mark.parametrize("tolerance", [1e-6, *[1e-9] * THOROUGH])
+def test_finite_elements_reach_the_tolerance(solid, share, tolerance):
     result = result_of(solid, share, tolerance)
     error, estimate = (result.data[f"states/fem/{name}"] for name in ("true_error", "estimate"))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     assert error.max() <= tolerance
     assert np.all(error <= estimate) and estimate.max() <= tolerance
-
-
-ALL = list(solids())
-
-
-@pytest.mark.parametrize("solid, share", ALL if THOROUGH else ALL[3::6])
-def test_finite_elements_reach_the_tolerance(solid, share):
-    check(solid, share, 1e-6)
-
-
-@pytest.mark.skipif(not THOROUGH, reason="minutes; GALINX_THOROUGH=1")
-@pytest.mark.parametrize("solid, share", ALL)
-def test_finite_elements_reach_a_small_tolerance(solid, share):
-    check(solid, share, 1e-9)
 
 
 @pytest.mark.parametrize("solid, share", ALL if THOROUGH else ALL[5:6])

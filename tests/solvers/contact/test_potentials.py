@@ -62,7 +62,12 @@ class SymbolicFrame(MovingFrame):
 
 def exactly(expression):
     """The same with floating-point constants as the integers they are."""
-    return sp.cancel(sp.nsimplify(expression, rational=True))
+    return sp.together(sp.nsimplify(expression, rational=True))
+
+
+def vanishes(expression):
+    """Is the numerator of a rational expression 0, multiplied out?"""
+    return sp.expand(sp.numer(sp.together(expression))) == 0
 
 
 def amplitudes(σ, symbols, c2):
@@ -99,7 +104,7 @@ def test_symbolic_proof_that_the_field_solves_the_moving_frame_equations():
         "u,X = q σ_YY + m H[σ_XY]": at_surface * u_X - (q * s + m * g * h),
     }
     for name, identity in identities.items():
-        assert identity.applyfunc(sp.cancel).is_zero_matrix, name
+        assert all(map(vanishes, identity)), name
 
 
 def test_the_moving_frame_turns_eqs_9_to_12_into_eqs_15_and_16():

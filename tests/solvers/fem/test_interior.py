@@ -53,7 +53,7 @@ def test_batches_of_points_give_the_same(punch, states, monkeypatch):
 
 
 def test_many_points_are_not_held_for_every_field(punch):
-    count = 100_000
+    count = 60_000
     points = np.random.default_rng(3).uniform([-2.0, -2.0], [2.0, -0.01], (count, 2))
     fields, weights = punch.fields, np.ones((1, len(punch.fields)))
     tracemalloc.start()

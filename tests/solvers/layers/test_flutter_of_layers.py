@@ -26,7 +26,7 @@ def growing(solid, length, g):
     side, each = LayeredSide.of_length(solid, length), []
     for low, high in ((-6.0, -0.02), (0.02, 6.0)):
         corners = [low - 3j, high - 3j, high - 1e-4j, low - 1e-4j, low - 3j]
-        way = np.concatenate([np.linspace(*ends, 6000) for ends in pairwise(corners)])
+        way = np.concatenate([np.linspace(*ends, 1500) for ends in pairwise(corners)])
         L11, L21, _ = side.stiffness(way)
         f = L11 - g * L21  # L₁₁ - g L₂₁ over det L is Y₂₂ + g Y₂₁
         each.append(round(float(np.angle(f[1:] / f[:-1]).sum() / (2.0 * np.pi))))

@@ -198,7 +198,7 @@ class HalfPlane:
     @property
     def spread(self) -> float:
         """Hyperbolic distance of the p of the solid at the surface, 0 where they meet."""
-        return self.surface.roots.apart
+        return self.surface.spread
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress σ_XX on the surface from the strain μ u,X and the tractions, of one shape."""
@@ -307,6 +307,10 @@ class UniformHalfPlane(HalfPlane):
     def Y(self) -> NDArray[Any]:
         """Admittance 𝐘 of the surface, u,X = 𝐘 (σ_XY, σ_YY) of decaying fields, (2, 2)."""
         return np.linalg.inv(self.L)
+
+    @property
+    def spread(self) -> float:
+        return self.roots.apart
 
     @cached_property
     def _along(self) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ speed, β_s and β_d the contraction factors of shear and dilatational waves.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, pi, sqrt
+from math import inf, log, pi, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -167,6 +167,11 @@ class MovingFrame(UniformHalfPlane):
     def contraction(self) -> complex:
         """i√(β_s β_d), midway between iβ_s and iβ_d in the hyperbolic metric of the half-plane."""
         return 1j * sqrt(self.β_s * self.β_d)
+
+    @property
+    def spread(self) -> float:
+        """log β_d/β_s, to all digits."""
+        return log(self.β_d / self.β_s)
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress on the surface: v,Y eliminated between Eqs 6 and 7."""

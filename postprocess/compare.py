@@ -2,8 +2,8 @@
 
 Each rule measures one figure. Rules compare finite elements with the closed form, or on layers with the
 integral equation, in stress intensities, stresses, ends of the contact and yield. They hold nodal forces
-against their balance, and judge the estimated errors of each method. Rules are registered by name, and
-quantities name those that apply to them.
+against their balance, and judge the estimated errors of each method. Rules are registered by name; one
+applies where all quantities that it needs are computed.
 
 Nothing is compared next to a tip of a punch, where stresses are infinite. A NaN or an infinity is a fault
 wherever the table of quantities does not allow it.
@@ -23,9 +23,9 @@ from galinx.solvers.contact.edges import under_punch
 
 from .quantities import layers as on_layers
 from .quantities import over_time as in_time
+from .quantities import preferred, table
 from .quantities import states as of
 from .quantities import stresses as at
-from .quantities import table
 from .quantities import yielding as to
 from .quantities.quantity import (
     ANYWHERE,
@@ -107,9 +107,6 @@ def not_finite(data: dict[str, Any]) -> list[str]:
     return paths
 
 
-#: Share of the mean pressure; where a pressure is smaller, its error is relative to this share instead.
-_VANISHING = 0.1
-
 #: Quantity by method, or several.
 _Rows = Mapping[str, Any]
 
@@ -163,16 +160,9 @@ def _relative_everywhere(fem: Any, exact: Any, *_: Any) -> float:
     return np.max(np.abs(np.divide(fem, exact) - 1.0))
 
 
-def _over_larger(fem: Any, exact: Any, *_: Any) -> float:
-    return (np.abs(np.subtract(fem, exact)) / np.abs(exact).max(axis=0)).max()
-
-
-def _apart(fem: Any, exact: Any, *_: Any) -> float:
-    return np.abs(np.subtract(fem, exact)).max()
-
-
-def _over_half_width(fem: Any, exact: Any, *_: Any) -> float:
-    return (np.abs(np.subtract(fem, exact)) / exact[0]).max()
+def _over(size: Callable[[NDArray], Any]) -> Callable[..., float]:
+    """Measure of the largest difference over a size of the exact values."""
+    return lambda fem, exact, *_: (np.abs(np.subtract(fem, exact)) / size(np.array(exact))).max()
 
 
 def _intensities(fem: Any, exact: Any, *_: Any) -> float | None:
@@ -184,7 +174,8 @@ def _pressure(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float | Non
     if of.HALF_WIDTH[SIE].path in data:
         return None  # the ends are free, and another rule compares
     under = under_punch(data[at.SURFACE_X.path])
-    off = np.abs(np.subtract(fem, exact)) / np.maximum(np.abs(exact), _VANISHING)
+    # Where a pressure is smaller than a tenth of the mean, its error is relative to that.
+    off = np.abs(np.subtract(fem, exact)) / np.maximum(np.abs(exact), 0.1)
     return off[..., under].max()
 
 
@@ -199,10 +190,6 @@ def _in_plane(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
     """Largest error of σ_XX relative to its size, but not next to tips inside the contact."""
     off = np.abs(fem[0] - exact[0]) / stresses.of_in_plane(exact[0], data[at.SURFACE_X.path])
     return np.where(_off_tips(data, 1.0 - stresses.NEAR_TIP), off, 0.0).max()
-
-
-def _at_interfaces(fem: Any, exact: Any, *_: Any) -> float:
-    return (np.abs(np.subtract(fem, exact)) / stresses.of_interfaces(np.array(exact))).max()
 
 
 def _inside(fem: Any, exact: Any, data: dict[str, Any], _: Any) -> float:
@@ -281,16 +268,6 @@ def _exponents(data: dict[str, Any], _: float) -> float | None:
     return _worst(np.abs([data[fitted.path] - data[local.path] for fitted, local in pairs]))
 
 
-def _tension(data: dict[str, Any], _: float) -> float | None:
-    """Largest tension under the punch over N/(2a), None without any; a punch would lift off there."""
-    largest = float(np.nanmax(data[at.PRESSURE[FEM].path], initial=0.0))
-    return largest if largest > 0.0 else None
-
-
-def _not_finite(data: dict[str, Any], _: float) -> float | None:
-    return 1.0 if not_finite(data) else None
-
-
 def largest(row: Quantity, text: str, tolerances: float | None = 1.0, **options: Any) -> Rule:
     """Rule on the largest value of a quantity over all states."""
     return Rule(
@@ -350,7 +327,7 @@ RULES: Registry[Rule] = Registry(
         },
         FINITE: Rule(
             "values that are not finite where they have to be: 1 for some",
-            (), _not_finite, limit=0.0, own_pressure=True,
+            (), lambda data, _: 1.0 if not_finite(data) else None, limit=0.0, own_pressure=True,
         ),
         "residual": largest(
             of.RESIDUAL[CLOSED_FORM],
@@ -366,9 +343,10 @@ RULES: Registry[Rule] = Registry(
         ),
         **_both("K_I", _intensities, "K_I at both ends{}, relative", of.K_I_LEFT, of.K_I_RIGHT),
         "estimate": _estimate(of.ESTIMATE[FEM], "K_I and moments", False),
-        **_both("resultant_ratio", _apart, "resultant of σ_XY over that of σ_YY{}, absolute",
-                of.RESULTANT_RATIO),
-        **_both("pressure_centre", _apart, "centre of pressure{}, over a", of.PRESSURE_CENTRE),
+        **_both("resultant_ratio", _over(np.ones_like),
+                "resultant of σ_XY over that of σ_YY{}, absolute", of.RESULTANT_RATIO),
+        **_both("pressure_centre", _over(np.ones_like), "centre of pressure{}, over a",
+                of.PRESSURE_CENTRE),
         "sigma_YY over layers": against(
             SIE, _pressure, f"σ_YY{_SIE}, relative to itself or a tenth of the mean",
             at.PRESSURE, beside=(at.SURFACE_X,),
@@ -377,7 +355,8 @@ RULES: Registry[Rule] = Registry(
             of.ESTIMATE[SIE], "the integral equation over layers", False
         ),
         "stresses at interfaces": against(
-            SIE, _at_interfaces, f"stresses at interfaces{_SIE}, over the largest along each",
+            SIE, _over(stresses.of_interfaces),
+            f"stresses at interfaces{_SIE}, over the largest along each",
             on_layers.INTERFACES, own_pressure=True,
         ),
         **{
@@ -392,7 +371,7 @@ RULES: Registry[Rule] = Registry(
         "estimate inside, sie": _estimate(
             at.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation over layers"
         ),
-        **_both("ends", _over_half_width, "ends of the contact{}, over its half-width",
+        **_both("ends", _over(lambda exact: exact[0]), "ends of the contact{}, over its half-width",
                 of.HALF_WIDTH, of.CENTRE),
         **_both("largest pressure", _relative, "largest contact pressure{}, relative", of.LARGEST),
         "exponents": Rule(
@@ -400,8 +379,9 @@ RULES: Registry[Rule] = Registry(
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,
         ),
         "tension": Rule(
-            "tension under the punch, over N/(2a)",
-            (at.PRESSURE[FEM],), _tension, limit=0.0, own_pressure=True,
+            "tension under the punch, over N/(2a)", (at.PRESSURE[FEM],),  # it would lift off there
+            lambda data, _: float(np.nanmax(data[at.PRESSURE[FEM].path], initial=0.0)) or None,
+            limit=0.0, own_pressure=True,
         ),
         # Under a prescribed pressure there is no raw one, and nothing to compare.
         "sigma_YY": against(
@@ -421,7 +401,8 @@ RULES: Registry[Rule] = Registry(
             over_layers="σ_XX{}, relative to itself or the largest",
         ),
         **_both(
-            "extremes of sigma_XX", _over_larger, "highest and lowest σ_XX{}, over the larger of them",
+            "extremes of sigma_XX", _over(lambda exact: np.abs(exact).max(axis=0)),
+            "highest and lowest σ_XX{}, over the larger of them",
             at.HIGHEST, at.LOWEST, own_pressure=True,
         ),
         "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
@@ -560,6 +541,6 @@ def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, An
         figures.append(rule.measure(one, load[i : i + 1] if np.ndim(load) else load) or 0.0)
     i = int(np.nanargmax(figures))
     # Where friction varies along the contact the number of a state is not that of its force.
-    varies = any(row.path in data for row in of.RESULTANT_RATIO.values())
+    varies = preferred(data, of.RESULTANT_RATIO)
     f = "" if varies else f", f = {data[of.FRICTION.path][i]:.4g}"
     return f", in state {i} (c = {data[of.SPEED.path][i]:.4g}{f})"

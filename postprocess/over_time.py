@@ -80,11 +80,6 @@ def _logs(X: NDArray) -> NDArray[np.float64]:
 #: Names of rules: for both methods, for finite elements, and for the integral equation alone.
 BOTH, OF_FEM, OF_SIE = "over time", "estimate over time", "residual over time"
 
-#: Least centre of the pressure over a to which differences are relative.
-_NO_LEAN = 1e-2
-#: Least indentation over N/(2μ) to which differences are relative.
-_NO_SINKING = 1e-2
-
 #: Numbers that both methods give.
 COMPARED = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
@@ -107,8 +102,9 @@ def largest_change(
         share = load if n == 1 else np.ones_like(load)
         off.append(np.abs((values - other) * share).max(axis=-1))
         sizes.append(np.abs(other * share).max(axis=-1))
-    sizes[0] = np.maximum(sizes[0], _NO_SINKING)
-    sizes[1] = np.maximum(np.maximum(sizes[1], _NO_LEAN), np.abs(np.atleast_1d(lean)).max(axis=-1))
+    least = 1e-2  # indentation over N/(2μ), and centre over a, to which differences are relative
+    sizes[0] = np.maximum(sizes[0], least)
+    sizes[1] = np.maximum(np.maximum(sizes[1], least), np.abs(np.atleast_1d(lean)).max(axis=-1))
     sizes[2] = sizes[3] = np.maximum(sizes[2], sizes[3])
     return float(np.nanmax(np.array(off) / np.array(sizes)))
 
@@ -123,11 +119,6 @@ def _both(fem: list[NDArray], sie: list[NDArray], data: Mapping[str, Any], _: An
     changing = np.ptp(data[rows.RATIOS.path], axis=-1, keepdims=True) > 0.0
     lean = np.where(changing, data[rows.CENTRES.path], 0.0)
     return largest_change(fem, sie, data[rows.LOAD.path][solved], lean[:, solved])
-
-
-#: Largest relative change of distance times time, over the second half of a motion, that counts as an
-#: approach to steady motion like 1/t.
-_STEADY_TAIL = 0.1
 
 
 def from_steady(data: Mapping[str, Any], method: str) -> NDArray[np.float64]:
@@ -163,7 +154,7 @@ def times_near_steady(t: NDArray, load: NDArray, off: NDArray) -> NDArray[np.flo
     tail, since = t >= (begun + t[-1]) / 2.0, t - begun
     for i, distance in enumerate(off):
         scaled = since[tail] * distance[tail]
-        like = np.isfinite(scaled).all() and np.ptp(scaled) <= _STEADY_TAIL * scaled[-1]
+        like = np.isfinite(scaled).all() and np.ptp(scaled) <= 0.1 * scaled[-1]
         for n, share in enumerate(SHARES):
             far = np.flatnonzero(distance > share)
             last = int(far[-1]) if len(far) else -1
@@ -193,13 +184,13 @@ def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDA
 WORKS, BALANCE = "works over time", "energy over time"
 
 #: Terms of the balance: works and energy that come in, and energies that are held or radiated.
-_DONE = rows.OF_LOAD[FEM], rows.OF_FRICTION[FEM], rows.CARRIED
-_HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
+DONE = rows.OF_LOAD[FEM], rows.OF_FRICTION[FEM], rows.CARRIED
+HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
 
 
 def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
     """Work less energy, over the largest work of a motion, (motions, times)."""
-    done, held = (sum(data[row.path] for row in kind) for kind in (_DONE, _HELD))
+    done, held = (sum(data[row.path] for row in kind) for kind in (DONE, HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
 
 
@@ -217,8 +208,6 @@ def _until_turn(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None
     return float((off / size).max())
 
 
-#: Distance over a from the edges, where stresses are infinite; stresses further away are compared.
-NEAR = 0.01
 #: Stresses that are compared; the shear stress is proportional to the pressure.
 SURFACE = rows.SURFACE_IN_PLANE, rows.SURFACE_PRESSURE
 
@@ -229,7 +218,7 @@ def largest_surface_change(stresses: Any, expected: Any) -> float:
     Args:
         stresses, expected: σ_XX and σ_YY by two methods, (motions, times, places) each.
     """
-    far = from_edge(ON_SURFACE) > NEAR
+    far = from_edge(ON_SURFACE) > 0.01  # at the edges stresses are infinite
     off, size = (
         np.abs(of[..., far]).max(axis=(-2, -1))
         for of in (np.subtract(stresses, expected), np.asarray(expected))
@@ -284,7 +273,7 @@ for _name, _rule in {
         SIE, _until_turn, f"works of load and friction {_AGAINST}", rows.OF_LOAD, rows.OF_FRICTION
     ),
     BALANCE: Rule(
-        "work without its energy over time, over the largest work", (*_DONE, *_HELD),
+        "work without its energy over time, over the largest work", (*DONE, *HELD),
         lambda data, _: float(np.abs(energy_imbalance(data)).max()), tolerances=1.0,
     ),
     ALONG: against(SIE, _along, f"σ_XX and σ_YY along the surface {_AGAINST} {_FAR}", *SURFACE),

@@ -11,14 +11,17 @@ from math import isnan
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
 from galinx.texts import plain
 
 from .quantities import (
     Quantity,
+    column,
     layers,
     over_time,
+    preferred,
     runs,
     stresses,
     swept,
@@ -27,7 +30,7 @@ from .quantities import (
     yielding,
 )
 from .quantities import states as of
-from .quantities.quantity import CLOSED_FORM, CONTACT, FEM, SIE, TEXT, X_OVER_A
+from .quantities.quantity import CONTACT, FEM, SIE, TEXT, X_OVER_A
 from .quantities.states import LOAD, MOTION, POSITION, SPEED
 from .units import Scaled, Units, as_archived, engineering, number
 
@@ -122,29 +125,26 @@ class Column:
 
 #: Size of places over a, and of stresses over N/(2a), up to which they are rounding of the methods.
 _LEAST, _LEAST_STRESS = 5e-6, 5e-8
-#: Relative difference of stresses up to which they are as large.
-_SAME = 1e-6
-
 _STRESS = "N/(2a)"
-
-#: Methods in the order in which their numbers are preferred.
-_PREFERRED = (FEM, CLOSED_FORM, SIE)
-
-
-def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity | None:
-    """Quantity by the first of the methods that an archive has; None where it has none."""
-    there = (rows[method] for method in (*_PREFERRED, "") if method in rows)
-    return next((row for row in there if row.path in data), None)
 
 
 class _Spec(NamedTuple):
     """Properties of a column: its head, which begins with "at" for a place of what stands before, and a
-    quantity, or one of each method; digits that are shown; and what is taken of an archive's values."""
+    quantity, or one of each method; digits that are shown; and what is taken of the quantity's values in
+    an archive's data."""
 
     head: str
     rows: Quantity | Mapping[str, Quantity]
     digits: int = 4
-    taken: Callable[[Any], Any] = np.asarray
+    taken: Callable[[Any, Mapping[str, Any]], Any] = lambda values, _: values
+
+
+def _where_tension(values: Any, data: Mapping[str, Any]) -> Any:
+    """Values of the largest σ_XX, NaN where it is below 0 and largest at the end of what is output."""
+    largest, place = (preferred(data, rows) for rows in (stresses.HIGHEST, stresses.HIGHEST_X))
+    assert largest and place
+    none = (np.abs(data[place.path]) >= stresses.FARTHEST) & (data[largest.path] < 0.0)
+    return np.where(none, np.nan, values)
 
 
 #: What a state's row has after its parameters.
@@ -152,7 +152,8 @@ _OF_CONTACT = (
     _Spec("half-width", of.HALF_WIDTH),
     _Spec("centre", of.CENTRE),
     _Spec("peak pressure", of.LARGEST), _Spec("at X", of.LARGEST_X),
-    _Spec("largest tension σ_XX", stresses.HIGHEST), _Spec("at X", stresses.HIGHEST_X),
+    _Spec("largest tension σ_XX", stresses.HIGHEST, 4, _where_tension),
+    _Spec("at X", stresses.HIGHEST_X, 4, _where_tension),
 )  # fmt: skip
 _OF_STRENGTH = (
     _Spec("largest von Mises", yielding.VON_MISES), _Spec("at X", yielding.VON_MISES_X),
@@ -184,10 +185,10 @@ _LIMITS = (
 )  # fmt: skip
 #: Friction loops, of all strokes together, and sliders.
 _OF_LOOPS = (
-    _Spec("work", runs.LOOP_WORK, 5, lambda values: values.sum(axis=1)),
+    _Spec("work", runs.LOOP_WORK, 5, lambda values, _: values.sum(axis=1)),
     _Spec("work of the closed loop", runs.LOOP_CYCLE, 5),
-    _Spec("breakaway force", runs.LOOP_BREAKAWAY, 5, lambda values: values.max(axis=1)),
-    _Spec("stiffness", runs.LOOP_STIFFNESS, 5, lambda values: values[:, 0]),
+    _Spec("breakaway force", runs.LOOP_BREAKAWAY, 5, lambda values, _: values.max(axis=1)),
+    _Spec("stiffness", runs.LOOP_STIFFNESS, 5, lambda values, _: values[:, 0]),
 )
 _OF_SLIDERS = (
     _Spec("period", runs.PERIOD, 6), _Spec("slip per cycle", runs.SLIP, 6),
@@ -207,7 +208,6 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     """
     contact, count = units.contact, len(data[of.FRICTION.path])
     results, intensities = _columns(data, units, _OF_CONTACT), _columns(data, units, _K_I)
-    results = _without_tension(data, results)
     indentation, pull = _columns(data, units, [_INDENTATION]), _columns(data, units, _PULL)
     if (results or intensities or indentation) and units.half_width is contact.half_width:
         length = units.scale(CONTACT)
@@ -275,15 +275,15 @@ def _columns(
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
         if not row or not scaled:
             continue
+        values = taken(data[row.path], data)
         if row.type == TEXT:
-            texts = [*map(str, taken(data[row.path]))]
-            columns.append(Column(head, texts, "none", scaled.name, row.path))
+            columns.append(Column(head, [*map(str, values)], "none", scaled.name, row.path))
         elif archived or np.isfinite(data[row.path]).any():
             place, of_kind = head.startswith("at "), _STRESS if row.unit == _STRESS else row.scale
             columns.append(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
-                    scaled.of(taken(data[row.path])), scaled.unit, scaled.name, row.path, digits, place,
+                    scaled.of(values), scaled.unit, scaled.name, row.path, digits, place,
                     0.0 if archived else least.get(of_kind, 0.0),
                 )
             )  # fmt: skip
@@ -295,19 +295,6 @@ def _least(units: Units) -> dict[str, float]:
     lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
     least = dict.fromkeys(lengths, _LEAST * float(np.max(units.length.factor)))
     return least | {_STRESS: _LEAST_STRESS * float(np.max(units.stress.factor))}
-
-
-def _without_tension(data: Mapping[str, Any], columns: list[Column]) -> list[Column]:
-    """Columns without a tension where σ_XX is less than 0 and largest at the end of what is output."""
-    row, place = (preferred(data, rows) for rows in (stresses.HIGHEST, stresses.HIGHEST_X))
-    if not row or not place:
-        return columns
-    none = (np.abs(data[place.path]) >= stresses.FARTHEST) & (data[row.path] < 0.0)
-    return [
-        replace(column, values=np.where(none, np.nan, column.values))
-        if none.any() and column.path in (row.path, place.path) else column
-        for column in columns
-    ]  # fmt: skip
 
 
 def _resultant(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -324,11 +311,8 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     rows = preferred(data, {method: of_all[4] for method, of_all in layers.INTERFACE_EXTREMES.items()})
     if rows is None:
         return []
-    high, high_X, low, low_X = layers.INTERFACE_EXTREMES[rows.method][4:8]
-    largest, lowest = np.abs(data[high.path]), np.abs(data[low.path])
-    shear = units.stress.of(np.maximum(largest, lowest))
-    lower = lowest > largest * (1.0 + _SAME)  # of two that are as large always the same one
-    X = units.position.of(np.where(lower, data[low_X.path], data[high_X.path]))
+    shear, X = layers.largest_shear(data, rows.method)
+    shear, X = units.stress.of(shear), units.position.of(X)
     depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
     for i, depth in enumerate(depths):
         depths_differ = swept.INTERFACE_DEPTHS.path in data
@@ -384,7 +368,7 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     if first is not None:
         shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
     elif stress is not None and contact.yield_strength:
-        strength = _of_states(data, "solid.yield_strength", contact.yield_strength)
+        strength = data.get(column("solid.yield_strength"), contact.yield_strength)
         strength = strength * 2.0 * units.half_width / units.load
         shares, unit = data[stress.path] / strength, "of the yield strength"
     elif preferred(data, yielding.REACH_LEFT) is not None:
@@ -395,20 +379,14 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
 
 
-def _of_states(data: Mapping[str, Any], key: str, value: Any) -> Any:
-    """A number of the scene, or of every state where it is swept."""
-    return data.get(f"states/{key}", value)
-
-
 def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Column of the body that yields first of two elastic ones; none where that was not computed."""
     of_plate, of_punch = (preferred(data, row) for row in (yielding.VON_MISES, yielding.PUNCH_VON_MISES))
     strengths = units.contact.yield_strength, units.contact.solid.punch_strength
     if not of_plate or not of_punch or not all(strengths):
         return []
-    keys = ("solid.yield_strength", "punch.solid.yield_strength")
-    strengths = tuple(_of_states(data, key, strength) for key, strength in zip(keys, strengths))
-    plate, punch = (data[row.path] / Y for row, Y in zip((of_plate, of_punch), strengths))
+    plate = data[of_plate.path] / data.get(column("solid.yield_strength"), strengths[0])
+    punch = data[of_punch.path] / data.get(column("punch.solid.yield_strength"), strengths[1])
     words = ["" if isnan(a) else "plate" if a > b else "punch" for a, b in zip(plate, punch)]
     return [Column("yields first", words, "none", "yields_first")]
 
@@ -549,15 +527,29 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         return Sheet("", [], [])
     _, states = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
     states = states[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
-    columns = [
-        replace(c, values=[c.values[i] for i in states])
-        for c in _parameter_columns(data, units)
-        if c.name not in ("motion", "X_over_L", "f") and not c.constant
-    ]
+    columns = _parameters_of(states, data, units)
     columns += [c for c in _columns(data, units, _OF_LOOPS) if np.nan_to_num(c.values).any()]
     note = "all per depth, in all strokes; stiffness: where the first stroke begins"
     sheet = layout("Friction loops", _numbers(len(states)), columns, width, "loop")
     return replace(sheet, notes=[f"{note}{_under_the_first_load(data, units)}"])
+
+
+def _parameters_of(states: Any, data: Mapping[str, Any], units: Units) -> list[Column]:
+    """Columns of the loads and laws of some states, those that differ."""
+    return [
+        replace(c, values=[c.values[i] for i in states])
+        for c in _parameter_columns(data, units)
+        if c.name not in ("motion", "X_over_L", "f") and not c.constant
+    ]
+
+
+def states_of_sliders(data: dict[str, Any]) -> NDArray[np.int64]:
+    """A state with the load and the law of each slider, (sliders,)."""
+    apart = parameters(data)
+    law = [data[path].tolist() for path in apart if path not in (SPEED.path, MOTION.path, POSITION.path)]
+    rows = [*zip(*law)]
+    each = next((i for i, row in enumerate(rows) if row != rows[0]), 0)
+    return each * np.arange(len(data[runs.OUTCOME.path]))
 
 
 def _under_the_first_load(data: Mapping[str, Any], units: Units) -> str:
@@ -572,11 +564,10 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the motion of the slider for the first laws, with its stick-slip."""
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
-    columns = _columns(data, units, [_Spec("motion", runs.OUTCOME), *_OF_SLIDERS])
-    labels = _numbers(count := len(data[runs.OUTCOME.path]))
-    sheet = layout("Motion of the slider", labels, columns, width, "law")
-    order = "laws: in the order of the states, all of the first load, then all of the next"
-    return replace(sheet, notes=[order] if count > 1 and of.LOAD.path in data else [])
+    columns = [c for c in _parameters_of(states_of_sliders(data), data, units) if c.path != SPEED.path]
+    columns += _columns(data, units, [_Spec("motion", runs.OUTCOME), *_OF_SLIDERS])
+    labels = _numbers(len(data[runs.OUTCOME.path]))
+    return layout("Motion of the slider", labels, columns, width, "law")
 
 
 def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
@@ -591,12 +582,15 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     specs = (
         _Spec("c" if units.dimensionless else "speed", over_time.SPEED, 6),
         _Spec("σ_XY/σ_YY", over_time.RATIO, 5),
-        _Spec("v₀", over_time.V0[method], 5, _last),
-        _Spec("centre", over_time.CENTRE[method], 5, _last),
-        _Spec("K_I left", over_time.K_I_LEFT[method], 5, _last),
-        _Spec("K_I right", over_time.K_I_RIGHT[method], 5, _last),
+        *(
+            _Spec(head, rows[method], 5, lambda values, _: values[:, -1])
+            for head, rows in {
+                "v₀": over_time.V0, "centre": over_time.CENTRE, "K_I left": over_time.K_I_LEFT,
+                "K_I right": over_time.K_I_RIGHT,
+            }.items()
+        ),
         _Spec("centre in steady motion", over_time.STEADY_CENTRE, 5),
-    )
+    )  # fmt: skip
     columns = [
         Column("direction", ways, "none"),
         *_columns(data, units, specs, archived=True),
@@ -615,10 +609,6 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         "K_I: dimensionless, over N",
     ]
     return replace(layout(title, _numbers(len(when)), columns, width, "start"), notes=notes)
-
-
-def _last(values: Any) -> Any:
-    return values[:, -1]
 
 
 def _numbers(count: int) -> list[str]:

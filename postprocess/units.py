@@ -36,11 +36,6 @@ class Scaled(NamedTuple):
         """Head of a column: name and unit, which is 1 for dimensionless."""
         return self.name if self.unit == "none" else f"{self.name} [{self.unit}]"
 
-    @property
-    def label(self) -> str:
-        """Name and unit for people; nothing stands for dimensionless."""
-        return self.name if self.unit in ("1", "none") else f"{self.name} [{self.unit}]"
-
     def of(self, values: NDArray, states: Any = slice(None)) -> NDArray:
         """Values in this scale, (states, …).
 
@@ -127,11 +122,6 @@ class Units:
         self.c_s: Any = data.get(swept.WAVE_SPEED.path, contact.solid.c_s)
         self.load: Any = data.get(states.LOAD.path, contact.load)
 
-    @property
-    def alike(self) -> bool:
-        """True where all states have the same contact and load, and so the same scale."""
-        return not (np.ndim(self.half_width) or np.ndim(self.load))
-
     def __call__(self, row: Quantity, name: str | None = None) -> Scaled | None:
         """Name, unit and scale of a quantity; None for one that equals another one in these units.
 
@@ -164,7 +154,7 @@ class Units:
             return Scaled("", archived.get(kind, kind))
         unit, factor, offset, size = self._in_si(kind, row)
         sizes = [size, *(other._in_si(kind, row)[3] for other in self.beside)]
-        name, of_si = prefixed(unit, float(max(sizes)))
+        name, of_si = prefixed(unit, float(max(sizes)) or 1.0)
         return Scaled("", name, factor / of_si, offset / of_si)
 
     def _in_si(self, kind: str, row: Quantity | None) -> tuple[str, Any, Any, Any]:
@@ -187,7 +177,7 @@ class Units:
             size = factor * np.max(self.data.get(over_time.TIMES.path, 1.0))
         elif kind == "N/(2mu)":
             unit, factor = "m", contact.displacement
-            size = factor * self._largest(kind, row)
+            size = factor * (self._largest(kind, row) or 1.0)
         elif kind in ("N^2/(4mu)", "N*a"):
             unit, size = "J/m", contact.load * contact.displacement / 2.0
             factor = size if kind != "N*a" else contact.load * contact.half_width
@@ -201,11 +191,6 @@ class Units:
         return self.scale("N/(2a)")
 
     @property
-    def of_pascals(self) -> float:
-        """Factor of strengths in Pa to the unit of stresses of states."""
-        return float(np.max(self.stress.factor * 2.0 * self.half_width / self.load))
-
-    @property
     def position(self) -> Scaled:
         """Scale of positions along X over a, from the contact's middle: µm from the punch's axis."""
         return self.scale(X_OVER_A)
@@ -216,7 +201,7 @@ class Units:
         return self.scale(OVER_A)
 
     def _largest(self, kind: str, row: Quantity | None) -> float:
-        """Largest number of the archive's quantities of a unit that stand in one section with a row."""
+        """Largest number of the quantities of a unit in the section of a row; 0 for none."""
         if row is None:
             return 1.0
         section = row.path.partition("/")[0]
@@ -231,7 +216,7 @@ class Units:
         if row.symbol:
             values = [self.data[row.path]] if row.path in self.data else []
         finite = [np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in map(np.asarray, values)]
-        return float(max(finite, default=0.0)) or 1.0
+        return float(max(finite, default=0.0))
 
     def _intensity(self, row: Quantity, name: str) -> Scaled | None:
         """K_I: the limit of the pressure times (2π distance)^-exponent, whose unit has that power.

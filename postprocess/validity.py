@@ -51,10 +51,6 @@ class Steady:
         )
 
 
-#: A stroke by its speed over c_s, σ_XY/σ_YY and wave crossings.
-Stroke = tuple[float, float, float]
-
-
 class Validity:
     """Warnings where answers do not hold, collected from datasets that come in parts.
 
@@ -64,9 +60,10 @@ class Validity:
 
     def __init__(self, steady: Steady | None = None) -> None:
         self._steady = steady
-        #: The shortest stroke, which has few crossings, and the fastest that has enough.
-        self._shortest: Stroke | None = None
-        self._fastest: Stroke | None = None
+        #: The shortest stroke, which has few crossings, and the fastest that has enough, if any: speed
+        #: over c_s, σ_XY/σ_YY and wave crossings.
+        self._shortest: list[tuple[float, float, float]] = []
+        self._fastest: list[tuple[float, float, float]] = []
         self._states: dict[str, int] = {}
         self._worst: dict[str, float] = {}
         self._where = 0.0
@@ -78,9 +75,12 @@ class Validity:
         if of.CROSSINGS.path in data:
             often = data[of.CROSSINGS.path]
             self._count("crossings", often < FEW, -often)
-            if self._steady and SPEED.path in data and RATIO.path in data:
-                for stroke in zip(*(data[row.path].tolist() for row in (SPEED, RATIO, of.CROSSINGS))):
-                    self._see_stroke(stroke)
+            rows = (SPEED, RATIO, of.CROSSINGS) if self._steady else ()
+            strokes = [*zip(*(data[row.path].tolist() for row in rows))]
+            short = [*self._shortest, *(stroke for stroke in strokes if stroke[2] < FEW)]
+            long = [*self._fastest, *(stroke for stroke in strokes if FEW <= stroke[2] < np.inf)]
+            self._shortest = sorted(short, key=lambda stroke: (stroke[2], -abs(stroke[1])))[:1]
+            self._fastest = sorted(long, key=lambda stroke: (-stroke[0], -abs(stroke[1])))[:1]
         if RATIO.path in data and all(row.path in data for row in of.FLUTTER.values()):
             g = data[RATIO.path]
             threshold = np.where(g > 0.0, *(data[of.FLUTTER[sign].path] for sign in of.SIGNS))
@@ -101,32 +101,20 @@ class Validity:
                 self._where = float(where.flat[np.nanargmax(each)])
             self._count("tension", tension > 0.0, tension)
 
-    def _see_stroke(self, stroke: Stroke) -> None:
-        c, g, often = stroke
-        shortest, fastest = self._shortest, self._fastest
-        if often < FEW:
-            if not shortest or (often, -abs(g)) < (shortest[2], -abs(shortest[1])):
-                self._shortest = stroke
-        elif isfinite(often) and (not fastest or (c, abs(g)) > (fastest[0], abs(fastest[1]))):
-            self._fastest = stroke
-
     def _count(self, name: str, bad: NDArray, size: NDArray) -> None:
         if bad.any():
             self._states[name] = self._states.get(name, 0) + int(bad.sum())
             self._worst[name] = max(self._worst.get(name, -np.inf), float(np.max(size[bad])))
 
-    def words(self) -> list[str]:
+    def words(self) -> Iterator[str]:
         """Warnings, one sentence for each assumption that does not hold."""
-        return [*self._words()]
-
-    def _words(self) -> Iterator[str]:
         worst = {name: f"{self._worst[name]:.3g}" for name in self._worst}
         states = {name: f"{n} state{'s' * (n > 1)}" for name, n in self._states.items()}
         if "crossings" in worst:
             text = short = ""
             if self._steady and self._shortest:
                 text, short = (
-                    self._steady.words(*self._shortest, too_short=only) for only in (False, True)
+                    self._steady.words(*self._shortest[0], too_short=only) for only in (False, True)
                 )
             reached = "comes near only towards its end" if text and not short else "does not reach"
             yield (
@@ -135,12 +123,9 @@ class Validity:
                 f"{states['crossings']}: the reported steady state is a limit that such a stroke "
                 f"{reached}" + f"; {text}" * bool(text)
             )
-        if (
-            self._steady
-            and self._fastest
-            and (text := self._steady.words(*self._fastest, too_short=True))
-        ):
-            yield f"the steady state is reported, but {text}"
+        fast = self._steady.words(*self._fastest[0], True) if self._steady and self._fastest else ""
+        if fast:
+            yield f"the steady state is reported, but {fast}"
         if "ratio" in worst:
             up_to, steep = f"|σ_XY/σ_YY| is up to {worst['ratio']}", sorted(self._steep)
             if steep[0] > 0.0:

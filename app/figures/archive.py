@@ -25,8 +25,6 @@ from .style import Look
 ALL, PLAIN = "all", Choice()
 #: Figures that take long, which are drawn only where they are named.
 _BY_NAME = FILM, "flutter"
-#: Frames that a film has at least.
-_LEAST_FRAMES = 4
 
 
 @dataclass(frozen=True)
@@ -50,14 +48,15 @@ def film(of: Archive) -> Drawing:
         moving, left_out = motion.film(of)
         return Drawing(FILM, "", moving.figure, left_out=left_out, film=moving)
     labels, frames = of.labels, _frames(of)
-    if len(frames) < _LEAST_FRAMES:
+    if len(frames) < motion.LEAST_FRAMES:
         raise BadInput(
-            f"a film needs at least {_LEAST_FRAMES} states along strokes, found {len(frames)}; give "
-            "motion.X_over_L more places"
+            f"a film needs at least {motion.LEAST_FRAMES} states along strokes, found {len(frames)}; "
+            "give motion.X_over_L more places"
         )
     if _has(stresses.surface_names)(of):  # by one method
-        surface, x = stresses.stresses_along(of).alone, stresses.position_name(of, "")
-        made = [stresses.surface_panels(surface, name, frames, x=x) for name in surface.values]
+        stressed, x = stresses.stresses_along(of).values(), stresses.position_name(of, "")
+        alone = [replace(along, values=dict([*along.values.items()][:1])) for along in stressed]
+        made = [stresses.surface_panels(along, frames, x=x) for along in alone]
     elif stresses.map_names(of):
         fields, shown = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
         made = [fields.panels(name, frames, level=0.0, equal=False) for name in shown]
@@ -83,7 +82,7 @@ def film(of: Archive) -> Drawing:
 
 def _has_strokes(of: Archive) -> bool:
     names = stresses.surface_names(of) or stresses.map_names(of)
-    return bool(names) and len(_frames(of)) >= _LEAST_FRAMES
+    return bool(names) and len(_frames(of)) >= motion.LEAST_FRAMES
 
 
 def _frames(of: Archive) -> list[int]:

@@ -209,7 +209,7 @@ class StateLabels:
 
     def label(self, state: int, names: Sequence[str]) -> str:
         """Named parameters of a state, with formulas in TeX."""
-        return ", ".join(self._values_label(name, [self.values(name)[state]]) for name in names)
+        return ", ".join(self.values_label(name, [self.values(name)[state]]) for name in names)
 
     def text(self, state: int, names: Sequence[str]) -> str:
         """Named parameters of a state, as plain text."""
@@ -220,12 +220,8 @@ class StateLabels:
         fixed = [name for name in self.varied() if name not in self.varied(states)]
         return f" All at {self.text(int(states[0]), fixed)}." if fixed else ""
 
-    def absent(self, name: str, shown: Sequence[int]) -> str:
-        """Values of a parameter that none of some states has, as plain text; "" for none."""
-        absent = [value for value in self.distinct(name) if value not in self.values(name)[shown]]
-        return plain(self._values_label(name, absent)) if absent else ""
-
-    def _values_label(self, name: str, values: Sequence[Any]) -> str:
+    def values_label(self, name: str, values: Sequence[Any]) -> str:
+        """Parameter with several values, of many the first, with formulas in TeX."""
         if not self.numeric(name):
             return _short([str(value) for value in values])
         symbol, factor, in_unit = self.scale(name)
@@ -400,8 +396,12 @@ class Archive:
         missing = sorted(set(self.choice.states or labels.all.tolist()) - set(shown))
         if not missing:
             return ""
-        values = [labels.absent(name, shown) for name in labels.varied()]
-        without = f" ({'; '.join(filter(None, values))})" if any(values) else ""
+        absent = {
+            name: [value for value in labels.distinct(name) if value not in labels.values(name)[shown]]
+            for name in labels.varied()
+        }
+        texts = [plain(labels.values_label(name, values)) for name, values in absent.items() if values]
+        without = f" ({'; '.join(texts)})" if texts else ""
         runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1)
         ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
         return (
@@ -415,12 +415,15 @@ class Archive:
         return self.choice.size
 
 
+#: What axes say of numbers over these.
+_OVER = {"N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$", "N^2/(4mu)": r" over $N^2/4\mu$"}
+
+
 def named(words: str, unit: str) -> str:
     """Name of an axis with its unit: ``load (N/mm)``, ``pressure $/(N/2a)$``."""
     if unit in ("", "1", "none"):
         return words
-    unit = in_tex(unit)
-    return f"{words} $/({unit.replace('(2a)', '2a')})$" if unit.startswith("N/(") else f"{words} ({unit})"
+    return words + _OVER.get(unit, f" ({in_tex(unit)})")
 
 
 def both(
@@ -441,7 +444,8 @@ def both(
     return curves
 
 
-def explained(methods: Collection[str]) -> list[Any]:
-    """Handles that explain lines and markers, where a figure has both."""
+def explained(*of: Collection[str]) -> list[Any]:
+    """Handles that explain lines and markers, where the methods of all curves of a figure have both."""
+    methods = {method for each in of for method in each}
     lines = next((METHODS[name] for name in METHODS if name in methods and name != FEM), "")
     return lines_and_markers(lines, METHODS[FEM]) if lines and FEM in methods else []

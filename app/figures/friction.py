@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import column, runs
+from galinx.postprocess.quantities import column, preferred, runs
 from galinx.postprocess.quantities.states import RESULTANT_RATIO
+from galinx.postprocess.tables import states_of_sliders
 from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.motion import names
 
-from ..plan.states import order
 from .choice import Archive, C, Drawing, N, fewer, named, spread
 from .render import DOTS, Curve, Panel, Size, across, note, render
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
@@ -22,8 +22,6 @@ from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
 #: Loops that can be told apart in a panel, and sliders in a figure.
 _LOOPS, _SLIDERS = 6, 6
-#: Variation of friction, over its size, from which on zero is on the axis.
-_LEVEL = 0.2
 
 
 @dataclass(frozen=True)
@@ -40,11 +38,6 @@ class Loop:
     X_over_L: NDArray
     f: NDArray
     strokes: Sequence[tuple[str, slice]]
-
-    @property
-    def varies(self) -> bool:
-        """True where friction changes along a stroke."""
-        return any(_changes(self.f[part]) for _, part in self.strokes)
 
 
 def _changes(f: NDArray) -> bool:
@@ -118,7 +111,7 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
     alone = len(loops) == 1
     f = np.array([loop.f for loop in loops])
     low, high = float(f.min()), float(f.max())
-    if high - low > _LEVEL * max(abs(low), abs(high)):  # else zero would flatten all loops
+    if high - low > 0.2 * max(abs(low), abs(high)):  # else zero would flatten all loops
         low, high = min(0.0, low), max(0.0, high)
     margin = 0.06 * (high - low) or 1.0
     curves = []
@@ -144,9 +137,10 @@ def varies(of: Archive) -> bool:
 
 def has_loop(of: Archive) -> bool:
     """Return True if friction changes along a stroke, or between strokes, but not along the contact."""
-    if any(of.has(row) for row in RESULTANT_RATIO.values()):
+    along = preferred(of.data, RESULTANT_RATIO)
+    if along or of.scene.slider is not None:
         return False
-    return of.scene.slider is None and any(loop.varies for loop in Loops(of).few)
+    return any(_changes(loop.f[part]) for loop in Loops(of).few for _, part in loop.strokes)
 
 
 def friction(of: Archive) -> Drawing:
@@ -200,9 +194,8 @@ def slider(of: Archive) -> Drawing:
     laws = spread(list(range(count)), _SLIDERS)
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
-    # States of a load follow one another, as its sliders do.
-    each = order(scene).shape[-1]
-    labels = [loops.labels.label(law * each, called) if called and len(laws) > 1 else "" for law in laws]
+    states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)
+    labels = [loops.labels.label(states[law], called) for law in laws]
     ordered = len(called) == 1 and loops.labels.numeric(called[0])
     t, v, cycle_v = (of.values(row) for row in (runs.TIMES, runs.VELOCITY, runs.CYCLE_VELOCITY))
     cycle_f = data[runs.CYCLE_FRICTION.path]

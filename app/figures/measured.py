@@ -63,7 +63,7 @@ class Measured:
         if not units.dimensionless:
             x = X / to_si(f"1 {units.position.unit}", "m")
             return self._over(panel, x, values / to_si(f"1 {units.stress.unit}", "Pa"))
-        if not units.alike:
+        if np.ndim(units.half_width) or np.ndim(units.load):
             raise BadInput(
                 f"--measured {self.name}: contacts or loads of states differ in size, so that "
                 "measured positions have no X/a; leave --dimensionless away"

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.over_time import energy_imbalance
+from galinx.postprocess.over_time import DONE, HELD, energy_imbalance
 from galinx.postprocess.quantities import Quantity
 from galinx.postprocess.quantities import over_time as rows
-from galinx.postprocess.quantities.over_time import OF_FRICTION, OF_LOAD
 from galinx.postprocess.quantities.quantity import FEM, METHODS, SIE
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
@@ -23,26 +22,23 @@ from galinx.texts import number, plain
 
 from .choice import Archive, Drawing, both, drive_label, explained, fewer, named, spread
 from .render import MARKERS, Curve, Film, Panel, Size, note, render
-from .stresses import SHOWN, Shown, Surface, limits, position_name, surface_panel
+from .stresses import SHOWN, Along, Shown, limits, position_name, surface_panel
 from .style import COLUMN, GREY, Look, looks
 
 #: Starts that can be told apart in a figure, times that are drawn of one, and frames of a film at most.
 _STARTS, _TIMES, _SURFACE_TIMES, _FRAMES = 6, 6, 5, 160
-#: Frames that make a film of stresses.
-_LEAST_FRAMES = 4
-#: Pressure over the largest that is drawn, over N/(2a): it is infinite at the ends.
-_TOP = 2.5
+#: Frames that make a film.
+LEAST_FRAMES = 4
 #: What is drawn over time, and what it is called.
 _OVER_TIME = (
     (rows.CENTRE, "centre of pressure"), (rows.V0, "indentation $v_0$"),
     (rows.K_I_LEFT, "$K_I$ at $X = -a$"),
     (rows.K_I_RIGHT, "$K_I$ at $X = a$"),
 )  # fmt: skip
-#: Works and energies by the names of their curves.
-_DONE = {"load": OF_LOAD[FEM], "friction": OF_FRICTION[FEM], "being carried past the punch": rows.CARRIED}
-_HELD = {"strain near": rows.STRAIN, "motion near": rows.KINETIC, "radiated": rows.RADIATED}
+#: Names of the curves of works and energies.
+_WORKS = ("load", "friction", "being carried past the punch"), ("strain near", "motion near", "radiated")
 #: Quantities that an archive of energies, and of pressures over time, has.
-ENERGIES, PRESSURES = (*_DONE.values(), *_HELD.values()), (rows.PRESSURE, rows.PLACES)
+ENERGIES, PRESSURES = (*DONE, *HELD), (rows.PRESSURE, rows.PLACES)
 _STEADY, _SUM = Look(GREY, "--", ""), Look(GREY, "-", "")
 
 
@@ -62,8 +58,7 @@ def _at_time(of: Archive, t: float) -> str:
 def _over_a(of: Archive, words: str, row: Any) -> str:
     """Name of an axis of a quantity, over what it is over where it is dimensionless."""
     unit = of.scaled(row).unit
-    over = {"N/(2mu)": "$/(N/2\\mu)$", "1": "$/a$" if row.scale else ""}
-    return words + over[unit] if unit in over else named(words, unit)
+    return f"{words}$/a$" if unit == "1" and row.scale else named(words, unit)
 
 
 def _left_out(of: Archive, shown: int = 1) -> str:
@@ -116,15 +111,12 @@ def energies(of: Archive) -> Drawing:
     label, t = _time(of)
     styles = iter(looks(len(ENERGIES)))
     panels = []
-    for what, kinds in (("work", _DONE), ("energy", _HELD)):
-        values = {name: of.values(row)[0] for name, row in kinds.items()}
+    for what, kinds, names in zip(("work", "energy"), (DONE, HELD), _WORKS):
+        values = {name: of.values(row)[0] for name, row in zip(names, kinds)}
         curves = [Curve(t, np.sum(list(values.values()), axis=0), _SUM, width=1.8)]
         curves += [Curve(t, y, next(styles), name) for name, y in values.items()]
-        unit = of.scaled(next(iter(kinds.values()))).unit
-        over = r" over $N^2/4\mu$" if unit.startswith("N^2") else f" ({unit})"
-        panels.append(Panel(
-            label, rf"{what} since $t = 0${over}", curves=curves, at_y=(0.0,), xlim=(0.0, float(t[-1]))
-        ))  # fmt: skip
+        axis = named(f"{what} since $t = 0$", of.scaled(kinds[0]).unit)
+        panels.append(Panel(label, axis, curves=curves, at_y=(0.0,), xlim=(0.0, float(t[-1]))))
     every = np.concatenate([curve.y for panel in panels for curve in panel.curves])
     room = 0.05 * np.ptp(every)
     panels = [replace(panel, ylim=(every.min() - room, every.max() + room)) for panel in panels]
@@ -143,42 +135,39 @@ def energies(of: Archive) -> Drawing:
 
 def _held(
     of: Archive, X: Quantity, stresses: Mapping[str, Mapping[str, Quantity]], start: int = 0
-) -> Surface:
-    """Stresses of a start over time, (times, places), by quantities of each name and method."""
-    axes, values, places, scale = {}, {}, of.data[X.path], of.scaled(X)
+) -> dict[str, Along]:
+    """Stresses of a start over time, (times, places), by name, from quantities of each method."""
+    places, scale, held = of.data[X.path], of.scaled(X), {}
+    position = position_name(of, "position " if X is rows.PLACES else "position on the surface ")
+    place = float(np.max(scale.factor)), float(np.max(scale.offset))
     for name, by_method in stresses.items():
         label, sign = SHOWN[name]
-        axes[name] = named(label, of.scaled(next(iter(by_method.values()))).unit)
-        values[name] = {
-            method: sign * _cut(name, places, of.values(row)[start]) for method, row in by_method.items()
-        }
-    times = len(next(iter(values["sigma_YY"].values())))
-    place = float(np.max(scale.factor)), float(np.max(scale.offset))
-    words = "position " if X is rows.PLACES else "position on the surface "
-    return Surface(places, axes, values, [place] * times, position_name(of, words))
+        axis = named(label, of.scaled(next(iter(by_method.values()))).unit)
+        shown = np.where(under_punch(places) | (name != "sigma_YY"), sign, np.nan)
+        values = {method: shown * of.values(row)[start] for method, row in by_method.items()}
+        times = len(next(iter(values.values())))
+        held[name] = Along(places, axis, values, [place] * times, position)
+    return held
 
 
-def _cut(name: str, X: NDArray, values: NDArray) -> NDArray[np.float64]:
-    """Stresses along the surface; of the pressure those under the punch alone."""
-    return np.where(under_punch(X) | (name != "sigma_YY"), values, np.nan)
-
-
-def _steady(of: Archive, held: Surface, start: int, steps: NDArray | list[int]) -> Surface | None:
-    """Stresses of steady motion with a start's friction and load at some steps; None over layers."""
+def _steady(
+    of: Archive, held: Mapping[str, Along], start: int, steps: NDArray | list[int]
+) -> dict[str, Along]:
+    """Stresses of steady motion with a start's friction and load at some steps; none over layers."""
     if of.scene.layers:  # no closed form
-        return None
+        return {}
     response = of.scene.solid.response(float(of.data[rows.SPEED.path][start]))
     punches = [FlatPunch(response, g) for g in of.data[rows.RATIOS.path][start][steps].tolist()]
-    X, stress = held.X, float(np.max(of.scaled(rows.SURFACE_PRESSURE[SIE]).factor))
+    X, stress = next(iter(held.values())).X, float(np.max(of.scaled(rows.SURFACE_PRESSURE[SIE]).factor))
     load = stress * of.data[rows.LOAD.path][steps][:, None]
     values = {
-        "sigma_YY": -load * _cut("sigma_YY", X, np.array([punch.σ_YY(X) for punch in punches])),
+        "sigma_YY": -load * np.where(under_punch(X), [punch.σ_YY(X) for punch in punches], np.nan),
         "sigma_XX": load * np.array([punch.σ_XX(X) for punch in punches]),
     }
-    return replace(held, values={name: {SIE: values[name]} for name in held.values})
+    return {name: replace(along, values={SIE: values[name]}) for name, along in held.items()}
 
 
-def _at_chosen_times(of: Archive) -> tuple[Surface, NDArray[np.int64]]:
+def _at_chosen_times(of: Archive) -> tuple[dict[str, Along], NDArray[np.int64]]:
     """Stresses of the first start along the surface at the chosen times, and the steps that end then."""
     methods = [name for name in (SIE, FEM) if of.has(rows.SURFACE_IN_PLANE[name])]
     stresses = {"sigma_YY": rows.SURFACE_PRESSURE, "sigma_XX": rows.SURFACE_IN_PLANE}
@@ -188,11 +177,12 @@ def _at_chosen_times(of: Archive) -> tuple[Surface, NDArray[np.int64]]:
     return _held(of, rows.SURFACE_PLACES, by_method), steps
 
 
-def _leaning(of: Archive) -> tuple[int, Surface, tuple[float, float]]:
+def _leaning(of: Archive) -> tuple[int, dict[str, Along], tuple[float, float]]:
     """Start whose steady pressure leans most, its pressures at all times, and limits of these."""
     start = int(np.abs(of.data[rows.STEADY_CENTRE.path]).argmax())
     held = _held(of, rows.PLACES, {"sigma_YY": {SIE: rows.PRESSURE}}, start)
-    return start, held, (0.0, _TOP * float(np.max(of.scaled(rows.PRESSURE).factor)))
+    highest = 2.5  # over N/(2a): at the ends it is infinite
+    return start, held, (0.0, highest * float(np.max(of.scaled(rows.PRESSURE).factor)))
 
 
 def pressures(of: Archive) -> Drawing:
@@ -201,10 +191,11 @@ def pressures(of: Archive) -> Drawing:
     t = of.data[rows.TIMES.path]
     c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
     at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)]).tolist()
-    shown = [Shown(held, i, look, _at_time(of, t[i])) for i, look in zip(at, looks(len(at), True))]
-    if steady := _steady(of, held, start, [-1]):
-        shown.append(Shown(steady, 0, _STEADY, "steady", 0.8))
-    panel = surface_panel("sigma_YY", shown, ylim)
+    (pressure,), called = held.values(), [_at_time(of, t[i]) for i in at]
+    shown = pressure.shown(looks(len(at), True), called, rows=at)
+    for along in _steady(of, held, start, [-1]).values():
+        shown.append(Shown(along, 0, _STEADY, "steady", 0.8))
+    panel = surface_panel(shown, ylim)
     caption = (
         f"Contact pressure under the punch at c = {c:.4g}, σ_XY/σ_YY = {g:.4g}, by the integral "
         "equation, at times after it touched; dashed in steady motion. While the load comes on the "
@@ -223,35 +214,35 @@ def stresses(of: Archive) -> Drawing:
     """Figure of the stresses along the surface of the first start, at chosen times from the first to the
     last, beside those of steady motion with the friction and the load of these times."""
     (held, steps), t = _at_chosen_times(of), of.data[rows.SURFACE_TIMES.path]
-    at = np.unique(np.linspace(0, len(t) - 1, _SURFACE_TIMES).round().astype(int))
+    at = spread(range(len(t)), _SURFACE_TIMES)
     styles, called = looks(len(at), True), [_at_time(of, t[i]) for i in at]
-    columns = {"in time": [Shown(held, *each) for each in zip(at.tolist(), styles, called)]}
-    if steady := _steady(of, held, 0, steps[at]):
-        columns["steady motion of that time's friction and load"] = steady.shown(styles, called)
-    panels: list[Panel] = []
-    for name in held.values:
-        every = [y[at] for y in held.values[name].values()]
-        every += [*steady.values[name].values()] if steady else []
-        for title, shown in columns.items():
-            panel = surface_panel(name, shown, limits(held.X, np.vstack(every)))
-            first = len(panels) % len(columns) == 0
-            panels.append(replace(
-                panel, y=panel.y if first else None, title=title * (len(panels) < len(columns))
-            ))  # fmt: skip
+    steady, panels = _steady(of, held, 0, steps[at]), list[Panel]()
+    titles = ["in time", "steady motion of that time's friction and load"][: 1 + bool(steady)]
+    for name, along in held.items():
+        columns = [along.shown(styles, called, rows=at)]
+        every = [y[at] for y in along.values.values()]
+        if steady:
+            columns.append(steady[name].shown(styles, called))
+            every += steady[name].values.values()
+        for title, shown in zip(titles, columns):
+            panel = surface_panel(shown, limits(along.X, np.vstack(every)))
+            panel = panel if shown is columns[0] else replace(panel, y=None)
+            panels.append(replace(panel, title=title * (len(panels) < len(columns))))
     c = float(of.data[rows.SPEED.path][0])
     caption = (
         "Stresses along the surface, under the punch (grey) and beside it, over time, "
-        f"{' and '.join(METHODS[method] for method in held.values['sigma_XX'])}, at c = {c:.4g}"
+        f"{' and '.join(METHODS[method] for method in held['sigma_XX'].values)}, at c = {c:.4g}"
         f"{'; beside it what they were if they were at once those of steady motion' * bool(steady)}. "
         "At the edges they grow without bound."
     )
-    figure = render(panels, of.size, len(columns), explained(held.methods))
+    notes = explained(*(along.values for along in held.values()))
+    figure = render(panels, of.size, len(titles), notes)
     return Drawing("stresses", caption, figure, left_out=_left_out(of))
 
 
 def has_film(of: Archive) -> bool:
     """Return True if an archive holds stresses along the surface or pressures at enough times."""
-    enough = has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= _LEAST_FRAMES
+    enough = has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= LEAST_FRAMES
     return enough or of.has(*PRESSURES)
 
 
@@ -259,10 +250,10 @@ def film(of: Archive) -> tuple[Film, str]:
     """Film of the stresses along the surface of the first start, or of the pressure of the start whose
     steady pressure leans most, beside the centre of the pressure; and what it leaves out."""
     label, t = _time(of)
-    if has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= _LEAST_FRAMES:
+    if has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= LEAST_FRAMES:
         start, (held, steps) = 0, _at_chosen_times(of)
-        method = [*held.values["sigma_XX"]][-1]
-        ylims = {name: limits(held.X, values[method]) for name, values in held.values.items()}
+        method = [*held["sigma_XX"].values][-1]
+        ylims = {name: limits(along.X, along.values[method]) for name, along in held.items()}
         frames = list(range(len(steps)))
     else:
         start, held, ylim = _leaning(of)
@@ -270,7 +261,7 @@ def film(of: Archive) -> tuple[Film, str]:
         steps = np.array(spread(range(len(t)), _FRAMES))
         frames = steps.tolist()
     # All by one method, as lines.
-    held = replace(held, values={name: {SIE: y[method]} for name, y in held.values.items()})
+    held = {name: replace(along, values={SIE: along.values[method]}) for name, along in held.items()}
     steady, row = _steady(of, held, start, [-1]), rows.CENTRE[method]
     centre, now = of.values(row)[start], Look("black", "none", "o")
     end = of.scaled(rows.STEADY_CENTRE).of(of.data[rows.STEADY_CENTRE.path])[start]
@@ -280,10 +271,12 @@ def film(of: Archive) -> tuple[Film, str]:
     )  # fmt: skip
 
     def panels(frame: int) -> list[Panel]:
-        i = steps[frame]
-        shown = [Shown(held, frames[frame], looks(1)[0])]
-        shown += [Shown(steady, 0, _STEADY, "", 0.8)] if steady else []
-        first, *others = [surface_panel(name, shown, ylim) for name, ylim in ylims.items()]
+        i, made = steps[frame], []
+        for name, along in held.items():
+            shown = [Shown(along, frames[frame], looks(1)[0])]
+            shown += [Shown(steady[name], 0, _STEADY, "", 0.8)] if steady else []
+            made.append(surface_panel(shown, ylims[name]))
+        first, *others = made
         first = replace(first, title=_at_time(of, of.data[rows.TIMES.path][i]))
         dot = Curve(t[i : i + 1], centre[i : i + 1], now, form=MARKERS)
         return [first, *others, replace(way, curves=[*way.curves, dot])]

@@ -14,10 +14,6 @@ from .choice import Archive, C, Drawing, fewer, spread
 from .render import DOTS, JOINED, MARKERS, Curve, Panel, Size, note, render
 from .style import COLOURS, COLUMN, GREY, Look, looks
 
-#: Speeds that can be told apart in a figure.
-_SPEEDS = 6
-
-
 #: Quantities that an archive has that tells how its numbers converge with the polynomial degree.
 DEGREES = runs.CHANGES, runs.RECORD["c"], runs.RECORD["degree"], states.ESTIMATE[FEM]
 
@@ -48,7 +44,7 @@ def degrees(of: Archive) -> Drawing:
     data, labels = of.data, of.labels
     c, c_of, change = (data[row.path] for row in (runs.RECORD["c"], states.SPEED, runs.CHANGES))
     measured = np.flatnonzero(change.any(axis=1)).tolist()
-    shown = spread(measured, _SPEEDS)
+    shown = spread(measured, 6)  # speeds that can be told apart
 
     def largest(row: Quantity, speed: float) -> float:
         return float(data[row.path][c_of == speed].max())
@@ -83,10 +79,6 @@ def degrees(of: Archive) -> Drawing:
     return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(c), "speeds"))
 
 
-#: Nodes nearer to each other than this share of a panel print as one.
-_DOT = 1.0 / 500.0
-
-
 def mesh_figure(
     edges: NDArray,
     nodes: NDArray,
@@ -110,7 +102,8 @@ def mesh_figure(
         lines, dots = edges - centre, nodes - centre
         lines = lines[np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half]
         x, y = (np.append(z, np.full((len(z), 1), np.nan), 1).ravel() for z in np.moveaxis(lines, -1, 0))
-        dots, step = dots[np.abs(dots).max(axis=1) < 1.5 * half], 2.0 * half * _DOT
+        # Nodes nearer to each other than a five-hundredth of a panel print as one.
+        dots, step = dots[np.abs(dots).max(axis=1) < 1.5 * half], 2.0 * half / 500.0
         dots = np.unique(np.round(dots / step), axis=0) * step
         return Panel(
             "$X/a$" if n == 0 else "$X/a - 1$", "$Y/a$", xlim=(-half, half),

@@ -32,8 +32,6 @@ _LOW, _MARKERS = 0.95, 16
 _PAD = 2.5 / 72.0
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
-#: Times that panels are measured: texts are folded, and ticks chosen, by the room that they leave.
-_ROUNDS = 2
 
 #: Forms of curves: solutions are lines, finite elements markers; both joined where they are alone.
 LINE, MARKERS, JOINED, DOTS = "line", "markers", "joined", "dots"
@@ -370,17 +368,13 @@ class _Drawn:
             high = self.legend.get_window_extent(axis.figure.canvas.get_renderer()).height
             below = room.below + room.name - high / axis.figure.dpi
             self.legend.set_bbox_to_anchor((0.5, -below / tall), axis.transAxes)
+        style = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
         for curve, line in zip(self.panel.curves, self.lines):
-            _draw_arrows(axis, line, curve.arrows)
-
-
-def _draw_arrows(axis: Axes, line: Line2D, shares: Sequence[float]) -> None:
-    """Draw arrows along a curve, once its panel has its place."""
-    style = {"arrowstyle": "-|>", "color": line.get_color(), "shrinkA": 0, "shrinkB": 0}
-    points = line.get_xydata()
-    for share in shares:
-        at = point_along(axis.transData.transform(points).T, share)
-        axis.annotate("", points[at + 1], points[at], arrowprops=style | {"mutation_scale": 9})
+            points = line.get_xydata()
+            for share in curve.arrows:
+                at = point_along(axis.transData.transform(points).T, share)
+                own = style | {"color": line.get_color()}
+                axis.annotate("", points[at + 1], points[at], arrowprops=own)
 
 
 def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> int:
@@ -505,7 +499,7 @@ def _arrange(
     if size.height:
         tall = min(tall, (size.height - foot) / talls.sum() - 0.5)
     room = np.zeros((rows * columns, len(_Room._fields)))
-    for _ in range(_ROUNDS):
+    for _ in range(2):  # texts are folded, and ticks chosen, by the room that they leave
         wide, tall = max(wide, _LEAST), max(tall, _LEAST)
         room[: len(drawn)] = [one.measure(wide, tall * one.panel.tall, beside) for one in drawn]
         of_columns, of_rows = (_Room(*room.reshape(rows, columns, -1).max(axis=n).T) for n in (0, 1))

@@ -1,14 +1,14 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
 inside; friction along the contact; and stresses of several archives, one over the other."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import stresses
+from galinx.postprocess.quantities import preferred, stresses
 from galinx.postprocess.quantities.layers import ALONG_X
 from galinx.postprocess.quantities.quantity import (
     ALONG,
@@ -23,7 +23,6 @@ from galinx.postprocess.quantities.quantity import (
 from galinx.postprocess.quantities.states import CENTRE, HALF_WIDTH, LOAD, RESULTANT_RATIO, SPEED
 from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFACE_X
 from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
-from galinx.postprocess.tables import preferred
 from galinx.solvers.contact.edges import from_edge, under_punch
 from galinx.solvers.contact.equation import under_punch as half_plane_under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact
@@ -54,10 +53,6 @@ from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 _CURVES, _COLUMNS, _LEAST = 6, 3, 2.0
 #: Positions shown of a stress all along the surface, and of one under the punch alone [a].
 _BESIDE, _UNDER = 2.0, 1.04
-#: Distance over a from an edge within which stresses may run out of the picture.
-_EDGE = 0.09
-#: Columns whose ranges differ more have limits of their own.
-_APART = 4.0
 
 #: Stresses that are shown by default along the surface: what axes call them, and their sign.
 SHOWN = {
@@ -67,8 +62,9 @@ SHOWN = {
 
 
 def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
-    """Room for the regular part of values, (curves, points); singular ends run out of the picture."""
-    regular = values[:, from_edge(X) > _EDGE]
+    """Room for values further than 0.09 a from the edges, (curves, points); singular ends run out of the
+    picture."""
+    regular = values[:, from_edge(X) > 0.09]
     if np.nanmax(np.abs(values)) <= 1.05 * np.nanmax(np.abs(regular)):
         regular = values  # nothing runs out: the ends of the contact are smooth
     low, high = np.nanmin(regular), np.nanmax(regular)
@@ -94,7 +90,7 @@ def position_name(of: Archive, words: str = "position on the surface ") -> str:
     return f"{words}$X/a$" if of.units.dimensionless else f"{words}$X$ ({of.units.position.unit})"
 
 
-def places_of(of: Archive, states: Sequence[int]) -> list[tuple[float, float]]:
+def places_of(of: Archive, states: Iterable[int]) -> list[tuple[float, float]]:
     """Factor and offset that turn positions over a of each state into the figure's units."""
     scale = of.units.position
     each = ((z[i] if np.ndim(z) else z for z in (scale.factor, scale.offset)) for i in states)
@@ -102,13 +98,13 @@ def places_of(of: Archive, states: Sequence[int]) -> list[tuple[float, float]]:
 
 
 @dataclass(frozen=True)
-class Surface:
-    """Stresses along the surface or an interface by name and method; a row is of a state, or of a time.
+class Along:
+    """A stress along the surface or an interface by method; a row is of a state, or of a time.
 
     Attributes:
         X: positions over a, (points,).
-        axes: name of the axis of each stress, by its name.
-        values: numbers in the figure's units by name and by method, (rows, points).
+        axis: name of the stress on its axis.
+        values: numbers in the figure's units by method, (rows, points).
         places: factor and offset that turn X into positions in the figure, of each row.
         position: name of the axis of positions.
         half: positions over a that are shown; 0 for those that the contact needs, where lines
@@ -116,26 +112,15 @@ class Surface:
     """
 
     X: NDArray[np.float64]
-    axes: dict[str, str]
-    values: dict[str, dict[str, NDArray]]
+    axis: str
+    values: dict[str, NDArray]
     places: Sequence[tuple[float, float]]
     position: str = "position on the surface $X/a$"
     half: float = 0.0
 
-    @property
-    def alone(self) -> "Surface":
-        """Stresses by the first method alone."""
-        values = {name: dict([*by_method.items()][:1]) for name, by_method in self.values.items()}
-        return replace(self, values=values)
-
-    @property
-    def methods(self) -> set[str]:
-        """Methods of all stresses."""
-        return {method for values in self.values.values() for method in values}
-
-    def limits(self, name: str, rows: Sequence[int]) -> tuple[float, float]:
-        """Limits of a stress by the first method."""
-        return limits(self.X, next(iter(self.values[name].values()))[list(rows)])
+    def limits(self, rows: Sequence[int]) -> tuple[float, float]:
+        """Limits of some rows by the first method."""
+        return limits(self.X, next(iter(self.values.values()))[list(rows)])
 
     def shown(
         self, looks: Sequence[Look], labels: Sequence[str] = (), width: float = 1.0,
@@ -147,10 +132,9 @@ class Surface:
 
 
 class Shown(NamedTuple):
-    """A row of stresses along the surface in a panel, its look, its name in the legend, and the width of
-    its line [pt]."""
+    """A row of a stress in a panel, its look, its name in the legend, and the width of its line [pt]."""
 
-    surface: Surface
+    along: Along
     row: int
     look: Look
     label: str = ""
@@ -158,67 +142,63 @@ class Shown(NamedTuple):
 
 
 def surface_panel(
-    name: str, shown: Sequence[Shown], ylim: tuple[float, float] | None = None, **options: Any
+    shown: Sequence[Shown], ylim: tuple[float, float] | None = None, **options: Any
 ) -> Panel:
     """Panel of a stress along the surface, as wide as its contacts need; lines break at the edges.
 
     Args:
-        name: of the stress.
         shown: rows, which may be of several archives with the same units.
         ylim: limits of the stress, those of the rows by default.
         options: further attributes of the panel.
     """
     curves, ranges, places, half = [], [], [], _UNDER
-    for k, (surface, row, look, label, width) in enumerate(shown):
-        X, values = surface.X, {method: y[row] for method, y in surface.values[name].items()}
+    for k, (along, row, look, label, width) in enumerate(shown):
+        X, values = along.X, {method: y[row] for method, y in along.values.items()}
         every = np.array(list(values.values()))
-        own = surface.half or (_UNDER if np.isnan(every[:, ~under_punch(X)]).all() else _BESIDE)
+        own = along.half or (_UNDER if np.isnan(every[:, ~under_punch(X)]).all() else _BESIDE)
         half, inside = max(half, own), np.abs(X) <= own
         ranges.append(limits(X, every[:1]))
-        places.append(surface.places[row])
+        places.append(along.places[row])
         a, b = places[-1]
         for curve in both(X, values, look, label, k / len(shown)):
             x, y = X[inside], np.asarray(curve.y)[inside]
             thin = width
-            if curve.form == JOINED and not surface.half:  # markers, and a line that breaks between them
+            if curve.form == JOINED and not along.half:  # markers, and a line that breaks between them
                 at = spaced(x, curve.turn)
                 curves.append(replace(curve, form=MARKERS, label="", x=b + a * x[at], y=y[at]))
                 curve, thin = replace(curve, form=LINE), 0.6 * width
-            if curve.form == LINE and not surface.half:
+            if curve.form == LINE and not along.half:
                 x, y = broken(X, np.asarray(curve.y))
             curves.append(replace(curve, x=b + a * x, y=y, width=thin))
     low, high = np.array(ranges).T
     ends = sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
     same = half == _BESIDE and np.allclose(ends, ends[0], rtol=1e-9)
     panel = Panel(
-        shown[0].surface.position, shown[0].surface.axes[name], curves=curves,
+        shown[0].along.position, shown[0].along.axis, curves=curves,
         xlim=(min(b - half * a for a, b in places), max(b + half * a for a, b in places)),
         ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
-        bands=ends if shown[0].surface.half else ends[:1] * same,
+        bands=ends if shown[0].along.half else ends[:1] * same,
     )  # fmt: skip
     return replace(panel, **options)
 
 
-def surface_panels(
-    surface: Surface, name: str, states: Sequence[int], label: str = "", **options: Any
-) -> list[Panel]:
+def surface_panels(along: Along, states: Sequence[int], label: str = "", **options: Any) -> list[Panel]:
     """A panel for each of some states, all with the same limits; arguments as for surface_panel."""
-    ylim, (look,) = surface.limits(name, states), looks(1)
-    return [surface_panel(name, [Shown(surface, i, look, label)], ylim, **options) for i in states]
+    ylim, (look,) = along.limits(states), looks(1)
+    return [surface_panel([Shown(along, i, look, label)], ylim, **options) for i in states]
 
 
-def stresses_along(of: Archive) -> Surface:
-    """Stresses of an archive's states along the surface, the chosen ones or those shown by default."""
-    available = of.by_method(STATE, POINT)
-    axes, values = {}, {}
+def stresses_along(of: Archive) -> dict[str, Along]:
+    """Stresses along the surface by name, of all states: the chosen ones or those shown by default."""
+    available, stressed = of.by_method(STATE, POINT), {}
+    X, places, position = of.data[SURFACE_X.path], places_of(of, of.labels.all), position_name(of)
     for name in of.choice.quantities or [name for name in SHOWN if name in available]:
         rows = available[require_one_of("quantity", name, available)]
         first = next(iter(rows.values()))
         words, sign = SHOWN.get(name, (short_name(first), 1.0))
-        axes[name] = named(words, of.scaled(first).unit)
-        values[name] = {each: sign * of.values(row) for each, row in rows.items()}
-    places = places_of(of, range(len(of.labels.all)))
-    return Surface(of.data[SURFACE_X.path], axes, values, places, position_name(of))
+        values = {each: sign * of.values(row) for each, row in rows.items()}
+        stressed[name] = Along(X, named(words, of.scaled(first).unit), values, places, position)
+    return stressed
 
 
 #: Ends of captions by the ends of the contact.
@@ -237,22 +217,22 @@ def surface(of: Archive) -> Drawing:
     groups = _groups(labels, states, choice.states, width)
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
-    for n, name in enumerate(stressed.values):
-        # The same limits for all columns, unless a few would hardly be visible then.
-        ranges = [stressed.limits(name, numbers) for _, numbers, _ in groups]
+    for n, (name, along) in enumerate(stressed.items()):
+        # The same limits for all columns, unless some would fill less than a quarter of them.
+        ranges = [along.limits(numbers) for _, numbers, _ in groups]
         low, high = min(y[0] for y in ranges), max(y[1] for y in ranges)
-        alike = high - low <= _APART * min(y[1] - y[0] for y in ranges)
+        alike = high - low <= 4.0 * min(y[1] - y[0] for y in ranges)
         for column, (title, numbers, names) in enumerate(groups):
             called = [labels.label(i, names) if len(every) > 1 else "" for i in numbers]
-            shown = stressed.shown(labels.looks(numbers, names), called, rows=numbers)
+            shown = along.shown(labels.looks(numbers, names), called, rows=numbers)
             ylim = (low, high) if alike else ranges[column]
-            panel = surface_panel(name, shown, ylim, title="" if n else title)
+            panel = surface_panel(shown, ylim, title="" if n else title)
             panel = choice.measured.over_stress(panel, name, of.units) if choice.measured else panel
             panels.append(replace(panel, y=None) if column and alike else panel)
     columns = len(groups)
-    if columns == 1 and width > 4.5 and len(stressed.values) > 1:  # side by side
+    if columns == 1 and width > 4.5 and len(stressed) > 1:  # side by side
         columns = 2
-    figure = render(panels, choice.size, columns, explained(stressed.methods))
+    figure = render(panels, choice.size, columns, explained(*(each.values for each in stressed.values())))
     caption = (
         "Stresses along the surface, under the punch (grey) and beside it" + _ENDS[of.scene.body.ends]
     )
@@ -286,10 +266,6 @@ def _groups(
     return groups
 
 
-#: States of each archive that can be told apart.
-_COMPARED = 3
-
-
 def compared(
     archives: Sequence[Archive], labels: Sequence[str], pairs: Sequence[Sequence[int]],
     titles: Sequence[str],
@@ -310,26 +286,26 @@ def compared(
             raise BadInput(
                 f'{label} holds no stresses along the surface; add "surface" to output.quantities'
             )
-    chosen, styles = spread(range(len(pairs)), _COMPARED), looks(len(archives))
-    surfaces, several = [stresses_along(of) for of in archives], len(chosen) > 1
+    chosen, styles = spread(range(len(pairs)), 3), looks(len(archives))  # states that can be told apart
+    of_all, several = [stresses_along(of) for of in archives], len(chosen) > 1
     panels = []
-    for name in dict.fromkeys(name for surface in surfaces for name in surface.values):
+    for name in dict.fromkeys(name for stressed in of_all for name in stressed):
         shown = [
             Shown(
-                surface, pairs[k][n],
+                stressed[name], pairs[k][n],
                 look._replace(line=LINES[order % len(LINES)]) if several else look,
                 f"{label}, {titles[k]}" if several else label,
                 1.0 if n else 2.0,  # the first shows below others that are the same
             )
-            for n, (surface, look, label) in enumerate(zip(surfaces, styles, labels))
-            if name in surface.values
+            for n, (stressed, look, label) in enumerate(zip(of_all, styles, labels))
+            if name in stressed
             for order, k in enumerate(chosen)
         ]  # fmt: skip
-        panel, measured = surface_panel(name, shown), archives[0].choice.measured
+        panel, measured = surface_panel(shown), archives[0].choice.measured
         panels.append(measured.over_stress(panel, name, archives[0].units) if measured else panel)
-    methods = {method for surface in surfaces for method in surface.methods}
+    notes = explained(*(along.values for stressed in of_all for along in stressed.values()))
     try:
-        figure = render(panels, None, min(2, len(panels)), explained(methods))
+        figure = render(panels, None, min(2, len(panels)), notes)
     except TooSmall as error:
         raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
     left_out = fewer(len(chosen), len(pairs), "pairs of states", "; choose by --states")
@@ -368,33 +344,26 @@ def friction_along(of: Archive) -> Drawing:
     one = np.array([_of_one_friction(of, i, float(resultant[i]), X) for i in states])
     uniform = scale.of(one, states)
     pressures = {method: -of.values(row)[states][:, under] for method, row in rows.items()}
-    values = {
-        "f": {CLOSED_FORM: of.scene.friction.stress_ratio * data[RATIO_ALONG.path][states][:, under]},
-        "sigma_YY": pressures,
-        # At a free end one of the two ends before the other.
-        "over uniform": {
-            method: np.divide(p, uniform, out=np.full_like(p, np.nan), where=uniform > 0.0)
-            for method, p in pressures.items()
-        },
+    g = of.scene.friction.stress_ratio * data[RATIO_ALONG.path][states][:, under]
+    over = {  # at a free end one of the two ends before the other
+        method: np.divide(p, uniform, out=np.full_like(p, np.nan), where=uniform > 0.0)
+        for method, p in pressures.items()
     }
-    axes = {
-        "f": "friction coefficient $f$",
-        "sigma_YY": named(SHOWN["sigma_YY"][0], scale.unit),
-        "over uniform": "pressure over that of uniform $f$",
-    }
-    places, position = places_of(of, states), position_name(of, "position ")
+    where = places_of(of, states), position_name(of, "position ")
     styles, dotted = labels.looks(states, names), LINES[3]
-    own = Surface(X, axes, values, places, position)
-    beside = Surface(X, axes, {"sigma_YY": {CLOSED_FORM: uniform}}, places, position)
-    shown = own.shown(styles, [labels.label(i, names) for i in states])
+    f = Along(X, "friction coefficient $f$", {CLOSED_FORM: g}, *where)
+    pressure = Along(X, named(SHOWN["sigma_YY"][0], scale.unit), pressures, *where)
+    beside = replace(pressure, values={CLOSED_FORM: uniform})
     shown_beside = beside.shown([look._replace(line=dotted) for look in styles], width=0.7)
+    ratio = Along(X, "pressure over that of uniform $f$", over, *where)
     panels = [
-        replace(surface_panel("f", shown), ylim=None),
-        surface_panel("sigma_YY", [*own.shown(styles), *shown_beside]),
-        surface_panel("over uniform", own.shown(styles), at_y=(1.0,)),
+        surface_panel(f.shown(styles, [labels.label(i, names) for i in states])),
+        surface_panel([*pressure.shown(styles), *shown_beside]),
+        surface_panel(ratio.shown(styles), at_y=(1.0,)),
     ]
+    panels[0] = replace(panels[0], ylim=None)
     notes = [
-        *explained(set(pressures)),
+        *explained(pressures),
         note(Look(GREY, dotted, ""), "dotted: uniform $f$ of the same force"),
     ]
     figure = render(panels, of.size, 0 if of.size else 3, notes, 0.8)
@@ -443,7 +412,7 @@ def interfaces(of: Archive) -> Drawing:
         of.by_method(STATE, INTERFACE, ALONG), position_name(of, "position along the interface ")
     )  # fmt: skip
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
-    X, places = of.data[ALONG_X.path], places_of(of, range(len(labels.all)))
+    X, places = of.data[ALONG_X.path], places_of(of, labels.all)
     panels: list[Panel] = []
     notes, methods = list[Any](), set[str]()
     for of_sides, words in _AT_INTERFACES.items():
@@ -458,12 +427,12 @@ def interfaces(of: Archive) -> Drawing:
             half = max(_OVER_A, _OVER_DEPTH * float(over_a[i]))
             for (side, line), by_method in zip(_SIDES.items(), values):
                 own = {method: y[:, i] for method, y in by_method.items()}
-                along = Surface(X, {"": axis}, {"": own}, places, position, half)
+                along = Along(X, axis, own, places, position, half)
                 on_side = [look._replace(line=line) for look in styles]
                 drawn += along.shown(on_side, called if side == "above" else (), rows=numbers)
             titled = len(panels) < len(columns) and (len(over_a) > 1 or not panels)
             title = titles[i] if titled else ""
-            panels.append(replace(surface_panel("", drawn, title=title), ylim=None))
+            panels.append(replace(surface_panel(drawn, title=title), ylim=None))
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
     caption = (
         "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
@@ -491,9 +460,7 @@ _MAPS = {
     "sigma_XY": r"shear $\sigma_{XY}$",
     "max_shear": r"largest shear $\tau_{\mathrm{max}}$",
 }
-#: Share of values that have colours of their own: those at the edges of the punch would leave none for
-#: the rest; and the clipped ends of a colour bar, by whether the least and the largest value are clipped.
-_SHARE = 0.985
+#: Clipped ends of a colour bar, by whether the least and the largest value are clipped.
 _CLIPPED = {(True, True): "both", (False, True): "max", (True, False): "min", (False, False): "neither"}
 #: What names of quantities in an elastic punch begin with, and the components of stress.
 _PUNCH, _COMPONENTS = "punch_", ("sigma_XX", "sigma_YY", "sigma_XY")
@@ -537,20 +504,22 @@ class Fields:
         """A stress of states, (states, rows, columns), and the largest with its own colour."""
         values = self._values(name, method, states)
         assert values is not None
-        return values, float(np.quantile(np.abs(values), _SHARE)) or 1.0
+        # The largest values, at the edges of the punch, would leave no colours for the rest.
+        return values, float(np.quantile(np.abs(values), 0.985)) or 1.0
 
     def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
         """A stress of a state in an elastic punch at -Y, and its strength; None without."""
         values = self._values(name, method, [state], _PUNCH)
-        strength = of_state(self._of.scene, state)[0].solid.punch_strength if values is not None else None
-        return None if values is None else (values[0], self._level(name, strength))
+        if values is None:
+            return None
+        return values[0], self._level(name, of_state(self._of.scene, state)[0].solid.punch_strength)
 
     def _level(self, name: str, strength: float | None) -> float:
         """Yield strength [Pa] in the figure's units where a map shows von Mises stresses, 0 for none."""
-        of = self._of
-        if name != "von_mises" or not strength or of.scene.layers or of.units.stress.unit == "N/(2a)":
+        of, units = self._of, self._of.units
+        if name != "von_mises" or not strength or of.scene.layers or units.dimensionless:
             return 0.0
-        return strength * of.units.of_pascals
+        return strength * float(np.max(units.stress.factor * 2.0 * units.half_width / units.load))
 
     def label(self, name: str) -> str:
         """Label of the colour bar of a quantity."""

@@ -256,14 +256,13 @@ def columns_of(of: Archive, method: str | None = None) -> dict[str, Column]:
             "over the half-width" in first.about and of.units.dimensionless
         )
         columns[name] = Column(label, "" if scaled.unit in ("1", "none") else scaled.unit, values)
-    shear = {m: rows[4:8] for m, rows in layers.INTERFACE_EXTREMES.items() if of.has(rows[4], rows[6])}
+    stress = of.units.stress
+    shear = {
+        m: stress.of(layers.largest_shear(of.data, m)[0]).max(axis=1)
+        for m, rows in layers.INTERFACE_EXTREMES.items() if of.has(rows[4])
+    }  # fmt: skip
     if shear:
-        unit = of.scaled(next(iter(shear.values()))[0]).unit
-        values = {
-            m: np.nanmax([np.abs(of.values(row)).max(axis=1) for row in (rows[0], rows[2])], axis=0)
-            for m, rows in shear.items()
-        }
-        columns[_INTERFACE_SHEAR] = Column("largest shear at an interface", unit, values)
+        columns[_INTERFACE_SHEAR] = Column("largest shear at an interface", stress.unit, shear)
     return columns
 
 

@@ -31,8 +31,6 @@ from .style import COLUMN, GREY, Look, looks
 
 #: Wavenumbers times the thickness of all layers; fewer where a layer is graded.
 _kH, _FEWER = np.geomspace(0.03, 100.0, 61), 4
-#: Relative accuracy of speeds.
-_ACCURACY = 1e-7
 
 
 @dataclass(frozen=True)
@@ -87,7 +85,7 @@ def curve(scene: Scene) -> Dispersion:
     def stack(c: float) -> Any:
         return solid.response(c).stack(H, 1e-8)
 
-    c = dispersion(stack, 1.0, kH, _ACCURACY)
+    c = dispersion(stack, 1.0, kH, accuracy=1e-7)
     ends = (solid.substrate.limit() * solid.substrate.c_s, solid.surface.limit() * solid.c_s)
     return Dispersion(kH, 2.0 * np.pi * H / kH, c * solid.c_s, solid.limit() * solid.c_s, ends)
 
@@ -124,8 +122,6 @@ _LABELS = (
     r"stiffness $\mathrm{Re}\,(\hat N/\hat v_0)/2\mu$",
     r"damping $\mathrm{Im}\,(\hat N/\hat v_0)/2\mu\;/\;(\omega a/c_s)$",
 )
-#: Highest frequency by default, over c_s/a.
-_USUAL = 10.0
 
 
 @dataclass(frozen=True)
@@ -185,7 +181,7 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
     if max(c) >= limit:
         raise BadInput(f"response: c = {max(c):g} is not below the Rayleigh speed {limit:.6g} (over c_s)")
     if last is None:
-        last = min(_USUAL, *(highest(solid.response(speed), limit) for speed in c))
+        last = min(10.0, *(highest(solid.response(speed), limit) for speed in c))
     if not first < last:
         raise BadInput(
             f"response: found frequencies from {first:g} to {last:g} c_s/a, expected them to grow"

@@ -15,7 +15,6 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.postprocess.compare import FINITE as FINITE_RULE
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
@@ -30,6 +29,7 @@ from galinx.postprocess.quantities.quantity import (
     SWEPT,
 )
 from galinx.postprocess.quantities.runs import SLIDER
+from galinx.postprocess.quantities.states import RATIO
 from galinx.solvers.contact import INTENSITIES, YIELD
 from galinx.solvers.contact.fem_plan import (
     BESIDES,
@@ -176,16 +176,19 @@ class Plan:
             datasets[layers.ALONG_X.path] = self.places.along
         return datasets
 
-    @property
+    @cached_property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which computed quantities are compared.
+        """Names of the rules by which computed quantities are compared: those that have all they need.
 
         A prescribed pressure is compared with its own exact solution: it need not carry the load.
         """
-        names = {FINITE_RULE, *(rule for quantity in self.quantities for rule in quantity.compared)}
+        known = {row.path for row in self.quantities} | {RATIO.path, *self.positions}
         own = SOLVED in self.body.lacks
         in_time = self.starts.rules if self.starts else frozenset()
-        return in_time | frozenset(name for name in names if RULES[name].own_pressure or not own)
+        return in_time | {
+            name for name, rule in RULES.items()
+            if {row.path for row in rule.needs} <= known and (rule.own_pressure or not own)
+        }  # fmt: skip
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
         """Shape of a quantity of one state."""
@@ -396,7 +399,7 @@ def lines(plan: Plan) -> list[str]:
 
 def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
     loads = plan.tasks.order.loads  # contacts that are similar under all of them are solved once
-    solved = plan.states // len(loads) * len(plan.body.dissimilar(loads))
+    solved = plan.states // len(loads) * (1 if plan.body.alike else len(loads))
     if fem.mode == OWN_MESHES:
         return [
             f"finite elements: {solved} states, each on a confocal mesh of its own, graded "

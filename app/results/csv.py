@@ -1,7 +1,7 @@
 """Archives as comma-separated values: one tidy table, read and written some rows at a time."""
 
 import csv
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.quantities import Quantity, over_time, runs, table
 from galinx.postprocess.quantities.quantity import ALONG, FRICTION_ALONE, INSIDE, INTERFACE, POINT, STATE
-from galinx.postprocess.quantities.states import FRICTION, LOAD
-from galinx.postprocess.tables import parameters, state_columns
+from galinx.postprocess.quantities.states import FRICTION, LOAD, MOTION, POSITION, SPEED
+from galinx.postprocess.tables import parameters, state_columns, states_of_sliders
 from galinx.postprocess.units import Units
 from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 
@@ -54,7 +54,7 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
         BadInput: it holds no such table.
     """
-    over, word = TABLES[which]
+    (over, word), quantities = TABLES[which], table()
     with reader.opened(path) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
         units = Units(scene.body, archive.data, dimensionless)
@@ -64,17 +64,27 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 f"{path} holds nothing for --{which}; a scene asks for it by "
                 f'output.quantities = ["{word}"]'
             )
-        sizes = [_size(archive, name) for name in over]
+        lengths = {STATE: len(archive.data[FRICTION.path])}
+        for name, values in archive.data.items():
+            lengths = dict(zip(quantities[name].over, np.shape(values))) | lengths
+        sizes = [lengths[name] for name in over]
         large = [row.path for row in rows if STATE in row.over] if word else []
         together = max(1, _TOGETHER // max(1, int(np.prod(sizes[1:]))))
         for start in range(0, sizes[0], together):
             block = slice(start, min(start + together, sizes[0]))
             shape = block.stop - block.start, *sizes[1:]
-            columns = _numbers(over, shape, start)
+            rows_, *others = np.indices(shape, sparse=True)
+            columns: list[_Column] = [  # numbers of interfaces are from 1, others from 0
+                (_NUMBERED[name], at + (name == INTERFACE))
+                for name, at in zip(over, (rows_ + start, *others)) if name in _NUMBERED
+            ]  # fmt: skip
             if word:
                 data = {**archive.data, **(archive.rows(block, large) if large else {})}
                 columns += _parameters(archive.data, units, block, len(over)) if large else []
                 columns += _over(data, rows, units, block, over)
+                if over[0] == runs.LAW:
+                    own = states_of_sliders(archive.data)[block]
+                    columns += _parameters(archive.data, units, own, len(over), (SPEED, MOTION, POSITION))
             else:
                 columns += [(head, values[block]) for head, values in _of_states(archive.data, units)]
             if start == 0:
@@ -85,19 +95,14 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 yield _text(zip(*(_cells(values[part], dimensionless) for values in whole)))
 
 
-def _numbers(over: tuple[str, ...], shape: tuple[int, ...], start: int) -> list[_Column]:
-    """Columns of the numbers of parts, interfaces from 1, others from 0, the outermost from start."""
-    first, *others = np.indices(shape, sparse=True)
-    numbers = zip(over, (first + start, *others))
-    return [(_NUMBERED[name], at + (name == INTERFACE)) for name, at in numbers if name in _NUMBERED]
-
-
-def _parameters(data: dict[str, Any], units: Units, block: slice, axes: int) -> list[_Column]:
-    """Columns that tell states apart, and their load."""
+def _parameters(
+    data: dict[str, Any], units: Units, block: Any, axes: int, without: Collection[Quantity] = ()
+) -> list[_Column]:
+    """Columns that tell some states apart, and their load."""
     columns = [
         (scaled.head, scaled.of(data[path]))
         for path, row in parameters(data).items()
-        if path != LOAD.path and (scaled := units(row))
+        if path != LOAD.path and row not in without and (scaled := units(row))
     ]
     load = units.scale(LOAD.unit)
     columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))
@@ -159,17 +164,6 @@ def _over(
             held = scaled.of(held, block)
         columns.append((scaled.head, held))
     return columns
-
-
-def _size(archive: reader.Archive, name: str) -> int:
-    """Length of a dimension of an archive's datasets."""
-    if name == STATE:
-        return len(archive.data[FRICTION.path])
-    rows = table()
-    for path, values in archive.data.items():
-        if path in rows and name in rows[path].over:
-            return int(np.shape(values)[rows[path].over.index(name)])
-    raise AssertionError(name)
 
 
 def _cells(values: NDArray, exact: bool) -> list[Any]:

@@ -265,27 +265,6 @@ ABOUT = {
 #: Quantity by which viewers colour a field by default.
 COLOURED = "von_mises_for_colours"
 
-#: Stress over N/(2a) beyond which that quantity has one colour.
-_BRIGHT = 2.0
-
-#: Depth over a above which a point counts as on the surface, where the potentials do not hold.
-_SURFACE = 1e-14
-
-
-@dataclass(frozen=True)
-class StateField:
-    """Field of a state of a scene on small quadrilaterals, in SI.
-
-    Attributes:
-        points: positions [m], (n, 2).
-        quads: points of each quadrilateral counterclockwise, (m, 4); a triangle's last is doubled.
-        data: quantities of ``ABOUT`` at the points, (n,), or (n, 3) for the displacement.
-    """
-
-    points: NDArray[np.float64]
-    quads: NDArray[np.int64]
-    data: dict[str, NDArray[np.float64]]
-
 
 def write_fields(
     scene: Scene,
@@ -346,8 +325,14 @@ def write_fields(
     vtkhdf.write(path, map(step, states), ABOUT, COLOURED, series=len(numbers) > 1)
 
 
-def in_si(solved: Solved, sampled: Any) -> StateField:
-    """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa."""
+def in_si(solved: Solved, sampled: Any) -> Any:
+    """Field of a state in SI, for the scene's load per depth: lengths in m, stresses in Pa.
+
+    Returns:
+        A :class:`galinx.postprocess.hdf5.vtkhdf.Piece` with the quantities of ``ABOUT``.
+    """
+    from galinx.postprocess.hdf5.vtkhdf import Piece
+
     scene, task = solved.scene, solved.task
     body = task.body
     stresses = task.response.stresses(sampled.gradient)
@@ -356,7 +341,7 @@ def in_si(solved: Solved, sampled: Any) -> StateField:
     mises = von_mises(XX, YY, XY, ZZ)
     displacement, points = body.displacement * sampled.displacement, sampled.points
     X, Y = points.T
-    on = -_SURFACE * np.maximum(1.0, np.abs(X)) <= Y
+    on = -1e-14 * np.maximum(1.0, np.abs(X)) <= Y  # on the surface the potentials do not hold
     # Pressure under the punch, 0 beside it, NaN at its edges and inside.
     under, pressure = on & under_punch(X), np.full(len(points), np.nan)
     pressure[on & (np.abs(X) > 1.0)] = 0.0
@@ -368,7 +353,7 @@ def in_si(solved: Solved, sampled: Any) -> StateField:
         "sigma_XY": XY,
         "sigma_ZZ": ZZ,
         "von_mises": mises,
-        COLOURED: np.minimum(mises, _BRIGHT * body.stress),
+        COLOURED: np.minimum(mises, 2.0 * body.stress),  # N/a
         "maximum_shear": maximum_shear(XX, YY, XY),
         "contact_pressure": body.stress * pressure,
     }
@@ -380,4 +365,4 @@ def in_si(solved: Solved, sampled: Any) -> StateField:
         error = np.full(len(points), np.nan)
         error[~on] = np.abs(stresses[:, ~on] - exact).max(axis=0)
         data["sigma_error"] = body.stress * error
-    return StateField(body.half_width * points, sampled.quads, data)
+    return Piece(body.half_width * points, sampled.quads, data)

@@ -132,8 +132,6 @@ def read(path: Path) -> Table:
 
 #: Name that stands for every law.
 ALL = "all"
-#: Share of the work of friction from which on it drives the motion: less is noise.
-_DRIVES = 0.1
 
 
 @dataclass(frozen=True)
@@ -275,7 +273,7 @@ def fit(
     for table in tables:  # friction takes work from the motion: it is positive forward
         X, f = table.measured.X, table.measured.f
         work = np.diff(X) * 0.5 * (f[1:] + f[:-1])
-        if np.nansum(work) < -_DRIVES * np.nansum(np.abs(work)):
+        if np.nansum(work) < -0.1 * np.nansum(np.abs(work)):  # less is noise
             raise BadInput(
                 f"{table.name}: found friction that drives the motion, f mostly negative where X "
                 "grows, expected it positive there; change the sign of f or of X"
@@ -405,7 +403,6 @@ def _section(one: Fit) -> str:
             for name, error in one.deviations.items()
             if name.partition("[")[0] == key
         ]
-        unit = "in SI" if parameter.columns else unit
         comment = ", ".join(filter(None, [unit, *(said or ["given"])]))
         lines.append(f"{key} = {json.dumps(text)}  # {comment}")
     return "\n".join(lines) + "\n"

@@ -107,8 +107,6 @@ _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "mar
 _SYMBOLS = {"o": "circle-open", "s": "square-open", "^": "triangle-up-open", "D": "diamond-open",
             "x": "x", "_": "line-ew-open", ".": "circle"}  # fmt: skip
 _DASHES = {"-": "solid", "--": "dash", ":": "dot", "none": "solid"}
-#: Characters of a line along a chart's height.
-_LINE = 34
 
 
 def chart(panel: Panel) -> dict[str, Any]:
@@ -118,8 +116,8 @@ def chart(panel: Panel) -> dict[str, Any]:
     layout: dict[str, Any] = {
         "title": {"text": _label(panel.title)} if panel.title else {},
         "xaxis": _axis(_label(panel.x or ""), panel.xlim, "x" in panel.log),
-        # In lines that are no longer than a chart is high.
-        "yaxis": _axis(_label(folded((panel.y or "") + unit, _LINE)), panel.ylim, "y" in panel.log),
+        # In lines of 34 letters, which are no longer than a chart is high.
+        "yaxis": _axis(_label(folded((panel.y or "") + unit, 34)), panel.ylim, "y" in panel.log),
         "shapes": [_shape("y", "rect", "x", *band) for band in panel.bands]
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],
@@ -205,19 +203,19 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     labels, below = of.labels, map_names(of)
     if not surface_names(of) and not below:
         return None
-    surface = stresses_along(of) if surface_names(of) else None
+    surface = stresses_along(of) if surface_names(of) else {}
     fields = Fields(of) if below else None
-    sizes = [4 * len(surface.X) if surface else 1, fields.X.size * fields.Y.size if fields else 1]
+    inside = fields.X.size * fields.Y.size if fields else 1
+    sizes = [inside, *(4 * len(along.X) for along in surface.values())]
     shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
     varied = labels.varied()
     made: dict[str, Any] = {
         "states": [f"state {i}{': ' * bool(varied)}{labels.text(i, varied)}" for i in shown],
         "of": len(labels.all), "surface": [], "maps": [],
     }  # fmt: skip
-    for name in surface.values if surface else ():
-        assert surface
-        label = METHODS[min(surface.values[name], key=lambda method: method == FEM)]  # that of the line
-        charts = [chart(panel) for panel in surface_panels(surface, name, shown, label)]
+    for along in surface.values():
+        label = METHODS[min(along.values, key=lambda method: method == FEM)]  # that of the line
+        charts = [chart(panel) for panel in surface_panels(along, shown, label)]
         for trace in (trace for drawn in charts for trace in drawn["data"]):
             trace["showlegend"] = bool(trace["name"])
         made["surface"].append(charts)

@@ -291,13 +291,14 @@ def compute(
         with clock("slider"):
             progress.say("slider")
             put(slide(scene, lambda n, of: progress.done(n, of, "sliders")))
-    judge = Judge(scene, plan.rules)
+    rules = frozenset[str]().union(*(each.rules for each in plans))
+    judge = Judge(scene, rules)
     if plan.starts:
         progress.say("starts from rest")
         motions = solve_motions(plan.starts, clock, partial(progress.done, what="starts"))
         put(motions)
         if ranks.is_root():
-            judge.see(comparisons(motions, plan.body.load, plan.rules))
+            judge.see(comparisons(motions, plan.body.load, rules))
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         _solve(sink, judge, progress, journal, plans, states, clock)
@@ -312,7 +313,7 @@ def compute(
     verdict, reasons = judge.verdict()
     warnings = [*dict.fromkeys(chain(*(each.warnings for each in plans))), *judge.validity.words()]
     texts = {
-        "versions": libraries(), "rules": sorted(plan.rules), "verdict_reasons": reasons,
+        "versions": libraries(), "rules": sorted(rules), "verdict_reasons": reasons,
         "comparisons": judge.worst, "warnings": warnings,
     }  # fmt: skip
     return {

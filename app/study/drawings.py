@@ -1,6 +1,6 @@
 """The study's figures: which states they show, and how they are drawn."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -22,7 +22,7 @@ from ..figures.friction import Loops, loop_panel, loops_figure
 from ..figures.numerics import mesh_figure
 from ..figures.render import MARKERS, Curve, Panel, lines_and_markers, render
 from ..figures.sketches import problem_figure, procedure_figure
-from ..figures.stresses import Shown, Surface, broken, limits, surface_panel
+from ..figures.stresses import Along, Shown, broken, limits, surface_panel
 from ..figures.style import COLOURS, GREY, LINES, Look, looks
 from ..plan.plan import make_plan
 from ..plan.states import enumerate_states
@@ -215,7 +215,7 @@ def _archive(scene: Scene) -> Archive:
 
 def _laws(scene: Scene, X: NDArray) -> Drawing:
     """Contact stresses of several friction laws, by the closed form."""
-    loops, dots, curves = [], [], []
+    loops, dots, curves = [], [], {name: list[Shown]() for name in _AXES}
     motion = replace(scene.motion, c=(SLOW, FAST), X_over_L=(_AT,))
     for (name, (called, values)), look in zip(LAWS_SHOWN.items(), looks(len(LAWS_SHOWN))):
         given = {key: (field.default,) for key, field in fields(LAWS[name]).items()} | values
@@ -228,7 +228,8 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         slow, fast = (
             [[np.where(under_punch(X), punch.σ_YY(X), np.nan)], [punch.σ_XX(X)]] for punch in punches
         )
-        curves.append(Shown(_surface(X, slow, fast), 0, look))
+        for name_, along in _stresses(X, slow, fast).items():
+            curves[name_] += along.shown([look])
         loops += [replace(loop, label=called) for loop in (Loops(archive).of(at[0], []),) if loop]
         place = np.array([_AT]), np.array([states.columns["f"][at[0]]])
         dots.append(Curve(*place, look, "", MARKERS))
@@ -265,25 +266,24 @@ _AXES = {
 _LEAST, _FLAT = 1e-15, 0.5
 
 
-def _surface(X: NDArray, lines: Any, markers: Any = None) -> Surface:
+def _stresses(X: NDArray, lines: Any, markers: Any = None) -> dict[str, Along]:
     """Stresses drawn as lines, and as markers: σ_YY and σ_XX of each curve, (2, curves, points)."""
-    drawn = {CLOSED_FORM: lines} | ({} if markers is None else {FEM: markers})
-    values = {
-        name: {as_: np.asarray(both[n]) for as_, both in drawn.items()} for n, name in enumerate(_AXES)
+    drawn, places = {CLOSED_FORM: lines} | ({} if markers is None else {FEM: markers}), [(1.0, 0.0)]
+    return {
+        name: Along(X, axis, {by: np.asarray(y[n]) for by, y in drawn.items()}, places * len(lines[0]))
+        for n, (name, axis) in enumerate(_AXES.items())
     }
-    return Surface(X, _AXES, values, [(1.0, 0.0)] * len(lines[0]))
 
 
-def _stress_panels(rows: Sequence[tuple[str, list[Shown]]]) -> list[Panel]:
+def _stress_panels(rows: Sequence[tuple[str, Mapping[str, list[Shown]]]]) -> list[Panel]:
     """Panels of both stresses, row by row with title and curves, between limits that all rows share."""
     ylim = {}
     for name in _AXES:
-        values = [
-            y[row] for _, of in rows for surface, row, *_ in of for y in surface.values[name].values()
-        ]
-        ylim[name] = limits(rows[0][1][0].surface.X, np.array(values))
+        every = [one for _, curves in rows for one in curves[name]]
+        values = [y[one.row] for one in every for y in one.along.values.values()]
+        ylim[name] = limits(every[0].along.X, np.array(values))
     return [
-        surface_panel(name, shown, ylim[name], title=title) for title, shown in rows for name in _AXES
+        surface_panel(curves[name], ylim[name], title=title) for title, curves in rows for name in _AXES
     ]
 
 
@@ -293,7 +293,7 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
     single = len(figure.speeds) == 1
     marked = FEM if single else CLOSED_FORM
     solved = {method: PRESSURE[method].path in data for method in (CLOSED_FORM, FEM)}
-    rows: list[tuple[str, list[Shown]]] = []
+    rows: list[tuple[str, dict[str, list[Shown]]]] = []
     states: list[list[int]] = []
     for value in figure.rows:
         at = figure.at | {figure.row: value}
@@ -303,16 +303,15 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
         ]
         states += pairs
         first, last = [pair[0] for pair in pairs], [pair[-1] for pair in pairs]
-        markers = _values(data, marked, last) if solved[marked] else None
-        surface = _surface(X, _values(data, CLOSED_FORM, first), markers)
-        curves = surface.shown(
-            labels.looks(first, [figure.curve]), [labels.label(i, [figure.curve]) for i in first]
-        )
+        markers, by = _values(data, marked, last) if solved[marked] else None, [figure.curve]
+        styles, called = labels.looks(first, by), [labels.label(i, by) for i in first]
+        stressed = _stresses(X, _values(data, CLOSED_FORM, first), markers)
+        curves = {name: along.shown(styles, called) for name, along in stressed.items()}
         if name == "fig7":
             travelled = _state(labels, at | {STROKE: BM1, C: SLOW, PLACE: 1.0 - value})
-            surface = _surface(X, _values(data, CLOSED_FORM, [travelled]))
             label = "BM1 (SS), $X/L$ travelled since its turn"
-            curves.append(Shown(surface, 0, Look(COLOURS[6], LINES[3], ""), label, 0.8))
+            for name_, along in _stresses(X, _values(data, CLOSED_FORM, [travelled])).items():
+                curves[name_].append(Shown(along, 0, Look(COLOURS[6], LINES[3], ""), label, 0.8))
         rows.append((labels.label(first[0], [figure.row]), curves))
     panels = _stress_panels(rows)
     panels = [*(replace(panel, x=None) for panel in panels[:-2]), *panels[-2:]]

@@ -299,11 +299,11 @@ class Archive:
         """Every dataset by path, large ones included."""
         return {name: self._read(name) if large(name) else self.data[name] for name in self.names}
 
-    def rows(self, rows: slice, names: Iterable[str] | None = None) -> dict[str, Any]:
+    def rows(self, rows: slice | NDArray[np.int64], names: Iterable[str] | None = None) -> dict[str, Any]:
         """Datasets of some states by path, and positions that all states share.
 
         Args:
-            rows: numbers of the states.
+            rows: numbers of the states, growing.
             names: of the datasets; all of states if not given.
         """
         data, quantities = {}, table()
@@ -314,7 +314,7 @@ class Archive:
                 data[name] = self.data[name][rows if STATE in quantities[name].over else slice(None)]
         return data
 
-    def _read(self, name: str, rows: slice = slice(None)) -> Any:
+    def _read(self, name: str, rows: slice | NDArray[np.int64] = slice(None)) -> Any:
         with _reading(self._path):
             dataset = self._file[name]
             selection = rows if dataset.shape else ()

@@ -7,7 +7,7 @@ when all of it is on the disk.
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import h5py
 import numpy as np
@@ -23,14 +23,13 @@ from .archive import PatientFile
 _ALONE, _SERIES = (1, 0), (2, 0)
 #: VTK's numbers of triangles and quadrilaterals.
 _TRIANGLE, _QUAD = 5, 9
-#: Rows of a dataset that lie together on the disk, at most.
-_TOGETHER = 2**16
 #: Sizes of a grid, as VTK names them, and where in a series a grid's rows begin.
 _SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 _OFFSETS = ("PointOffsets", "CellOffsets", "ConnectivityIdOffsets")
 
 
-class Piece(Protocol):
+@dataclass(frozen=True)
+class Piece:
     """A part of an unstructured grid of quadrilaterals.
 
     Attributes:
@@ -40,12 +39,9 @@ class Piece(Protocol):
         data: arrays at the points by name, (n,) or (n, 3); the same names in every piece.
     """
 
-    @property
-    def points(self) -> NDArray: ...
-    @property
-    def quads(self) -> NDArray: ...
-    @property
-    def data(self) -> Mapping[str, NDArray]: ...
+    points: NDArray
+    quads: NDArray
+    data: Mapping[str, NDArray]
 
 
 @dataclass(frozen=True)
@@ -178,7 +174,7 @@ def _text(item: h5py.HLObject, name: str, text: str) -> None:
 def _append(root: h5py.Group, name: str, values: NDArray) -> h5py.Dataset:
     """Add rows to a dataset, which the first of them make."""
     if name not in root:
-        rows = min(max(len(values), 1), _TOGETHER)
+        rows = min(max(len(values), 1), 2**16)  # that lie together on the disk
         shape, chunks = (0, *values.shape[1:]), (rows, *values.shape[1:])
         root.create_dataset(name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=chunks)
     dataset = root[name]

@@ -1,8 +1,9 @@
 """Table of archived quantities: archives, checks, comparisons, plans and pages follow from it."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 from functools import lru_cache
+from typing import Any
 
 # Each module adds its own quantities; tables have them in this order.
 # isort: off
@@ -17,9 +18,20 @@ from galinx.solvers.parameters import parameters
 from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS
 
-from .quantity import ALONG, FRICTION_ALONE, INSIDE, POINT, QUANTITIES, STATE, Quantity
+from .quantity import (
+    ALONG,
+    CLOSED_FORM,
+    FEM,
+    FRICTION_ALONE,
+    INSIDE,
+    POINT,
+    QUANTITIES,
+    SIE,
+    STATE,
+    Quantity,
+)
 
-__all__ = ["QUANTITIES", "WORDS", "Quantity", "column", "declared", "table"]
+__all__ = ["QUANTITIES", "WORDS", "Quantity", "column", "declared", "preferred", "table"]
 
 
 def column(name: str) -> str:
@@ -62,6 +74,13 @@ def declared(path: str) -> Quantity:
         hint = f"; did you mean {close[0]}?" if close else ""
         raise KeyError(f"{path} is in no row of the table of quantities{hint}")
     return rows[path]
+
+
+def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity | None:
+    """Quantity by the first of finite elements, closed form and integral equation that an archive has;
+    None where it has none."""
+    there = (rows[method] for method in (FEM, CLOSED_FORM, SIE, "") if method in rows)
+    return next((row for row in there if row.path in data), None)
 
 
 def of_states(path: str) -> bool:

@@ -1,5 +1,6 @@
 """Quantities at the interfaces of layered half-planes."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -75,7 +76,6 @@ INTERFACES = {
         Quantity(
             f"interfaces/{method}/{name}", "N/(2a)", f"{what} each interface", (STATE, INTERFACE, ALONG),
             entry(lambda s: s.interfaces, i), method, asked_by=AT_INTERFACES,
-            compared=("stresses at interfaces",) * (method == FEM),
         )
         for i, (name, what) in enumerate(_PARTS.items())
     )
@@ -93,11 +93,18 @@ INTERFACE_EXTREMES = {
 }
 
 
+def largest_shear(data: Mapping[str, Any], method: str) -> tuple[NDArray, NDArray]:
+    """Largest |σ_XY| along interfaces over N/(2a), and its place over a, (states, interfaces) each."""
+    high, high_X, low, low_X = (data[row.path] for row in INTERFACE_EXTREMES[method][4:8])
+    lower = np.abs(low) > np.abs(high) * (1.0 + 1e-6)  # of two that are as large always the same one
+    return np.maximum(np.abs(high), np.abs(low)), np.where(lower, low_X, high_X)
+
+
 _ALONG = "stresses at interfaces over the largest along each, layered half-plane"
 #: Estimates of stresses at interfaces, by method.
 ESTIMATE_AT_INTERFACES = estimate(
     AT_INTERFACES, "interfaces",
-    **{method: (_ALONG, f"estimate at interfaces, {method}") for method in (SIE, FEM)},
+    **dict.fromkeys((SIE, FEM), _ALONG),
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

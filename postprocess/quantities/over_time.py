@@ -6,12 +6,11 @@ and energies; and stresses on the surface, over time and at chosen times.
 
 from typing import Any
 
-from galinx.solvers.parameters import Range
-
 from .quantity import (
     ANYWHERE,
     FEM,
     NEVER,
+    NOT_NEGATIVE,
     OVER_C_S,
     OVER_N,
     QUANTITIES,
@@ -26,8 +25,6 @@ TIME = "time"
 
 #: Dimensions: speeds with frictions, and times.
 START, INSTANT = "starts", "instants"
-
-_NOT_NEGATIVE = Range(at_least=0.0)
 
 
 def _row(name: str, unit: str, about: str, over: tuple[str, ...], **others: Any) -> Quantity:
@@ -47,13 +44,13 @@ def _by_method(
 
 
 SPEED = _row(
-    "c", "1", "speed of the start over shear wave speed", (START,), range=_NOT_NEGATIVE, scale=OVER_C_S
+    "c", "1", "speed of the start over shear wave speed", (START,), range=NOT_NEGATIVE, scale=OVER_C_S
 )
 RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
 RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
 DIRECTION = _row("direction", "1", "direction of motion along X over time, 1 or -1", (START, INSTANT))
-TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), range=_NOT_NEGATIVE)
-LOAD = _row("load", "1", "load at that time over N", (INSTANT,), range=_NOT_NEGATIVE, scale=OVER_N)
+TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), range=NOT_NEGATIVE)
+LOAD = _row("load", "1", "load at that time over N", (INSTANT,), range=NOT_NEGATIVE, scale=OVER_N)
 STEADY_CENTRE = _row(
     "steady_centre", "1", "centre of the pressure in steady motion over the half-width", (START,),
     scale=X_OVER_A,
@@ -97,13 +94,13 @@ ABSORBED = _row(
 ESTIMATE = _row(
     "fem/estimate", "1",
     "estimated error over time of v0, centre times load, and K_I, over the largest of each",
-    (START,), range=_NOT_NEGATIVE, method=FEM, accuracy=True,
+    (START,), range=NOT_NEGATIVE, method=FEM, accuracy=True,
 )  # fmt: skip
 RESIDUAL = _row(
     "sie/residual", "1",
     "residual of the integral equation over time where it is the only method, over the largest "
     "indentation, or of the pressure's resultant, over the largest load",
-    (START,), range=_NOT_NEGATIVE, method=SIE, accuracy=True,
+    (START,), range=NOT_NEGATIVE, method=SIE, accuracy=True,
 )  # fmt: skip
 
 
@@ -116,19 +113,19 @@ OFF = _by_method(
     "{method}/off_steady", "1",
     "distance at the end from steady motion under the load there, the largest difference of K_I, "
     "relative, and of the centre, over the half-width",
-    (START,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+    (START,), nan_allowed=ANYWHERE, range=NOT_NEGATIVE,
 )  # fmt: skip
 WITHIN = _by_method(
     "{method}/steady_within", "a/c_s",
     "time from which on off_steady is at most 0.1, 0.01 and 0.001; beyond /time/t by a decay like "
     "1/t, NaN where the second half of the motion does not show it",
-    (START, SHARE), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+    (START, SHARE), nan_allowed=ANYWHERE, range=NOT_NEGATIVE,
 )  # fmt: skip
 APPROACH = _row(
     "steady_within_1_percent", "a/c_s",
     "time from which on a start under a sudden load is within 1 % of steady motion, by the formula for "
     "late times; none over layers",
-    (START,), range=_NOT_NEGATIVE, nan_allowed=ANYWHERE,
+    (START,), range=NOT_NEGATIVE, nan_allowed=ANYWHERE,
 )  # fmt: skip
 
 OF_LOAD = _by_method(
@@ -186,7 +183,7 @@ OUTPUT, SURFACE_PLACE = "chosen times", "places along the surface"
 
 
 SURFACE_TIMES = _row(
-    "surface/t", "a/c_s", "times of the stresses along the surface", (OUTPUT,), range=_NOT_NEGATIVE
+    "surface/t", "a/c_s", "times of the stresses along the surface", (OUTPUT,), range=NOT_NEGATIVE
 )
 SURFACE_PLACES = _row(
     "surface/X_over_a", "1", "positions along the surface over the half-width", (SURFACE_PLACE,),
@@ -204,7 +201,7 @@ SURFACE_ESTIMATE = _row(
     "surface/fem/estimate", "1",
     "estimated error of sigma_XX and sigma_YY along the surface over time, further than 0.01 a from the "
     "edges, over the largest of each there",
-    (START,), method=FEM, range=_NOT_NEGATIVE, accuracy=True,
+    (START,), method=FEM, range=NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

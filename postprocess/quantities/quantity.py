@@ -1,6 +1,6 @@
 """Quantity of an archive: what it is, how it is read off a solution and judged; and the table of all."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,6 +43,8 @@ SWEPT = "fitted speeds"
 FRICTION_ALONE = "friction"
 
 
+NOT_NEGATIVE = Range(at_least=0.0)
+
 #: What a dimensionless quantity is over: the half-width; the half-width, along X from the contact's
 #: middle; the wave speed; the load; load and half-width to the power of an edge's exponent.
 #: ``CONTACT`` is a length of the contact in m.
@@ -68,7 +70,6 @@ class Quantity:
         of_data: computes it from other datasets of some states, which ``needs`` names, instead of ``of``.
         needs: paths.
         nan_allowed: ``NEVER``, ``BESIDE`` the punch, or ``ANYWHERE``.
-        compared: names of the rules by which it is judged, see :mod:`galinx.postprocess.compare`.
         symbol: of a parameter that tells states apart, in LaTeX; "" for anything else.
         whole: its numbers are integers. None that a solution gives: NaN says that there is none.
         range: where its numbers may lie.
@@ -89,7 +90,6 @@ class Quantity:
     of_data: Callable[[dict[str, Any]], NDArray] | None = None
     needs: tuple[str, ...] = ()
     nan_allowed: str = NEVER
-    compared: tuple[str, ...] = ()
     symbol: str = ""
     whole: bool = False
     range: Range = Range()
@@ -114,20 +114,21 @@ def entry(of: Callable[[Any], NDArray], *index: Any) -> Callable[[Any, Any], NDA
 
 
 def by_method(
-    path: str, unit: str, about: str, over: tuple[str, ...],
-    of: Callable[[Any, Any], NDArray] | None, own: Mapping[str, Mapping[str, Any]], **options: Any,
+    path: str, unit: str, about: str, over: tuple[str, ...], of: Callable[[Any, Any], NDArray] | None,
+    own: Mapping[str, Mapping[str, Any]] | Sequence[str], **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity that several methods give, by method.
 
     Args:
         path, unit, about, over, of: as of a quantity; ``{method}`` in the path stands for the method.
-        own: what each method has of its own, other attributes by name, by method.
+        own: the methods, or what each has of its own, other attributes by name, by method.
         options: further attributes, the same for all methods.
     """
     common: dict[str, Any] = {"unit": unit, "about": about, "over": over, "of": of} | options
+    attributes = own if isinstance(own, Mapping) else {method: {} for method in own}
     return {
-        method: Quantity(**common | {"path": path.format(method=method), "method": method, **attributes})
-        for method, attributes in own.items()
+        method: Quantity(**common | {"path": path.format(method=method), "method": method, **each})
+        for method, each in attributes.items()
     }
 
 

@@ -9,6 +9,7 @@ from .quantity import (
     ANYWHERE,
     FEM,
     LOOP,
+    NOT_NEGATIVE,
     OVER_C_S,
     QUANTITIES,
     SPEED,
@@ -20,8 +21,6 @@ from .quantity import (
 
 #: Dimensions of texts, and of times.
 LINE, TIMED = "lines", "steps"
-
-_NOT_NEGATIVE = Range(at_least=0.0)
 
 SCENE = Quantity("scene/text", "none", "scene as given (TOML)")
 
@@ -69,7 +68,7 @@ RECORD = {
         (SPEED,),
         method=FEM,
         whole=name in _COUNTS,
-        range=_NOT_NEGATIVE,
+        range=NOT_NEGATIVE,
         scale=OVER_C_S if name == "c" else "",
     )
     for name, about in {
@@ -88,7 +87,7 @@ RECORD = {
 CHANGES = Quantity(
     "run/fem/change_by_degree", "1",
     "largest relative change of K_I and moments from the degree before, by degree; 0: not computed",
-    (SPEED, "degrees"), method=FEM, range=_NOT_NEGATIVE,
+    (SPEED, "degrees"), method=FEM, range=NOT_NEGATIVE,
 )  # fmt: skip
 
 FAILURES = Quantity("run/failures", "none", "speeds that could not be solved, and why", (LINE,))
@@ -96,7 +95,7 @@ DONE = Quantity("run/done", "none", "steps done", (LINE,))
 SKIPPED = Quantity("run/skipped", "none", "steps skipped, and why", (LINE,))
 SECONDS = Quantity(
     "run/seconds", "s", "wall time of the steps done, in the order of run/steps", (TIMED,),
-    range=_NOT_NEGATIVE,
+    range=NOT_NEGATIVE,
 )  # fmt: skip
 STEPS = Quantity("run/steps", "none", "names of the timed steps", (TIMED,))
 
@@ -117,7 +116,7 @@ def _row(name: str, unit: str, about: str, over: tuple[str, ...], range: Range =
     )  # fmt: skip
 
 
-TIMES = _row("time", "s", "times", (TIME,), _NOT_NEGATIVE)
+TIMES = _row("time", "s", "times", (TIME,), NOT_NEGATIVE)
 POSITION = _row("position", "m", "position of the slider", (LAW, TIME))
 VELOCITY = _row("velocity", "m/s", "velocity of the slider", (LAW, TIME))
 FRICTION = _row("f", "1", "friction coefficient of the slider, the spring's pull over N where it sticks",
@@ -134,7 +133,7 @@ OUTCOME = Quantity(
     "does not break away, or no whole cycle yet",
     (LAW,), asked_by=SLIDER,
 )  # fmt: skip
-PERIOD = _row("period", "s", "period of stick-slip, the last; NaN for none", (LAW,), _NOT_NEGATIVE)
+PERIOD = _row("period", "s", "period of stick-slip, the last; NaN for none", (LAW,), NOT_NEGATIVE)
 SLIP = _row("slip_per_cycle", "m", "slip per cycle of stick-slip; NaN for none", (LAW,))
 PEAK = _row("peak_velocity", "m/s", "peak velocity in a cycle of stick-slip; NaN for none", (LAW,))
 LEAST = _row("least_velocity", "m/s", "least velocity in a cycle of stick-slip; NaN for none", (LAW,))

@@ -1,6 +1,6 @@
 """Quantities with one value a state."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from .quantity import (
     FEM,
     INNER,
     LOCAL,
+    NOT_NEGATIVE,
     OVER_C_S,
     QUANTITIES,
     SIE,
@@ -31,7 +32,9 @@ from .quantity import (
     entry,
 )
 
-_CONTACT, _NOT_NEGATIVE = "contact", Range(at_least=0.0)
+_CONTACT = "contact"
+#: Methods in the order of the table.
+_METHODS = (CLOSED_FORM, SIE, FEM)
 
 MOTION = Quantity(
     "states/motion", "none", "name of the stroke: forward (FM) or backward (BM) motion, numbered",
@@ -58,10 +61,10 @@ RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch, its mean w
 INNER_STATE = Quantity(
     "states/inner_state", "1", "inner state of the friction law, as its page says", (STATE, INNER)
 )
-VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=_NOT_NEGATIVE)
+VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=NOT_NEGATIVE)
 SPEED_LIMIT = Quantity(
     "states/speed_limit", "m/s", "speed of the wave along the surface, below which a punch has to be",
-    (STATE,), range=_NOT_NEGATIVE,
+    (STATE,), range=NOT_NEGATIVE,
 )  # fmt: skip
 
 #: Exponents of the pressure at X = a and X = -a, by name.
@@ -83,9 +86,8 @@ def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
     return by_method(
         f"states/{{method}}/K_I_{side}", "1", about, (STATE,), lambda s, _: s.K_I[:, i], {
             CLOSED_FORM: {"requires": (SOLVED,)},
-            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments", "compared": ("K_I",)},
-            SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane",
-                  "compared": ("K_I over layers",)},
+            FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments"},
+            SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane"},
         }, scale=EDGE,
     )  # fmt: skip
 
@@ -96,17 +98,17 @@ FITTED_ALPHA, FITTED_BETA = (
     Quantity(
         f"states/fem/{name}", "1", f"{about}, fitted from the raw pressure", (STATE,),
         entry(lambda s: s.exponents, ..., i), FEM, _CONTACT, nan_allowed=ANYWHERE,
-        compared=("exponents",), requires=(PUNCH,),
+        requires=(PUNCH,),
     )
     for i, (name, about) in enumerate(_EXPONENTS.items())
 )  # fmt: skip
 NORMAL_FORCE = Quantity(
     "states/fem/normal_force", "N/m", "resultant of the nodal normal forces under the punch", (STATE,),
-    lambda s, body: s.normal_force * body.force, FEM, compared=("force balance",), accuracy=True,
+    lambda s, body: s.normal_force * body.force, FEM, accuracy=True,
 )  # fmt: skip
 TANGENTIAL_FORCE = Quantity(
     "states/fem/tangential_force", "N/m", "resultant of the nodal tangential forces under the punch",
-    (STATE,), lambda s, body: s.tangential_force * body.force, FEM, compared=("force balance",),
+    (STATE,), lambda s, body: s.tangential_force * body.force, FEM,
 )  # fmt: skip
 INDENTATION = Quantity(
     "states/fem/v0", "m", "indentation relative to the surface far away", (STATE,),
@@ -116,12 +118,12 @@ ESTIMATE = by_method(
     "states/{method}/estimate", "1",
     "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
     (STATE,), lambda s, _: s.estimates[INTENSITIES], {
-        FEM: {"mode": _CONTACT, "compared": ("estimate",)},
+        FEM: {"mode": _CONTACT},
         SIE: {
             "about": "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's "
-            "error", "compared": ("estimate of the integral equation",), "requires": (SOLVED,),
+            "error", "requires": (SOLVED,),
         },
-    }, range=_NOT_NEGATIVE, accuracy=True,
+    }, range=NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 FITTED = Quantity(
     "states/fem/fitted", "1",
@@ -130,56 +132,43 @@ FITTED = Quantity(
 )  # fmt: skip
 
 
-def _of_free_contact(
-    name: str, unit: str, about: str, of: Callable[[Any], NDArray], compared: str = "", **options: Any
-) -> dict[str, Quantity]:
-    """Quantity of contacts with free ends, by all methods."""
-    rules = (compared, f"{compared} over layers") if compared else ()
-    return by_method(
-        f"states/{{method}}/{name}", unit, about, (STATE,), lambda s, _: of(s),
-        {CLOSED_FORM: {}, SIE: {}, FEM: {"compared": rules}}, mode=FREE_ENDS, **options,
-    )  # fmt: skip
-
-
-HALF_WIDTH = _of_free_contact(
-    "half_width", "m", "half-width of the contact, over which the state's lengths are",
-    lambda s: s.half_width, "ends", range=Range(above=0.0), scale=CONTACT,
+HALF_WIDTH = by_method(
+    "states/{method}/half_width", "m", "half-width of the contact, over which the state's lengths are",
+    (STATE,), lambda s, _: s.half_width, _METHODS, mode=FREE_ENDS, range=Range(above=0.0),
+    scale=CONTACT,
 )  # fmt: skip
-CENTRE = _of_free_contact(
-    "centre", "m", "middle of the contact, from the punch's axis; the state's positions are from there",
-    lambda s: s.centre, "ends", scale=CONTACT,
+CENTRE = by_method(
+    "states/{method}/centre", "m",
+    "middle of the contact, from the punch's axis; the state's positions are from there",
+    (STATE,), lambda s, _: s.centre, _METHODS, mode=FREE_ENDS, scale=CONTACT,
 )  # fmt: skip
-LARGEST = _of_free_contact(
-    "largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
-    lambda s: s.largest[0], "largest pressure", nan_allowed=ANYWHERE, range=Range(above=0.0),
+LARGEST = by_method(
+    "states/{method}/largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
+    (STATE,), lambda s, _: s.largest[0], _METHODS, mode=FREE_ENDS,
+    nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
-LARGEST_X = _of_free_contact(
-    "largest_pressure_position", "1",
+LARGEST_X = by_method(
+    "states/{method}/largest_pressure_position", "1",
     "place of the largest contact pressure, over the half-width; NaN where it is infinite",
-    lambda s: s.largest[1], nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
+    (STATE,), lambda s, _: s.largest[1], _METHODS, mode=FREE_ENDS, nan_allowed=ANYWHERE,
+    range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
 )  # fmt: skip
 
 #: Resultants of a prescribed pressure, by method.
 RESULTANT = by_method(
     "states/{method}/normal_force", "N/m", "resultant of the prescribed pressure", (STATE,),
     lambda s, body: s.normal_force * body.force,
-    {CLOSED_FORM: {"compared": ("resultant",)}, SIE: {"compared": ("resultant over layers",)}},
-    mode=OWN_PRESSURE, accuracy=True,
+    (CLOSED_FORM, SIE), mode=OWN_PRESSURE, accuracy=True,
 )  # fmt: skip
 
 #: Resultant and centre of the tractions where friction varies along the contact, by method.
-_RESULTANTS = [
-    {"compared": (name, f"{name} over layers")} for name in ("resultant_ratio", "pressure_centre")
-]
 RESULTANT_RATIO = by_method(
     "states/{method}/resultant_ratio", "1", "resultant of sigma_XY over that of sigma_YY", (STATE,),
-    lambda s, _: s.resultant_ratio, {CLOSED_FORM: {}, SIE: {}, FEM: _RESULTANTS[0]},
-    mode=VARYING,
+    lambda s, _: s.resultant_ratio, _METHODS, mode=VARYING,
 )  # fmt: skip
 PRESSURE_CENTRE = by_method(
     "states/{method}/pressure_centre", "1", "centre of pressure over the half-width", (STATE,),
-    lambda s, _: s.pressure_centre, {CLOSED_FORM: {}, SIE: {}, FEM: _RESULTANTS[1]},
-    mode=VARYING, scale=X_OVER_A,
+    lambda s, _: s.pressure_centre, _METHODS, mode=VARYING, scale=X_OVER_A,
 )  # fmt: skip
 
 #: Share of the larger intensity below which an error is over this share rather than over itself.
@@ -202,7 +191,7 @@ TRUE_ERROR = Quantity(
     "states/fem/true_error", "1", "relative error of K_I against the closed form, larger end", (STATE,),
     method=FEM, mode=_CONTACT, of_data=_true_error,
     needs=tuple(row[by].path for row in (K_I_LEFT, K_I_RIGHT) for by in (CLOSED_FORM, FEM)),
-    range=_NOT_NEGATIVE, accuracy=True,
+    range=NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 #: Residuals of one method alone, by method.
 RESIDUAL = by_method(
@@ -210,14 +199,13 @@ RESIDUAL = by_method(
     "residual of the integral equation at the contact pressure, by a rule of its own, over the "
     "pressure's part in it",
     (STATE,), lambda s, _: s.residual,
-    {CLOSED_FORM: {"compared": ("residual",)}, FEM: {"compared": ("residual of finite elements",)}},
-    mode=ALONE, range=_NOT_NEGATIVE, accuracy=True, requires=(SOLVED,),
+    (CLOSED_FORM, FEM), mode=ALONE, range=NOT_NEGATIVE, accuracy=True, requires=(SOLVED,),
 )  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",
     "largest |v,X| for |X| <= 0.9 a over the largest for 1.1 a <= |X| <= 5 a",
     (STATE,), lambda s, _: flatness(s.surface), FEM, asked_by="surface",
-    compared=("slope under the punch",), range=_NOT_NEGATIVE, accuracy=True, requires=(FLAT,),
+    range=NOT_NEGATIVE, accuracy=True, requires=(FLAT,),
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

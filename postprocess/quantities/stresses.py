@@ -1,7 +1,6 @@
 """Quantities of stresses on the surface and inside."""
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from .quantity import (
     FEM,
     INSIDE,
     LOCAL,
+    NOT_NEGATIVE,
     OVER_A,
     POINT,
     QUANTITIES,
@@ -49,11 +49,8 @@ PRESSURE = by_method(
         CLOSED_FORM: {"about": "contact stress, NaN outside the contact (Eq 55)"},
         FEM: {
             "about": "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
-            "compared": ("tension", "sigma_YY", "sigma_YY of found ends",
-                         "sigma_YY of found ends over layers"),
         },
-        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane",
-              "compared": ("sigma_YY over layers",)},
+        SIE: {"about": "contact stress, NaN outside the contact, layered half-plane"},
     }, asked_by=ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 RAW_PRESSURE = Quantity(
@@ -65,9 +62,8 @@ IN_PLANE = by_method(
     "surface/{method}/sigma_XX", "N/(2a)", "in-plane stress on the surface", (STATE, POINT),
     lambda s, _: s.surface.σ_XX, {
         CLOSED_FORM: {"about": "in-plane stress on the surface (Eq 32)"},
-        FEM: {"compared": ("sigma_XX",)},
-        SIE: {"about": "in-plane stress on the surface, layered half-plane",
-              "compared": ("sigma_XX over layers",)},
+        FEM: {},
+        SIE: {"about": "in-plane stress on the surface, layered half-plane"},
     }, asked_by=ON_SURFACE,
 )  # fmt: skip
 
@@ -78,21 +74,17 @@ _METHODS = (CLOSED_FORM, FEM, SIE)
 
 def _extreme(end: str, sign: float, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
     """Quantities of the highest or the lowest in-plane stress, and of its place."""
-    path, rules = (
-        f"states/{{method}}/sigma_XX_{end}",
-        ("extremes of sigma_XX", "extremes of sigma_XX over layers"),
-    )
-    own: dict[str, Any] = {method: {} for method in _METHODS}
+    path = f"states/{{method}}/sigma_XX_{end}"
     value = by_method(
         path, "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], own | {FEM: {"compared": rules}},
+        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], _METHODS,
         asked_by=ON_SURFACE,
     )  # fmt: skip
     place = by_method(
         f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
-        lambda s, body: extreme_in_plane(s, body, sign)[1], own, asked_by=ON_SURFACE, scale=X_OVER_A,
+        lambda s, body: extreme_in_plane(s, body, sign)[1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
     )  # fmt: skip
     return value, place
 
@@ -101,43 +93,42 @@ HIGHEST, HIGHEST_X = _extreme("max", 1.0, "highest")
 LOWEST, LOWEST_X = _extreme("min", -1.0, "lowest")
 
 
-def estimate(word: str, name: str, **own: tuple[str, str]) -> dict[str, Quantity]:
+def estimate(word: str, name: str, **own: str) -> dict[str, Quantity]:
     """Estimates of the error of the stresses that a word of output.quantities asks for, by method.
 
     Args:
         word: the word.
         name: end of the quantity's name.
-        own: what is estimated, in words, and the name of the rule, by method.
+        own: what is estimated, in words, by method.
     """
     return by_method(
         f"states/{{method}}/estimate_{name}", "1", "", (STATE,), lambda s, _: s.estimates[word],
-        {method: {"about": f"estimated error of {about}", "compared": (rule,)}
-         for method, (about, rule) in own.items()},
-        asked_by=word, range=Range(at_least=0.0), accuracy=True,
+        {method: {"about": f"estimated error of {about}"} for method, about in own.items()},
+        asked_by=word, range=NOT_NEGATIVE, accuracy=True,
     )  # fmt: skip
 
 
+_FAR, _NOT_USED = "further than 0.01 a from the edges", "no closed form used"
+_LAYERED = "layered half-plane"
 ESTIMATE_IN_PLANE = estimate(
-    ON_SURFACE, "sigma_XX",
-    fem=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
-         "from the edges, no closed form used", "estimate of sigma_XX"),
-    sie=("sigma_XX on the surface over the larger of itself and its largest value further than 0.01 a "
-         "from the edges, layered half-plane", "estimate of sigma_XX, sie"),
-)  # fmt: skip
+    ON_SURFACE,
+    "sigma_XX",
+    fem=f"sigma_XX on the surface over the larger of itself and its largest value {_FAR}, {_NOT_USED}",
+    sie=f"sigma_XX on the surface over the larger of itself and its largest value {_FAR}, {_LAYERED}",
+)
 ESTIMATE_INSIDE = estimate(
-    BELOW, "inside",
-    fem=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
-         "no closed form used", "estimate inside"),
-    sie=("stresses inside over the larger of the largest there and further than 0.01 a from the edges, "
-         "layered half-plane", "estimate inside, sie"),
-)  # fmt: skip
+    BELOW,
+    "inside",
+    fem=f"stresses inside over the larger of the largest there and {_FAR}, {_NOT_USED}",
+    sie=f"stresses inside over the larger of the largest there and {_FAR}, {_LAYERED}",
+)
 
 RESIDUAL_INSIDE = Quantity(
     "states/closed_form/residual_inside", "1",
     "residual of stresses inside, their difference from sums of line loads at some of the points and "
     "that of their resultants at a depth from equilibrium, over the largest",
-    (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, compared=("residual inside",),
-    range=Range(at_least=0.0), accuracy=True,
+    (STATE,), lambda s, _: s.residual_inside, CLOSED_FORM, ALONE, BELOW, range=NOT_NEGATIVE,
+    accuracy=True,
 )  # fmt: skip
 
 INSIDE_X = Quantity(
@@ -166,7 +157,6 @@ STRESSES_INSIDE = {
         Quantity(
             f"interior/{method}/sigma_{ij}", "N/(2a)", f"{what} inside, {source}", (STATE, INSIDE),
             entry(lambda s: s.inside, i), method, asked_by=BELOW,
-            compared=("stresses inside", "stresses inside over layers") * (method == FEM),
         )
         for i, (ij, what) in enumerate(_COMPONENTS.items())
     )
@@ -178,7 +168,7 @@ _INVARIANTS: tuple[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...
     ("sigma_1", "larger principal stress in the plane", lambda s, _: principal(*s.inside)[0], ()),
     ("sigma_2", "smaller principal stress in the plane", lambda s, _: principal(*s.inside)[1], ()),
     ("von_mises", "von Mises stress, sigma_ZZ included",
-     lambda s, _: von_mises(s.inside[0], s.inside[1], s.inside[2], s.σ_ZZ), (OUT_OF_PLANE,)),
+     lambda s, _: von_mises(*(*s.inside, s.σ_ZZ)), (OUT_OF_PLANE,)),
 )  # fmt: skip
 #: Principal stresses and von Mises inside, by method.
 INVARIANTS_INSIDE = {
@@ -193,30 +183,26 @@ INVARIANTS_INSIDE = {
 }  # fmt: skip
 
 
-def _component_in_punch(i: int, solution: Any, _: Any) -> NDArray[np.float64]:
-    return np.asarray(solution.inside_punch[i])
-
-
-def _in_punch(method: str) -> Iterator[Quantity]:
-    """Quantities of the stresses in an elastic punch: components, and von Mises."""
-
-    def quantity(name: str, what: str, of: Callable[[Any, Any], NDArray], *rules: str) -> Quantity:
-        return Quantity(
-            f"interior/{method}/punch_{name}", "N/(2a)",
-            f"{what} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of, method,
-            asked_by=BELOW, requires=(IN_PUNCH,), compared=rules * (method == FEM),
-        )  # fmt: skip
-
-    def of_von_mises(s: Any, body: Any) -> NDArray[np.float64]:
-        XX, YY, XY = s.inside_punch
-        return von_mises(XX, YY, XY, body.of_punch.solid.σ_ZZ(XX, YY, XY))
-
-    for i, (ij, what) in enumerate(_COMPONENTS.items()):
-        yield quantity(f"sigma_{ij}", what, partial(_component_in_punch, i), "stresses in the punch")
-    yield quantity("von_mises", "von Mises stress, sigma_ZZ included,", of_von_mises)
-
-
+#: Names of stresses in an elastic punch, their meaning, and how they are read.
+_IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray]]] = [
+    *(
+        (f"sigma_{ij}", what, entry(lambda s: s.inside_punch, i))
+        for i, (ij, what) in enumerate(_COMPONENTS.items())
+    ),
+    ("von_mises", "von Mises stress, sigma_ZZ included,",
+     lambda s, body: von_mises(*(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch)))),
+]  # fmt: skip
 #: σ_XX, σ_YY, σ_XY and von Mises in an elastic punch, by method.
-STRESSES_IN_PUNCH = {method: tuple(_in_punch(method)) for method in (CLOSED_FORM, FEM)}
+STRESSES_IN_PUNCH = {
+    method: tuple(
+        Quantity(
+            f"interior/{method}/punch_{name}", "N/(2a)",
+            f"{about} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of,
+            method, asked_by=BELOW, requires=(IN_PUNCH,),
+        )
+        for name, about, of in _IN_PUNCH
+    )
+    for method in (CLOSED_FORM, FEM)
+}  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -9,6 +9,7 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    NOT_NEGATIVE,
     OVER_A,
     QUANTITIES,
     SIE,
@@ -18,8 +19,6 @@ from .quantity import (
     by_method,
     entry,
 )
-
-_NOT_NEGATIVE = Range(at_least=0.0)
 
 #: Strain from which on a solid is not linear any more.
 LARGE_STRAIN = 0.05
@@ -41,7 +40,7 @@ FLUTTER = {
         f"states/flutter_{sign}", "1",
         f"flutter threshold for sigma_XY/sigma_YY {compared} 0, the |sigma_XY/sigma_YY| from which on "
         "waves along an interface with Coulomb friction grow, the shorter the faster; NaN for none",
-        (STATE,), nan_allowed=ANYWHERE, range=_NOT_NEGATIVE,
+        (STATE,), nan_allowed=ANYWHERE, range=NOT_NEGATIVE,
     )
     for sign, compared in zip(SIGNS, "><")
 }  # fmt: skip
@@ -54,7 +53,7 @@ def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, 
             f"states/closed_form/{name}_{side}", "1",
             f"{reach} from {at}, the distance within which {what}, over the half-width",
             (STATE,), entry(lambda s: s.strained_within(strain), ..., i), CLOSED_FORM, PUNCH,
-            range=_NOT_NEGATIVE, scale=OVER_A,
+            range=NOT_NEGATIVE, scale=OVER_A,
         )
         for i, (side, at) in enumerate({"left": "X = -a", "right": "X = a"}.items())
     )  # fmt: skip
@@ -74,13 +73,13 @@ STRAIN = _within(
 #: Largest tension under the punch, by method, and its place.
 TENSION = by_method(
     "states/{method}/tension", "N/(2a)", "largest tension under the punch, 0 for none", (STATE,),
-    lambda s, _: tension(s.surface)[0], {CLOSED_FORM: {}, FEM: {}, SIE: {}}, asked_by=ON_SURFACE,
-    range=_NOT_NEGATIVE,
+    lambda s, _: tension(s.surface)[0], (CLOSED_FORM, FEM, SIE), asked_by=ON_SURFACE,
+    range=NOT_NEGATIVE,
 )  # fmt: skip
 TENSION_X = by_method(
     "states/{method}/tension_X_over_a", "1",
     "place of the largest tension, over the half-width; NaN for none",
-    (STATE,), lambda s, _: tension(s.surface)[1], {CLOSED_FORM: {}, FEM: {}, SIE: {}},
+    (STATE,), lambda s, _: tension(s.surface)[1], (CLOSED_FORM, FEM, SIE),
     asked_by=ON_SURFACE, nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
 )  # fmt: skip
 

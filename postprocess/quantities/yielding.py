@@ -24,6 +24,7 @@ from .quantity import (
     CLOSED_FORM,
     FEM,
     LAYER,
+    NOT_NEGATIVE,
     OVER_A,
     QUANTITIES,
     SIE,
@@ -31,24 +32,23 @@ from .quantity import (
     X_OVER_A,
     Quantity,
     by_method,
+    entry,
 )
 
-_NOT_NEGATIVE, _BELOW = Range(at_least=0.0), Range(at_most=0.0)
+_BELOW = Range(at_most=0.0)
 _INFINITE = "NaN where infinite: with friction, at a jump of the pressure"
 _BEYOND = "NaN beyond 10 a"
 
 
 def _both(
     name: str, unit: str, about: str, of: Callable[[Any, Any], NDArray], mode: str = "",
-    compared: str = "", requires: tuple[str, ...] = (UNIFORM,),
+    requires: tuple[str, ...] = (UNIFORM,),
     methods: tuple[str, ...] = (CLOSED_FORM, FEM), **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity of a state by several methods."""
-    rules = (compared, f"{compared} over layers")[: (1 + (SIE in methods)) * bool(compared)]
-    own = {method: {"compared": rules * (method == FEM)} for method in methods}
-    options = {"range": _NOT_NEGATIVE, "nan_allowed": ANYWHERE} | options
+    options = {"range": NOT_NEGATIVE, "nan_allowed": ANYWHERE} | options
     return by_method(
-        f"states/{{method}}/{name}", unit, about, (STATE,), of, own, mode=mode, asked_by=YIELD,
+        f"states/{{method}}/{name}", unit, about, (STATE,), of, methods, mode=mode, asked_by=YIELD,
         requires=requires, **options,
     )  # fmt: skip
 
@@ -59,7 +59,6 @@ def _largest(
     of: Callable[[Any], Peak],
     direction: str = "",
     heights: Range = _BELOW,
-    compared: str = "largest stresses",
     **options: Any,
 ) -> tuple[dict[str, Quantity], ...]:
     """Quantities of the largest stress, and of both coordinates of its place."""
@@ -69,7 +68,7 @@ def _largest(
     )
     return (
         _both(
-            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE, compared,
+            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE,
             **options,
         ),
         _both(
@@ -101,8 +100,8 @@ def _in_punch(s: Any) -> Peak:
 
 
 PUNCH_VON_MISES, PUNCH_VON_MISES_X, PUNCH_VON_MISES_Y = _largest(
-    "punch_von_mises", "von Mises stress in the elastic punch", _in_punch, heights=_NOT_NEGATIVE,
-    requires=(IN_PUNCH,), compared="largest stresses of the punch",
+    "punch_von_mises", "von Mises stress in the elastic punch", _in_punch, heights=NOT_NEGATIVE,
+    requires=(IN_PUNCH,),
 )  # fmt: skip
 PUNCH_FIRST_LOAD = _both(
     "punch_first_yield_load", "N/m", "load at first yield of the elastic punch, N per depth",
@@ -114,41 +113,38 @@ FIRST_LOAD = _both(
     "infinite",
     lambda s, _: s.strength.first_load, FINITE, requires=(POWER, STRENGTH, UNIFORM),
 )  # fmt: skip
-REACH_LEFT = _both(
-    "yield_reach_left", "1",
-    "reach of yield from X = -a, the largest distance on its side of the middle, at the load, over the "
-    f"half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 0], PUNCH, "yielded zone", scale=OVER_A,
-)  # fmt: skip
-REACH_RIGHT = _both(
-    "yield_reach_right", "1",
-    "reach of yield from X = a, the largest distance on its side of the middle, at the load, over the "
-    f"half-width; {_BEYOND}",
-    lambda s, _: s.strength.reach[:, 1], PUNCH, "yielded zone", scale=OVER_A,
+REACH_LEFT, REACH_RIGHT = (
+    _both(
+        f"yield_reach_{side}", "1",
+        f"reach of yield from {at}, the largest distance on its side of the middle, at the load, over "
+        f"the half-width; {_BEYOND}",
+        entry(lambda s: s.strength.reach, ..., i), PUNCH, scale=OVER_A,
+    )
+    for i, (side, at) in enumerate((("left", "X = -a"), ("right", "X = a")))
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
     f"depth of yield, the largest at the load, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.depth, compared="depth of yield", requires=(STRENGTH, UNIFORM),
+    lambda s, _: s.strength.depth, requires=(STRENGTH, UNIFORM),
     scale=OVER_A,
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",
     "estimated error of the stresses from which yield is computed, over the larger of the largest there "
     "and further than 0.01 a from the edges, no closed form used",
-    (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD, compared=("estimate of yield",),
-    range=_NOT_NEGATIVE, accuracy=True,
+    (STATE,), lambda s, _: s.estimates[YIELD], FEM, asked_by=YIELD,
+    range=NOT_NEGATIVE, accuracy=True,
 )  # fmt: skip
 
 
 def _of_layers(
-    name: str, unit: str, about: str, of: Callable[[Any], NDArray], range: Range = _NOT_NEGATIVE,
-    requires: tuple[str, ...] = (), compared: tuple[str, ...] = (), scale: str = "",
+    name: str, unit: str, about: str, of: Callable[[Any], NDArray], range: Range = NOT_NEGATIVE,
+    requires: tuple[str, ...] = (), scale: str = "",
 ) -> dict[str, Quantity]:  # fmt: skip
     """Quantity of each layer and the solid below, by both methods of layered solids."""
     return by_method(
         f"layers/{{method}}/{name}", unit, about, (STATE, LAYER), lambda s, _: of(s),
-        {SIE: {}, FEM: {"compared": compared}}, mode=FINITE, asked_by=YIELD, nan_allowed=ANYWHERE,
+        (SIE, FEM), mode=FINITE, asked_by=YIELD, nan_allowed=ANYWHERE,
         range=range, requires=(LAYERED, *requires), scale=scale,
     )  # fmt: skip
 
@@ -156,7 +152,7 @@ def _of_layers(
 #: Largest von Mises stress of each layer and of the solid below, its place, and the stress over strength.
 OF_LAYERS = _of_layers(
     "von_mises", "N/(2a)", "largest von Mises stress in each layer and the solid below",
-    lambda s: s.strength.peaks.value, compared=("largest stresses of layers",),
+    lambda s: s.strength.peaks.value,
 )  # fmt: skip
 OF_LAYERS_X = _of_layers(
     "von_mises_X_over_a", "1",

@@ -89,14 +89,10 @@ class FlatPunch(EdgeExponents, Pressure):
         Returns:
             Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
         """
-        log_ratio = np.log(strain) - np.log(self._strain)  # their ratio may overflow
-        return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
-
-    @cached_property
-    def _strain(self) -> Any:
-        """Amplitude of -μ u,X over N/(2a) under the punch, positive."""
         by_pressure = self.response.strain(self.g, 1.0, self._cot)
-        return np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
+        amplitude = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
+        log_ratio = np.log(strain) - np.log(amplitude)  # their ratio may overflow
+        return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
 
     @staticmethod
     def _within(own: Any, other: Any, level: Any) -> NDArray[np.float64]:

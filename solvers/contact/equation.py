@@ -32,7 +32,7 @@ the surface's solid alone: with f the slope less the mean by which the pressure 
 and under the slope -∫ K(r - t) σ₀(t) dt by which σ₀ bends the layers, which no kink makes rough.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Any, TypeAlias
@@ -122,8 +122,6 @@ class Jacobi(Functions):
         return fine.t, fine.weights * self.sum(c, fine.t)
 
 
-#: Number of polynomials at first, its growth from step to step, and its maximum.
-FIRST, _MORE, MOST = 24, 1.5, 1400
 #: Places at which pressures of two numbers of polynomials are compared, with both ends.
 _LOOKED_AT = np.cos(np.pi * (np.arange(25) + 0.5) / 25)
 #: Distance from a tip of the punch within which pressures are not compared.
@@ -145,9 +143,9 @@ _ROUNDING = 2e-12
 #: Number and grading of panels towards kinks of friction that varies along the contact, and those of the
 #: punch there, at which the pressure may be infinite.
 _TO_KINKS_ALONG = (12, 0.2), (18, 0.35)
-#: Longest panel at first where the kernel is rough, over the contact's half-width, its factor from step
-#: to step, and the number of steps.
-_COARSE, _SHORTER, _TIMES = 1.4, 0.7, 12
+#: Finer and finer resolutions: numbers of polynomials, and, where the kernel is rough, longest panels.
+_TERMS: list[Resolution] = [16, 24, 36, 54, 81, 121, 181, 271, 406, 609, 913, 1369, 1400]
+_PANELS: list[Resolution] = (1.4 * 0.7 ** np.arange(12)).tolist()
 
 
 class _NoLayers:
@@ -344,7 +342,7 @@ def converged(
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
     before, error = None, np.inf
-    for resolution in resolutions(equation.rough):
+    for resolution in _PANELS if equation.rough else _TERMS:
         now = at_resolution(resolution)
         if before is not None:
             error = max(now.moved(before), now.change)
@@ -355,19 +353,6 @@ def converged(
         f"with the most unknowns the pressure still changes by {error:.2g}, expected {tolerance:g}: "
         "the uppermost layer is very thin over the contact's width; take a larger tolerance"
     )
-
-
-def resolutions(rough: bool) -> Iterator[Resolution]:
-    """Finer and finer resolutions: longest panels for rough kernels, else numbers of polynomials."""
-    if rough:
-        for time in range(_TIMES):
-            yield _COARSE * _SHORTER**time
-        return
-    terms = int(FIRST / _MORE)
-    while terms < MOST:
-        yield terms
-        terms = int(_MORE * terms)
-    yield MOST
 
 
 #: Longest panel for a sum of so many polynomials, times their number, and at most.
@@ -569,11 +554,6 @@ class LayersUnderPunch:
         if (needed := REACH * h) > self.kernel.reach:
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
-
-    @property
-    def rounding(self) -> float:
-        """Relative error of the pressure by that of the kernel."""
-        return 2.0 * np.pi * self.kernel.error / abs(self.response.n)
 
     def solved(self, g: NDArray) -> tuple[list[SolvedContact], float | None]:
         """Contacts from which those with all of ``g`` follow, and the error where they are interpolated.

@@ -97,26 +97,20 @@ class ExactSolution(Solution):
 
     #: K_I at the left and the right end, 0 at a free end, (states, 2).
     K_I = property(lambda self: self._of("K_I"))
+    #: Normal force of a prescribed pressure over N/2, (states,).
+    normal_force = property(lambda self: self._of_pressures("resultant"))
     #: Of friction that varies along the contact: resultant of σ_XY over that of σ_YY, (states,).
     resultant_ratio = property(lambda self: self._of_pressures("resultant_ratio"))
     #: Of friction that varies along the contact: centre of pressure over a, (states,).
     pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
-
-    @property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal force of a prescribed pressure over N/2, (states,)."""
-        return np.full(len(self.g), self.contacts.groups[0].pressure.resultant)
 
     def strained_within(self, strain: float) -> NDArray[np.float64]:
         """Distances over a from X = -a and X = a within which -u,X exceeds a strain, (states, 2).
 
         Under flat punches only.
         """
-        return np.column_stack(self._flat.strained_within(strain / self.task.body.strain))
-
-    @cached_property
-    def _flat(self) -> FlatPunch:
-        return FlatPunch(self.task.response, self.g)
+        flat = FlatPunch(self.task.response, self.g)
+        return np.column_stack(flat.strained_within(strain / self.task.body.strain))
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -231,13 +225,16 @@ def _turns_of(contacts: Contacts) -> Turns | None:
     """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
     each = []
     for group in contacts.groups:
-        kinks, ends = sorted(group.pressure.bends), np.array([group.β[0], group.α[0]]) > 0.0
-        X = np.concatenate([ENDS[ends], kinks])
+        kinks = sorted(group.pressure.bends)
+        # A weight that is infinite at a free end, times 0 there, has no value at that end.
+        known = np.array([group.β[0], group.α[0]]) > 0.0
+        X = np.concatenate([ENDS[known], kinks])
         σ_XX, σ_YY = group.surface(X)
         between = None
         if kinks:
             places = np.array([-1.0, *kinks, 1.0])
-            infinite = np.append([not ends[0]], [*[False] * len(kinks), not ends[1]])
+            left, right = ~group.free[0]
+            infinite = np.array([left, *[False] * len(kinks), right])
             _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
         σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
         each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))
@@ -269,10 +266,11 @@ class Layers:
             solved, interpolated = [SolvedContact(0.0, fine, before=coarse)], None
         else:
             solved, interpolated = layers.solved(g)
-        nodes: Any = ()
+        nodes: list[Nodes] = []
         if interpolated is not None:
-            nodes = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))
-        states = partial(LayeredSolution, task, layers, solved, interpolated, [*map(Nodes, nodes)])
+            each = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))
+            nodes = [Nodes(groups) for groups in each]
+        states = partial(LayeredSolution, task, layers, solved, nodes, interpolated or 0.0)
         return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
@@ -293,6 +291,8 @@ class OnLayers(Group):
             what: a name of the values, by which they are kept.
             values: gives them for states that were solved, (..., rows, n).
         """
+        if isinstance(self.pressure, Interpolated):
+            return self.pressure.read(what, values)
         return values(self)
 
     @property
@@ -365,6 +365,27 @@ class Nodes:
             self._read[what] = np.concatenate([values(group) for group in self.groups], axis=-2)
         return self._read[what]
 
+    def between(self, g: NDArray) -> Contacts:
+        """States with frictions between those of the nodes, (states,)."""
+        first = self.groups[0]
+        g_nodes, h, m = (
+            np.concatenate([getattr(node, name) for node in self.groups])
+            for name in ("g", "half_width", "centre")
+        )
+        weights, edges = weights_between(g_nodes, g), EdgeExponents(first.response, g[:, None])
+        pressure = Interpolated(self, weights, edges.α, edges.β)
+        # Exact where all nodes have one half-width.
+        half_width = h[0] + weights @ (h - h[0])
+        group = replace(
+            first,
+            rows=np.arange(len(g)),
+            g=g,
+            pressure=pressure,
+            half_width=half_width,
+            centre=weights @ m,
+        )
+        return Contacts((group,))
+
 
 @dataclass(frozen=True)
 class Interpolated(Pressure):
@@ -404,29 +425,6 @@ class Interpolated(Pressure):
         return (replace(self, weights=row, α=α, β=β) for row, α, β in rows)
 
 
-@dataclass(frozen=True)
-class Mixture(OnLayers):
-    """States interpolated between nodes."""
-
-    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
-        return np.asarray(self.pressure.read(what, values))
-
-    @classmethod
-    def between(cls, nodes: Nodes, g: NDArray) -> "Mixture":
-        """States with frictions between those of nodes, (states,)."""
-        g_nodes, h, m = (
-            np.concatenate([getattr(node, name) for node in nodes.groups])
-            for name in ("g", "half_width", "centre")
-        )
-        layers, edges = nodes.groups[0].layers, EdgeExponents(nodes.groups[0].response, g[:, None])
-        weights = weights_between(g_nodes, g)
-        # Exact where all nodes have one half-width.
-        half_width = h[0] + weights @ (h - h[0])
-        pressure = Interpolated(nodes, weights, edges.α, edges.β)
-        rows = np.arange(len(g))
-        return cls(layers.response, rows, g, pressure, half_width, weights @ m, layers)
-
-
 class LayeredSolution(ExactSolution):
     """States of contacts over layers.
 
@@ -434,38 +432,31 @@ class LayeredSolution(ExactSolution):
         task: their speed.
         layers: the layers under the punch.
         solved: contacts at the frictions that were solved; one under a prescribed pressure.
-        interpolated: error of the interpolation over frictions, relative; None where each is solved.
         nodes: contacts between which states are interpolated, and those with fewer unknowns; or none.
+        interpolation: relative error of that.
         g: σ_XY/σ_YY, (states,).
     """
 
     contacts: Contacts
 
     def __init__(
-        self, task: Task, layers: LayersUnderPunch, solved: list[SolvedContact],
-        interpolated: float | None, nodes: Sequence[Nodes], g: NDArray,
+        self, task: Task, layers: LayersUnderPunch, solved: list[SolvedContact], nodes: Sequence[Nodes],
+        interpolation: float, g: NDArray,
     ) -> None:  # fmt: skip
         super().__init__(task, g)
-        self._layers, self._solved, self._interpolated = layers, solved, interpolated
-        self.contacts, self._coarse = self._both = self._contacts(nodes)
-
-    def _contacts(self, nodes: Sequence[Nodes]) -> tuple[Contacts, Contacts]:
-        """Contacts of the states, and those with fewer unknowns."""
-        g, solved = self.g, self._solved
+        self._layers, self._solved = layers, solved
+        #: Relative error of all that is linear in the pressure by interpolation and by the kernel.
+        of_kernel = 2.0 * np.pi * layers.kernel.error / abs(layers.response.n)
+        self._shared = interpolation + of_kernel
         if nodes:
-            fine, coarse = (Contacts((Mixture.between(each, g),)) for each in nodes)
-            return fine, coarse
-        which = np.searchsorted([of.g for of in solved], g)
-        which = np.minimum(which, len(solved) - 1)  # one pressure is prescribed for all
-        of = [(solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
-        groups = [groups_of(self._layers, *each) for each in of]
-        fine, coarse = (Contacts(each) for each in zip(*groups))
-        return fine, coarse
-
-    @property
-    def _shared(self) -> float:
-        """Relative error of all that is linear in the pressure by interpolation and by the kernel."""
-        return (self._interpolated or 0.0) + self._layers.rounding
+            self._both = tuple(each.between(g) for each in nodes)
+        else:
+            which = np.searchsorted([of.g for of in solved], g)
+            which = np.minimum(which, len(solved) - 1)  # one pressure is prescribed for all
+            rows = [(solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
+            self._both = tuple(Contacts(of) for of in zip(*(groups_of(layers, *each) for each in rows)))
+        #: Contacts of the states, and those with fewer unknowns.
+        self.contacts, self._coarse = self._both
 
     def _limits(self, surface: Surface) -> Turns | None:
         """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
@@ -533,18 +524,15 @@ class LayeredSolution(ExactSolution):
         They add the change with the number of unknowns, the effect of the kernels' and the tables'
         errors, and the error of the interpolation over frictions.
         """
+        of_pressure = max(contact.change for contact in self._solved) + self._shared
         return _Evaluated(
             {
-                INTENSITIES: self._of_pressure,
+                INTENSITIES: lambda: np.full(len(self.g), of_pressure),
                 ON_SURFACE: self._on_surface,
                 AT_INTERFACES: self._at_interfaces,
                 BELOW: self._below,
             }
         )
-
-    def _of_pressure(self) -> NDArray[np.float64]:
-        change = max(contact.change for contact in self._solved)
-        return np.full(len(self.g), change + self._shared)
 
     def _on_surface(self) -> NDArray[np.float64]:
         X = self.places.X

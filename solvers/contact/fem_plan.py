@@ -108,6 +108,9 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
         places: positions X/a towards which cells are graded.
     """
     roots = [[p.imag for p in response.surface.roots.each] for response in responses]
+    # Those of every solid at the lowest and at the highest speed, where they are farthest apart.
+    by_speed = sorted(responses, key=lambda response: response.c)
+    of_solids = by_speed[0].roots_of_solids, by_speed[-1].roots_of_solids
     # Fields that live far apart have no middle.
     apart = max(response.spread for response in responses) > _APART
     return OnLayers(
@@ -116,17 +119,10 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
         wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
         far_length=max(response.far_length for response in responses),
         left=max(min(response.left_below for response in responses), _LEAST_LEFT),
-        roots=_roots(responses),
+        roots=tuple(slow + fast for slow, fast in zip(*of_solids)),
         changes=tuple(length / responses[0].a for length in responses[0].solid.changes),
         places=tuple(places),
     )
-
-
-def _roots(responses: Sequence[Any]) -> tuple[tuple[complex, ...], ...]:
-    """p of every solid at the lowest and at the highest speed, where they are farthest apart."""
-    by_speed = sorted(responses, key=lambda response: response.c)
-    each = [response.roots_of_solids for response in (by_speed[0], by_speed[-1])]
-    return tuple(slow + fast for slow, fast in zip(*each))
 
 
 #: Least number of speeds at which a fit costs less than solving all of them: it takes about a dozen

@@ -5,8 +5,7 @@ L = log((w - 1)/(w + 1)) its part of ∫ σ/(t - z) dt is σ(w) L + σ₁ - σ�
 logarithms cancel; far away Gauss's rule serves, in which nothing does.
 """
 
-import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,11 +78,11 @@ class LinearPressure(Pressure):
         """(1/π) ⨍ σ_YY(t)/(t - r) dt on the surface; NaN at an end where the pressure is not 0."""
         r = np.asarray(r, dtype=float)
         infinite = (from_edge(r) == 0.0) & (self(r) != 0.0)
-        return np.where(infinite, np.nan, self._sum(piece.at() for piece in self._pieces(r)))
+        return np.where(infinite, np.nan, self._integral(r))
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
-        return self._sum(piece.at() for piece in self._pieces(z))
+        return self._integral(z)
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return self.hilbert(r)
@@ -122,63 +121,34 @@ class LinearPressure(Pressure):
         t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
         return t, (half[:, None] * w).ravel() * self(t)
 
-    @staticmethod
-    def _sum(integrals: Iterator[NDArray]) -> NDArray[Any]:
-        """Φ, or its real part on the surface, of all pieces."""
-        return functools.reduce(np.add, (of_pieces.sum(axis=0) for of_pieces in integrals)) / np.pi
-
-    def _pieces(self, z: NDArray) -> Iterator["_Pieces"]:
-        """Pieces that are loaded, as many at a time as memory allows, with the points z."""
+    def _integral(self, z: NDArray) -> NDArray[Any]:
+        """Φ, or its real part on the surface, by pieces that are loaded, as many as memory allows."""
         loaded = np.flatnonzero((self.values[1:] != 0.0) | (self.values[:-1] != 0.0))
-        ends = np.stack([loaded, loaded + 1])
-        together = max(1, _AT_ONCE // max(z.size, 1))
+        ends, together = np.stack([loaded, loaded + 1]), max(1, _AT_ONCE // max(z.size, 1))
+        total: Any = 0.0
         for first in range(0, len(loaded), together):
             group = ends[:, first : first + together].reshape(2, -1, *(1,) * z.ndim)
-            yield _Pieces(self.knots[group], self.values[group], z)
+            total = total + _of_pieces(self.knots[group], self.values[group], z).sum(axis=0)
+        return np.asarray(total / np.pi)
 
 
-class _Pieces:
-    """Pieces of the pressure and points, of which each gives ∫ σ/(t - z) dt, (pieces, ...).
+def _of_pieces(ends: NDArray, values: NDArray, z: NDArray) -> NDArray[Any]:
+    """Integrals ∫ σ/(t - z) dt over pieces of the pressure, (pieces, ...).
 
     Args:
         ends: positions of their two ends, (2, pieces, 1, ...).
         values: the pressure there, (2, pieces, 1, ...).
         z: points, (...); real ones are on the surface, and the integral is a principal value.
     """
-
-    def __init__(self, ends: NDArray, values: NDArray, z: NDArray) -> None:
-        self._half = (ends[1] - ends[0]) / 2.0
-        self._values = values
-        # w + 1 and w - 1: each exact next to its end, where w is not.
-        self._left, self._right = (_moved(z - end) / self._half for end in ends)
-        self._w = np.where(abs(self._left) < abs(self._right), self._left - 1.0, self._right + 1.0)
-        self._far = abs(self._w) > _FAR
-
-    def at(self) -> NDArray[Any]:
-        """Integrals ∫ σ/(t - z) dt, (pieces, ...)."""
-        ratio = self._right / self._left
-        L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
-        far = self._summed(lambda t: 1.0 / (t - self._w))
-        return np.where(self._far, far, self._pressure * L + 2.0 * self._slope)
-
-    def _summed(self, kernel: Callable[[float], NDArray]) -> NDArray[Any]:
-        """∫ σ kernel dt over the pieces by Gauss's rule, for points that are far."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return sum(w * (self._mean + t * self._slope) * kernel(t) for t, w in zip(_t, _w))
-
-    @property
-    def _mean(self) -> NDArray[np.float64]:
-        return (self._values[0] + self._values[1]) / 2.0
-
-    @property
-    def _slope(self) -> NDArray[np.float64]:
-        """Half the difference of the values."""
-        return (self._values[1] - self._values[0]) / 2.0
-
-    @property
-    def _pressure(self) -> NDArray[Any]:
-        """Linear function of the piece at the points; exact at both ends."""
-        return (self._values[1] * self._left - self._values[0] * self._right) / 2.0
+    mean, slope = (values[0] + values[1]) / 2.0, (values[1] - values[0]) / 2.0
+    # w + 1 and w - 1: each exact next to its end, where w is not.
+    left, right = (_moved(z - end) / ((ends[1] - ends[0]) / 2.0) for end in ends)
+    w, ratio = np.where(abs(left) < abs(right), left - 1.0, right + 1.0), right / left
+    with np.errstate(divide="ignore", invalid="ignore"):
+        far = sum(weight * (mean + t * slope) / (t - w) for t, weight in zip(_t, _w))
+    L = np.log(ratio if np.iscomplexobj(ratio) else np.abs(ratio))
+    near = (values[1] * left - values[0] * right) / 2.0 * L + 2.0 * slope
+    return np.where(abs(w) > _FAR, far, near)
 
 
 def _moved(distance: NDArray) -> NDArray[Any]:

@@ -344,18 +344,14 @@ class Stretch(Functions):
         for i, row in enumerate(moments):
             weights = _rule(float(α[i]), float(β[i]), self).weights
             products, least = (f * weights[:, None]).T @ f, np.inf
-            for count in self._counts(len(row)):
+            # On graded solids fewer functions may be better.
+            fewest = min(_OF_ENDS + _FEWEST, len(row)) if self.graded else len(row)
+            for count in range(fewest, len(row) + 1):
                 first = np.linalg.solve(products[:count, :count], row[:count])
                 unresolved = self._unresolved(first, at_ends)
                 if unresolved < least:
                     c[i], least = np.pad(first, (0, len(row) - count)), unresolved
         return c
-
-    def _counts(self, functions: int) -> list[int]:
-        """Numbers of the first functions of which one is taken."""
-        if not self.graded:
-            return [functions]
-        return list(range(min(_OF_ENDS + _FEWEST, functions), functions + 1))
 
     def unresolved(self, c: NDArray) -> NDArray[np.float64]:
         """Share of the last functions in the larger smooth factor at both ends, (states,)."""

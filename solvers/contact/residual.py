@@ -154,19 +154,16 @@ def of_contact(
         X = m[:, None] + h[:, None] * s
         return np.asarray(body.profile.slope(X.ravel())).reshape(X.shape) * unit[:, None]
 
-    layers = _kernels(response, h) if len(response.depths) else []
-    kinks = [*kinks, *body.friction_kinks, *body.weak_friction_kinks]
+    layers: list[Scaled] = []
+    if len(response.depths):  # one kernel, for the widest, serves all
+        kernel = Kernel(response.stack(float(h.max())), _OF_KERNEL)  # type: ignore[attr-defined]
+        layers = [Scaled(kernel, size) for size in (h / h.max()).tolist()]
+    of_friction = {kink for along in body.along.values() for kink in (*along.kinks, *along.weak_kinks)}
+    kinks = [*kinks, *of_friction]
     exponents = local.α, local.β
     return of_pressure(
         response, lambda r: body.ratio(g, r, h), exponents, slope, pressure, kinks, breaks, layers
     )
-
-
-def _kernels(response: Any, half_widths: NDArray) -> list[Scaled]:
-    """Kernel of the layers for each contact, lengths over its half-width [m], from one for the widest."""
-    widest = float(half_widths.max())
-    kernel = Kernel(response.stack(widest), _OF_KERNEL)
-    return [Scaled(kernel, h / widest) for h in half_widths.tolist()]
 
 
 class _LineLoads:

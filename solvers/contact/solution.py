@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 from ..errors import SolveError
 from ..friction.along import Along, constant
-from ..profiles import Profile, exponent, half_width, has_free_end, jumps, kinks
+from ..profiles import Profile, exponent, has_free_end, jumps, kinks
 from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
 from .stresses import Places
-from .yielding import SMOOTH, Strength, StrengthOfLayers, places_below, places_in_layers
+from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
 #: those of a prescribed pressure.
@@ -123,7 +123,7 @@ class Contact:
     @property
     def half_width(self) -> Any:
         """Half-width a [m], a number or (states,); with free ends at rest and without friction."""
-        return half_width(self.profile)
+        return self.profile.half_width  # type: ignore[attr-defined]
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -212,7 +212,7 @@ class Contact:
         """Places X, Y over a at which the stresses of every state are sampled for yield, (n, 2)."""
         if self.solid.layers:
             return places_in_layers(self.solid.depths / self.half_width)
-        return places_below(self.yield_knots)
+        return Levels(self.yield_knots).places if len(self.yield_knots) else places_on_rays()
 
     def strength(self, solution: Any) -> Any:
         """Yield of a solution's states; the loads are theirs, [N/m], (states,) or a number."""
@@ -251,11 +251,6 @@ class Contact:
     def friction_kinks(self) -> tuple[float, ...]:
         """Positions X/a at which friction along the contact is not smooth, in any state."""
         return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
-
-    @property
-    def weak_friction_kinks(self) -> tuple[float, ...]:
-        """Positions X/a at which only a higher derivative of friction along the contact jumps."""
-        return tuple(sorted({kink for along in self.along.values() for kink in along.weak_kinks}))
 
     @property
     def _friction_has_length(self) -> bool:
@@ -341,10 +336,6 @@ class Contact:
         """Half-widths at other loads [N/m] over that at this load; None if contacts are not similar."""
         k = self.growth_exponent
         return None if k is None else (load / self.load) ** k
-
-    def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
-        """Loads [N/m], of several, under which contacts differ in more than their size."""
-        return loads if self.growth_exponent is None else loads[:1]
 
     @property
     def compression(self) -> Any:
@@ -471,18 +462,14 @@ class FreeEndContact(Contact):
             growth = first.growth(self.load)
             if growth is not None:
                 return first.half_width * growth
-        rest = self._at_rest(np.atleast_1d(self.load))
-        return rest if np.ndim(self.load) else float(rest[0])
-
-    def _at_rest(self, load: NDArray) -> NDArray[np.float64]:
-        """Half-widths [m] at rest and without friction, under loads N per depth [N/m], (loads,)."""
         if self.solid.layers:
             from .equation import half_width_at_rest
 
-            contact: tuple[Any, Any] = self.solid, self.profile
-            return np.array([half_width_at_rest(*contact, N / self.solid.μ) for N in load.tolist()])
-        at_rest = self.loaded(load).contacts(self.solid.response(0.0), np.zeros(len(load)))
-        return np.asarray(at_rest.of("half_width"))
+            solid, compressions = self.solid, np.ravel(self.compression).tolist()
+            rest = np.array([half_width_at_rest(solid, self.profile, N) for N in compressions])  # type: ignore[arg-type]
+        else:
+            rest = self.contacts(self.solid.response(0.0), np.zeros(np.size(self.load))).of("half_width")
+        return rest if np.ndim(self.load) else float(rest[0])
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .closed_form import contacts
@@ -543,8 +530,7 @@ class Task:
         Returns:
             Frictions, and loads [N/m], None for the task's, (states,) each.
         """
-        loads = self.body.dissimilar(self.loads)
-        ends = sorted({min(loads), max(loads)})
+        ends = sorted({min(self.loads), max(self.loads)})[: 1 if self.body.alike else 2]
         if len(ends) == 1:
             return g, None
         return np.tile(g, len(ends)), np.repeat(ends, len(g))

@@ -43,16 +43,6 @@ class Peak:
     Y: NDArray[np.float64]
 
 
-def places_below(knots: Any) -> NDArray[np.float64]:
-    """Places X, Y over a at which stresses below a pressure are sampled, (n, 2).
-
-    Args:
-        knots: rising positions over a that stand for a finite pressure, (k,); none under a punch with
-            infinite stresses.
-    """
-    return Levels(knots).places if len(knots) else _on_rays()
-
-
 def places_in_layers(interfaces: NDArray) -> NDArray[np.float64]:
     """Places X, Y over a at which stresses in layers are sampled, (n, 2).
 
@@ -317,7 +307,7 @@ def _points(side: Any, φ: NDArray, r: NDArray) -> NDArray[np.float64]:
     return np.stack([side * (1.0 + r * np.cos(φ)), np.where(along, 0.0, -r * np.sin(φ))], axis=-1)
 
 
-def _on_rays() -> NDArray[np.float64]:
+def places_on_rays() -> NDArray[np.float64]:
     """Places X, Y over a on rays from X = -a, then from X = a, at which stresses are sampled, (n, 2)."""
     rays = (_points(side, _ANGLES[:, None], np.exp(_grid())).reshape(-1, 2) for side in _SIDE)
     return np.concatenate([*rays])

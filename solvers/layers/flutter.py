@@ -6,12 +6,11 @@ let them grow at less friction, at a rate that does not rise with the wavenumber
 is where the rate has no bound. Where a wave without friction runs in a slow layer, the threshold is 0.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solids.admittance import Admittance
 from ..solids.flutter import Side, thresholds
 from ..solids.solid import Solid
 from .layered import Layered, LayersAtSpeed
@@ -23,24 +22,14 @@ _OFF_AXIS, _ZERO = 1e-9, 1e-6
 
 
 @dataclass(frozen=True)
-class _Part:
-    """A layer or the substrate: its admittance, modulus, wave speed, and thickness in the waves' unit."""
-
-    admittance: Admittance
-    μ: float
-    c_s: float
-    H: float
-
-
-@dataclass(frozen=True)
 class LayeredSide(Side):
     """Layers below an interface, seen by waves of one length; units are those of the uppermost solid.
 
     Attributes:
-        parts: layers from the top down, thickness times the wavenumber for H, and the substrate.
+        parts: layers from the top down and the substrate, each with its thickness times the wavenumber.
     """
 
-    parts: tuple[_Part, ...] = ()
+    parts: tuple[tuple[Side, float], ...] = ()
 
     @classmethod
     def of_length(cls, solid: Layered, length: float) -> "LayeredSide":
@@ -51,29 +40,26 @@ class LayeredSide(Side):
         """
         if any(layer.bottom is not None for layer in solid.layers):
             raise ValueError("found a graded layer, expected uniform ones")
-        parts = tuple(
-            _Part(
-                Admittance.of(part.solid.response(0.0)), part.solid.μ / solid.μ,
-                part.solid.c_s / solid.c_s, 2.0 * np.pi * part.thickness / length,
-            )
-            for part in solid.parts
-        )  # fmt: skip
-        return cls(parts[0].admittance, parts=parts)
+        parts = []
+        for part in solid.parts:
+            side = Side.of(part.solid)
+            compliance, c_s = side.compliance * solid.μ, side.c_s / solid.c_s
+            scaled = replace(side, compliance=compliance, c_s=c_s)
+            parts.append((scaled, 2.0 * np.pi * part.thickness / length))
+        return cls(parts[0][0].admittance, parts=tuple(parts))
 
     @property
     def meeting(self) -> NDArray[np.float64]:
-        speeds = np.concatenate([part.c_s * part.admittance.meeting for part in self.parts])
-        return np.concatenate([-speeds, speeds])
+        return np.concatenate([side.meeting for side, _ in self.parts])
 
     def stiffness(self, C: NDArray) -> NDArray[np.complex128]:
         C = np.where(np.imag(C) == 0.0, C * (1.0 - 1j * _OFF_AXIS * np.sign(np.real(C))), C)
         # The stiffness of layers is that at k > 0, whose fields are the conjugates.
-        media = [
-            Medium(of.waves(C.conj() / part.c_s), part.μ, of.waves(C / part.c_s).conjugate)
-            for part in self.parts
-            for of in (part.admittance,)
-        ]
-        layers = [Uniform(medium, part.H) for medium, part in zip(media[:-1], self.parts)]
+        media = []
+        for side, _ in self.parts:
+            up, down = (side.admittance.waves(speed / side.c_s) for speed in (C.conj(), C))
+            media.append(Medium(up, 1.0 / side.compliance, down.conjugate))
+        layers = [Uniform(medium, H) for medium, (_, H) in zip(media[:-1], self.parts)]
         L = 1j * LayersAtSpeed(layers, media[-1]).stiffness(np.ones(len(C))).conj()
         return np.array([L[:, 0, 0], L[:, 1, 0], L[:, 0, 0] * L[:, 1, 1] - L[:, 0, 1] * L[:, 1, 0]])
 

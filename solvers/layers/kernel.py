@@ -151,8 +151,8 @@ def transform(
 #: Chebyshev nodes of a panel, and the matrix from values there to coefficients.
 _x = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
 _TO_CHEBYSHEV = np.linalg.inv(chebyshev.chebvander(_x, _NODES - 1))
-#: Number of last coefficients that estimate a panel's error; most panels.
-_LAST_OF_PANEL, _MOST_PANELS = 3, 6000
+#: Most panels of a table.
+_MOST_PANELS = 6000
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class Table:
     Attributes:
         ends: of the panels, rising, (panels + 1,).
         coefficients: of Chebyshev polynomials, (panels, nodes, functions).
-        error: absolute, estimated by the last coefficients.
+        error: absolute, estimated by the last coefficients, and that of the functions.
     """
 
     ends: NDArray[np.float64]
@@ -185,37 +185,40 @@ class Table:
         return values.reshape(*x.shape, values.shape[-1])
 
 
-def tabulated(f: Callable[[NDArray], NDArray], finest: float, reach: float, tolerance: float) -> Table:
-    """A table of f over [-reach, reach].
+def tabulated(
+    f: Callable[[NDArray], NDArray], first: float, finest: float, reach: float, accuracy: float,
+    scale: float = 0.0,
+) -> Table:  # fmt: skip
+    """Transform of f, tabulated by position over [-reach, reach].
 
     Args:
-        f: of positions (n,), gives (n, functions); it may be rough at 0.
-        finest: size of the panels next to 0; the others double.
+        f, first, scale: see :func:`transform`.
+        finest: size of the panels next to 0, where it may be rough; the others double.
         reach: where the table ends.
-        tolerance: absolute.
+        accuracy: of the transform and of the table, over the integral of |f|.
 
     Raises:
-        SolveError: f is not smooth.
+        SolveError: f, or its transform, is not smooth.
     """
+    integrals = transform(f, first, accuracy, scale)
+    tolerance = accuracy * integrals.size / np.pi
     count = max(int(np.ceil(np.log2(reach / finest))), 0)
     right = np.append(0.0, reach * 0.5 ** np.arange(count, -1, -1.0))
     ends = np.concatenate([-right[:0:-1], right])
     waiting = np.column_stack([ends[:-1], ends[1:]])
-    done: list[tuple[float, float, NDArray, float]] = []
+    done: list[tuple[float, NDArray, float]] = []
     while len(waiting):
         middle, half = waiting.mean(axis=1), np.diff(waiting, axis=1)[:, 0] / 2.0
-        values = f((middle[:, None] + half[:, None] * _x).ravel()).reshape(len(waiting), _NODES, -1)
-        c = _TO_CHEBYSHEV @ values
-        tail = np.abs(c[:, -_LAST_OF_PANEL:]).max(axis=(1, 2))
+        c = _TO_CHEBYSHEV @ integrals(middle[:, None] + half[:, None] * _x)
+        tail = np.abs(c[:, -_LAST:]).max(axis=(1, 2))
         good = (tail <= tolerance) | (half <= finest / 1024.0)
-        done += zip(*waiting[good].T.tolist(), c[good], tail[good].tolist())
-        middle, rough = middle[~good, None], waiting[~good]
-        waiting = np.concatenate([np.hstack([rough[:, :1], middle]), np.hstack([middle, rough[:, 1:]])])
+        done += zip(waiting[good, 0].tolist(), c[good], tail[good].tolist())
+        (low, high), middle = waiting[~good].T, middle[~good]
+        waiting = np.column_stack([low, middle, middle, high]).reshape(-1, 2)
         if len(done) + len(waiting) > _MOST_PANELS:
             raise SolveError("the kernel of the layers varies too much to be tabulated")
-    done.sort(key=lambda panel: panel[0])
-    starts, _, coefficients, tails = zip(*done)
-    return Table(np.append(starts, reach), np.array(coefficients), max(tails))
+    starts, coefficients, tails = zip(*sorted(done, key=lambda panel: panel[0]))
+    return Table(np.append(starts, reach), np.array(coefficients), max(tails) + integrals.error / np.pi)
 
 
 #: Largest position over a: differences of places on the surface.
@@ -258,42 +261,30 @@ class Kernel:
         """True where the kernel has a logarithm and a jump at 0."""
         return bool(np.any(self.order))
 
-    @cached_property
-    def _b(self) -> float:
-        return float(self.stack.layers[0].H)
-
     def _regular(self, k: NDArray) -> NDArray[Any]:
         regular = self.stack.admittance(k).reshape(-1, 4)
         if self.rough:
-            regular = regular + self.order * (np.expm1(-k * self._b) / k)[:, None]
+            regular = regular + self.order * (np.expm1(-k * self.stack.layers[0].H) / k)[:, None]
         return regular
-
-    @cached_property
-    def transform(self) -> Transform:
-        """Transform of the kernel without the logarithm and the jump."""
-        accuracy = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
-        scale = float(np.abs(inverse(self.stack.top.down)).max())
-        return transform(self._regular, wavenumbers(self.stack), accuracy, scale)
 
     @cached_property
     def table(self) -> Table:
         """The kernel without the logarithm and the jump, tabulated by position."""
-        allowed = max(self.tolerance, ROUNDING) * self.transform.size / np.pi
-        finest = min(float(self.stack.layers[0].H), 1.0) / 4.0
-        if self.rough:
-            finest *= 1e-6
-        return tabulated(self.transform, finest, self.reach, allowed)
+        finest = min(float(self.stack.layers[0].H), 1.0) / 4.0 * (1e-6 if self.rough else 1.0)
+        accuracy = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
+        scale = float(np.abs(inverse(self.stack.top.down)).max())
+        return tabulated(self._regular, wavenumbers(self.stack), finest, self.reach, accuracy, scale)
 
     @property
     def error(self) -> float:
         """Absolute error of the kernel."""
-        return self.transform.error / np.pi + self.table.error
+        return self.table.error
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The kernels at positions over a, none of them 0 where it is rough, (..., 4)."""
         kernels = self.table(x)
         if self.rough:
-            ratio = self._b / np.asarray(x, dtype=float)[..., None]
+            ratio = self.stack.layers[0].H / np.asarray(x, dtype=float)[..., None]
             log = 0.5 * np.log1p(ratio**2)
             kernels = kernels + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi
         return kernels
@@ -377,24 +368,16 @@ class Level:
             [*(1j * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1
         )  # fmt: skip
 
-    @property
-    def _accuracy(self) -> float:
-        return max(self.tolerance / 100.0, ROUNDING)
-
-    @cached_property
-    def _transform(self) -> Transform:
-        first = min(wavenumbers(self.stack), 1.0 / self.depth)
-        return transform(self._of, first, self._accuracy)
-
     @cached_property
     def _table(self) -> Table:
-        allowed = self._accuracy * self._transform.size / np.pi
-        return tabulated(self._transform, self.depth / 4.0, self.reach, allowed)
+        first = min(wavenumbers(self.stack), 1.0 / self.depth)
+        accuracy = max(self.tolerance / 100.0, ROUNDING)
+        return tabulated(self._of, first, self.depth / 4.0, self.reach, accuracy)
 
     @property
     def error(self) -> float:
         """Absolute error of u,X, σ_YY and σ_XY under a pressure with the resultant of a punch, 2."""
-        return 2.0 * (self._transform.error / np.pi + self._table.error)
+        return 2.0 * self._table.error
 
     def read(
         self, t: NDArray, σ: NDArray, g: Any, X: NDArray, size: float = 1.0, ratios: Any = 1.0

@@ -37,7 +37,7 @@ from ..approximation import bisected, chebyshev_points, interpolation
 from ..errors import SolveError
 from ..parameters import build_model, parameters, values
 from ..solids.half_plane import DATUM, LOADS, HalfPlane, Potential, UniformHalfPlane
-from ..solids.solid import Solid
+from ..solids.solid import Composite, Solid
 from .stiffness import Graded, Medium, Uniform, inverse, least
 
 
@@ -314,7 +314,7 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class Layered(Solid):
+class Layered(Composite):
     """Layers from the top down, perfectly bonded to one another and to a substrate.
 
     Modulus, density and wave speed are those at the surface; so are the exponents of the pressure.
@@ -347,22 +347,6 @@ class Layered(Solid):
     @property
     def solids(self) -> Sequence[Solid]:
         return tuple(end for part in self.parts for end in (part.solid, part.bottom) if end is not None)
-
-    @property
-    def plane(self) -> str:  # type: ignore[override]
-        return self.surface.plane
-
-    @property
-    def μ(self) -> float:
-        return self.surface.μ
-
-    @property
-    def ρ(self) -> float:  # type: ignore[override]
-        return self.surface.ρ
-
-    @property
-    def c_s(self) -> float:
-        return self.surface.c_s
 
     def flutter(self, c: float = 0.0) -> tuple[float, float]:
         """Flutter thresholds of the solid at the surface: the shortest waves reach no other."""
@@ -436,10 +420,6 @@ class Layered(Solid):
         for solid in self.solids:
             half_plane.uniform(solid)
         return half_plane
-
-    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-        """σ_ZZ of the solid at the surface, in the unit of the stresses."""
-        return self.surface.σ_ZZ(σ_XX, σ_YY, σ_XY)
 
     def σ_ZZ_at(self, depth: NDArray, σ: NDArray) -> NDArray[np.float64]:
         """σ_ZZ at depths [m], (n,), in the unit of the stresses σ_XX, σ_YY, σ_XY there, (3, ..., n)."""

@@ -41,11 +41,6 @@ class Profile(Protocol):
         """The punch in a sentence's middle, with units."""
 
 
-def half_width(profile: Any) -> float:
-    """Half the width of the contact [m] between two sharp corners."""
-    return profile.half_width
-
-
 def has_free_end(profile: Any) -> bool:
     """Return True if an end of the contact is free, not a sharp corner of the punch."""
     return not all(getattr(profile, "sharp", (True, True)))

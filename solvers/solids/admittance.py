@@ -72,11 +72,6 @@ class Admittance:
         """Admittance of the solid's mirror image in X = 0."""
         return Admittance(self.c11, self.c12, -self.c16, self.c22, -self.c26)
 
-    @property
-    def symmetric(self) -> bool:
-        """True if the solid is its own mirror image in X = 0."""
-        return self.c16 == 0.0 == self.c26
-
     def __call__(self, C: NDArray) -> NDArray[np.complex128]:
         """𝐘 of the roots with Im p > 0 at speeds (n,): (n, 2, 2)."""
         return np.asarray(np.linalg.inv(self.waves(C).L), dtype=complex)
@@ -287,7 +282,7 @@ class AnisotropicFrame(UniformHalfPlane):
 
     @property
     def mirrored(self) -> bool:
-        return self.solid.symmetric
+        return self.solid.c16 == 0.0 == self.solid.c26
 
     @property
     def mirror_image(self) -> "AnisotropicFrame":

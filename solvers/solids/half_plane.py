@@ -198,7 +198,7 @@ class HalfPlane:
     @property
     def spread(self) -> float:
         """Hyperbolic distance of the p of the solid at the surface, 0 where they meet."""
-        return self.surface.spread
+        return self.surface.roots.apart
 
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress σ_XX on the surface from the strain μ u,X and the tractions, of one shape."""
@@ -218,7 +218,6 @@ class HalfPlane:
         """
         return self.stresses(G)
 
-    @abstractmethod
     def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, ...), below a pressure.
 
@@ -231,8 +230,8 @@ class HalfPlane:
             ValueError: a point has Y >= 0; the surface has formulas of its own.
             NotImplementedError: the half-plane has layers, in which one potential is not enough.
         """
+        return self.surface.inside(Φ, g, X, Y)
 
-    @abstractmethod
     def far(self, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM) -> NDArray[np.float64]:
         """Displacements μ u far away, (terms, 2, 2, n), of the first moments of σ_YY and of σ_XY.
 
@@ -242,6 +241,7 @@ class HalfPlane:
                 layers always 1.
             datum: distance over a at which a line load does not move the surface, the mean of both sides.
         """
+        return self.surface.far(X, Y, terms, datum)
 
     def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
         """Constants of the weak form in each solid from the top down, (points, names) each.
@@ -252,8 +252,9 @@ class HalfPlane:
         Args:
             names: names of the constants in the form.
         """
-        stiffness = dict(zip(("c11", "c12", "c16", "c22", "c26"), self.surface.C[np.triu_indices(3)]))
-        values = [stiffness[name] if name in stiffness else getattr(self, name) for name in names]
+        of = self.surface
+        stiffness = dict(zip(("c11", "c12", "c16", "c22", "c26"), of.C[np.triu_indices(3)]))
+        values = [stiffness[name] if name in stiffness else getattr(of, name) for name in names]
         return [np.array([values], dtype=float)]
 
     def solids(self, Y: NDArray, side: int = 1) -> NDArray[np.int64]:
@@ -306,10 +307,6 @@ class UniformHalfPlane(HalfPlane):
     def Y(self) -> NDArray[Any]:
         """Admittance 𝐘 of the surface, u,X = 𝐘 (σ_XY, σ_YY) of decaying fields, (2, 2)."""
         return np.linalg.inv(self.L)
-
-    @property
-    def spread(self) -> float:
-        return self.roots.apart
 
     @cached_property
     def _along(self) -> NDArray[np.float64]:

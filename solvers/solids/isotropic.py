@@ -6,7 +6,7 @@ speed, β_s and β_d the contraction factors of shear and dilatational waves.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, log, pi, sqrt
+from math import inf, pi, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -163,26 +163,10 @@ class MovingFrame(UniformHalfPlane):
         """Rayleigh function over its value at rest; 0 at the Rayleigh speed."""
         return self.r / MovingFrame(self.κ, 0.0).r
 
-    @property
-    def contraction(self) -> complex:
-        """i√(β_s β_d), midway between iβ_s and iβ_d in the hyperbolic metric of the half-plane."""
-        return 1j * sqrt(self.β_s * self.β_d)
-
-    @property
-    def spread(self) -> float:
-        """log β_d/β_s."""
-        return log(self.β_d / self.β_s)
-
     def σ_XX(self, u_X: Any, σ_YY: Any, σ_XY: Any) -> Any:
         """In-plane stress on the surface: v,Y eliminated between Eqs 6 and 7."""
         κ = self.κ
         return 8.0 / (κ + 1.0) * u_X + (3.0 - κ) / (κ + 1.0) * σ_YY
-
-    def stresses(self, G: NDArray) -> NDArray[np.float64]:
-        """Hooke's law (Eqs 6-8), κ > 1: σ_XX, σ_YY, σ_XY over μ of displacement gradients (..., 2, 2)."""
-        u_X, v_Y = G[..., 0, 0], G[..., 1, 1]
-        λ_div = (3.0 - self.κ) / (self.κ - 1.0) * (u_X + v_Y)
-        return np.array([2.0 * u_X + λ_div, 2.0 * v_Y + λ_div, G[..., 0, 1] + G[..., 1, 0]])
 
     @cached_property
     def G(self) -> NDArray[Any]:

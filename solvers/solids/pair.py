@@ -13,14 +13,11 @@ follow from the pressure and that body's own constants.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import ClassVar
 
 from .flutter import Side, thresholds
-from .half_plane import DATUM, HalfPlane, Potential, UniformHalfPlane
-from .solid import Solid
+from .half_plane import HalfPlane, UniformHalfPlane
+from .solid import Composite, Solid
 
 
 @dataclass(frozen=True)
@@ -67,18 +64,9 @@ class PairAtSpeed(HalfPlane):
     def mirrored(self) -> bool:
         return self.plate.mirrored and self.punch.mirrored
 
-    def inside(self, Φ: Potential, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
-        return self.plate.inside(Φ, g, X, Y)
-
-    def far(self, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM) -> NDArray[np.float64]:
-        return self.plate.far(X, Y, terms, datum)
-
-    def constants(self, names: Any) -> list[NDArray[np.float64]]:
-        return self.plate.constants(names)
-
 
 @dataclass(frozen=True)
-class Pair(Solid):
+class Pair(Composite):
     """A plate and the solid of a punch; modulus, density and wave speed are those of the plate.
 
     Attributes:
@@ -96,12 +84,12 @@ class Pair(Solid):
     punch_strength: float | None = None
 
     @property
-    def above(self) -> Solid:  # type: ignore[override]
-        return self.punch
+    def surface(self) -> Solid:
+        return self.plate
 
     @property
-    def plane(self) -> str:  # type: ignore[override]
-        return self.plate.plane
+    def above(self) -> Solid:  # type: ignore[override]
+        return self.punch
 
     @property
     def form(self) -> str:
@@ -115,21 +103,13 @@ class Pair(Solid):
     def knows_σ_ZZ(self) -> bool:
         return self.plate.knows_σ_ZZ
 
-    @property
-    def μ(self) -> float:
-        return self.plate.μ
-
-    @property
-    def ρ(self) -> float:  # type: ignore[override]
-        return self.plate.ρ
+    @cached_property
+    def _sides(self) -> tuple[Side, Side]:
+        return Side.of(self.plate), Side.of(self.punch, self.speed, below=False)
 
     def flutter(self, c: float = 0.0) -> tuple[float, float]:
         plate, punch = self._sides
         return thresholds(replace(plate, speed=c * self.plate.c_s), punch)
-
-    @cached_property
-    def _sides(self) -> tuple[Side, Side]:
-        return Side.of(self.plate), Side.of(self.punch, self.speed, below=False)
 
     def limit(self) -> float:
         return self.plate.limit()
@@ -141,9 +121,6 @@ class Pair(Solid):
     def response(self, c: float, a: float = 1.0) -> PairAtSpeed:
         """Both half-planes, the plate's at a speed over its wave speed."""
         return PairAtSpeed(self.plate.response(c).surface, self._punch, self.μ / self.punch.μ)
-
-    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
-        return self.plate.σ_ZZ(σ_XX, σ_YY, σ_XY)
 
     def words(self) -> str:
         motion = f"at {self.speed:g} m/s over the contact" if self.speed else "at rest"

@@ -109,6 +109,30 @@ class Solid(Protocol):
         """The solid in a sentence's middle, with units."""
 
 
+class Composite(Solid):
+    """Several solids, whose modulus, density, wave speed and σ_ZZ are those of the one at the surface."""
+
+    @property
+    @abstractmethod
+    def surface(self) -> Solid:
+        """The solid at the surface."""
+
+    @property
+    def plane(self) -> str:  # type: ignore[override]
+        return self.surface.plane
+
+    @property
+    def μ(self) -> float:
+        return self.surface.μ
+
+    @property
+    def ρ(self) -> float:  # type: ignore[override]
+        return self.surface.ρ
+
+    def σ_ZZ(self, σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.float64]:
+        return self.surface.σ_ZZ(σ_XX, σ_YY, σ_XY)
+
+
 #: Solids by the name that scenes use.
 SOLIDS: Registry[type[Solid]] = Registry("kind of solid", kind=Solid)
 

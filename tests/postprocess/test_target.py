@@ -12,9 +12,9 @@ from galinx.app.console import Progress, new_console, print_sheet
 from galinx.app.figures import files
 from galinx.app.figures.render import Panel
 from galinx.app.results.csv import pieces
-from galinx.app.results.fields import StateField
 from galinx.postprocess.errors import Occupied, UnwritableArchive
 from galinx.postprocess.hdf5 import vtkhdf
+from galinx.postprocess.hdf5.vtkhdf import Piece
 from galinx.postprocess.tables import Sheet
 from galinx.postprocess.target import (
     ARCHIVE,
@@ -44,7 +44,7 @@ def made(tmp_path_factory):
     pdf, png, svg = result.plot(folder, "a", formats=("pdf", "png", "svg"))[:3]
     moving = files.Film(lambda frame: [Panel(title=f"frame {frame}")], 2)
     (folder / "a.gif").write_bytes(files.film_content(moving, "gif", 30))
-    square = StateField(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
+    square = Piece(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
     vtkhdf.write(folder / "a.hdf", [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:
         print_sheet(new_console(file), Sheet("Table 1. Dahl's law", ("",), [("0.7",)]))

@@ -57,6 +57,13 @@ def by_name(columns):
     return {column.name: column for column in columns}
 
 
+def test_what_one_result_alone_has_is_in_its_own_units(light):
+    """Only finite elements give an indentation, whose size nothing else has."""
+    fem = computed("tables4_5", PLAIN | {"solve.methods": ["fem"]})
+    columns = by_name(Comparison([light, fem]).columns())
+    assert columns["fem_v0_2"].unit == "µm" and "fem_v0_1" not in columns
+
+
 def test_states_are_paired_by_their_parameters(light, heavy):
     columns = by_name(galinx.compare(light, heavy))
     for name in ("motion", "X_over_L"):

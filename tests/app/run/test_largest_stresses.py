@@ -246,3 +246,29 @@ def test_the_largest_stress_at_a_free_end_is_the_limit_and_the_load_follows():
         assert data[f"states/{method}/von_mises_X_over_a"][0] == -1.0
         first = load * (300e6 / (mises * load / (2.0 * a))) ** 2
         assert data[f"states/{method}/first_yield_load"][0] == pytest.approx(first, rel=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(12) if THOROUGH else (0, 1))
+@pytest.mark.parametrize("layered", [True, False], ids=["layered", "uniform"])
+def test_stresses_by_the_integral_equation_are_largest_where_samples_are(seed, layered, monkeypatch):
+    """Between a kink of the punch and a free end a hundredth of the contact away, as everywhere."""
+    rng = np.random.default_rng(seed)
+    layer = "[[layer]]\nE = 4e11\nnu = 0.2\nrho = 5000\nthickness = 3e-4\n" * layered
+    profile = rng.choice(["flat_half_width = 1e-3\nradius = 0.02", f"shape = {table(rng)}"], p=[0.7, 0.3])
+    scene = parse(
+        f'[solid]\nmaterial = "steel"\n{layer}'
+        f"[punch]\nprofile = '{'table' if 'shape' in profile else 'rounded_flat'}'\n{profile}\n"
+        f"load = {10.0 ** rng.uniform(2.5, 4.0)}\n[friction]\nmu = {rng.uniform(0.2, 0.9)}\n"
+        f"[motion]\nspeed = {rng.uniform(100.0, 2500.0)}\n"
+        f"strokes = ['{('forward', 'backward')[seed % 2]}']\n"
+        "[solve]\nmethods = ['sie']\n[output]\nquantities = ['sif', 'surface']\n"
+    )
+    found = galinx.compute(scene).data
+    near = np.logspace(-6.0, 0.0, 1500)
+    X = np.unique(np.concatenate([near - 1.0, 1.0 - near]))
+    monkeypatch.setattr("galinx.app.plan.plan.surface_grid", lambda: X)
+    sampled = galinx.compute(scene).data["surface/sie/sigma_XX"]
+    size = np.abs(sampled).max()
+    for name, sign in (("sigma_XX_min", -1.0), ("sigma_XX_max", 1.0)):
+        missed = (sign * sampled).max(axis=1) - sign * found[f"states/sie/{name}"]
+        assert missed.max() <= MISSED * size, name

@@ -1,7 +1,7 @@
 import numpy as np
 
-from galinx.app.results.fields import StateField
 from galinx.postprocess.hdf5 import vtkhdf
+from galinx.postprocess.hdf5.vtkhdf import Piece
 
 
 def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
@@ -9,9 +9,9 @@ def test_files_carry_units_and_the_layout_that_vtk_knows(tmp_path):
 
     points, quads = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.arange(4)[None]
     path = tmp_path / "square.hdf"
-    square = StateField(points, quads, {"u": np.zeros((4, 3))})
-    nothing = StateField(points[:0], quads[:0], {"u": np.zeros((0, 3))})
-    triangle = StateField(points[:3], np.array([[0, 1, 2, 2]]), {"u": np.zeros((3, 3))})
+    square = Piece(points, quads, {"u": np.zeros((4, 3))})
+    nothing = Piece(points[:0], quads[:0], {"u": np.zeros((0, 3))})
+    triangle = Piece(points[:3], np.array([[0, 1, 2, 2]]), {"u": np.zeros((3, 3))})
     told = {"title": "µ", "state": 3}
     grid = vtkhdf.Step(0.0, [nothing, square, nothing, triangle, square], told)
     vtkhdf.write(path, [grid], {"u": ("m", "displacement")}, coloured="u")

@@ -32,6 +32,8 @@ def test_stresses_are_those_of_the_potentials(mode):
     np.testing.assert_allclose(error[some], np.abs(fem - exact).max(axis=0), atol=1e-9 * unit)
     assert np.array_equal(np.isnan(error), Y > -1e-13)
     np.testing.assert_allclose(found.data["sigma_ZZ"][some], solid.ν * (fem[0] + fem[1]), rtol=1e-12)
+    under_it = (np.abs(X) < 0.9) & (Y > -1e-12)
+    np.testing.assert_allclose(found.data["displacement"][under_it, 1], -1.3217e-6, rtol=1e-4)
     # σ_YY at the surface is a pressure under the punch and vanishes beside it.
     for part, level in ((np.abs(X) < 0.9, -1.0), ((np.abs(X) > 1.1) & (np.abs(X) < 5.0), 0.0)):
         σ_YY = found.data["sigma_YY"][part & (Y > -1e-12)] / unit

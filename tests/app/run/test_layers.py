@@ -19,11 +19,10 @@ from galinx.app.scene.sections import HalfPlane
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import CONTACT, FAR, FREE
-from galinx.solvers.contact import residual
+from galinx.solvers.contact import equation, residual
 from galinx.solvers.contact.edges import under_punch
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import Equation, LayersUnderPunch, rule_of_ends
-from galinx.solvers.contact.solution import FreeEndContact
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
@@ -352,8 +351,8 @@ def test_finite_elements_know_nothing_of_the_integral_equation(monkeypatch):
     """But where to begin: from another half-width they find the same."""
     asked = CYLINDER | {"solve.methods": ["fem"], "solve.tolerance": 1e-3}
     one = coated(asked).data
-    true = FreeEndContact._at_rest
-    monkeypatch.setattr(FreeEndContact, "_at_rest", lambda self, load: 1.7 * true(self, load))
+    true = equation.half_width_at_rest
+    monkeypatch.setattr(equation, "half_width_at_rest", lambda *of: 1.7 * true(*of))
     other = coated(asked).data
     for name in ("half_width", "centre"):
         found = one[f"states/fem/{name}"], other[f"states/fem/{name}"]

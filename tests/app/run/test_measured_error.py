@@ -13,6 +13,7 @@ from galinx.solvers.contact.fem_plan import PressureMoments
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.recovery import MOMENTS, Polynomials, Stretch
 from galinx.solvers.fem import ladder as error
+from galinx.solvers.fem.contact import PunchLevel
 from galinx.solvers.fem.ladder import Estimate, Gauge, MeasuredError, climb, to_tolerance
 from galinx.solvers.fem.sweep import Fit
 
@@ -268,6 +269,25 @@ def test_rounding_inside_is_that_of_no_place_on_the_surface_nearer_to_an_edge():
     assert gauges.rounding_of_stresses(states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
     of_mirrors = gauges.rounding_of_stresses(states, 2.0 * noise[None])
     assert of_mirrors == pytest.approx([2e-9 / 4.0, 4e-12 / 4.0], rel=1e-3)
+
+
+def test_errors_of_stresses_count_on_slower_convergence_than_those_of_moments():
+    error = measured_error(level(0.0), level(0.0), level(0.0))
+    assert (error._rate("sif").usual, error._rate("surface").usual) == (0.16, 0.5)
+
+
+def test_rounding_of_intensities_is_their_difference_from_those_of_the_mirror_image():
+    """At -g the ends change places; what is left of 3 : 2 is 2e-6 of the first."""
+    K_I = {-0.5: [[3.0, 2.0]], 0.5: [[2.0, 3.0 + 6e-6]]}
+    level = SimpleNamespace(
+        mirrored=True, twins=True, states=lambda g, load: None, fields_of=lambda states: None,
+        measured_task=SimpleNamespace(places=SimpleNamespace(X=None)), moments=None,
+        plan=SimpleNamespace(tests=PressureMoments()), work=SimpleNamespace(stresses=frozenset()),
+        punch=SimpleNamespace(states=lambda g, flat: SimpleNamespace(tested=lambda moments: g)),
+        over_flat=lambda moments, g: SimpleNamespace(K_I=np.array(K_I[float(g[0])])),
+        rounding_of_stresses=lambda own, noise: [],
+    )  # fmt: skip
+    assert PunchLevel.rounding(level, G) == pytest.approx([2e-6])
 
 
 def test_the_error_of_a_speed_between_is_the_larger_one_beside_it_and_that_of_the_fit():

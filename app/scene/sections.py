@@ -622,6 +622,12 @@ class Section:
                 own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
                 faults.append(f"{name}.{self.chosen} ({keys[self.chosen].about}): {error}{own}")
                 return None
+        if self.models and self.chosen not in given:  # a model under another key: its keys are not faults
+            for key in (
+                key for key, value in given.items() if key not in keys and value in [*self.models]
+            ):
+                faults.append(f'{name}.{key}: no such key; did you mean {self.chosen} = "{given[key]}"?')
+                return None
         own_faults: list[str] = []
         for alone in (key for key in given if key in keys and keys[key].beside is not None):
             beside = {alone, *(keys[alone].beside or ())}
@@ -631,7 +637,8 @@ class Section:
                 keys = self.keys(given)
         for key in (key for key in given if key not in keys):
             others = [n for n, model in (self.models or {}).items() if key in parameters(model)]
-            hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} has it'
+            have = "has it" if len(others) == 1 else "have it"
+            hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
             own_faults.append(
                 f"{name}.{short(key)}: no such key{hint if others else nearest(key, [*keys])}"
             )
@@ -642,7 +649,7 @@ class Section:
                 if key in values:  # another key gives it
                     continue
                 if entry.default is REQUIRED:
-                    own_faults.append(f"{name}.{key}: missing; expected the {entry.about}{self.or_else}")
+                    own_faults.append(f"{name}.{key}: missing; expected {entry.about}{self.or_else}")
                 else:
                     text = isinstance(entry.default, str)
                     values[key] = entry.kind(entry.default) if text else entry.default

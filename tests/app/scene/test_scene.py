@@ -223,6 +223,11 @@ def test_mu_alone_is_coulombs_law_and_a_scene_without_strokes_is_steady():
         ('"1 m/s"', "1 m/s # fast", "found 1 m/s in line 11, expected quotes"),
         ('"5 mm"', '"5,5 mm"', "decimals have a point"),
         ("mu = 0.15", "mu = 0.15\ndelta = 1", 'no such key of model = "coulomb"; dahl has it'),
+        (
+            "mu = 0.15",
+            'law = "lugre"\nmu_s = 0.6',
+            'friction.law: no such key; did you mean model = "lugre"?',
+        ),
         ("mu = 0.15", "mu = 0.15\nmu_c = 0.15", "1 fault:\n  friction: mu and mu_c exclude each other"),
         ("mu = 0.15", "mu = 0.15\nsigma0 = 1e9", "friction.sigma0: no such key"),
     ],

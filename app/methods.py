@@ -94,7 +94,8 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
 
 
 def _layers_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
-    if not body.no_closed_form and CLOSED_FORM in scene.solve.methods:
+    prescribed = SOLVED in body.lacks
+    if not body.no_closed_form and (prescribed or CLOSED_FORM in scene.solve.methods):
         return "the solid has no layers, and closed_form knows the solution"
     lacks = (
         {}

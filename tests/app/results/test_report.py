@@ -17,6 +17,7 @@ from galinx.app.results.report import markup, states_table
 from galinx.postprocess.tables import BESIDE, state_columns
 
 CHROMIUM = shutil.which("chromium")
+CLOSED = {"solve.methods": ["closed_form"]}
 
 
 @pytest.fixture(scope="module")
@@ -148,8 +149,8 @@ def browsed(page, folder, script):
     ), console
 
 
-#: Pages of which each has something that the others have not.
-PAGES = ("flat", "cylinder", "slider")
+#: Pages of all kinds: what they have differs.
+PAGES = ("flat", "table1", "cylinder", "coating", "slider")
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")

@@ -329,6 +329,25 @@ def test_layers_of_one_solid_are_the_half_plane(punch, mu, share):
         assert np.abs(one - other)[known].max() <= most
 
 
+@pytest.mark.parametrize("mu", [0.3, 0.9] if THOROUGH else [0.9])
+def test_between_a_thick_coating_and_a_thin_one(mu):
+    """What the other solid does falls with the thickness over the width, and with its inverse."""
+    asked = CYLINDER | {"friction.mu_c": mu}
+    hard = {"solid": {"E": "7.5 GPa", "nu": 0.3, "rho": 1200.0}}
+    of_coat, below = (
+        coated(asked, BARE, more).data["states/closed_form/half_width"][0] for more in (hard, {})
+    )
+    of = {
+        H: coated(asked, {"layer[0].thickness": f"{H} mm"}).data["states/sie/half_width"][0]
+        for H in (0.02, 0.04, 1.0, 30.0, 60.0)
+    }
+    assert of_coat < of[30.0] < of[1.0] < of[0.04] < of[0.02] < below
+    off_thick = [of[H] / of_coat - 1.0 for H in (30.0, 60.0)]
+    assert off_thick[0] <= 2e-3 and 1.8 < off_thick[0] / off_thick[1] < 4.5
+    off_thin = [1.0 - of[H] / below for H in (0.04, 0.02)]
+    assert off_thin[0] <= 0.05 and 1.5 < off_thin[0] / off_thin[1] < 2.1  # H, and H log H
+
+
 def test_many_frictions_and_loads_are_those_of_each():
     many, loads = np.linspace(0.05, 0.9, 12).tolist(), [1e5, 1e6]
 
@@ -506,3 +525,15 @@ def test_all_speeds_of_random_stacks(seed, graded):
     data = sweep(solid, c, rng.uniform(0.1, 1.0), ("sif", "surface", "interfaces"), tolerance)
     print(seed, graded, f"{tolerance:.0e}", np.count_nonzero(data["run/fem/factorisations"]), "solved")
     check(data, tolerance)
+
+
+def test_all_is_linear_in_a_given_pressure_and_in_friction():
+    """Two halves of a pressure add up, and a friction between two is between them."""
+    asked = GIVEN | {"output.quantities": ["sif", "surface", "interfaces"]}
+    parts = [[[-1, -1], [0, -1], [0.3, 0], [1, 0]], [[-1, 0], [0, 0], [0.3, -4], [1, 0]]]
+    whole, *halves = (coated(asked, {"solve.pressure": one}).data for one in (HUMP, *parts))
+    low, high = (coated(asked, {"friction.mu_c": mu}).data for mu in (0.1, 0.7))
+    for path in ("surface/sie/sigma_XX", "interfaces/sie/sigma_XY", "interfaces/sie/sigma_XX_below"):
+        size = np.abs(whole[path]).max()
+        assert np.abs(whole[path] - sum(one[path] for one in halves)).max() <= 1e-9 * size
+        assert np.abs(whole[path] - (low[path] + high[path]) / 2.0).max() <= 1e-9 * size

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from random_solids import random_solid
-from support import THOROUGH, scene_of, section_of
+from support import HOME, THOROUGH, command, here, scene_of, section_of
 
 import galinx
 from galinx.postprocess.tables import solved_speeds
 from galinx.solvers.contact import stresses
 from galinx.solvers.solids import Isotropic
+from galinx.solvers.solids.plane import Orthotropic
 
 ISOTROPIC = Isotropic(E=70e9, ν=0.25, ρ=2700.0)
 #: Frictions of both signs, more than are sampled themselves.
@@ -91,6 +92,7 @@ def solved(result):
         (ISOTROPIC, None, 1e-4),
         *[(random_solid(seed), None, 1e-3) for seed in (3, 5) if THOROUGH],
         (ISOTROPIC, {"profile": "parabolic", "radius": 0.1, "load": [1e4, 7e4]}, 1e-4),
+        (ISOTROPIC, {"tilt": 2e-4, "load": [1e4, 5e4, 2e5]}, 1e-4),
     ],
 )
 def test_a_sweep_is_what_its_speeds_are_by_themselves(solid, punch, tolerance):
@@ -142,6 +144,49 @@ def test_what_no_fit_tells_well_enough_is_solved(monkeypatch, work_done):
     every = of_speeds(ISOTROPIC, c, 1e-2, SIF, EVERY)
     assert spent <= 1.1 * np.sum(np.array(work_done) ** 4)
     check(result, every, 1e-2)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
+def test_speeds_that_ask_for_different_degrees_cost_little_more_than_each_by_itself(work_done):
+    """The fastest of them asks for two degrees more than the others, at which all of a fit are solved."""
+    solid = Orthotropic(0.755e9, 5.85e9, 3.67e9, 0.066, -0.18, 0.1, 0.252e9, 1.67e3, 45.0, "stress")
+    c = np.linspace(0.0, 0.97, 16) * solid.limit()
+    work = []
+    for sweep in ("auto", "every"):
+        result = of_speeds(solid, c, 1e-4, SIF, {"solve.sweep": sweep})
+        assert result.verdict == "PASS"
+        work.append(np.sum(np.array(work_done) ** 4))
+        work_done.clear()
+    assert work[0] <= 1.1 * work[1]
+
+
+def test_two_ranks_tell_what_one_does(tmp_path):
+    asked = {"quantities": ["sif", "surface", "interior"], "points": [[0.0, -0.5], [0.9, -0.2]]}
+    text = scene(ISOTROPIC, np.linspace(0.0, 0.8, 16), 1e-2, {"output": asked}).text
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    found = []
+    for ranks in ((), ("-n", "2")):
+        path = tmp_path / f"{len(ranks)}.h5"
+        done = (command if ranks else here)(*ranks, "run", tmp_path / "scene.toml", "-o", path, cwd=HOME)
+        assert done.returncode == 0 and "speeds solved, the others by a fit" in done.stdout
+        found.append(galinx.load(path).data)
+    for path in (
+        "states/fem/K_I_left",
+        "states/fem/estimate",
+        "surface/fem/sigma_XX",
+        "interior/fem/sigma_XY",
+        "states/fem/fitted",
+    ):
+        np.testing.assert_allclose(found[1][path], found[0][path], rtol=1e-9)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="minutes: with GALINX_THOROUGH=1")
+def test_all_of_256_speeds_at_once():
+    c = np.linspace(0.0, 0.98, 256) * ISOTROPIC.limit()
+    many = {"friction": {"mu_c": [0.1, 0.3, 0.5, 0.8, 1.2], "sigma0_over_load": [5e3, 2e4]}}
+    result = of_speeds(ISOTROPIC, c, 1e-6, many)
+    assert len(solved(result)[0]) <= 14
+    check(result, of_speeds(ISOTROPIC, c, 1e-6, many, EVERY), 1e-6)
 
 
 @pytest.mark.parametrize("seed", range(12) if THOROUGH else [6])

@@ -71,14 +71,19 @@ def test_a_number_of_one_variant_that_is_changed_is_a_fault(tmp_path):
     assert any("with solid.nu = 0.3: states/closed_form/K_I_left is not what" in text for text in faults)
 
 
-def test_thicknesses_of_a_layer():
+SHARP = {"punch": {"half_width": "1 mm", "load": "10 N/mm"}, "motion": {"c": 0.2}}
+
+
+@pytest.mark.parametrize("scene, thin", [(COATED, 10), (COATED | SHARP, 20)])
+def test_thicknesses_of_a_layer(scene, thin):
     """Largest stresses at interfaces do not depend on which places they are sampled at."""
-    result = swept_by(COATED, "layer[0].thickness=[10, 20] um")
+    result = swept_by(scene, f"layer[0].thickness=[{thin}, {2 * thin}] um")
     unit, depths = swept.interface_depths(result.data)
-    assert unit == "m" and np.allclose(depths, [[1e-5], [2e-5]], rtol=1e-12)
+    assert unit == "m" and np.allclose(depths, [[thin * 1e-6], [2e-6 * thin]], rtol=1e-12)
     for state in (0, 1):
-        _, single = alone(COATED, result, state)
-        for row in (*INTERFACE_EXTREMES["sie"], states.HALF_WIDTH["sie"]):
+        _, single = alone(scene, result, state)
+        rows = [*INTERFACE_EXTREMES["sie"], *[states.HALF_WIDTH["sie"]] * ("profile" in scene["punch"])]
+        for row in rows:
             held, expected = result.data[row.path][state], single.data[row.path][0]
             # The positions along interfaces are those of both thicknesses.
             assert np.allclose(held, expected, rtol=1e-6, atol=1e-4 * ("_X" in row.path)), row.path

@@ -1,4 +1,4 @@
-"""The study as a program: its verdict.
+"""The study as a program: its verdict, on one rank and on two.
 
 With all figures tests/docs/test_pages.py runs it as the README does.
 """
@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from support import here
+from support import THOROUGH, command, here
 
 from galinx.app.results.fields import displacement_under_punch
 from galinx.app.scene import read as scenes
@@ -107,3 +107,11 @@ def test_displacement_under_the_punch_is_that_of_the_strain():
                 X[start], X[end], limit=400,
             )[0]  # fmt: skip
             assert u[end] - u[start] == pytest.approx(scene.body.displacement * strain, rel=1e-4)
+
+
+@pytest.mark.skipif(not THOROUGH, reason="takes long: GALINX_THOROUGH=1")
+def test_two_ranks_reproduce_the_study(tmp_path):
+    done = command("-n", "2", "paper", "-o", tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "verdict: PASS" in done.stdout and done.stdout.count(" yes ") == 12
+    assert (tmp_path / "study.h5").is_file() and (tmp_path / "fig10.pdf").is_file()

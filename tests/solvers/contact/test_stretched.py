@@ -46,7 +46,8 @@ def test_moments_give_the_intensities_of_a_steeply_graded_solid(pressure, count,
     ("thickness", "growth", "g", "share", "length", "first"),
     [
         (0.1, 100.0, -0.74, 0.45, 0.19, 31),
-        *((0.4, 100.0, -0.74, 0.85, 0.5, 24), (0.3, 30.0, 0.2, 0.0, 0.6, 23)) * THOROUGH,
+        *((0.4, 100.0, -0.74, 0.85, 0.5, 24),) * THOROUGH,
+        (0.3, 30.0, 0.2, 0.0, 0.6, 23),
     ],
 )
 def test_what_functions_leave_out_of_a_steeper_solid_is_in_what_they_say_of_themselves(

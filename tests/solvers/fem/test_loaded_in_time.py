@@ -118,3 +118,11 @@ def test_suddenly_loaded_strip():
     """Waves have corners, so that sizes and steps are small; in the mean over the surface and times."""
     found, expected = found_and_expected(even(2.5, 1.3, 0.25), 0.0, 1.0, 80, 6, 0.0)
     assert np.sqrt(((found - expected) ** 2).mean()) < 1e-3
+
+
+@pytest.mark.skipif(not THOROUGH, reason="takes minutes: GALINX_THOROUGH=1")
+@pytest.mark.parametrize("c", [0.0, 0.5])
+def test_suddenly_loaded_strip_everywhere(c):
+    mesh = even((FAST + c) / 2.0 + 1.8, 1.3, 0.1)
+    found, expected = found_and_expected(mesh, c, 1.0, 250, 8, 0.0)
+    assert np.abs(found - expected).max() < 1e-3

@@ -67,17 +67,34 @@ def test_known_parameters_are_found_within_three_standard_deviations(name):
     assert len(found.names) >= len(true) - 1
 
 
+def random_fit(name, seed):
+    """Random parameters of a law, and its fit to noisy friction along random strokes."""
+    rng = np.random.default_rng(seed)
+    true = random_laws.parameters(name, rng)
+    true = {key: value[:3] if key == "elements" else value for key, value in true.items()}
+    fixed = {key: true[key] for key in ("reference_speed", "evolution") if key in true}
+    t, X = motion(rng.permutation(np.geomspace(1e-4, 3e-2, 10)), 600)
+    kind = LAWS[name]
+    f = friction(build_model(kind, true), moves(t, X, kind.depends_on_speed), len(t))
+    f = f + NOISE * rng.standard_normal(len(t))
+    return true, fit(kind, [Measured(t, X, f)], fixed, {}, len(true.get("elements", ())) or 3)
+
+
+@pytest.mark.parametrize("seed", range(5 if THOROUGH else 2))
+@pytest.mark.parametrize("name", ["coulomb", "dahl", "bouc_wen", "stribeck", "lugre", "rate_and_state"])
+def test_random_laws_are_found_within_four_standard_deviations(name, seed):
+    true, found = random_fit(name, seed)
+    off = np.abs(found.best - numbers({"state0": 1.0, "delta": 1.0} | true, found.names))
+    sure = found.determined
+    assert (off[sure] <= 4.0 * found.deviations[sure]).all(), dict(zip(found.names, off))
+    assert found.rms == pytest.approx(NOISE, rel=0.1)
+
+
 @pytest.mark.parametrize("seed", range(3 if THOROUGH else 1))
 @pytest.mark.parametrize("name", ["elasto_plastic", "maxwell_slip", "gms"])
 def test_laws_of_many_numbers_leave_little_more_than_noise(name, seed):
     """Elements have no order, and small ones hide behind others: friction tells, not the numbers."""
-    rng, kind = np.random.default_rng(seed), LAWS[name]
-    true = random_laws.parameters(name, rng)
-    true = {key: value[:3] if key == "elements" else value for key, value in true.items()}
-    t, X = motion(rng.permutation(np.geomspace(1e-4, 3e-2, 10)), 600)
-    f = friction(build_model(kind, true), moves(t, X, kind.depends_on_speed), len(t))
-    f = f + NOISE * rng.standard_normal(len(t))
-    found = fit(kind, [Measured(t, X, f)], {}, {}, len(true.get("elements", ())) or 3)
+    _, found = random_fit(name, seed)
     assert found.rms <= 1.1 * NOISE
 
 

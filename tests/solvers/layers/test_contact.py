@@ -48,6 +48,14 @@ def test_the_example_to_all_digits(V2):
     assert np.abs(read(one.pressure) - EXAMPLE[V2]).max() <= 2e-12
 
 
+@pytest.mark.skipif(not THOROUGH, reason="a minute")
+@pytest.mark.parametrize("V2", EXAMPLE)
+def test_the_reference_finds_the_example(V2):
+    layers = [(mp.mpf(1), plane_strain("7.5", "0.3"), mp.mpf("1.2"))]
+    exact = punch(layers, (plane_strain("2.5", "0.25"), mp.mpf(1)), repr(V2), "-0.4", 36)
+    assert np.abs(np.array(exact, dtype=float) - EXAMPLE[V2]).max() <= 1e-13
+
+
 def test_the_reference_finds_it_roughly():
     layers = [(mp.mpf(1), plane_strain("7.5", "0.3"), mp.mpf("1.2"))]
     exact = punch(layers, (plane_strain("2.5", "0.25"), mp.mpf(1)), "0.2", "-0.4", 12, 20, 8, 10)
@@ -303,6 +311,15 @@ def test_an_edge_lifts_off_beyond_the_tilt_that_leaves_it_no_intensity():
         assert one.centre * unit == pytest.approx(sizes[-1] - 1.0)
     assert not free[0] and free[-1] and sorted(free) == free
     assert np.all(np.diff(sizes) <= 1e-12) and sizes[0] == pytest.approx(1.0) and sizes[-1] < 0.9
+
+
+@pytest.mark.skipif(not THOROUGH, reason="half a minute")
+def test_over_a_graded_top_rules_know_of_kinks():
+    """Whatever they are fine enough for, what they add up to is the load."""
+    graded = Layered((Layer(1.0, COAT, bottom=SUBSTRATE),), SUBSTRATE)
+    one, _, _ = found(graded, wedge(0.01), -0.6, tolerance=1e-6)
+    for finest in (3.0, 0.1):
+        assert one.pressure.points(finest)[1].sum() == pytest.approx(-2.0, rel=1e-8)
 
 
 @pytest.mark.parametrize(("α", "β"), [(-0.5, -0.5), (-0.71, -0.29), (0.4, 0.6), (-0.3, 0.3)])

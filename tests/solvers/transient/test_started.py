@@ -48,6 +48,9 @@ def over_layers(end):
 ROTATED = random_solid(1)
 BOTH = {
     "one friction": ((SOLID, 0.6, -0.4, 4.0, 20, 3.0, 16), {}, (3e-5, 5e-4, 1e-3, 1e-4, 1e-5)),
+    "changing friction": (
+        (SOLID, 0.6, lambda t: -0.6 * (1.0 - np.exp(-t)), 3.0, 14, 3.0, 16), {},
+        (3e-5, 1e-3, 1e-3, 1e-4, 1e-5)),
     "rotated": ((ROTATED, 0.6 * ROTATED.limit(), -0.4, 3.0, 14, 3.0, 16), {},
                 (5e-4, 5e-4, 5e-4, 1e-4, 1e-5)),
     "layers": (
@@ -72,6 +75,15 @@ def test_both_methods_agree_on_random_solids(seed):
     share, g = rng.uniform(0.0, 0.85), rng.uniform(-0.7, 0.7)
     found = differences(solid, share * solid.limit(), g, 5.0, 60, degree=9)
     assert max(found[0], found[5]) < 3e-4 and found[2] < 3e-3
+
+
+@pytest.mark.skipif(not THOROUGH, reason="takes long: GALINX_THOROUGH=1")
+@pytest.mark.parametrize("seed", range(6))
+def test_both_methods_agree_on_random_solids_where_friction_changes(seed):
+    rng, solid = np.random.default_rng(seed), random_solid(seed)
+    c, (one, other) = rng.uniform(0.0, 0.8) * solid.limit(), rng.uniform(-0.7, 0.7, 2)
+    found = differences(solid, c, lambda t: one + other * np.sin(t), 4.0, 50, degree=9)
+    assert found[0] < 1e-4 and max(found[1:3]) < 3e-3 and found[3] < 3e-4
 
 
 LIKE = {

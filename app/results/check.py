@@ -25,7 +25,16 @@ from galinx.postprocess.compare import not_finite
 from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.hdf5.archive import Archive
 from galinx.postprocess.over_time import IN_TIME
-from galinx.postprocess.quantities import QUANTITIES, Quantity, runs, states, stresses, table, yielding
+from galinx.postprocess.quantities import (
+    QUANTITIES,
+    Quantity,
+    runs,
+    states,
+    stresses,
+    table,
+    validity,
+    yielding,
+)
 from galinx.postprocess.quantities.quantity import (
     ALONE,
     CLOSED_FORM,
@@ -111,7 +120,7 @@ def _of_part(part: _Part) -> Iterator[str]:
             for numbers, computed in _computed(part, methods, selected, rows) if rows else ():
                 yield from _different(part, numbers, computed)
     if plan.fem and not part.scene.layers:
-        yield from _of_invariants(part, more)
+        yield from _of_derived(part, more)
         yield from _of_finite_elements(part, more)
 
 
@@ -240,20 +249,29 @@ def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[st
                 yield f"{rules[name].text}: {figure:.1e} in states {rows[0]} ..."
 
 
-def _of_invariants(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
-    """Principal and von Mises stresses inside that do not follow from the archived components."""
-    rows = (*stresses.STRESSES_INSIDE[FEM], *stresses.INVARIANTS_INSIDE[FEM])
-    if any(row.path not in part.names for row in rows):
-        return
+def _of_derived(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
+    """Stresses inside and tensions under the punch that do not follow from archived components."""
     body = part.plan.body
-    inside = np.array([part.held(row.path, selected) for row in stresses.STRESSES_INSIDE[FEM]])
-    Y = part.data[stresses.INSIDE_Y.path]
-    solution: Any = SimpleNamespace(inside=inside, σ_ZZ=body.σ_ZZ(inside, Y))
-    for row in stresses.INVARIANTS_INSIDE[FEM]:
-        assert row.of
-        held = part.held(row.path, selected)
-        if not np.allclose(held, row.of(solution, body), rtol=1e-9, atol=1e-12, equal_nan=True):
-            yield f"{row.path} is not what the components give"
+
+    def inside(components: list[NDArray]) -> Any:
+        σ = np.array(components)
+        return SimpleNamespace(inside=σ, σ_ZZ=body.σ_ZZ(σ, part.data[stresses.INSIDE_Y.path]))
+
+    def surface(components: list[NDArray]) -> Any:
+        return SimpleNamespace(surface=SimpleNamespace(places=part.plan.places, σ_YY=components[0]))
+
+    for components, derived, solution in (
+        (stresses.STRESSES_INSIDE[FEM], stresses.INVARIANTS_INSIDE[FEM], inside),
+        ((stresses.PRESSURE[FEM],), (validity.TENSION[FEM], validity.TENSION_X[FEM]), surface),
+    ):
+        if any(row.path not in part.names for row in (*components, *derived)):
+            continue
+        given = solution([part.held(row.path, selected) for row in components])
+        for row in derived:
+            assert row.of
+            held = part.held(row.path, selected)
+            if not np.allclose(held, row.of(given, body), rtol=1e-9, atol=1e-12, equal_nan=True):
+                yield f"{row.path} is not what the components give"
 
 
 def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:

@@ -142,6 +142,18 @@ SMALL = {
         },
     ),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["both methods", "finite elements alone"])
+def test_tension_follows_from_the_archived_pressure(name, tmp_path):
+    path = tmp_path / "small.h5"
+    computed(*SMALL[name]).save(path)
+    with opened(path) as file:
+        assert not file["states/fem/tension"][0]
+        file["states/fem/tension"][0] = 0.1
+    assert "states/fem/tension is not what the components give" in check.faults(path)
+
+
 #: What nobody can tell again of the work; the pressure that assumes no exponent, which is rough;
 #: and places, which may be anywhere where something is flat.
 NOT_COMPUTED = {

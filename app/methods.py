@@ -93,16 +93,14 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
     return _refusal(quantity, body, lacks)
 
 
-def _layers_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
-    prescribed = SOLVED in body.lacks
-    if not body.no_closed_form and (prescribed or CLOSED_FORM in scene.solve.methods):
+def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
+    if body.no_closed_form:
+        return _refusal(quantity, body, {})
+    if SOLVED in body.lacks or CLOSED_FORM in scene.solve.methods:
         return "the solid has no layers, and closed_form knows the solution"
-    lacks = (
-        {}
-        if body.no_closed_form
-        else dict.fromkeys((BELOW, YIELD), "in a uniform solid closed_form gives it")
+    return _refusal(
+        quantity, body, dict.fromkeys((BELOW, YIELD), "in a uniform solid closed_form gives it")
     )
-    return _refusal(quantity, body, lacks)
 
 
 #: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
@@ -172,7 +170,7 @@ def _closed_form(plan: Any, progress: Any, clock: Any) -> Method:
     return ClosedForm(ExactSolution)
 
 
-def _layers(plan: Any, progress: Any, clock: Any) -> Method:
+def _integral_equation(plan: Any, progress: Any, clock: Any) -> Method:
     from galinx.solvers.contact.exact import Layers
 
     return Layers(plan.tolerance)
@@ -189,7 +187,12 @@ METHODS: Registry[MethodKind] = Registry(
     "method",
     {
         CLOSED_FORM: MethodKind("closed form", _closed_form, refusal=_closed_form_refusal, loads=True),
-        SIE: MethodKind("singular integral equation", _layers, refusal=_layers_refusal, of_layers=True),
+        SIE: MethodKind(
+            "singular integral equation",
+            _integral_equation,
+            refusal=_integral_equation_refusal,
+            of_layers=True,
+        ),
         FEM: MethodKind(
             "mesh and finite elements", _finite_elements, refusal=_finite_elements_refusal, loads=True
         ),

@@ -514,7 +514,8 @@ def make_plan(
     for fault in _faults(scene, body, methods, places, {name: refusals[name] for name in named}):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
-    # Whoever names all methods wants those that solve it; and a uniform solid has no method of layers.
+    # Whoever names all methods wants those that solve it; and in a uniform solid the closed form is the
+    # integral equation's solution.
     others = {n: why for n, why in refusals.items() if scene.layers or not METHODS[n].of_layers}
     left_out = [name for name in named if others.get(name)]
     if methods and not {*OWN_METHODS} <= {*named}:

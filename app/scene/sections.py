@@ -622,12 +622,12 @@ class Section:
                 own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
                 faults.append(f"{name}.{self.chosen} ({keys[self.chosen].about}): {error}{own}")
                 return None
-        if self.models and self.chosen not in given:  # a model under another key: its keys are not faults
-            for key in (
-                key for key, value in given.items() if key not in keys and value in [*self.models]
-            ):
-                faults.append(f'{name}.{key}: no such key; did you mean {self.chosen} = "{given[key]}"?')
-                return None
+        models = [*(self.models or ())] * (self.chosen not in given)
+        if misnamed := [key for key, value in given.items() if key not in keys and value in models]:
+            # The keys of that model are no faults.
+            wanted = f'{self.chosen} = "{given[misnamed[0]]}"'
+            faults.append(f"{name}.{misnamed[0]}: no such key; did you mean {wanted}?")
+            return None
         own_faults: list[str] = []
         for alone in (key for key in given if key in keys and keys[key].beside is not None):
             beside = {alone, *(keys[alone].beside or ())}

@@ -284,17 +284,6 @@ class OnLayers(Group):
 
     layers: LayersUnderPunch
 
-    def read(self, what: Any, values: "Callable[[OnLayers], NDArray]") -> NDArray[np.float64]:
-        """Values that are linear in the pressure, (..., rows, n).
-
-        Args:
-            what: a name of the values, by which they are kept.
-            values: gives them for states that were solved, (..., rows, n).
-        """
-        if isinstance(self.pressure, Interpolated):
-            return self.pressure.read(what, values)
-        return values(self)
-
     @property
     def size(self) -> float:
         """Half-width of the contacts over the unit of the layers."""
@@ -302,7 +291,9 @@ class OnLayers(Group):
 
     def strain(self, r: NDArray) -> NDArray[np.float64]:
         name = "strain", r.tobytes()
-        return self.read(name, lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size), r))
+        return self.pressure.read(
+            self, name, lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size), r)
+        )
 
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n), at an interface those above it: (3, rows, n)."""
@@ -311,7 +302,7 @@ class OnLayers(Group):
         for height in np.unique(Y).tolist():
             there = height == Y
             at_height = partial(OnLayers._at_height, X=X[there], height=height)
-            σ[..., there] = self.read(("inside", height, X[there].tobytes()), at_height)
+            σ[..., there] = self.pressure.read(self, ("inside", height, X[there].tobytes()), at_height)
         return σ
 
     def _at_height(self, X: NDArray, height: float) -> NDArray[np.float64]:
@@ -323,7 +314,9 @@ class OnLayers(Group):
 
     def at_interface(self, X: NDArray, level: Level) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,): (4, rows, n)."""
-        return self.read(("interface", level.depth, X.tobytes()), lambda of: of._along(X, level, 2))
+        return self.pressure.read(
+            self, ("interface", level.depth, X.tobytes()), lambda of: of._along(X, level, 2)
+        )
 
     def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
         """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
@@ -402,8 +395,8 @@ class Interpolated(Pressure):
     α: Any
     β: Any
 
-    def read(self, what: Any, values: Callable[[OnLayers], NDArray]) -> NDArray[np.float64]:
-        """Values of all states by those of the nodes, (..., 1, n) each; see :meth:`OnLayers.read`."""
+    def read(self, group: Any, what: Any, values: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """Values of all states by those of the nodes, (..., 1, n) each; see :meth:`Pressure.read`."""
         return np.asarray(self.weights @ self.nodes.read(what, values))
 
     @property
@@ -415,10 +408,12 @@ class Interpolated(Pressure):
         return float(min(node.pressure.near for node in self.nodes.groups))
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self.read(("p", r.tobytes()), lambda node: node.pressure.series(r)[None])
+        return self.read(None, ("p", r.tobytes()), lambda node: node.pressure.series(r)[None])
 
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
-        return self.read(("rest", r.tobytes(), near), lambda node: node.pressure.rest(r, near)[None])
+        return self.read(
+            None, ("rest", r.tobytes(), near), lambda node: node.pressure.rest(r, near)[None]
+        )
 
     def states(self) -> Iterator[Pressure]:
         rows = zip(self.weights, self.α[:, 0].tolist(), self.β[:, 0].tolist())
@@ -444,10 +439,7 @@ class LayeredSolution(ExactSolution):
         interpolation: float, g: NDArray,
     ) -> None:  # fmt: skip
         super().__init__(task, g)
-        self._layers, self._solved = layers, solved
-        #: Relative error of all that is linear in the pressure by interpolation and by the kernel.
-        of_kernel = 2.0 * np.pi * layers.kernel.error / abs(layers.response.n)
-        self._shared = interpolation + of_kernel
+        self._layers, self._solved, self._interpolation = layers, solved, interpolation
         if nodes:
             self._both = tuple(each.between(g) for each in nodes)
         else:
@@ -457,6 +449,12 @@ class LayeredSolution(ExactSolution):
             self._both = tuple(Contacts(of) for of in zip(*(groups_of(layers, *each) for each in rows)))
         #: Contacts of the states, and those with fewer unknowns.
         self.contacts, self._coarse = self._both
+
+    @property
+    def _shared(self) -> float:
+        """Relative error of all that is linear in the pressure by interpolation and by the kernel."""
+        of_kernel = 2.0 * np.pi * self._layers.kernel.error / abs(self._layers.response.n)
+        return float(self._interpolation + of_kernel)
 
     def _limits(self, surface: Surface) -> Turns | None:
         """Limits of stresses at kinks, and at free ends of contacts that have kinks."""
@@ -524,10 +522,10 @@ class LayeredSolution(ExactSolution):
         They add the change with the number of unknowns, the effect of the kernels' and the tables'
         errors, and the error of the interpolation over frictions.
         """
-        of_pressure = max(contact.change for contact in self._solved) + self._shared
+        change = max(contact.change for contact in self._solved)
         return _Evaluated(
             {
-                INTENSITIES: lambda: np.full(len(self.g), of_pressure),
+                INTENSITIES: lambda: np.full(len(self.g), change + self._shared),
                 ON_SURFACE: self._on_surface,
                 AT_INTERFACES: self._at_interfaces,
                 BELOW: self._below,

@@ -130,6 +130,16 @@ class Pressure:
         """σ_XX, σ_YY, σ_XY below the surface of a uniform half-plane, (3, states, points)."""
         return np.asarray(response.inside(self, g, X, Y))
 
+    def read(self, group: Any, what: Any, values: Callable[[Any], NDArray]) -> NDArray[np.float64]:
+        """Values that are linear in the pressure, (..., rows, n).
+
+        Args:
+            group: states of this pressure.
+            what: a name of the values, by which they are kept.
+            values: gives them for states that were solved, (..., rows, n).
+        """
+        return values(group)
+
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         """Cauchy's integral Φ(z), see :class:`galinx.solvers.solids.half_plane.Potential`."""
         raise NotImplementedError

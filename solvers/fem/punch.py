@@ -270,11 +270,19 @@ class SlidingPunch(Punch):
             SolveError: there are as many loads as there may be.
         """
         limit = len(self.space.contact.s) if self.factor.direct else LIMIT
+        waiting: list[NDArray] = []
         while True:
             rest = self._rest(g)
             left = float(np.linalg.norm(rest, axis=0).max())
             if left <= self._left:
-                return
+                if not waiting:
+                    return
+                # All at once: many right-hand sides cost little more than one.
+                b = self._tangential(self._loads[:, len(self.fields) - self._parts :])
+                fields, forces = self._refined(b, np.column_stack(waiting), self._refines)
+                self.forces[len(self.fields) :], waiting = forces, []
+                self.fields = [*self.fields, *fields]
+                continue
             if self._loads.shape[1] >= limit:
                 raise SolveError(
                     f"the contact forces at g = {g[0]:g} to {g[-1]:g} (dimensionless) did not converge "
@@ -289,9 +297,10 @@ class SlidingPunch(Punch):
                 more = np.column_stack([more, along])
             for _ in range(2):  # twice is enough
                 more, _ = np.linalg.qr(more - self._loads @ (self._loads.T @ more))
-            fields, forces = self._refined(self._tangential(more), self._refines)
+            waiting.append(self._displacements(self._tangential(more)))
             self._loads = np.column_stack([self._loads, more])
-            self.fields, self.forces = [*self.fields, *fields], np.concatenate([self.forces, forces])
+            more_forces = map(self._boundary.follow, self._reactions(waiting[-1]))
+            self.forces = np.concatenate([self.forces, [*more_forces]])
 
     def _frictionless(self, shaped: NDArray, negligible: float) -> tuple[list[PETSc.Vec], NDArray]:
         """Fields and forces of the flat punch at v = -1 and of each shape, without friction.
@@ -322,10 +331,9 @@ class SlidingPunch(Punch):
         return fields[flat:], self._followed(fields[flat:], after[flat:])
 
     def _refined(
-        self, b: NDArray, refines: bool, checked: bool = True
+        self, b: NDArray, x: NDArray, refines: bool, checked: bool = True
     ) -> tuple[list[PETSc.Vec], NDArray[np.float64]]:
-        """Fields and forces under loads b, (rows, k), checked and refined."""
-        x = self._displacements(b)
+        """Fields and forces of displacements x under loads b, both (rows, k), checked and refined."""
         residuals = self._residuals(x, b, np.zeros(b.shape[1]))
         if checked:
             self.factor.check(b, x, residuals)
@@ -479,7 +487,7 @@ class ElasticPunch(SlidingPunch):
         #: Combinations of displacements and tangential forces, (basis, 2 n).
         self._basis = rows[size > self._left * size[0]]
         b = self._tangential(self._basis[:, n:].T)
-        fields, forces = self._refined(b, True, bool(np.any(g)))
+        fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
         for field, moved in zip(fields, self._basis[:, :n] @ units):
             field.setArray(field.array_r + moved)
         self.fields = [*self.fields, *fields]

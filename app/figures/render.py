@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from galinx.texts import folded, in_tex, plain
 
-from .style import GREY, PAGE, SMALL, TALLEST, Look, styled
+from .style import DPI, GREY, PAGE, SMALL, TALLEST, Look, styled
 
 #: Least side of a legible panel, and free space around a figure, between columns and between rows [in].
 _LEAST, _EDGE, _ASIDE, _BELOW = 0.35, 0.04, 0.1, 0.05
@@ -178,7 +178,8 @@ def render(
     size = size or Size(PAGE)
     columns = min(columns or across(size.width, len(panels)), len(panels))
     rows = ceil(len(panels) / columns)
-    figure = Figure((size.width, size.height or TALLEST))
+    # Texts are typeset once: their sizes are measured at the resolution of files.
+    figure = Figure((size.width, size.height or TALLEST), dpi=DPI)
     FigureCanvasAgg(figure)
     made = []
     for n, panel in enumerate(panels):

@@ -421,7 +421,7 @@ class FreeEndContact(Contact):
 
     @property
     def fem_mode(self) -> str:
-        return VARYING_FREE if self.along else ""
+        return VARYING_FREE if self.along and not self.solid.layers else ""
 
     @property
     def finite(self) -> bool:

@@ -234,6 +234,8 @@ class SharpLevel(PunchLevel):
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
 _NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
+#: The first of these for splines that show what the others leave out.
+COARSE = 4.0 * _NEXT
 
 
 class AlongLevel(PunchLevel):
@@ -242,7 +244,7 @@ class AlongLevel(PunchLevel):
     twins = False
 
     @cached_property
-    def _facets(self) -> ContactFacets:
+    def facets(self) -> ContactFacets:
         return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
     def splines(
@@ -276,7 +278,7 @@ class AlongLevel(PunchLevel):
         # Nodal forces know of tests their interpolants only.
         return splines.fitted(
             tested(at_nodes), local.α + more, local.β + more,
-            lambda r: self._facets.interpolated(at_nodes.T, r).T,
+            lambda r: self.facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 
 
@@ -285,14 +287,14 @@ class VaryingLevel(AlongLevel, SharpLevel):
 
     def along(self) -> Callable[[float], NDArray]:
         along = self.task.body.along  # type: ignore[attr-defined]
-        return cache(lambda g: self._facets.product(along[g]))
+        return cache(lambda g: self.facets.product(along[g]))
 
     def pressure(self, contact: ContactStates) -> Expansion:
         return self.splines(contact.g, contact.half_width, contact.tested)
 
     def gauge(self, states: SolvedStates) -> Gauge:
         gauge, contact = super().gauge(states), states.contact
-        coarse = self.splines(contact.g, contact.half_width, contact.tested, 4.0 * _NEXT)
+        coarse = self.splines(contact.g, contact.half_width, contact.tested, COARSE)
         # Without knots next to ends and kinks, splines of all degrees are off alike.
         off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
         return replace(gauge, unresolved=gauge.unresolved + off)
@@ -357,7 +359,7 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
 
     def along(self) -> Callable[[float], NDArray]:
         numbers = self._numbers
-        return lru_cache(_KEPT)(lambda number: self._facets.product([*numbers][int(number)]))
+        return lru_cache(_KEPT)(lambda number: self.facets.product([*numbers][int(number)]))
 
     def prepare(self, punch: SlidingPunch) -> None:
         self.punch = punch
@@ -416,7 +418,7 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
     def gauge(self, states: SolvedStates) -> Gauge:
         contact, σ = states.contact, states.pressure.σ_YY(_ACROSS)
         size, h = np.abs(σ).max(axis=1, keepdims=True), contact.half_width
-        coarse = self.splines(contact.g, h, contact.tested, 4.0 * _NEXT, 1.0)
+        coarse = self.splines(contact.g, h, contact.tested, COARSE, 1.0)
         off = np.abs(coarse.σ_YY(_ACROSS) - σ) / size
         lengths = np.column_stack([h, contact.centre]), h[:, None]
         groups = (contact.tested(self.moments[:, 1:6]), 2.0), (σ, size), lengths

@@ -20,6 +20,7 @@ all loads differ in size alone, a single state of a friction stands for all of t
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, replace
+from functools import cache
 from math import ceil, log
 from typing import Any, TypeAlias
 
@@ -49,7 +50,7 @@ from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between,
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.punches import Flat
-from .contact import FreeLevel, SingleLevel, without_intensity
+from .contact import COARSE, AlongLevel, FreeLevel, SingleLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
@@ -417,7 +418,7 @@ class BalancedLevel(SingleLevel):
     def pressure(self, contact: ContactStates) -> Expansion:
         return self.over_flat(contact.tested(self.moments), contact.g, 1.0)
 
-    def continuation(self) -> Callable[[NDArray], Any]:
+    def continuation(self) -> Callable[[NDArray], Any] | None:
         gap, exponents = min(1.0, self.plan.tests.functions.h), self.end_exponents
         return lambda X: slopes_towards_ends(X, (gap, gap), exponents)
 
@@ -427,11 +428,46 @@ class BalancedLevel(SingleLevel):
         h, σ = self.half_width, pressure.σ_YY(_ACROSS)
         # Differences of the half-widths' logarithms are relative changes.
         lengths = np.column_stack([np.log(states.contact.half_width / h), states.contact.centre / h])
+        groups = (σ, stresses.of_factor(σ)), (moments, 2.0), (lengths, 1.0)
+        return joined(INTENSITIES, groups, self.unresolved(states))
+
+    def unresolved(self, states: SolvedStates) -> NDArray[np.float64]:
+        """What the functions leave out of the pressure, over its largest factor, (states,)."""
+        pressure = states.pressure
         # What the last functions add is largest where they are multiplied by most.
         factor = np.abs(pressure.series(_ACROSS)).max(axis=1)
         ends = np.abs(pressure.series(ENDS)).max(axis=1)
-        groups = (σ, stresses.of_factor(σ)), (moments, 2.0), (lengths, 1.0)
-        return joined(INTENSITIES, groups, pressure.unresolved * ends / factor)
+        return np.asarray(pressure.unresolved * ends / factor)
+
+
+class VaryingBalancedLevel(AlongLevel, BalancedLevel):
+    """Contact over layers whose friction varies along it: that of the mesh's half-width."""
+
+    def along(self) -> Callable[[float], NDArray]:
+        body = self.task.body  # of the mesh's half-width
+        return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
+
+    def _fitted(self, g: NDArray, tested: Callable[[NDArray], NDArray], **knots: float) -> Expansion:
+        return self.splines(g, np.full(len(g), self.task.body.half_width), tested, **knots)
+
+    def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        parts = self.punch.parts(g)
+        of_each = self._fitted(
+            np.repeat(g, parts.shape[1]), lambda tests: self.punch.tested(parts, tests)[0]
+        )
+        return parts, self.punch.loads(parts), of_each.K_I.T[None]
+
+    def pressure(self, contact: ContactStates) -> Expansion:
+        return self._fitted(contact.g, contact.tested, more=1.0)
+
+    def unresolved(self, states: SolvedStates) -> NDArray[np.float64]:
+        contact, σ = states.contact, states.pressure.σ_YY(_ACROSS)
+        coarse = self._fitted(contact.g, contact.tested, nearest=COARSE, more=1.0).σ_YY(_ACROSS)
+        return np.asarray(np.abs(coarse - σ).max(axis=1) / np.abs(σ).max(axis=1))
+
+    def continuation(self) -> None:
+        # Next to an end where friction varies slopes have logarithms, which no series of powers follows.
+        return None
 
 
 def scaled(task: Task, half_width: float) -> Task:
@@ -439,7 +475,7 @@ def scaled(task: Task, half_width: float) -> Task:
     depths = task.body.solid.depths / half_width  # type: ignore[attr-defined]
     return replace(
         task,
-        body=make_contact(task.body.solid, Flat(half_width), task.body.load),
+        body=make_contact(task.body.solid, Flat(half_width), task.body.load, along=task.body.along),
         response=replace(task.response, a=half_width),  # type: ignore[type-var]
         places=replace(task.places, interfaces=depths),
     )
@@ -552,4 +588,5 @@ class OverLayers(OwnMeshes):
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
         task, profile = scaled(self._sought, h), self._sought.body.profile
         mesh = self._work.on(drawn_for(task, self._work.plan, words), words)
-        return mesh, task, lambda space, g: BalancedLevel(mesh, task, space, g, profile, h * self._lean)
+        level = VaryingBalancedLevel if task.body.along else BalancedLevel
+        return mesh, task, lambda space, g: level(mesh, task, space, g, profile, h * self._lean)

@@ -82,6 +82,38 @@ def test_free_ends_by_both_methods(seed):
     assert (np.abs(fem / sie - 1.0) <= data["states/fem/estimate"] + 1e-6).all()
 
 
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else (0,))
+def test_free_ends_over_layers_by_both_methods(seed):
+    friction, _, c, load = random_cylinder(seed)
+    layer = {
+        "thickness": f"{np.random.default_rng(seed).uniform(0.1, 1.0)} mm",
+        "E": "120 GPa",
+        "nu": 0.3,
+        "rho": 2400,
+    }
+    result = slid(
+        friction, c=c, layer=[layer], punch={"profile": "parabolic", "radius": "50 mm"} | load,
+        solve={"methods": ["sie", "fem"], "tolerance": 1e-4},
+    )  # fmt: skip
+    data = result.data
+    assert result.attributes["verdict"] == "PASS", result.attributes["verdict_reasons"]
+    # Both ends by two methods, and the resultant of shear, which follows the friction along the contact.
+    for name in ("half_width", "centre", "resultant_ratio"):
+        fem, sie = (data[f"states/{method}/{name}"] for method in ("fem", "sie"))
+        scale = np.abs(data["states/sie/half_width"]) if name == "centre" else np.abs(sie)
+        assert (np.abs(fem - sie) <= (data["states/fem/estimate"] + 1e-6) * scale).all()
+
+
+def test_one_friction_along_a_coated_cylinder_is_a_number():
+    layer = {"thickness": "0.5 mm", "E": "120 GPa", "nu": 0.3, "rho": 2400}
+    punch = {"profile": "parabolic", "radius": "50 mm", "load": "100 N/mm"}
+    sections = {"layer": [layer], "punch": punch, "solve": {"methods": ["fem"], "tolerance": 1e-4}}
+    along, number = (slid(f, **sections).data for f in ({"along": [[-1, 0.4], [1, 0.4]]}, {"mu": 0.4}))
+    for name in ("half_width", "centre", "largest_pressure"):
+        of_along, of_number = (of[f"states/fem/{name}"] for of in (along, number))
+        np.testing.assert_allclose(of_along, of_number, rtol=1e-5)
+
+
 def test_flat_punches_over_layers_by_both_methods():
     layer = {"thickness": "1 mm", "E": "120 GPa", "nu": 0.3, "rho": 2400}
     sections = {"layer": [layer], "solve": {"methods": ["sie", "fem"], "tolerance": 1e-4}}

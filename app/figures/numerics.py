@@ -42,12 +42,14 @@ def mesh(of: Archive) -> Drawing:
 def degrees(of: Archive) -> Drawing:
     """Figure of the convergence of K_I and of the pressure's moments with the polynomial degree."""
     data, labels = of.data, of.labels
-    c, c_of, change = (data[row.path] for row in (runs.RECORD["c"], states.SPEED, runs.CHANGES))
+    change, solved = data[runs.CHANGES.path], runs.states_of_speeds(data, len(of.scene.each))
     measured = np.flatnonzero(change.any(axis=1)).tolist()
     shown = spread(measured, 6)  # speeds that can be told apart
+    first = [int(solved[i][0]) for i in shown]
+    names = [name for name in labels.varied(first) if name == C or "." in name]
 
-    def largest(row: Quantity, speed: float) -> float:
-        return float(data[row.path][c_of == speed].max())
+    def largest(row: Quantity, i: int) -> float:
+        return float(data[row.path][solved[i]].max())
 
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(shown)) - (len(shown) - 1) / 2.0) / max(1, len(shown) - 1)
@@ -55,14 +57,14 @@ def degrees(of: Archive) -> Drawing:
     # K_I is 0 at free ends, and its error no number for a logarithmic axis.
     exact = of.has(states.TRUE_ERROR) and bool(data[states.TRUE_ERROR.path].any())
     errors = [(states.ESTIMATE[FEM], "_")] + [(states.TRUE_ERROR, "x")] * exact
-    for i, look, off in zip(shown, looks(len(shown), ordered=True), aside):
+    for i, state, look, off in zip(shown, first, looks(len(shown), ordered=True), aside):
         computed = np.flatnonzero(change[i] > 0.0)
-        label = labels.label(int(np.argmax(c_of == c[i])), [C]) if len(shown) > 1 else ""
+        label = labels.label(state, names) if len(shown) > 1 else ""
         curves.append(Curve(computed, change[i][computed], look, label, JOINED))
         at = np.array([data[runs.RECORD["degree"].path][i] + off])
         for row, marker in errors:
             curves.append(
-                Curve(at, np.array([largest(row, c[i])]), look._replace(marker=marker), "", MARKERS)
+                Curve(at, np.array([largest(row, i)]), look._replace(marker=marker), "", MARKERS)
             )
     words = "estimated error", "true error"
     notes = [note(Look(GREY, "-", m), word, MARKERS) for (_, m), word in zip(errors, words)]
@@ -76,7 +78,7 @@ def degrees(of: Archive) -> Drawing:
         f"{', crosses the true one, which has to lie below' * exact}."
     )
     figure = render([panel], of.size or Size(COLUMN), notes=notes, high=0.72)
-    return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(c), "speeds"))
+    return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(solved), "solutions"))
 
 
 def mesh_figure(

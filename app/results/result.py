@@ -281,14 +281,9 @@ class Result:
 
     def _degree(self, number: int) -> int | None:
         """Degree that was used at a state's speed, None without finite elements."""
-        c = self.data[states.SPEED.path]
-        c_of, degrees = (self.data.get(runs.RECORD[name].path, ()) for name in ("c", "degree"))
-        if self.scene.variants and len(degrees):  # speeds of one variant after those of another
-            each = len(degrees) // len(self.scene.variants)
-            first = each * (number * len(self.scene.variants) // len(c))
-            c_of, degrees = c_of[first : first + each], degrees[first : first + each]
-        used = dict(zip(c_of, degrees))
-        return int(used.get(c[number], 0)) or None if 0 <= number < len(c) else None
+        degrees = self.data.get(runs.RECORD["degree"].path, ())
+        solved = runs.states_of_speeds(self.data, len(self.scene.each)) if len(degrees) else ()
+        return next((int(p) or None for p, numbers in zip(degrees, solved) if number in numbers), None)
 
 
 def read_scene(path: Path | str, changes: dict[str, Any] | None = None) -> Scene:

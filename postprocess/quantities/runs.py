@@ -3,8 +3,15 @@
 A slider is a mass that is pulled through a spring, one for each load and law.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
 from galinx.solvers.parameters import Range
 
+from . import states
 from .quantity import (
     ANYWHERE,
     FEM,
@@ -89,6 +96,22 @@ CHANGES = Quantity(
     "largest relative change of K_I and moments from the degree before, by degree; 0: not computed",
     (SPEED, "degrees"), method=FEM, range=NOT_NEGATIVE,
 )  # fmt: skip
+
+
+def states_of_speeds(data: Mapping[str, Any], variants: int) -> list[NDArray[np.int64]]:
+    """Numbers of the states of each speed that finite elements solved.
+
+    Args:
+        data: datasets of an archive with finite elements, by path.
+        variants: number of variants of its scene, whose speeds stand one after another.
+    """
+    c, c_of = (data[row.path] for row in (RECORD["c"], states.SPEED))
+    each, count = (len(of) // variants for of in (c, c_of))
+    return [
+        first + np.flatnonzero(c_of[first : first + count] == speed)
+        for speed, first in zip(c, np.arange(len(c)) // each * count)
+    ]
+
 
 FAILURES = Quantity("run/failures", "none", "speeds that could not be solved, and why", (LINE,))
 DONE = Quantity("run/done", "none", "steps done", (LINE,))

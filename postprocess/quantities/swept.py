@@ -54,7 +54,8 @@ def columns(solids: tuple[type, ...], profiles: tuple[type, ...]) -> dict[str, Q
     rows: dict[str, Quantity] = {}
     for key, symbol, parameter in _keys(solids, profiles):
         path = f"states/{key}"
-        about = f"{parameter.about}, {key} of the scene"
+        # Beyond a comma it is said of one kind alone, of several that have the key.
+        about = f"{parameter.about.partition(',')[0]}, {key} of the scene"
         rows[path] = Quantity(path, parameter.unit or "1", about, (STATE,), symbol=symbol)
     return rows
 

@@ -167,7 +167,7 @@ class RoundedFlat:
         "flat_half_width", "half-width of the flat part", "m", symbol="b", above=0.0, usual=(1e-9, 0.5)
     )
     radius: float = parameter(
-        "radius", "radius of the rounded shoulders", "m", symbol="R", above=0.0, usual=(1e-9, 1e3)
+        "radius", "radius R, of the rounded shoulders", "m", symbol="R", above=0.0, usual=(1e-9, 1e3)
     )
 
     def __post_init__(self) -> None:

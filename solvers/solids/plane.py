@@ -200,7 +200,7 @@ class Cubic(PlaneSolid):
     c12: float = parameter("c12", "stiffness c12", "Pa", symbol="c_{12}")
     c44: float = modulus("c44", "stiffness c44", "c_{44}")
     ρ: float = density()
-    angle: float = angle("[100]")
+    angle: float = angle("axis 1, [100]")
     plane: str = in_plane()
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ from support import computed, scene_of
 
 from galinx.app.errors import BadInput
 from galinx.app.figures.choice import Archive, Choice, StateLabels
+from galinx.app.figures.numerics import degrees
 from galinx.app.figures.stresses import Fields
 from galinx.app.figures.waves import answers, curve
 from galinx.app.results import check
@@ -15,7 +16,11 @@ from galinx.app.results.result import load
 from galinx.app.scene.changes import from_words
 from galinx.postprocess.quantities import states, swept
 from galinx.postprocess.quantities.layers import INTERFACE_EXTREMES
+from galinx.postprocess.quantities.runs import states_of_speeds
 from galinx.postprocess.tables import parameters
+from galinx.solvers.parameters import parameters as model_parameters
+from galinx.solvers.profiles import PROFILES
+from galinx.solvers.solids import SOLIDS
 
 FLAT = {
     "solid": {"E": "200 GPa", "nu": 0.3, "rho": 7800}, "friction": {"mu": [0.1, 0.3]},
@@ -195,3 +200,27 @@ def test_the_threshold_of_flutter_says_of_which_state_it_is(monkeypatch):
     result = swept_by(COATED, "layer[0].E=[300, 450] GPa")
     (drawing,) = result.drawings(figures=["flutter"])
     assert drawing.caption.endswith("those of the first state; others differ in layer[0].E.")
+
+
+@pytest.mark.parametrize("kinds", [PROFILES, SOLIDS], ids=["profiles", "solids"])
+def test_a_key_of_several_kinds_has_one_name_for_all(kinds):
+    """Columns have one description a key: what one kind alone means stands behind a comma."""
+    names = {}
+    for kind in kinds.values():
+        for described in model_parameters(kind).values():
+            names.setdefault(described.key, set()).add(described.about.partition(",")[0])
+    assert {key: of for key, of in names.items() if len(of) > 1} == {}
+    columns = swept.columns(tuple(SOLIDS.values()), tuple(PROFILES.values()))
+    assert columns["states/punch.radius"].about == "radius R, punch.radius of the scene"
+
+
+def test_solutions_of_a_sweep_are_told_apart_where_their_degrees_are_drawn():
+    one = {"friction": {"mu": 0.3}, "motion": {"c": [0.2, 0.4]}, "solve": {"tolerance": 1e-3}}
+    result = swept_by(FLAT | one, "solid.nu=[0.2, 0.3]")
+    solved = states_of_speeds(result.data, 2)
+    assert sorted(np.concatenate(solved).tolist()) == [*range(len(result.data[states.SPEED.path]))]
+    for numbers in solved:
+        assert all(np.ptp(result.data[f"states/{name}"][numbers]) == 0.0 for name in ("solid.nu", "c"))
+    drawn = degrees(Archive(result.data, result.scene, Choice()))
+    legend = {text.get_text() for text in drawn.figure.findobj(Text)}
+    assert len({text for text in legend if r"\nu = 0.2" in text}) == 2

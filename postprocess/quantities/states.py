@@ -76,13 +76,13 @@ ALPHA, BETA = (
 
 K_I_BOTH = Quantity(
     "states/closed_form/K_I", "1",
-    "normalised stress intensity factor, both ends of a flat punch (Eq 58)",
+    "stress intensity factor, normalised, both ends of a flat punch (Eq 58)",
     (STATE,), lambda s, _: s.K_I[:, 0], CLOSED_FORM, requires=(SOLVED, PUNCH), scale=EDGE,
 )  # fmt: skip
 
 
 def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
-    about = f"normalised stress intensity factor at {at}"
+    about = f"stress intensity factor at {at}, normalised"
     return by_method(
         f"states/{{method}}/K_I_{side}", "1", about, (STATE,), lambda s, _: s.K_I[:, i], {
             CLOSED_FORM: {"requires": (SOLVED,)},

@@ -7,7 +7,7 @@ parameters: speed, load, the law's constants, motion and position.
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isnan
+from math import isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -84,7 +84,7 @@ class Column:
         name: in tables for programs; that of the archive where one dataset has the numbers.
         path: of that dataset, "" for none.
         digits: that are shown.
-        place: True where it is a place of what the column before it has.
+        owner: of a place, the column of what is there.
         least: size up to which a number is rounding, and shown as 0.
     """
 
@@ -94,7 +94,7 @@ class Column:
     name: str = ""
     path: str = ""
     digits: int = 4
-    place: bool = False
+    owner: "Column | None" = None
     least: float = 0.0
 
     @property
@@ -103,14 +103,21 @@ class Column:
         return self.head + ("" if self.unit in ("1", "none") else f" [{self.unit}]")
 
     @property
+    def place(self) -> bool:
+        """True for a place."""
+        return self.owner is not None
+
+    @property
     def constant(self) -> bool:
         """True where all states have the same."""
         return len(set(self.texts())) == 1
 
     def shown(self, count: int | None = None) -> list[Any]:
-        """The first cells, those that are rounding as 0."""
+        """The first cells, those that are rounding as 0, and places of such as NaN."""
         cells = [*self.values[:count]]
-        return [0.0 if not isinstance(cell, str) and abs(cell) <= self.least else cell for cell in cells]
+        cells = [0.0 if not isinstance(cell, str) and abs(cell) <= self.least else cell for cell in cells]
+        there = self.owner.shown(count) if self.owner else cells
+        return [nan if self.owner and of == 0.0 else cell for cell, of in zip(cells, there)]
 
     def texts(self, count: int | None = None) -> list[str]:
         """The first cells as text."""
@@ -269,8 +276,10 @@ def _columns(
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
     columns: list[Column] = []
-    least = _least(units)
+    least, owner = _least(units), None
     for head, rows, digits, taken in specs:
+        if not (place := head.startswith("at ")):
+            owner = None
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
         if not row or not scaled:
@@ -279,14 +288,15 @@ def _columns(
         if row.type == TEXT:
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, row.path))
         elif archived or np.isfinite(data[row.path]).any():
-            place, of_kind = head.startswith("at "), _STRESS if row.unit == _STRESS else row.scale
+            of_kind = _STRESS if row.unit == _STRESS else row.scale
             columns.append(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
-                    scaled.of(values), scaled.unit, scaled.name, row.path, digits, place,
+                    scaled.of(values), scaled.unit, scaled.name, row.path, digits, owner,
                     0.0 if archived else least.get(of_kind, 0.0),
                 )
             )  # fmt: skip
+            owner = owner or columns[-1]
     return columns
 
 
@@ -325,14 +335,16 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 def _placed(units: Units, head: str, name: str, stress: Any, **places: Any) -> list[Column]:
     """Column of a stress in the units of a result, and of its place along each axis."""
+    least = _least(units)
+    largest = Column(head, stress, units.stress.unit, name, least=least[_STRESS])
     at = [
         Column(
             f"at {axis}{'/a' * units.dimensionless}", values, units.length.unit, f"{name}_{axis}",
-            place=True, least=_least(units)[X_OVER_A],
+            owner=largest, least=least[X_OVER_A],
         )
         for axis, values in places.items()
     ]  # fmt: skip
-    return [Column(head, stress, units.stress.unit, name), *at]
+    return [largest, *at]
 
 
 def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -406,12 +418,12 @@ def layout(
     if width and len(labels) == 1:
         lines: list[list[str]] = []
         for column in columns:
-            if column.place and lines and lines[-1][1].startswith("0 "):
+            if not column.texts()[0]:
                 continue
             if column.place and lines:  # as in "at X = -52.5 µm, Y = -41.2 µm"
                 where = f"{column.head.removeprefix('at ')} = {column.words(0)}"
                 lines[-1][1] += f", {where}" if " at " in lines[-1][1] else f" at {where}"
-            elif column.texts()[0]:
+            else:
                 lines.append([column.head, column.words(0)])
         return Sheet(title, ["", ""], lines)
     texts = [column.texts(len(labels)) for column in columns]

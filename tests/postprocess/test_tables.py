@@ -28,6 +28,14 @@ def test_the_tension_that_frictionless_contact_has_by_rounding_is_none():
         assert (plain["largest tension σ_XX"] == "0 N/(2a)") is (shown == "0 MPa")
 
 
+def test_a_stress_that_is_none_has_no_place_beside_others():
+    result = computed(SCENE, {"friction.mu": [0.0, 0.2]})
+    rows = states_sheet(result.data, result.units(), width=80).rows
+    tension = [row[0] for row in rows].index("largest tension σ_XX [MPa]")
+    assert [rows[tension][1], rows[tension + 1][1]] == ["0", ""]
+    assert rows[tension][2] != "0" and rows[tension + 1][2] != ""
+
+
 def test_only_strokes_have_a_friction_loop(tmp_path):
     for strokes, loops in ((None, False), (["forward"], True)):
         archive = tmp_path / f"{loops}.h5"

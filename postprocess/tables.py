@@ -507,6 +507,22 @@ def sheets_of_run(data: dict[str, Any], units: Units, title: str, width: int) ->
     return [sheet for sheet in sheets if sheet.rows]
 
 
+def sheets_of_archive(
+    data: dict[str, Any], units: Units, title: str, width: int, strokes: bool
+) -> list[Sheet]:
+    """All tables, that of states first.
+
+    Args:
+        data: datasets of the archive by path.
+        units: of the result.
+        title: of the first table.
+        width: characters of a line.
+        strokes: True where strokes were asked for, which have friction loops.
+    """
+    more = [loops_sheet(data, units, width)] * strokes + [limits_sheet(data, units, width)]
+    return sheets_of_run(data, units, title, width) + [sheet for sheet in more if sheet.rows]
+
+
 def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
     columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]

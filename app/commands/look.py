@@ -29,7 +29,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
 
     Example: ./run.sh show tables.h5 --dimensionless
     """
-    from galinx.postprocess.tables import limits_sheet, loops_sheet, sheets_of_run
+    from galinx.postprocess.tables import sheets_of_archive
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -38,11 +38,9 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
         if as_json:
             print(json.dumps(_as_json(data, attributes, units), ensure_ascii=False, indent=1))
         else:
-            sheets = sheets_of_run(data, units, attributes["title"], width())
-            if not result.scene.steady:  # else no stroke was asked for
-                sheets.append(loops_sheet(data, units, width()))
-            sheets.append(limits_sheet(data, units, width()))
-            print_result([sheet for sheet in sheets if sheet.rows], data, attributes, verbose)
+            strokes, title = not result.scene.steady, attributes["title"]
+            sheets = sheets_of_archive(data, units, title, width(), strokes)
+            print_result(sheets, data, attributes, verbose)
             print_warnings(attributes)
     return errors.GOOD
 

@@ -28,12 +28,10 @@ from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import (
     BESIDE,
     Sheet,
-    limits_sheet,
     shared,
+    sheets_of_archive,
     solved_speeds,
-    starts_sheet,
     state_columns,
-    states_sheet,
 )
 from galinx.postprocess.units import Units, engineering
 from galinx.texts import counted, folded, plain
@@ -346,8 +344,7 @@ def page(
     covered = {"surface": large and large["surface"], "inside": large and large["maps"]}
     shown = [each for each in pictures if not covered.get(each["name"])]
     few = len(data[states.FRICTION.path]) <= BESIDE
-    tables = [states_sheet(data, units, "Every state", _WIDE)] if few else []
-    tables += [f(data, units, _WIDE * few) for f in (starts_sheet, limits_sheet)]
+    tables = sheets_of_archive(data, units, "Every state", _WIDE * few, not scene.steady)
     # The study's tables that the archive has all states of, for the study's solid.
     published = [
         intensities(name, rows, limit_of_steady_motion(name, data, scene.body.half_width))
@@ -362,7 +359,7 @@ def page(
         "summary": summary(data, scene),
         "warnings": json.loads(attributes["warnings"]),
         "reasons": json.loads(attributes["verdict_reasons"]),
-        "tables": [sheet for sheet in tables if sheet.rows],
+        "tables": tables if few else tables[1:],
         "sheets": published if sheets is None else sheets,
         "states": None if few else states_table(data, units),
         "explorer": large,

@@ -14,7 +14,7 @@ from support import THOROUGH, kept
 
 from galinx import compute, template
 from galinx.app.results.report import markup, states_table
-from galinx.postprocess.tables import BESIDE, state_columns
+from galinx.postprocess.tables import BESIDE, sheets_of_archive, state_columns
 
 CHROMIUM = shutil.which("chromium")
 CLOSED = {"solve.methods": ["closed_form"]}
@@ -65,6 +65,18 @@ def test_text_of_a_scene_cannot_break_the_page(tmp_path):
     result = compute(template("table1", {"title": "<script>alert(1)</script>"}))
     result.report(tmp_path / "a.html")
     assert "<script>alert" not in (tmp_path / "a.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["laws", "slider"])
+def test_a_report_has_all_tables_and_no_heading_without_text(name, tmp_path):
+    result = kept(name)
+    result.report(tmp_path / "a.html")
+    text = (tmp_path / "a.html").read_text(encoding="utf-8")
+    shown = sheets_of_archive(result.data, result.units(), "", 0, strokes=True)
+    assert "Friction loops" in {sheet.title for sheet in shown}
+    for sheet in shown[1:]:
+        assert sheet.title in text and all(str(markup(cell)) in text for cell in sheet.rows[0])
+    assert not re.search(r"<h2[^>]*>[^<]*</h2>\s*<h2", text)
 
 
 def data_of(page, name):

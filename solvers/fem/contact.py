@@ -167,6 +167,23 @@ class PunchLevel(Level):
         K_I = np.stack([self.over_flat(of_part, g).K_I for of_part in moments], axis=2)
         return parts, self.punch.loads(parts), K_I
 
+    def gauge_of_free(
+        self, states: SolvedStates, σ: NDArray, size: NDArray, unresolved: Any = 0.0
+    ) -> Gauge:
+        """Gauge of a pressure between free ends, of its moments over the load, and of the ends.
+
+        Args:
+            states: the states.
+            σ: numbers that stand for their pressure, (states, n).
+            size: sizes of these, to which their changes are relative.
+            unresolved: relative error that the level shows by itself, (states,) or 0.
+        """
+        contact, h = states.contact, states.contact.half_width
+        # Differences of the half-widths' logarithms are relative changes.
+        lengths = np.column_stack([np.log(h), contact.centre / h])
+        groups = (contact.tested(self.moments[:, 1:6]), 2.0), (σ, size), (lengths, 1.0)
+        return joined(INTENSITIES, groups, unresolved)
+
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         body = self.task.body.loaded(load)
         contact = self.solved(g, body)
@@ -332,10 +349,10 @@ class FreeLevel(PunchLevel):
         return joined(gauge.word, groups, gauge.unresolved)
 
 
-#: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left;
-#: places at which the pressure between free ends is measured.
+#: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left.
 _KEPT, _BALANCED, _OF_INTENSITIES = 32, 1e-12, 1e-7
-_ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
+#: Places over the half-width at which the pressure between free ends is measured.
+ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 
 class VaryingFreeLevel(AlongLevel, FreeLevel):
@@ -414,13 +431,11 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         return self.splines(contact.g, contact.half_width, contact.tested, more=1.0)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        contact, σ = states.contact, states.pressure.σ_YY(_ACROSS)
-        size, h = np.abs(σ).max(axis=1, keepdims=True), contact.half_width
-        coarse = self.splines(contact.g, h, contact.tested, 4.0 * _NEXT, 1.0)
-        off = np.abs(coarse.σ_YY(_ACROSS) - σ) / size
-        lengths = np.column_stack([h, contact.centre]), h[:, None]
-        groups = (contact.tested(self.moments[:, 1:6]), 2.0), (σ, size), lengths
-        return joined(INTENSITIES, groups, off.max(axis=1))
+        contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
+        size = np.abs(σ).max(axis=1, keepdims=True)
+        coarse = self.splines(contact.g, contact.half_width, contact.tested, 4.0 * _NEXT, 1.0)
+        off = np.abs(coarse.σ_YY(ACROSS) - σ) / size
+        return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
 #: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
@@ -468,20 +483,34 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -
 
 def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
     """Amplitudes of v = -v₀ + the punch's height with the load, and without intensity at both ends."""
-    punch, few = body.profile, slice(1 + SHAPES)
-    units = np.broadcast_to(body.displacement, len(loads)).tolist()
-    conditions, near = end_conditions(local, K[..., few], loads[:, few]), None
-    ends, slopes = [], []
-    for condition, unit in zip(conditions, units):
-        near = condition.solve(punch, unit, near)
-        ends.append(near)
-        slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
-    (m, h), count = np.transpose(ends), loads.shape[1] - 1
-    shapes = np.array(slopes)[:, :count]
+    punch, count, units = body.profile, loads.shape[1] - 1, body.displacement * np.ones(len(loads))
+    (m, h), _ = ends_of(body, loads, K, local)
+    each = zip(m.tolist(), h.tolist(), units.tolist())
+    slopes = np.array([slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit for m, h, unit in each])
+    shapes = slopes[:, :count]
     v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
-    lowest = np.asarray(punch.height(m)) / units
     free = np.ones((len(m), 2), dtype=bool)
-    return np.column_stack([v0, shapes]), h, m, free, lowest, left_out(np.array(slopes), count)
+    lowest = np.asarray(punch.height(m)) / units
+    return np.column_stack([v0, shapes]), h, m, free, lowest, left_out(slopes, count)
+
+
+def ends_of(
+    body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Middles and half-widths [m] of contacts, (2, states), and what the shapes leave out, (states,).
+
+    Args:
+        body, loads, K, local: as of :func:`_parabola`; ``SHAPES`` shapes are used.
+
+    Raises:
+        SolveError: no contact carries the load.
+    """
+    few = slice(1 + SHAPES)
+    conditions, near, ends = end_conditions(local, K[..., few], loads[:, few]), None, []
+    for condition, unit in zip(conditions, np.broadcast_to(body.displacement, len(loads)).tolist()):
+        near = condition.solve(body.profile, unit, near)
+        ends.append(near)
+    return np.transpose(ends), np.array([condition.unseen for condition in conditions])
 
 
 def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
@@ -512,35 +541,3 @@ PUNCHES: dict[str, type[PunchLevel]] = {
     VARYING: VaryingLevel,
     VARYING_FREE: VaryingFreeLevel,
 }
-
-
-class SingleLevel(PunchLevel):
-    """A single contact on a mesh of its own: its displacement and nodal forces are kept, no others."""
-
-    twins = False
-    recovery = None  # type: ignore[assignment]
-
-    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
-        super().__init__(work, task, space, g)
-        try:
-            contact, field = self.solved(g, task.body), self.fields[0].duplicate()
-            field.zeroEntries()
-            field.maxpy(contact.weights[0].tolist(), self.fields)
-        finally:
-            self.punch.destroy()
-        self.fields = [field]
-        forces = np.tensordot(contact.weights, contact.forces, 1)
-        #: The contact.
-        self.contact = replace(contact, weights=np.ones((1, 1)), forces=forces)
-
-    @property
-    def end_exponents(self) -> tuple[float, float]:
-        """Exponents of the pressure at its left and its right free end."""
-        local = EdgeExponents(self.task.response, self.g)
-        return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
-
-    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        return SolvedStates(self, self.task.body.loaded(load), self.contact, self.pressure(self.contact))
-
-    def close(self) -> None:
-        self.fields[0].destroy()

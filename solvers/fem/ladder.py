@@ -508,7 +508,7 @@ class MeasuredError(Estimate):
             rest = "and falls too slowly"
             if self.floor > self._tolerance:
                 rest = f"of which {self.floor:.1e} would remain on any cells"
-            self._work.warn(
+            self._work.progress.warn(
                 f"finite elements at c = {self._level.task.response.c:g} do not reach the tolerance "
                 f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
                 f"{self._degree}, {rest}"

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..contact import solution
 from ..contact.edges import Exponents
-from ..contact.pressure import Group
+from ..contact.pressure import Contacts, between_ends
 from ..contact.recovery import on_panels
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
@@ -224,27 +224,21 @@ class Solution(solution.Solution):
         return max(states.level.nearest(states) for states in self.solved)
 
     @cached_property
-    def _punch(self) -> list[Group]:
-        """Each solved state on an elastic punch, mirrored at Y = 0."""
-        punch, one, unit = self.task.response.punch, np.zeros(1, dtype=int), np.ones(1)  # type: ignore[attr-defined]
-        return [
-            Group(punch, one, np.array([-g]), on_panels(states.pressure, i, α, β), unit, 0.0 * unit)
+    def _in_punch(self) -> Contacts:
+        """Contacts on an elastic punch, mirrored at Y = 0."""
+        pressures = [
+            on_panels(states.pressure, i, α, β)
             for states in self.solved
-            for i, (g, α, β) in enumerate(zip(states.contact.g, states.local.α, states.local.β))
+            for i, (α, β) in enumerate(zip(states.local.α, states.local.β))
         ]
+        each = [pressures[row] for row in self.rows]
+        return between_ends(self.task.response, self.g, each, 1.0).in_punch
 
     def _stresses_of_punch(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         X, Y = np.moveaxis(points, 2, 0)
         X = np.where(np.abs(np.abs(X) - 1.0) < _AT_END, np.sign(X) * (1.0 - _AT_END), X)
-        if len(points) == 1:
-            σ = np.concatenate([of.stresses(X, Y) for of in self._punch], axis=1)[:, self.rows]
-        else:
-            each = enumerate(self.rows)
-            σ = np.concatenate(
-                [self._punch[row].stresses(X[i : i + 1], Y[i : i + 1]) for i, row in each], axis=1
-            )
-        return σ * [[[1.0]], [[1.0]], [[-1.0]]]
+        return self._in_punch.stresses(X, Y) * [[[1.0]], [[1.0]], [[-1.0]]]
 
     @cached_property
     def inside_punch(self) -> NDArray[np.float64]:
@@ -254,7 +248,7 @@ class Solution(solution.Solution):
     @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
-        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self._punch[0].response
+        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self.task.response.punch  # type: ignore[attr-defined]
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
         punch = InSolid(
             response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST

@@ -46,6 +46,7 @@ class Work:
             tests=PressureMoments(),
         )  # fmt: skip
         self.errors, self.finer, self.said, self.solved = errors, finer, [], []
+        self.progress = self
 
     def space(self, degree, cuts=1):
         self.solved.append(degree)

@@ -1,7 +1,7 @@
 """Meshes and spaces that all speeds of a plan share."""
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,7 +15,6 @@ from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, with_friction_kinks
-from ..contact.solution import Task
 from .dolfinx_space import DolfinxSpace
 from .space import Space, distribute
 
@@ -52,7 +51,7 @@ class Discretisation:
 
     Attributes:
         plan: the finite elements' part of the plan.
-        tasks: all speeds.
+        tasks: all speeds, each a :class:`galinx.solvers.contact.solution.Task`.
         stresses: words of output.quantities that request stresses of finite elements.
         progress: shows the work.
         clock: takes wall time by step.
@@ -60,7 +59,7 @@ class Discretisation:
     """
 
     plan: FemPlan
-    tasks: Sequence[Task]
+    tasks: Any
     stresses: frozenset[str]
     progress: Messages
     clock: Clock

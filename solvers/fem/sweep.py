@@ -156,27 +156,27 @@ class Fit:
 
     def __init__(self, work: Discretisation, degree: int | None) -> None:
         assert work.plan.sweep
-        self._sweep, tasks = work.plan.sweep, work.tasks
+        self._sweep, self._tasks = work.plan.sweep, list(work.tasks)
         self._work, self._kind = work, PUNCHES[work.plan.mode]
         self.speeds: dict[int, Speed] = {}
         self.estimates: dict[float, Estimate] = {}
         self.rational: Barycentric | None = None
         self.error: dict[str, float] | None = None
         g = self._sweep.g
-        self._probes = tasks[0].probes(g if self._sweep.few else np.linspace(g[0], g[-1], PROBES))
+        self._probes = self._tasks[0].probes(g if self._sweep.few else np.linspace(g[0], g[-1], PROBES))
         #: Most speeds that are solved for a fit.
-        self._most = min(MOST, len(tasks) // 2)
+        self._most = min(MOST, len(self._tasks) // 2)
         # The fastest needs the highest degree: it is solved first, by every rank for itself.
-        first = int(np.argmin([task.response.margin for task in tasks]))
+        first = int(np.argmin([task.response.margin for task in self._tasks]))
         solved = self._climbed(self._begun(first), degree)
         with closing(solved):
             level: PunchLevel = solved.level
             self.space, self.recovery, self.at = level.space, level.recovery, self._frictions(level)
-            self._take([self._speed(tasks[first], solved, {})])
+            self._take([self._speed(self._tasks[first], solved, {})])
 
     def _begun(self, number: int) -> Task:
         """Speed by its number; its solution begins."""
-        task = self._work.tasks[number]
+        task = self._tasks[number]
         self._work.progress.say(f"finite elements at c = {task.response.c:g}, of the fit")
         return task
 
@@ -440,7 +440,7 @@ class Fit:
         """Largest relative change of a speed's gauges with the last samples, by word."""
         gauges: list[list[Gauge]] = []
         for rational in (self.rational, before):
-            with self.level(self._work.tasks[number], rational) as level:
+            with self.level(self._tasks[number], rational) as level:
                 gauges.append(level.gauges(*self._probes))
         return largest_changes(*gauges)
 

@@ -329,11 +329,11 @@ class FreeLevel(PunchLevel):
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         (parts, loads, K), local = self.parts(g), EdgeExponents(self.task.response, g)
         solve = _SOLVES.get(type(body.profile), _smooth)
-        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
-        if not np.all((h > 0.0) & np.isfinite(h)):
+        amplitudes, lowest, ends = solve(body, loads, K, local)
+        contact = self.punch.summed(g, parts, amplitudes).between(**ends)
+        if not np.all((contact.half_width > 0.0) & np.isfinite(contact.half_width)):
             raise SolveError("no contact of a finite half-width carries the load")
-        contact = self.punch.summed(g, parts, amplitudes)
-        return contact.between(h, m, free, unresolved=unresolved, v0=contact.v0 + lowest)
+        return replace(contact, v0=contact.v0 + lowest)
 
     def pressure(self, contact: ContactStates) -> Expansion:
         free = contact.free
@@ -390,8 +390,8 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         # Fields were added from state to state.
         fields = max(parts.shape[1] for parts in own)
         parts = np.array([np.pad(of, ((0, 0), (0, fields - of.shape[1]))) for of in own])
-        contact = self.punch.summed(g, parts, amplitudes)
-        return contact.between(h, m, True, unresolved=unresolved, v0=contact.v0 + lowest)
+        contact = self.punch.summed(g, parts, amplitudes).between(h, m, True, unresolved=unresolved)
+        return replace(contact, v0=contact.v0 + lowest)
 
     def _balanced(self, g: float, load: float) -> tuple[Any, ...]:
         """Parts, amplitudes, half-width, middle, depth of the lowest point and slope beyond the shapes.
@@ -410,9 +410,9 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
             number = self._numbers.setdefault(body.friction(g, h), float(len(self._numbers)))
             parts, each = self.punch.parts(np.array([number])), np.ones(1 + count)
             pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
-            loads = self.punch.loads(parts)[0]
+            loads = self.punch.loads(parts)
             shapes = slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit
-            amplitudes = np.append((-2.0 - shapes[:count] @ loads[1:]) / loads[0], shapes[:count])
+            (amplitudes,) = carrying(loads, shapes[None, :count])
             return parts[0], amplitudes, amplitudes @ pressure.K_I, shapes
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
@@ -438,9 +438,9 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
-#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
-#: point below the level of the first shape, over N/(2μ), and slope beyond the shapes, relative.
-_Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
+#: Amplitudes of the shapes (states, parts), depth of the punch's lowest point below the level of the
+#: first shape, over N/(2μ), (states,), and the ends, see :meth:`ContactStates.between`.
+_Solved = tuple[NDArray, NDArray, dict[str, Any]]
 
 
 def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
@@ -453,6 +453,17 @@ def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
     b = np.zeros((*loads.shape, 1))
     b[:, 0] = -2.0
     return np.asarray(np.linalg.solve(np.concatenate([loads[:, None], K], axis=1), b)[..., 0])
+
+
+def carrying(loads: NDArray, shapes: NDArray) -> NDArray[np.float64]:
+    """Amplitudes of parts whose sum carries the load, by those of shapes, (states, shapes).
+
+    Args:
+        loads: ∫σ_YY of every part, the flat one first, (states, 1 + shapes).
+        shapes: amplitudes of the others.
+    """
+    v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
+    return np.column_stack([v0, shapes])
 
 
 def left_out(slopes: NDArray, count: int) -> NDArray[np.float64]:
@@ -477,8 +488,7 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -
     _, c1, c2 = amplitudes[:, :3].T
     with np.errstate(invalid="ignore"):
         h = np.sqrt(punch.radius * c2 * body.displacement)
-    free = np.ones((len(h), 2), dtype=bool)
-    return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
+    return amplitudes, c1**2 / (2.0 * c2), {"half_width": h, "centre": h * c1 / c2, "free": True}
 
 
 def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
@@ -487,11 +497,8 @@ def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
     (m, h), _ = ends_of(body, loads, K, local)
     each = zip(m.tolist(), h.tolist(), units.tolist())
     slopes = np.array([slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit for m, h, unit in each])
-    shapes = slopes[:, :count]
-    v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
-    free = np.ones((len(m), 2), dtype=bool)
-    lowest = np.asarray(punch.height(m)) / units
-    return np.column_stack([v0, shapes]), h, m, free, lowest, left_out(slopes, count)
+    ends = {"half_width": h, "centre": m, "free": True, "unresolved": left_out(slopes, count)}
+    return carrying(loads, slopes[:, :count]), np.asarray(punch.height(m)) / units, ends
 
 
 def ends_of(
@@ -520,15 +527,14 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
     assert isinstance(punch, Flat)
     side = 1 if punch.rise > 0.0 else 0
     c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
-    v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
-    lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
-    balanced = without_intensity(loads, K[:, [side]])
-    amplitudes = np.where(lifted[:, None], balanced, np.column_stack([v0, c1]))
+    amplitudes = carrying(loads, c1[:, None])
+    lifted = (K[:, side] * amplitudes).sum(axis=1) < 0.0
+    amplitudes = np.where(lifted[:, None], without_intensity(loads, K[:, [side]]), amplitudes)
     h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
     centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)
-    return amplitudes, h, centre, free, np.abs(amplitudes[:, 1]), 0.0 * h
+    return amplitudes, np.abs(amplitudes[:, 1]), {"half_width": h, "centre": centre, "free": free}
 
 
 #: Solutions for profiles whose conditions are linear.

@@ -305,13 +305,18 @@ class Displacement:
         slopes: slopes of the fields along X on the surface, from a fit; computed if None.
         continuation: gives, for places X over a on the surface, the samples of slopes that are needed,
             and the map from slopes there to slopes at the places; None for slopes at the places.
+        gradients: gives gradients of the fields at points (n, 2), see :class:`Gradients`, where these are
+            no fields of a space.
     """
 
     def __init__(
-        self, task: Task, space: Space, fields: Sequence[Any], slopes: Slopes | None = None,
+        self, task: Task, space: Any = None, fields: Sequence[Any] = (),
+        slopes: Slopes | None = None,
         continuation: Callable[[NDArray], tuple[NDArray, NDArray]] | None = None,
+        gradients: Callable[[NDArray], NDArray] | None = None,
     ) -> None:  # fmt: skip
         self._task, self._space, self._fields, self._continuation = task, space, fields, continuation
+        self._gradients = gradients
         self._kept: dict[tuple[int, int], Gradients] = {}
         if slopes is not None:
             self.slopes = slopes
@@ -320,6 +325,9 @@ class Displacement:
     def slopes(self) -> Slopes:
         """Slopes of the fields along X at the places on the surface."""
         X = self._task.places.X
+        if self._gradients is not None:
+            basis = self._gradients(np.column_stack([X, np.zeros(len(X))]))[:, :, 0]
+            return Slopes(np.moveaxis(basis, 1, 0), np.zeros((len(X), basis.shape[-1])))
         if self._continuation is None:
             return surface_slopes(self._space, self._fields, X)
         samples, of_samples = self._continuation(X)
@@ -344,6 +352,8 @@ class Displacement:
 
     def _at(self, points: NDArray, side: int = 1) -> Gradients:
         """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
+        if self._gradients is not None:
+            return Gradients([partial(self._gradients, points)])
         return InteriorGradients(self._space, self._task.response, self._values, points, side)
 
     def _stresses(self, points: NDArray, weights: NDArray, side: int = 1) -> NDArray[np.float64]:

@@ -61,6 +61,11 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
+def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[str, float]:
+    """Largest relative difference of two lists of gauges, by word of output.quantities."""
+    return {gauge.word: float(gauge.change(other).max()) for gauge, other in zip(gauges, others)}
+
+
 def joined(word: str, groups: Sequence[tuple[NDArray, Any]], unresolved: Any = 0.0) -> Gauge:
     """Gauge of groups of numbers, (states, n) each, with the sizes that scale their changes."""
     values, sizes = zip(*((of, np.broadcast_to(size, of.shape)) for of, size in groups))
@@ -449,7 +454,7 @@ class MeasuredError(Estimate):
         self._changes: dict[int, dict[str, float]] = {}
         if not work.plan.fixed:
             self._changes = {
-                degree: {new.word: float(new.change(old).max()) for old, new in zip(before, gauges)}
+                degree: largest_changes(gauges, before)
                 for (_, before), (degree, gauges) in pairwise(measured)
             }
         probes, loads, each_load = stand_ins(level.task, g)

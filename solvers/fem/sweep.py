@@ -12,7 +12,7 @@ first: the error of that prediction, and the change of the fit all over the swee
 fit. A fitted speed has that error and the error of the discretisation (:class:`Fit`).
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from typing import Any, NamedTuple, TypeAlias
 
@@ -38,7 +38,17 @@ from ..solids.half_plane import HalfPlane
 from .contact import PUNCHES, PunchLevel
 from .discretisation import Discretisation
 from .fields import Slopes
-from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
+from .ladder import (
+    PROBES,
+    Estimate,
+    Gauge,
+    Solved,
+    WorkDone,
+    around,
+    climb,
+    largest_changes,
+    size_of,
+)
 from .punch import Punch
 from .space import Space
 
@@ -443,11 +453,6 @@ class Fit:
             with self.level(self._tasks[number], rational) as level:
                 gauges.append(level.gauges(*self._probes))
         return largest_changes(*gauges)
-
-
-def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[str, float]:
-    """Largest relative difference of two lists of gauges, by word of output.quantities."""
-    return {gauge.word: float(gauge.change(other).max()) for gauge, other in zip(gauges, others)}
 
 
 def by_turns(numbers: list[int], solve: Callable[[int], Speed], together: bool) -> list[Speed]:

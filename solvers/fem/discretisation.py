@@ -103,20 +103,16 @@ class Discretisation:
     def mesh(self, cuts: int) -> tuple[Any, Any]:
         """The mesh with every cell cut, shared out over ranks, and its facet tags."""
         if cuts not in self._meshes:
+            plan, comm, mesh = self.plan, self.comm, None
             with self.clock("mesh"):
-                self._meshes[cuts] = self._made(cuts)
+                check_cells(plan.pattern)
+                if comm.rank == 0:
+                    if cuts > 1 and plan.drawn is None:  # Gmsh's copy of a cut mesh would only be large
+                        mesh = plan.kind.build(plan.refinement, cuts)
+                    else:  # no other run has the same that is drawn
+                        mesh = plan.drawn or obtain(plan.pattern)
+                self._meshes[cuts] = distribute(mesh, comm)
         return self._meshes[cuts]
-
-    def _made(self, cuts: int) -> tuple[Any, Any]:
-        plan, comm = self.plan, self.comm
-        check_cells(plan.pattern)
-        if comm.rank:
-            return distribute(None, comm)
-        if plan.drawn is not None:  # no other run has the same
-            return distribute(plan.pattern, comm)
-        if cuts > 1:  # Gmsh's copy of a cut mesh would only be large
-            return distribute(plan.kind.build(plan.refinement, cuts), comm)
-        return distribute(obtain(plan.pattern), comm)
 
 
 @contextmanager

@@ -77,11 +77,11 @@ class OwnMeshes:
         self._kept: dict[State, SolvedStates] = {}
 
     def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self._task, self._each, g, load)
+        def each(g: NDArray, load: Any) -> list[SolvedStates]:
+            loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
+            return [self._state(*state) for state in zip(g.tolist(), loads)]
 
-    def _each(self, g: NDArray, load: Any) -> list[SolvedStates]:
-        loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
-        return [self._state(*state) for state in zip(g.tolist(), loads)]
+        return solution_of(self._task, each, g, load)
 
     def _state(self, g: float, load: float) -> SolvedStates:
         state = self._kept.pop((g, load), None)

@@ -295,7 +295,8 @@ class Fit:
                 return
             before, worst = self.rational, []
             error = self._solved(numbers)
-            if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in self._words):
+            words = next(iter(self.estimates.values())).errors
+            if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in words):
                 return  # no speed can be fitted to the tolerance
             if before and self._excess(error) <= 1.0:
                 changes = {number: self._change(before, number) for number in self._changed(before)}
@@ -417,11 +418,6 @@ class Fit:
             if off.max() <= _BETWEEN:
                 break
         return at
-
-    @property
-    def _words(self) -> list[str]:
-        """Words of output.quantities whose errors are measured."""
-        return list(next(iter(self.estimates.values())).errors)
 
     def _least(self, word: str) -> float:
         """Smallest error of the discretisation."""

@@ -283,7 +283,8 @@ class SlidingInTime:
             steady: begin in the steady motion under load and friction at t = 0, not at rest.
             watching: functions that record the motion, at first and after each step.
         """
-        state = _State(*np.zeros((3, self._motion.size)), np.zeros(3))
+        u, w, a = np.zeros((3, self._motion.size))
+        state = _State(u, w, a, np.zeros(3))
         if steady:
             punch = PunchConstraint(self._K, self._motion, self._clock)
             state.u, _ = punch.solve(state.u, g(0.0), -2.0 * load(0.0))

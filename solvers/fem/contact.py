@@ -315,6 +315,11 @@ class VaryingLevel(AlongLevel, SharpLevel):
         return replace(gauge, unresolved=gauge.unresolved + off)
 
 
+#: Amplitudes of the shapes (states, parts), depth of the punch's lowest point below the level of the
+#: first shape, over N/(2μ), (states,), and the ends, see :meth:`ContactStates.between`.
+_Solved = tuple[NDArray, NDArray, dict[str, Any]]
+
+
 class FreeLevel(PunchLevel):
     """Free ends of smooth punches and of lifted bases, on the mesh of all contacts."""
 
@@ -327,13 +332,49 @@ class FreeLevel(PunchLevel):
         return heights_of_shapes(self.r, self.shapes)
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
-        (parts, loads, K), local = self.parts(g), EdgeExponents(self.task.response, g)
-        solve = _SOLVES.get(type(body.profile), _smooth)
-        amplitudes, lowest, ends = solve(body, loads, K, local)
+        (parts, loads, K), linear = self.parts(g), _LINEAR.get(type(body.profile))
+        solved = linear(body, loads, K) if linear else self._smooth(g, body, loads, K)
+        amplitudes, lowest, ends = solved
         contact = self.punch.summed(g, parts, amplitudes).between(**ends)
         if not np.all((contact.half_width > 0.0) & np.isfinite(contact.half_width)):
             raise SolveError("no contact of a finite half-width carries the load")
         return replace(contact, v0=contact.v0 + lowest)
+
+    @cached_property
+    def _ends(self) -> dict[tuple[float, float], tuple[float, float]]:
+        """Middles and half-widths [m] of solved states, by σ_XY/σ_YY and load [N/m]."""
+        return {}
+
+    def ends(
+        self, g: NDArray, body: Contact, loads: NDArray, K: NDArray
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Middles and half-widths [m] of contacts, (2, states), and what the shapes leave out, (states,).
+
+        Args:
+            g: σ_XY/σ_YY, (states,).
+            body, loads, K: as of :func:`_parabola`; ``SHAPES`` shapes are used.
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        few = slice(1 + SHAPES)
+        conditions = end_conditions(EdgeExponents(self.task.response, g), K[..., few], loads[:, few])
+        each = np.broadcast_arrays(g, body.load, body.displacement)
+        ends, last = [], next(reversed(self._ends.values()), None)
+        for condition, friction, load, unit in zip(conditions, *(of.tolist() for of in each)):
+            last = condition.solve(body.profile, unit, self._ends.get((friction, load), last))
+            self._ends[friction, load] = last
+            ends.append(last)
+        return np.transpose(ends), np.array([condition.unseen for condition in conditions])
+
+    def _smooth(self, g: NDArray, body: Contact, loads: NDArray, K: NDArray) -> _Solved:
+        """Amplitudes of v = -v₀ + the punch's height with the load, and no intensity at both ends."""
+        punch, count, (m, h) = body.profile, loads.shape[1] - 1, self.ends(g, body, loads, K)[0]
+        units = body.displacement * np.ones(len(g))
+        each = zip(m.tolist(), h.tolist(), units.tolist())
+        slopes = np.array([slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit for m, h, unit in each])
+        ends = {"half_width": h, "centre": m, "free": True, "unresolved": left_out(slopes, count)}
+        return carrying(loads, slopes[:, :count]), np.asarray(punch.height(m)) / units, ends
 
     def pressure(self, contact: ContactStates) -> Expansion:
         free = contact.free
@@ -365,11 +406,6 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
     @cached_property
     def _numbers(self) -> dict[Any, float]:
         """Numbers by which the punch knows frictions."""
-        return {}
-
-    @cached_property
-    def _ends(self) -> dict[tuple[float, float], tuple[float, float]]:
-        """Middles and half-widths [m] of solved states, by number of the friction and load [N/m]."""
         return {}
 
     def along(self) -> Callable[[float], NDArray]:
@@ -438,11 +474,6 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
-#: Amplitudes of the shapes (states, parts), depth of the punch's lowest point below the level of the
-#: first shape, over N/(2μ), (states,), and the ends, see :meth:`ContactStates.between`.
-_Solved = tuple[NDArray, NDArray, dict[str, Any]]
-
-
 def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
     """Amplitudes of parts whose sum carries the load and has no intensity at some ends, (states, parts).
 
@@ -472,14 +503,13 @@ def left_out(slopes: NDArray, count: int) -> NDArray[np.float64]:
     return size[..., count:].sum(axis=-1) / np.maximum(size.max(axis=-1), np.finfo(float).tiny)
 
 
-def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _parabola(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
 
     Args:
         body: the sliding contact.
         loads: ∫σ_YY of every part, (states, parts).
         K: intensities of every part at both ends, (states, 2, parts).
-        local: exponents of a flat punch.
     """
     punch = body.profile
     assert isinstance(punch, Parabolic)
@@ -491,36 +521,7 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -
     return amplitudes, c1**2 / (2.0 * c2), {"half_width": h, "centre": h * c1 / c2, "free": True}
 
 
-def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
-    """Amplitudes of v = -v₀ + the punch's height with the load, and without intensity at both ends."""
-    punch, count, units = body.profile, loads.shape[1] - 1, body.displacement * np.ones(len(loads))
-    (m, h), _ = ends_of(body, loads, K, local)
-    each = zip(m.tolist(), h.tolist(), units.tolist())
-    slopes = np.array([slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit for m, h, unit in each])
-    ends = {"half_width": h, "centre": m, "free": True, "unresolved": left_out(slopes, count)}
-    return carrying(loads, slopes[:, :count]), np.asarray(punch.height(m)) / units, ends
-
-
-def ends_of(
-    body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Middles and half-widths [m] of contacts, (2, states), and what the shapes leave out, (states,).
-
-    Args:
-        body, loads, K, local: as of :func:`_parabola`; ``SHAPES`` shapes are used.
-
-    Raises:
-        SolveError: no contact carries the load.
-    """
-    few = slice(1 + SHAPES)
-    conditions, near, ends = end_conditions(local, K[..., few], loads[:, few]), None, []
-    for condition, unit in zip(conditions, np.broadcast_to(body.displacement, len(loads)).tolist()):
-        near = condition.solve(body.profile, unit, near)
-        ends.append(near)
-    return np.transpose(ends), np.array([condition.unseen for condition in conditions])
-
-
-def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _tilted(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s with the load; c₁ is that of the tilt, or, where the higher edge is
     lifted, that without intensity there."""
     punch = body.profile
@@ -538,7 +539,7 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> 
 
 
 #: Solutions for profiles whose conditions are linear.
-_SOLVES = {Flat: _tilted, Parabolic: _parabola}
+_LINEAR = {Flat: _tilted, Parabolic: _parabola}
 
 #: Levels of punches on the mesh of all contacts, by the plan's mode.
 PUNCHES: dict[str, type[PunchLevel]] = {

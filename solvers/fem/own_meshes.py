@@ -49,7 +49,7 @@ from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between,
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.punches import Flat
-from .contact import ACROSS, FreeLevel, PunchLevel, ends_of, without_intensity
+from .contact import ACROSS, FreeLevel, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
@@ -131,7 +131,7 @@ class EndsLevel(FreeLevel):
             SolveError: no contact carries the load.
         """
         _, loads, K = self.parts(g)
-        return ends_of(self.task.body.loaded(load), loads, K, EdgeExponents(self.task.response, g))
+        return self.ends(g, self.task.body.loaded(load), loads, K)
 
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
         (m, h), unseen = self.lengths(g, load)

@@ -478,9 +478,9 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
 #: Error of the half-width at a lower degree, and by how much that is lower; the error over the tolerance
 #: at the usual degree.
 _ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.5
-#: Least difference of the half-width's logarithm from which the growth of the load is computed, and error
-#: of that growth, which hardly depends on the degree.
-_APART, _OF_GROWTH = 1e-5, 0.1
+#: Least difference of the half-width's logarithm from which the growth of the load is computed; error of
+#: that growth, which hardly depends on the degree; most trials at the usual degree.
+_APART, _OF_GROWTH, _TRIALS = 1e-5, 0.05, 5
 #: Largest error of the half-width over the tolerance once all is solved; else another mesh is drawn.
 _ERROR = 0.3
 
@@ -519,32 +519,40 @@ class OverLayers(OwnMeshes):
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
         mesh, task, level = self._drawn(h, self._work.stresses)
         state = self._on(mesh, task, self._g, level)
-        return state, state.level.lean, self._moved(h, state.level.off)
+        return state, state.level.lean, self._moved({h: state.level.off})
 
     def _half_width(self, h: float) -> float:
         """Half-width [m] of the contact that carries the load, from a half-width near by."""
         body, settled = self._sought.body, _SETTLED * self._work.plan.tolerance
-        punch = Punch(body.profile, 1.0, float(body.compression))
-        for lower, error in ((_LOWER, max(_ROUGH, settled)), (0, settled)):
-            tried: dict[float, float] = {}
+        tried, rough = dict[float, float](), max(_ROUGH, settled)
 
-            def off(h: float) -> float:
-                tried[h] = self._off(h, lower, error)  # noqa: B023
-                return tried[h]  # noqa: B023
+        def off(h: float) -> float:
+            tried[h] = self._off(h, _LOWER, rough)
+            return tried[h]
 
-            # The last step needs no trial where the growth of loads is known.
-            left = error if lower or not self._growth else error / _OF_GROWTH
-            h = half_width_of_load(off, h, punch, left)
-            (first, of_first), *_, (last, of_last) = 2 * [*tried.items()]
-            apart = float(np.log(last / first))
-            # Loads of a low degree do not compare with those of a high one, but they grow alike.
-            self._growth = (of_last - of_first) / apart if abs(apart) > _APART else self._growth
-            h = self._moved(h, tried[h])
+        h = half_width_of_load(off, h, Punch(body.profile, 1.0, float(body.compression)), rough)
+        h = self._moved(tried | {h: tried.pop(h)})
+        # Loads of a low degree do not compare with those of a high one, but they grow alike.
+        tried = {}
+        for _ in range(_TRIALS):
+            tried[h] = self._off(h, 0, settled)
+            error = abs(tried[h]) * (_OF_GROWTH if self._growth else 1.0)
+            h = self._moved(tried)
+            if error <= settled:
+                break
         return h
 
-    def _moved(self, h: float, off: float) -> float:
-        """Half-width under the task's load, by that under a load near by; its logarithm is off."""
-        return h * float(np.exp(-off / (self._growth or GROWTH)))
+    def _moved(self, tried: dict[float, float]) -> float:
+        """Half-width [m] under the task's load, by the last of some near by.
+
+        Args:
+            tried: logarithms of the loads of half-widths [m] over the task's.
+        """
+        (first, of_first), *_, (last, of_last) = 2 * [*tried.items()]
+        apart = float(np.log(last / first))
+        if abs(apart) > _APART:
+            self._growth = (of_last - of_first) / apart
+        return last * float(np.exp(-of_last / (self._growth or GROWTH)))
 
     def _off(self, h: float, lower: int, error: float) -> float:
         """Logarithm of the load that makes a contact of half-width h [m], over the task's.

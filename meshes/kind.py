@@ -43,22 +43,8 @@ def moments(R: float, tolerance: float) -> int:
     return max(ceil(log(_LEFT_OUT / (_SHARE * tolerance)) / log(R)) - 1, 1)
 
 
-def boundary_error(R: float, moments: int, margin: float) -> float:
-    """Estimated relative error of K_I by a boundary at a distance R over a that follows moments.
-
-    Over |σ_XY/σ_YY| and a tenth: every other moment needs no friction. Measured on 60 solids, frictions
-    to 5, speeds to 0.99 of the limit and 1 to 6 moments; it is 1 to 5 times the largest of these.
-    """
-    return 2.0 ** (2 - moments) / (R ** (moments + 1) * margin)
-
-
 #: Lowest and highest polynomial degree used.
 DEGREES = (4, 12)
-
-
-def as_drawn(points: NDArray, _: Refinement) -> NDArray:
-    """Vertices of the pattern, unchanged."""
-    return points
 
 
 def image(points: NDArray, _: Refinement) -> NDArray[np.float64]:
@@ -186,7 +172,8 @@ class MeshKind:
         stressed: ratio of rings for stresses, at a degree less on the surface; 0 for ``ratio``.
         tight: least ratio of rings for stresses on the surface below the tolerance ``gentle``, of solids
             whose fields live in planes far apart.
-        place: maps points (n, 2) of the pattern with a refinement into that chart.
+        place: maps points (n, 2) of the pattern with a refinement into that chart; None where it is drawn
+            there.
         fan: filling of the innermost squares of the pattern, see :func:`galinx.meshes.rings.rectangle`.
         rings: grading towards the edges; without, squares all over, and the degree or cuts do the rest.
         innermost: share of the tolerance that is left to the innermost cells. Where these cannot follow
@@ -209,7 +196,7 @@ class MeshKind:
     alone: float = 0.0
     stressed: float = 0.0
     tight: float = 0.0
-    place: Callable[[NDArray, Refinement], NDArray] = as_drawn
+    place: Callable[[NDArray, Refinement], NDArray] | None = None
     fan: bool = False
     rings: bool = True
     innermost: float = 1.0 / 3.0
@@ -227,6 +214,8 @@ class MeshKind:
             cuts: number of cells along each side of a cell of the pattern.
         """
         pattern = rectangle(refinement, self.fan, cuts)
+        if self.place is None:
+            return pattern
         return QuadMesh(self.place(pattern.points, refinement), pattern.cells, pattern.edges)
 
     def refinement(self, required: Requirements) -> Refinement:
@@ -289,7 +278,9 @@ class MeshKind:
     def _innermost(self, required: Requirements) -> float:
         """Size of the innermost cells in the chart that meets the requirements."""
         tolerance = self._of_cells(required)
-        size = float((self.innermost * tolerance) ** (1.0 / self._power(required)))
+        # The energy in a ring falls with this power of its size.
+        power = 4.0 * (1.0 + max(required.exponent, _STRONGEST))
+        size = float((self.innermost * tolerance) ** (1.0 / power))
         if required.nearest is not None:
             # The innermost cells cannot resolve the singularity. Beside them that shows in the stresses,
             # like the square of their size over the distance, both in this chart.
@@ -329,11 +320,14 @@ class MeshKind:
         """Estimated relative error of K_I by the far boundary; over σ_XY/σ_YY where it is held.
 
         A boundary held at a distance R costs a/R at rest, over the cubic root of the response's margin
-        at a speed; measured.
+        at a speed; measured. For one that follows moments it is over |σ_XY/σ_YY| and a tenth: every other
+        moment needs no friction. Measured on 60 solids, frictions to 5, speeds to 0.99 of the limit and 1
+        to 6 moments; it is 1 to 5 times the largest of these.
         """
         if self.walls:
             return 1.0 / (self.walls * margin ** (1.0 / 3.0))
-        return boundary_error(radius(required.farthest), self.terms(required), margin)
+        R, terms = radius(required.farthest), self.terms(required)
+        return 2.0 ** (2 - terms) / (R ** (terms + 1) * margin)
 
     def drawn(self, required: Requirements) -> QuadMesh | None:
         """The mesh where it is drawn for its places; None where it is built by a refinement."""
@@ -386,10 +380,6 @@ class MeshKind:
         else:
             share = 6.0 / (cuts**2 * degree**4 * margin ** (2.0 / 3.0))
         return share * self._innermost(required) ** 2
-
-    def _power(self, required: Requirements) -> float:
-        """Power of a ring's size with which the energy in it falls."""
-        return 4.0 * (1.0 + max(required.exponent, _STRONGEST))
 
     def _outer_ξ(self, required: Requirements) -> float:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""

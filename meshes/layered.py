@@ -202,14 +202,11 @@ class OnLayers(MeshKind):
 
     @property
     def _moment(self) -> float:
-        return _MOMENT * self._stiffer / self.left
-
-    @property
-    def _stiffer(self) -> float:
-        """Stiffness under the punch over that of the substrate, at least 1."""
         depth = self.depths[-1]
         contrast = max(self.left * self.far_length / (_ALIKE * depth), 1.0)
-        return 1.0 + (contrast - 1.0) * depth**2 / (depth**2 + _THICK**2)
+        #: Stiffness under the punch over that of the substrate, at least 1.
+        stiffer = 1.0 + (contrast - 1.0) * depth**2 / (depth**2 + _THICK**2)
+        return _MOMENT * stiffer / self.left
 
     @property
     def _cubed(self) -> float:

@@ -370,15 +370,12 @@ class Planned(Protocol):
     Attributes:
         fem: plan of the finite elements.
         tasks: speeds to solve, each a :class:`galinx.solvers.contact.solution.Task`.
-        chunk: number of states that are computed at once, which bounds their memory.
     """
 
     @property
     def fem(self) -> FemPlan | None: ...
     @property
     def tasks(self) -> Any: ...
-    @property
-    def chunk(self) -> int: ...
 
     def asks(self, word: str, method: str = "") -> bool:
         """True where a quantity of this name in output.quantities is computed, by a method or by any."""

@@ -167,6 +167,23 @@ class PunchLevel(Level):
         K_I = np.stack([self.over_flat(of_part, g).K_I for of_part in moments], axis=2)
         return parts, self.punch.loads(parts), K_I
 
+    def gauge_of_free(
+        self, states: SolvedStates, σ: NDArray, size: NDArray, unresolved: Any = 0.0
+    ) -> Gauge:
+        """Gauge of a pressure between free ends, of its moments over the load, and of the ends.
+
+        Args:
+            states: the states.
+            σ: numbers that stand for their pressure, (states, n).
+            size: sizes of these, to which their changes are relative.
+            unresolved: relative error that the level shows by itself, (states,) or 0.
+        """
+        contact, h = states.contact, states.contact.half_width
+        # Differences of the half-widths' logarithms are relative changes.
+        lengths = np.column_stack([np.log(h), contact.centre / h])
+        groups = (contact.tested(self.moments[:, 1:6]), 2.0), (σ, size), (lengths, 1.0)
+        return joined(INTENSITIES, groups, unresolved)
+
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         body = self.task.body.loaded(load)
         contact = self.solved(g, body)
@@ -281,6 +298,14 @@ class AlongLevel(PunchLevel):
             lambda r: self.facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 
+    def free_gauge(self, states: SolvedStates, half_width: NDArray) -> Gauge:
+        """Gauge of contacts with free ends and half-widths [m], (states,), whose knots are moved."""
+        contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
+        size = np.abs(σ).max(axis=1, keepdims=True)
+        coarse = self.splines(contact.g, half_width, contact.tested, COARSE, 1.0)
+        off = np.abs(coarse.σ_YY(ACROSS) - σ) / size
+        return self.gauge_of_free(states, σ, size, off.max(axis=1))
+
 
 class VaryingLevel(AlongLevel, SharpLevel):
     """Sharp edges of a flat punch with friction that varies along the contact."""
@@ -300,6 +325,11 @@ class VaryingLevel(AlongLevel, SharpLevel):
         return replace(gauge, unresolved=gauge.unresolved + off)
 
 
+#: Amplitudes of the shapes (states, parts), depth of the punch's lowest point below the level of the
+#: first shape, over N/(2μ), (states,), and the ends, see :meth:`ContactStates.between`.
+_Solved = tuple[NDArray, NDArray, dict[str, Any]]
+
+
 class FreeLevel(PunchLevel):
     """Free ends of smooth punches and of lifted bases, on the mesh of all contacts."""
 
@@ -312,13 +342,49 @@ class FreeLevel(PunchLevel):
         return heights_of_shapes(self.r, self.shapes)
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
-        (parts, loads, K), local = self.parts(g), EdgeExponents(self.task.response, g)
-        solve = _SOLVES.get(type(body.profile), _smooth)
-        amplitudes, h, m, free, lowest, unresolved = solve(body, loads, K, local)
-        if not np.all((h > 0.0) & np.isfinite(h)):
+        (parts, loads, K), linear = self.parts(g), _LINEAR.get(type(body.profile))
+        solved = linear(body, loads, K) if linear else self._smooth(g, body, loads, K)
+        amplitudes, lowest, ends = solved
+        contact = self.punch.summed(g, parts, amplitudes).between(**ends)
+        if not np.all((contact.half_width > 0.0) & np.isfinite(contact.half_width)):
             raise SolveError("no contact of a finite half-width carries the load")
-        contact = self.punch.summed(g, parts, amplitudes)
-        return contact.between(h, m, free, unresolved=unresolved, v0=contact.v0 + lowest)
+        return replace(contact, v0=contact.v0 + lowest)
+
+    @cached_property
+    def _ends(self) -> dict[tuple[float, float], tuple[float, float]]:
+        """Middles and half-widths [m] of solved states, by σ_XY/σ_YY and load [N/m]."""
+        return {}
+
+    def ends(
+        self, g: NDArray, body: Contact, loads: NDArray, K: NDArray
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Middles and half-widths [m] of contacts, (2, states), and what the shapes leave out, (states,).
+
+        Args:
+            g: σ_XY/σ_YY, (states,).
+            body, loads, K: as of :func:`_parabola`; ``SHAPES`` shapes are used.
+
+        Raises:
+            SolveError: no contact carries the load.
+        """
+        few = slice(1 + SHAPES)
+        conditions = end_conditions(EdgeExponents(self.task.response, g), K[..., few], loads[:, few])
+        each = np.broadcast_arrays(g, body.load, body.displacement)
+        ends, last = [], next(reversed(self._ends.values()), None)
+        for condition, friction, load, unit in zip(conditions, *(of.tolist() for of in each)):
+            last = condition.solve(body.profile, unit, self._ends.get((friction, load), last))
+            self._ends[friction, load] = last
+            ends.append(last)
+        return np.transpose(ends), np.array([condition.unseen for condition in conditions])
+
+    def _smooth(self, g: NDArray, body: Contact, loads: NDArray, K: NDArray) -> _Solved:
+        """Amplitudes of v = -v₀ + the punch's height with the load, and no intensity at both ends."""
+        punch, count, (m, h) = body.profile, loads.shape[1] - 1, self.ends(g, body, loads, K)[0]
+        units = body.displacement * np.ones(len(g))
+        each = zip(m.tolist(), h.tolist(), units.tolist())
+        slopes = np.array([slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit for m, h, unit in each])
+        ends = {"half_width": h, "centre": m, "free": True, "unresolved": left_out(slopes, count)}
+        return carrying(loads, slopes[:, :count]), np.asarray(punch.height(m)) / units, ends
 
     def pressure(self, contact: ContactStates) -> Expansion:
         free = contact.free
@@ -334,10 +400,10 @@ class FreeLevel(PunchLevel):
         return joined(gauge.word, groups, gauge.unresolved)
 
 
-#: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left;
-#: places at which the pressure between free ends is measured.
+#: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left.
 _KEPT, _BALANCED, _OF_INTENSITIES = 32, 1e-12, 1e-7
-_ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
+#: Places over the half-width at which the pressure between free ends is measured.
+ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 
 class VaryingFreeLevel(AlongLevel, FreeLevel):
@@ -350,11 +416,6 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
     @cached_property
     def _numbers(self) -> dict[Any, float]:
         """Numbers by which the punch knows frictions."""
-        return {}
-
-    @cached_property
-    def _ends(self) -> dict[tuple[float, float], tuple[float, float]]:
-        """Middles and half-widths [m] of solved states, by number of the friction and load [N/m]."""
         return {}
 
     def along(self) -> Callable[[float], NDArray]:
@@ -375,8 +436,8 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         # Fields were added from state to state.
         fields = max(parts.shape[1] for parts in own)
         parts = np.array([np.pad(of, ((0, 0), (0, fields - of.shape[1]))) for of in own])
-        contact = self.punch.summed(g, parts, amplitudes)
-        return contact.between(h, m, True, unresolved=unresolved, v0=contact.v0 + lowest)
+        contact = self.punch.summed(g, parts, amplitudes).between(h, m, True, unresolved=unresolved)
+        return replace(contact, v0=contact.v0 + lowest)
 
     def _balanced(self, g: float, load: float) -> tuple[Any, ...]:
         """Parts, amplitudes, half-width, middle, depth of the lowest point and slope beyond the shapes.
@@ -395,9 +456,9 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
             number = self._numbers.setdefault(body.friction(g, h), float(len(self._numbers)))
             parts, each = self.punch.parts(np.array([number])), np.ones(1 + count)
             pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
-            loads = self.punch.loads(parts)[0]
+            loads = self.punch.loads(parts)
             shapes = slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit
-            amplitudes = np.append((-2.0 - shapes[:count] @ loads[1:]) / loads[0], shapes[:count])
+            (amplitudes,) = carrying(loads, shapes[None, :count])
             return parts[0], amplitudes, amplitudes @ pressure.K_I, shapes
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
@@ -416,18 +477,7 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         return self.splines(contact.g, contact.half_width, contact.tested, more=1.0)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        contact, σ = states.contact, states.pressure.σ_YY(_ACROSS)
-        size, h = np.abs(σ).max(axis=1, keepdims=True), contact.half_width
-        coarse = self.splines(contact.g, h, contact.tested, COARSE, 1.0)
-        off = np.abs(coarse.σ_YY(_ACROSS) - σ) / size
-        lengths = np.column_stack([h, contact.centre]), h[:, None]
-        groups = (contact.tested(self.moments[:, 1:6]), 2.0), (σ, size), lengths
-        return joined(INTENSITIES, groups, off.max(axis=1))
-
-
-#: Amplitudes of the shapes (states, parts), half-widths, middles, free ends, depth of the punch's lowest
-#: point below the level of the first shape, over N/(2μ), and slope beyond the shapes, relative.
-_Solved = tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]
+        return self.free_gauge(states, states.contact.half_width)
 
 
 def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
@@ -442,20 +492,30 @@ def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:
     return np.asarray(np.linalg.solve(np.concatenate([loads[:, None], K], axis=1), b)[..., 0])
 
 
+def carrying(loads: NDArray, shapes: NDArray) -> NDArray[np.float64]:
+    """Amplitudes of parts whose sum carries the load, by those of shapes, (states, shapes).
+
+    Args:
+        loads: ∫σ_YY of every part, the flat one first, (states, 1 + shapes).
+        shapes: amplitudes of the others.
+    """
+    v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
+    return np.column_stack([v0, shapes])
+
+
 def left_out(slopes: NDArray, count: int) -> NDArray[np.float64]:
     """Slope beyond the first shapes over the largest of all, (...), 0 where all vanish."""
     size = np.abs(slopes)
     return size[..., count:].sum(axis=-1) / np.maximum(size.max(axis=-1), np.finfo(float).tiny)
 
 
-def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _parabola(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s + c₂ s²/2 with the load, and without intensity at both ends.
 
     Args:
         body: the sliding contact.
         loads: ∫σ_YY of every part, (states, parts).
         K: intensities of every part at both ends, (states, 2, parts).
-        local: exponents of a flat punch.
     """
     punch = body.profile
     assert isinstance(punch, Parabolic)
@@ -464,48 +524,28 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -
     _, c1, c2 = amplitudes[:, :3].T
     with np.errstate(invalid="ignore"):
         h = np.sqrt(punch.radius * c2 * body.displacement)
-    free = np.ones((len(h), 2), dtype=bool)
-    return amplitudes, h, h * c1 / c2, free, c1**2 / (2.0 * c2), 0.0 * h
+    return amplitudes, c1**2 / (2.0 * c2), {"half_width": h, "centre": h * c1 / c2, "free": True}
 
 
-def _smooth(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
-    """Amplitudes of v = -v₀ + the punch's height with the load, and without intensity at both ends."""
-    punch, few = body.profile, slice(1 + SHAPES)
-    units = np.broadcast_to(body.displacement, len(loads)).tolist()
-    conditions, near = end_conditions(local, K[..., few], loads[:, few]), None
-    ends, slopes = [], []
-    for condition, unit in zip(conditions, units):
-        near = condition.solve(punch, unit, near)
-        ends.append(near)
-        slopes.append(slopes_of_shapes(punch, *near, 2 * loads.shape[1]) / unit)
-    (m, h), count = np.transpose(ends), loads.shape[1] - 1
-    shapes = np.array(slopes)[:, :count]
-    v0 = (-2.0 - (shapes * loads[:, 1:]).sum(axis=1)) / loads[:, 0]
-    lowest = np.asarray(punch.height(m)) / units
-    free = np.ones((len(m), 2), dtype=bool)
-    return np.column_stack([v0, shapes]), h, m, free, lowest, left_out(np.array(slopes), count)
-
-
-def _tilted(body: Contact, loads: NDArray, K: NDArray, local: EdgeExponents) -> _Solved:
+def _tilted(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s with the load; c₁ is that of the tilt, or, where the higher edge is
     lifted, that without intensity there."""
     punch = body.profile
     assert isinstance(punch, Flat)
     side = 1 if punch.rise > 0.0 else 0
     c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
-    v0 = (-2.0 - c1 * loads[:, 1]) / loads[:, 0]
-    lifted = (K[:, side] * np.column_stack([v0, c1])).sum(axis=1) < 0.0
-    balanced = without_intensity(loads, K[:, [side]])
-    amplitudes = np.where(lifted[:, None], balanced, np.column_stack([v0, c1]))
+    amplitudes = carrying(loads, c1[:, None])
+    lifted = (K[:, side] * amplitudes).sum(axis=1) < 0.0
+    amplitudes = np.where(lifted[:, None], without_intensity(loads, K[:, [side]]), amplitudes)
     h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
     centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)
-    return amplitudes, h, centre, free, np.abs(amplitudes[:, 1]), 0.0 * h
+    return amplitudes, np.abs(amplitudes[:, 1]), {"half_width": h, "centre": centre, "free": free}
 
 
 #: Solutions for profiles whose conditions are linear.
-_SOLVES = {Flat: _tilted, Parabolic: _parabola}
+_LINEAR = {Flat: _tilted, Parabolic: _parabola}
 
 #: Levels of punches on the mesh of all contacts, by the plan's mode.
 PUNCHES: dict[str, type[PunchLevel]] = {
@@ -514,35 +554,3 @@ PUNCHES: dict[str, type[PunchLevel]] = {
     VARYING: VaryingLevel,
     VARYING_FREE: VaryingFreeLevel,
 }
-
-
-class SingleLevel(PunchLevel):
-    """A single contact on a mesh of its own: its displacement and nodal forces are kept, no others."""
-
-    twins = False
-    recovery = None  # type: ignore[assignment]
-
-    def __init__(self, work: Discretisation, task: Task, space: Space, g: NDArray) -> None:
-        super().__init__(work, task, space, g)
-        try:
-            contact, field = self.solved(g, task.body), self.fields[0].duplicate()
-            field.zeroEntries()
-            field.maxpy(contact.weights[0].tolist(), self.fields)
-        finally:
-            self.punch.destroy()
-        self.fields = [field]
-        forces = np.tensordot(contact.weights, contact.forces, 1)
-        #: The contact.
-        self.contact = replace(contact, weights=np.ones((1, 1)), forces=forces)
-
-    @property
-    def end_exponents(self) -> tuple[float, float]:
-        """Exponents of the pressure at its left and its right free end."""
-        local = EdgeExponents(self.task.response, self.g)
-        return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
-
-    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
-        return SolvedStates(self, self.task.body.loaded(load), self.contact, self.pressure(self.contact))
-
-    def close(self) -> None:
-        self.fields[0].destroy()

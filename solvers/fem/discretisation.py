@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,8 +14,7 @@ from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
-from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, YIELD
-from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, Planned, with_friction_kinks
+from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, with_friction_kinks
 from .dolfinx_space import DolfinxSpace
 from .space import Space, distribute
 
@@ -28,104 +27,6 @@ _OF_ENDS, _LEAST = 1e-3, 1e-11
 
 #: Tolerance over the scene's of the finer cells, tried where no degree reaches the scene's tolerance.
 _FINER = 0.03
-
-
-class Discretisation:
-    """Meshes and spaces for a plan; collective over the ranks that share a mesh.
-
-    Args:
-        plan: the plan, with finite elements.
-        progress: shows the work.
-        clock: takes wall time by step.
-
-    Attributes:
-        plan: the finite elements' part of the plan.
-        stresses: words of output.quantities that request stresses of finite elements.
-        comm: the ranks that share a mesh.
-    """
-
-    def __init__(self, plan: Planned, progress: Messages, clock: Clock) -> None:
-        assert plan.fem
-        self._whole: Any = plan
-        self.plan = plan.fem
-        self.clock = clock
-        words = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
-        self.stresses = frozenset(word for word in words if plan.asks(word, FEM))
-        self.comm = MPI.COMM_SELF if plan.fem.shared_speeds else MPI.COMM_WORLD
-        self._progress = progress
-        self._refine: Callable[[FemPlan], FemPlan] = on_finer_cells
-        self._meshes: dict[int, tuple[Any, Any]] = {}
-        self._spaces: dict[tuple[int, int], Space] = {}
-
-    def on(
-        self, plan: FemPlan, stresses: frozenset[str] | None = None,
-        refine: Callable[[FemPlan], FemPlan] | None = None,
-    ) -> "Discretisation":  # fmt: skip
-        """Discretisation for another plan of the mesh.
-
-        Args:
-            plan: the plan.
-            stresses: words of output.quantities that request stresses, these if None.
-            refine: gives the plan with finer cells; :func:`on_finer_cells` if None.
-        """
-        other = Discretisation(replace(self._whole, fem=plan), self._progress, self.clock)
-        other.stresses = self.stresses if stresses is None else stresses
-        other._refine = refine or on_finer_cells
-        return other
-
-    @cached_property
-    def for_ends(self) -> "Discretisation":
-        """Discretisation for the ends of contacts alone, at all speeds, without stresses."""
-        plan = self.plan
-        tolerance = max(_OF_ENDS * plan.tolerance, _LEAST)
-        target = replace(
-            plan.wanted, tolerance=tolerance, nearest=None, farthest=0.0, around=False, bends=True,
-            exponent=plan.sharp,
-        )  # fmt: skip
-        degrees = tuple(plan.kind.degree(target, task.response.margin) for task in self._whole.tasks)
-        refinement = plan.kind.refinement(target)
-        return self.on(replace(plan, wanted=target, refinement=refinement, degrees=degrees), frozenset())
-
-    @cached_property
-    def finer(self) -> "Discretisation":
-        """Discretisation of the plan on cells for a tighter tolerance."""
-        return self.on(self._refine(self.plan), refine=self._refine)
-
-    def warn(self, text: str) -> None:
-        """Warn the user."""
-        self._progress.warn(text)
-
-    def space(self, degree: int, cuts: int = 1) -> Space:
-        """The space of a degree on a mesh; speeds share it, its form and its numbering."""
-        if (degree, cuts) not in self._spaces:
-            self._spaces[degree, cuts] = self.space_of(self.mesh(cuts), degree)
-        return self._spaces[degree, cuts]
-
-    def space_of(self, mesh: tuple[Any, Any], degree: int) -> Space:
-        """The space of a degree on a mesh with its facet tags, shared out over ranks."""
-        with quiet_compiler():
-            return SPACES[self.plan.assembler](
-                *mesh, TAGS, self.plan.kind.chart, degree, self.plan.form, self.plan.terms,
-                self.clock,
-            )  # fmt: skip
-
-    def mesh(self, cuts: int) -> tuple[Any, Any]:
-        """The mesh with every cell cut, shared out over ranks, and its facet tags."""
-        if cuts not in self._meshes:
-            with self.clock("mesh"):
-                self._meshes[cuts] = self._made(cuts)
-        return self._meshes[cuts]
-
-    def _made(self, cuts: int) -> tuple[Any, Any]:
-        plan, comm = self.plan, self.comm
-        check_cells(plan.pattern)
-        if comm.rank:
-            return distribute(None, comm)
-        if plan.drawn is not None:  # no other run has the same
-            return distribute(plan.pattern, comm)
-        if cuts > 1:  # Gmsh's copy of a cut mesh would only be large
-            return distribute(plan.kind.build(plan.refinement, cuts), comm)
-        return distribute(obtain(plan.pattern), comm)
 
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:
@@ -142,6 +43,76 @@ def on_finer_cells(plan: FemPlan) -> FemPlan:
     if not plan.kinks:
         return plan
     return replace(plan, drawn=with_friction_kinks(refinement, plan.kinks, target.tolerance))
+
+
+@dataclass(eq=False)
+class Discretisation:
+    """Meshes and spaces for a plan; collective over the ranks that share a mesh.
+
+    Attributes:
+        plan: the finite elements' part of the plan.
+        tasks: all speeds, each a :class:`galinx.solvers.contact.solution.Task`.
+        stresses: words of output.quantities that request stresses of finite elements.
+        progress: shows the work.
+        clock: takes wall time by step.
+        refine: gives the plan with finer cells.
+    """
+
+    plan: FemPlan
+    tasks: Any
+    stresses: frozenset[str]
+    progress: Messages
+    clock: Clock
+    refine: Callable[[FemPlan], FemPlan] = on_finer_cells
+    _meshes: dict[int, tuple[Any, Any]] = field(default_factory=dict, init=False)
+    _spaces: dict[tuple[int, int], Space] = field(default_factory=dict, init=False)
+
+    @property
+    def comm(self) -> MPI.Comm:
+        """The ranks that share a mesh."""
+        return MPI.COMM_SELF if self.plan.shared_speeds else MPI.COMM_WORLD
+
+    @cached_property
+    def for_ends(self) -> "Discretisation":
+        """Discretisation for the ends of contacts alone, at all speeds, without stresses."""
+        plan = self.plan
+        tolerance = max(_OF_ENDS * plan.tolerance, _LEAST)
+        target = replace(
+            plan.wanted, tolerance=tolerance, nearest=None, farthest=0.0, around=False, bends=True,
+            exponent=plan.sharp,
+        )  # fmt: skip
+        degrees = tuple(plan.kind.degree(target, task.response.margin) for task in self.tasks)
+        plan = replace(plan, wanted=target, refinement=plan.kind.refinement(target), degrees=degrees)
+        return replace(self, plan=plan, stresses=frozenset())
+
+    @cached_property
+    def finer(self) -> "Discretisation":
+        """Discretisation of the plan on cells for a tighter tolerance."""
+        return replace(self, plan=self.refine(self.plan))
+
+    def space(self, degree: int, cuts: int = 1) -> Space:
+        """The space of a degree on a mesh; speeds share it, its form and its numbering."""
+        if (degree, cuts) not in self._spaces:
+            with quiet_compiler():
+                self._spaces[degree, cuts] = SPACES[self.plan.assembler](
+                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
+                    self.plan.terms, self.clock,
+                )  # fmt: skip
+        return self._spaces[degree, cuts]
+
+    def mesh(self, cuts: int) -> tuple[Any, Any]:
+        """The mesh with every cell cut, shared out over ranks, and its facet tags."""
+        if cuts not in self._meshes:
+            plan, comm, mesh = self.plan, self.comm, None
+            with self.clock("mesh"):
+                check_cells(plan.pattern)
+                if comm.rank == 0:
+                    if cuts > 1 and plan.drawn is None:  # Gmsh's copy of a cut mesh would only be large
+                        mesh = plan.kind.build(plan.refinement, cuts)
+                    else:  # no other run has the same that is drawn
+                        mesh = plan.drawn or obtain(plan.pattern)
+                self._meshes[cuts] = distribute(mesh, comm)
+        return self._meshes[cuts]
 
 
 @contextmanager

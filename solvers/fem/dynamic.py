@@ -228,7 +228,7 @@ class Motion:
     @cached_property
     def contact(self) -> NDArray[np.int64]:
         """Nodes under the punch from left to right."""
-        nodes = self._on("contact")
+        nodes = self.space.nodes_on("contact").astype(np.int64)
         return nodes[np.argsort(self.space.coordinates[nodes, 0])]
 
     @property
@@ -239,15 +239,12 @@ class Motion:
     @cached_property
     def far(self) -> NDArray[np.int64]:
         """Nodes of the far boundary."""
-        return self._on("far")
+        return self.space.nodes_on("far").astype(np.int64)
 
     @property
     def size(self) -> int:
         """Number of unknowns."""
         return 2 * len(self.space.coordinates)
-
-    def _on(self, part: str) -> NDArray[np.int64]:
-        return np.asarray(self.space.nodes_on(part), dtype=np.int64)
 
     def _weighted(self, trials: Callable[[int], NDArray]) -> csr_matrix:
         """Matrix of ρ times shapes and trials, which are given at the points of a cell, (q², n²)."""

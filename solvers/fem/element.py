@@ -174,16 +174,11 @@ class Element:
         return np.setdiff1d(np.arange(self.nodes), self.inner)
 
     @cached_property
-    def outer_dofs(self) -> NDArray[np.int64]:
-        """Local unknowns that stay: two a node on the cell's boundary, and two pressures."""
-        kept = 2 * self.nodes + np.arange(min(self._pressures, 2))
-        return np.concatenate([_dofs(self.outer), kept])
-
-    @cached_property
-    def inner_dofs(self) -> NDArray[np.int64]:
-        """Local unknowns that are eliminated."""
-        first = 2 * self.nodes + min(self._pressures, 2)
-        return np.concatenate([_dofs(self.inner), np.arange(first, self.size)])
+    def _split(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Local unknowns that stay, two of each outer node and two pressures, and the others."""
+        pressures = np.arange(2 * self.nodes, self.size)
+        outer, inner = np.split(pressures, [2])
+        return np.concatenate([_dofs(self.outer), outer]), np.concatenate([_dofs(self.inner), inner])
 
     def condense(self, H: NDArray, chart: Contracted, corners: NDArray) -> NDArray[np.float64]:
         """Condensed element matrices S = K_bb - K_bi K_ii⁻¹ K_ib, (m, b, b).
@@ -207,7 +202,7 @@ class Element:
 
     def _parts(self, H: NDArray, chart: Contracted, corners: NDArray) -> list[NDArray[np.float64]]:
         """Blocks K_bb, K_ib and K_ii of the element matrices, b outer and i inner unknowns."""
-        b, i = self.outer_dofs, self.inner_dofs
+        b, i = self._split
         K_bb, K_ib, K_ii = self.matrices(H, chart, corners, [(b, b), (i, b), (i, i)])
         if self._pressures:
             # Over a cell's size: small cells' pressures weigh as much in the matrix as large ones'.

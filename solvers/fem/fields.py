@@ -214,61 +214,46 @@ class InteriorGradients(Gradients):
         self, space: Space, response: HalfPlane, values: Values, points: NDArray, side: int = 1
     ) -> None:
         firsts = range(0, max(len(points), 1), TOGETHER)
-        each = [_Batch(space, response, points[first : first + TOGETHER], side) for first in firsts]
-        super().__init__([partial(batch.gradients, values) for batch in each])
+        batches = [points[first : first + TOGETHER] for first in firsts]
+        super().__init__([_at_points(space, response, values, batch, side) for batch in batches])
 
 
-class _Batch:
-    """Points, and where in this rank's cells they lie.
-
-    Args:
-        space: the finite element space.
-        response: for which the mesh is contracted.
-        points: positions over a with Y <= 0, (n, 2).
-        side: see :class:`InteriorGradients`.
-
-    Attributes:
-        cells: this rank's cells that hold a point, sorted.
+def _at_points(
+    space: Space, response: HalfPlane, values: Values, points: NDArray, side: int
+) -> Callable[[], NDArray]:
+    """Function that evaluates gradients at points, which are located now; see :class:`InteriorGradients`.
 
     Raises:
         MeshError: a point lies outside the mesh.
     """
+    chart, comm, vertices = space.contracted(response), space.comm, space.vertices[..., :2]
+    grid, nodes = tensor_order(space.reference_nodes)
+    cell, point, t = _located(vertices, chart.from_physical(points))
+    of_cells = response.solids(vertices[..., 1].mean(axis=1))
+    of_points = response.solids(points[:, 1], side)
+    order = np.argsort(cell, kind="stable")
+    order = order[(of_cells[cell] == of_points[point])[order]]
+    point, t = point[order].astype(np.int32), t[order]
+    cells, firsts = np.unique(cell[order], return_index=True)
+    count = comm.allreduce(np.bincount(point, minlength=len(points)))
+    if not count.all():
+        X, Y = points[np.argmin(count)]
+        raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
+    #: How many cells hold a point, which are many on a border only.
+    sharing = count.astype(np.int16)
 
-    def __init__(self, space: Space, response: HalfPlane, points: NDArray, side: int) -> None:
-        self._chart, self._comm = space.contracted(response), space.comm
-        self._grid, self._nodes = tensor_order(space.reference_nodes)
-        self._points, self._vertices = points, space.vertices[..., :2]
-        cell, point, t = _located(self._vertices, self._chart.from_physical(points))
-        of_cells = response.solids(self._vertices[..., 1].mean(axis=1))
-        of_points = response.solids(points[:, 1], side)
-        order = np.argsort(cell, kind="stable")
-        order = order[(of_cells[cell] == of_points[point])[order]]
-        self._point, self._t = point[order].astype(np.int32), t[order]
-        self.cells, self._first = np.unique(cell[order], return_index=True)
-        count = self._comm.allreduce(np.bincount(self._point, minlength=len(points)))
-        if not count.all():
-            X, Y = points[np.argmin(count)]
-            raise MeshError(f"the point X/a = {X:g}, Y/a = {Y:g} lies outside the mesh")
-        #: How many cells hold a point, which are many on a border only.
-        self._sharing = count.astype(np.int16)
-
-    def gradients(self, values: Values) -> NDArray[np.float64]:
-        """Gradients of fields along X and Y, (n, 2, 2, fields), the same on every rank. Collective.
-
-        Args:
-            values: of the fields in cells.
-        """
-        u = values(self.cells)[:, self._grid]
-        result = np.zeros((len(self._points), 2, 2, u.shape[-1]))
-        ends = np.append(self._first[1:], len(self._point))
-        for cell, first, end, own in zip(self.cells, self._first, ends, u):
+    def gradients() -> NDArray[np.float64]:
+        u = values(cells)[:, grid]
+        result = np.zeros((len(points), 2, 2, u.shape[-1]))
+        ends = np.append(firsts[1:], len(point))
+        for i, first, end, own in zip(cells, firsts, ends, u):
             # A cell holds a point once.
-            t = self._t[first:end]
-            gradients = gradients_in_plane(self._vertices[cell], self._nodes, t, own)
-            result[self._point[first:end]] += gradients
+            result[point[first:end]] += gradients_in_plane(vertices[i], nodes, t[first:end], own)
         # On the border between cells the gradient jumps; the mean of both is taken.
-        result = self._comm.allreduce(result) / self._sharing[:, None, None, None]
-        return self._chart.physical_gradients(self._chart.from_physical(self._points), result)
+        result = comm.allreduce(result) / sharing[:, None, None, None]
+        return chart.physical_gradients(chart.from_physical(points), result)
+
+    return gradients
 
 
 def _located(vertices: NDArray, x: NDArray) -> tuple[NDArray, NDArray, NDArray]:
@@ -305,13 +290,18 @@ class Displacement:
         slopes: slopes of the fields along X on the surface, from a fit; computed if None.
         continuation: gives, for places X over a on the surface, the samples of slopes that are needed,
             and the map from slopes there to slopes at the places; None for slopes at the places.
+        gradients: gives gradients of the fields at points (n, 2), see :class:`Gradients`, where these are
+            no fields of a space.
     """
 
     def __init__(
-        self, task: Task, space: Space, fields: Sequence[Any], slopes: Slopes | None = None,
+        self, task: Task, space: Any = None, fields: Sequence[Any] = (),
+        slopes: Slopes | None = None,
         continuation: Callable[[NDArray], tuple[NDArray, NDArray]] | None = None,
+        gradients: Callable[[NDArray], NDArray] | None = None,
     ) -> None:  # fmt: skip
         self._task, self._space, self._fields, self._continuation = task, space, fields, continuation
+        self._gradients = gradients
         self._kept: dict[tuple[int, int], Gradients] = {}
         if slopes is not None:
             self.slopes = slopes
@@ -320,6 +310,9 @@ class Displacement:
     def slopes(self) -> Slopes:
         """Slopes of the fields along X at the places on the surface."""
         X = self._task.places.X
+        if self._gradients is not None:
+            basis = self._gradients(np.column_stack([X, np.zeros(len(X))]))[:, :, 0]
+            return Slopes(np.moveaxis(basis, 1, 0), np.zeros((len(X), basis.shape[-1])))
         if self._continuation is None:
             return surface_slopes(self._space, self._fields, X)
         samples, of_samples = self._continuation(X)
@@ -344,6 +337,8 @@ class Displacement:
 
     def _at(self, points: NDArray, side: int = 1) -> Gradients:
         """Gradients at points (n, 2), above an interface (side 1) or below it (-1)."""
+        if self._gradients is not None:
+            return Gradients([partial(self._gradients, points)])
         return InteriorGradients(self._space, self._task.response, self._values, points, side)
 
     def _stresses(self, points: NDArray, weights: NDArray, side: int = 1) -> NDArray[np.float64]:

@@ -283,7 +283,12 @@ class SlidingInTime:
             steady: begin in the steady motion under load and friction at t = 0, not at rest.
             watching: functions that record the motion, at first and after each step.
         """
-        state = self._steady(g(0.0), load(0.0)) if steady else self._rest()
+        u, w, a = np.zeros((3, self._motion.size))
+        state = _State(u, w, a, np.zeros(3))
+        if steady:
+            punch = PunchConstraint(self._K, self._motion, self._clock)
+            state.u, _ = punch.solve(state.u, g(0.0), -2.0 * load(0.0))
+            punch.destroy()
         first_v0, first_energy = -state.u[self._Y[0]], self._energy(state)
         records, t, direction = [], 0.0, ways[0].direction
         watched = [[watch(state.u, state.w, direction) for watch in watching]]
@@ -302,17 +307,6 @@ class SlidingInTime:
             times, v0, forces, np.cumsum(by_load), np.cumsum(by_friction), energy - first_energy,
             np.cumsum(absorbed), tuple(map(np.array, zip(*watched))),
         )  # fmt: skip
-
-    def _rest(self) -> _State:
-        u, w, a = np.zeros((3, self._motion.size))
-        return _State(u, w, a, np.zeros(3))
-
-    def _steady(self, g: float, load: float) -> _State:
-        state = self._rest()
-        punch = PunchConstraint(self._K, self._motion, self._clock)
-        state.u, _ = punch.solve(state.u, g, -2.0 * load)
-        punch.destroy()
-        return state
 
     def _turn(self, state: _State, change: int, g: float, load: float) -> None:
         """Turn the punch round: velocities seen from it jump, and accelerations change."""

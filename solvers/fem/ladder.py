@@ -61,6 +61,11 @@ class Gauge:
         return np.max(np.abs(self.values - coarse.values) / self.scale, axis=1)
 
 
+def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[str, float]:
+    """Largest relative difference of two lists of gauges, by word of output.quantities."""
+    return {gauge.word: float(gauge.change(other).max()) for gauge, other in zip(gauges, others)}
+
+
 def joined(word: str, groups: Sequence[tuple[NDArray, Any]], unresolved: Any = 0.0) -> Gauge:
     """Gauge of groups of numbers, (states, n) each, with the sizes that scale their changes."""
     values, sizes = zip(*((of, np.broadcast_to(size, of.shape)) for of, size in groups))
@@ -81,28 +86,28 @@ def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Ga
     return joined(INTENSITIES, ((factor, size), (moments[:, 1:6], 2.0)), unresolved)
 
 
-def of_inside(σ: NDArray, points: NDArray, word: str = BELOW) -> Gauge:
-    """Gauge of stresses inside, (3, states, m), for the word that requests them."""
-    size = stresses.of_inside(σ, *points.T)
-    return Gauge(word, np.concatenate(list(σ), axis=1), np.tile(size, (1, 3)))
+def of_components(word: str, σ: NDArray, size: NDArray) -> Gauge:
+    """Gauge of stresses, (components, states, ...), of sizes that may be those of all components."""
+    values, scale = (
+        np.moveaxis(each, 1, 0).reshape(σ.shape[1], -1) for each in (σ, np.broadcast_to(size, σ.shape))
+    )
+    return Gauge(word, values, scale)
 
 
 def gauged(task: Task) -> Task:
     """Task at fewer points inside, picked at all distances from the edges, from nearest to farthest."""
+    few = {}
+    for name in ("points", "around"):
+        points = getattr(task.places, name)
+        if len(points) > _POINTS:
+            order = np.argsort(_from_edges(points), kind="stable")
+            few[name] = points[np.sort(spread(order, _POINTS))]
+    return replace(task, places=replace(task.places, **few)) if few else task
 
-    def picked(points: NDArray) -> NDArray[np.float64]:
-        if len(points) <= _POINTS:
-            return points
-        X, Y = points.T
-        order = np.argsort(np.hypot(np.abs(X) - 1.0, Y), kind="stable")
-        return points[np.sort(spread(order, _POINTS))]
 
-    places = task.places
-    if max(len(places.points), len(places.around)) <= _POINTS:
-        return task
-    return replace(
-        task, places=replace(places, points=picked(places.points), around=picked(places.around))
-    )
+def _from_edges(points: NDArray) -> NDArray[np.float64]:
+    """Distances over a of points (n, 2) from the nearer edge."""
+    return np.hypot(from_edge(points[:, 0]), points[:, 1])
 
 
 class Level:
@@ -178,24 +183,22 @@ class Level:
     def stress_gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of the requested stresses of states."""
         at, places, weights = self.gauged_displacement, self.gauged_task.places, states.contact.weights
-
-        def of_interfaces() -> Gauge:
-            σ = at.interfaces(weights)
-            size = np.broadcast_to(stresses.of_interfaces(σ), σ.shape)
-            values, scale = (np.moveaxis(of, 1, 0).reshape(σ.shape[1], -1) for of in (σ, size))
-            return Gauge(AT_INTERFACES, values, scale)
-
-        def of_surface() -> Gauge:
-            σ_XX = self.σ_XX(*self.fields_of(states))
-            return Gauge(ON_SURFACE, σ_XX, stresses.of_in_plane(σ_XX, places.X))
-
-        by_word = {
-            ON_SURFACE: of_surface,
-            BELOW: lambda: of_inside(at.inside(weights), places.points),
-            YIELD: lambda: of_inside(at.around(weights), places.around, YIELD),
-            AT_INTERFACES: of_interfaces,
+        #: Stresses by word, and their sizes.
+        by_word: dict[str, tuple[Callable[[], NDArray], Callable[[NDArray], NDArray]]] = {
+            ON_SURFACE: (
+                lambda: self.σ_XX(*self.fields_of(states))[None],
+                lambda σ: stresses.of_in_plane(σ[0], places.X),
+            ),
+            BELOW: (lambda: at.inside(weights), lambda σ: stresses.of_inside(σ, *places.points.T)),
+            YIELD: (lambda: at.around(weights), lambda σ: stresses.of_inside(σ, *places.around.T)),
+            AT_INTERFACES: (lambda: at.interfaces(weights), stresses.of_interfaces),
         }
-        return [gauge() for word, gauge in by_word.items() if word in self.work.stresses]
+        gauges = []
+        for word, (evaluate, size) in by_word.items():
+            if word in self.work.stresses:
+                σ = evaluate()
+                gauges.append(of_components(word, σ, size(σ)))
+        return gauges
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
         """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
@@ -226,8 +229,8 @@ class Level:
         places, response = self.gauged_task.places, self.task.response
         nearest = {
             ON_SURFACE: lambda: from_edge(places.X),
-            BELOW: lambda: np.hypot(from_edge(places.points[:, 0]), places.points[:, 1]),
-            YIELD: lambda: np.hypot(from_edge(places.around[:, 0]), places.around[:, 1]),
+            BELOW: lambda: _from_edges(places.points),
+            YIELD: lambda: _from_edges(places.around),
             AT_INTERFACES: lambda: np.hypot(from_edge(places.along), places.interfaces[:, None]),
         }
         words = [word for word in nearest if word in self.work.stresses]
@@ -257,15 +260,11 @@ class WorkDone:
 
     def count(self, factor: Any) -> None:
         """Count the work of a factor."""
-        self.add(WorkDone(1, factor.solves, factor.iterations, factor.largest_residual, factor.condition))
-
-    def add(self, other: "WorkDone") -> None:
-        """Add other work."""
-        self.factorisations += other.factorisations
-        self.back_substitutions += other.back_substitutions
-        self.iterations = max(self.iterations, other.iterations)
-        self.largest_residual = max(self.largest_residual, other.largest_residual)
-        self.largest_condition = max(self.largest_condition, other.largest_condition)
+        self.factorisations += 1
+        self.back_substitutions += factor.solves
+        self.iterations = max(self.iterations, factor.iterations)
+        self.largest_residual = max(self.largest_residual, factor.largest_residual)
+        self.largest_condition = max(self.largest_condition, factor.condition)
 
 
 #: Effect of rounding, over its part that breaks the mirror image.
@@ -455,7 +454,7 @@ class MeasuredError(Estimate):
         self._changes: dict[int, dict[str, float]] = {}
         if not work.plan.fixed:
             self._changes = {
-                degree: {new.word: float(new.change(old).max()) for old, new in zip(before, gauges)}
+                degree: largest_changes(gauges, before)
                 for (_, before), (degree, gauges) in pairwise(measured)
             }
         probes, loads, each_load = stand_ins(level.task, g)
@@ -508,7 +507,7 @@ class MeasuredError(Estimate):
             rest = "and falls too slowly"
             if self.floor > self._tolerance:
                 rest = f"of which {self.floor:.1e} would remain on any cells"
-            self._work.warn(
+            self._work.progress.warn(
                 f"finite elements at c = {self._level.task.response.c:g} do not reach the tolerance "
                 f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
                 f"{self._degree}, {rest}"

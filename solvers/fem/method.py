@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.clock import Clock
 
-from ..contact import OWN_PRESSURE
+from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, OWN_PRESSURE, YIELD
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
 from ..contact.solution import ContactStress, Solver, Task
 from .contact import PUNCHES
@@ -44,31 +44,33 @@ class FiniteElements:
     """
 
     def __init__(self, plan: Planned, progress: Messages, clock: Clock) -> None:
-        self.work = Discretisation(plan, progress, clock)
-        self._progress, self._tasks = progress, plan.tasks
+        assert plan.fem
+        words = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
+        stresses = frozenset(word for word in words if plan.asks(word, FEM))
+        self.work = Discretisation(plan.fem, plan.tasks, stresses, progress, clock)
 
     @cached_property
     def _trained(self) -> Fit | None:
         """Fit through solved speeds for all others, made when first needed; None without one."""
         if self.work.plan.sweep is None:
             return None
-        return train(self.work, list(self._tasks), self._progress.say)
+        return train(self.work)
 
     def begin(self) -> None:
         """Make the mesh and the fit of all speeds; collective, before speeds are shared out."""
-        self._progress.say(f"mesh: {self.work.plan.mesh}")
+        self.work.progress.say(f"mesh: {self.work.plan.mesh}")
         self.work.mesh(self.work.plan.cuts)
         with quiet_compiler():
             self._trained  # noqa: B018 - cached
 
     @contextmanager
     def at(self, task: Task, g: NDArray) -> Iterator[Solver]:
-        self.work.mesh(self.work.plan.cuts)
+        work = self.work
+        work.mesh(work.plan.cuts)
         with quiet_compiler(), ExitStack() as stack:
             solver = stack.enter_context(self._trained.solved_at(task, g)) if self._trained else None
-            self._progress.say(
-                f"finite elements at c = {task.response.c:g} ({task.number + 1} of {len(self._tasks)})"
-            )
+            of = f"{task.number + 1} of {len(work.tasks)}"
+            work.progress.say(f"finite elements at c = {task.response.c:g} ({of})")
             if not solver:
                 solver = stack.enter_context(closing(self._solved(task, g)))
             yield solver

@@ -32,7 +32,7 @@ from galinx.meshes.rings import Refinement, rings_at_kinks, with_kinks
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents
-from ..contact.ends import SHAPES, Punch, end_conditions, half_width_of_load
+from ..contact.ends import SHAPES, Punch, half_width_of_load
 from ..contact.fem_plan import (
     NEAR_FREE_END,
     OWN_MESHES_KEPT,
@@ -50,7 +50,7 @@ from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between,
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
 from ..profiles.punches import Flat
-from .contact import COARSE, AlongLevel, FreeLevel, SingleLevel, without_intensity
+from .contact import ACROSS, AlongLevel, FreeLevel, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
@@ -60,9 +60,6 @@ from .space import Space
 #: A state by σ_XY/σ_YY and load [N/m]; a contact by middle and half-width [m].
 State: TypeAlias = tuple[float, float]
 Lengths: TypeAlias = tuple[float, float]
-
-#: Places under the punch at which the pressure is measured.
-_ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 
 class OwnMeshes:
@@ -81,11 +78,11 @@ class OwnMeshes:
         self._kept: dict[State, SolvedStates] = {}
 
     def states(self, g: NDArray, load: Any = None) -> Solution:
-        return solution_of(self._task, self._each, g, load)
+        def each(g: NDArray, load: Any) -> list[SolvedStates]:
+            loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
+            return [self._state(*state) for state in zip(g.tolist(), loads)]
 
-    def _each(self, g: NDArray, load: Any) -> list[SolvedStates]:
-        loads = np.broadcast_to(self._task.body.loaded(load).load, g.shape).tolist()
-        return [self._state(*state) for state in zip(g.tolist(), loads)]
+        return solution_of(self._task, each, g, load)
 
     def _state(self, g: float, load: float) -> SolvedStates:
         state = self._kept.pop((g, load), None)
@@ -124,44 +121,71 @@ class OwnMeshes:
 
 
 class EndsLevel(FreeLevel):
-    """Ends of contacts under any convex punch at one degree; see :class:`.contact.PunchLevel`.
-
-    Args:
-        work, task, space, g: as of :class:`.contact.PunchLevel`.
-        near: middles and half-widths [m] of states by σ_XY/σ_YY and load, from previous levels.
-    """
+    """Ends of contacts under any convex punch at one degree; see :class:`.contact.PunchLevel`."""
 
     shapes = SHAPES
 
-    def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray, near: dict[State, Lengths]
-    ) -> None:
-        super().__init__(work, task, space, g)
-        self._near = near
-
     def lengths(self, g: NDArray, load: Any = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Middle and half-width [m] of every state, (states, 2), and what shapes leave out, (states,).
+        """Middle and half-width [m] of every state, (2, states), and what shapes leave out, (states,).
 
         Raises:
             SolveError: no contact carries the load.
         """
-        body, last, each = self.task.body, None, []
-        _, N, K = self.parts(g)
-        conditions = end_conditions(EdgeExponents(self.task.response, g), K, N)
-        loads = np.broadcast_to(body.loaded(load).load, g.shape).tolist()
-        for state, condition in zip(zip(g.tolist(), loads), conditions):
-            start = self._near.get(state, last)
-            last = condition.solve(body.profile, body.loaded(state[1]).displacement, start)
-            self._near[state] = last
-            each.append(last)
-        return np.array(each), np.array([condition.unseen for condition in conditions])
+        _, loads, K = self.parts(g)
+        return self.ends(g, self.task.body.loaded(load), loads, K)
 
     def gauges(self, g: NDArray, load: Any = None) -> list[Gauge]:
-        ends, unseen = self.lengths(g, load)
-        h = ends[:, 1:]
+        (m, h), unseen = self.lengths(g, load)
         # Differences of the half-widths' logarithms are relative changes.
-        groups = (np.log(h), 1.0), (ends[:, :1] / h, 1.0), (unseen[:, None], 1.0)
-        return [joined(INTENSITIES, groups)]
+        return [joined(INTENSITIES, [(np.column_stack([np.log(h), m / h, unseen]), 1.0)])]
+
+
+class SingleLevel(PunchLevel):
+    """A single contact on a mesh of its own: its displacement and nodal forces are kept, no others.
+
+    Args:
+        work, task, space, g: as of :class:`.contact.PunchLevel`.
+        base: ends of the contact, or of one near by, and the punch between them.
+
+    Attributes:
+        gaps: distances over a from both ends within which the pressure is smooth but for the ends.
+    """
+
+    twins = False
+    recovery = None  # type: ignore[assignment]
+    gaps: tuple[float, float]
+
+    def __init__(
+        self, work: Discretisation, task: Task, space: Space, g: NDArray, base: "EndsBetweenKinks"
+    ) -> None:
+        self.base = base
+        super().__init__(work, task, space, g)
+        try:
+            contact, field = self.solved(g, task.body), self.fields[0].duplicate()
+            field.zeroEntries()
+            field.maxpy(contact.weights[0].tolist(), self.fields)
+        finally:
+            self.punch.destroy()
+        self.fields = [field]
+        forces = np.tensordot(contact.weights, contact.forces, 1)
+        #: The contact.
+        self.contact = replace(contact, weights=np.ones((1, 1)), forces=forces)
+
+    @property
+    def end_exponents(self) -> tuple[float, float]:
+        """Exponents of the pressure at its left and its right free end."""
+        local = EdgeExponents(self.task.response, self.g)
+        return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
+
+    def continuation(self) -> Callable[[NDArray], Any] | None:
+        gaps, exponents = self.gaps, self.end_exponents
+        return lambda X: slopes_towards_ends(X, gaps, exponents)
+
+    def states(self, g: NDArray, load: Any = None) -> SolvedStates:
+        return SolvedStates(self, self.task.body.loaded(load), self.contact, self.pressure(self.contact))
+
+    def close(self) -> None:
+        self.fields[0].destroy()
 
 
 #: Distance over a from an end or a kink from which on stresses are looked at, the place itself besides:
@@ -199,9 +223,19 @@ class EndsBetweenKinks:
     @property
     def places(self) -> NDArray[np.float64]:
         """Positions of the kinks over the half-width."""
-        centre, half_width = self.lengths
-        at = (np.array(kinks(self.body.profile), dtype=float) - centre) / half_width
+        m, h = self.lengths
+        at = (np.array(kinks(self.body.profile), dtype=float) - m) / h
         return at[np.abs(at) < 1.0]
+
+    def height(self, r: NDArray) -> NDArray[np.float64]:
+        """Height of the punch over N/(2μ) at places r over the half-width from the middle."""
+        m, h = self.lengths
+        return np.asarray(self.body.profile.height(m + h * r) / self.body.displacement)
+
+    def slope(self, r: NDArray) -> NDArray[np.float64]:
+        """Slope of the punch times the half-width over N/(2μ) at these places."""
+        m, h = self.lengths
+        return np.asarray(h * self.body.profile.slope(m + h * r) / self.body.displacement)
 
     @property
     def tips(self) -> NDArray[np.float64]:
@@ -249,45 +283,34 @@ def _gentle(plan: FemPlan) -> Refinement:
 
 
 class KinkedLevel(SingleLevel):
-    """Contact between ends that were solved for before, on cells graded towards kinks of the punch.
+    """Contact between ends that were solved for before, on cells graded towards kinks of the punch."""
 
-    Args:
-        work, task, space, g: as of :class:`SingleLevel`.
-        between: ends and kinks of the contact.
-    """
-
-    def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray, between: EndsBetweenKinks
-    ) -> None:
-        self._between, (self._centre, self._half_width) = between, between.lengths
-        super().__init__(work, task, space, g)
+    @property
+    def gaps(self) -> tuple[float, float]:  # type: ignore[override]
+        return gaps_of(self.base.places)
 
     def heights(self) -> NDArray[np.float64]:
-        X, body = self._centre + self._half_width * self.r, self.task.body
-        return np.asarray(body.profile.height(X) / body.displacement)
+        return self.base.height(self.r)
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
-        return self.punch.states(g).between(self._half_width, self._centre, True)
+        m, h = self.base.lengths
+        return self.punch.states(g).between(h, m, True)
 
     def pressure(self, contact: ContactStates) -> KinkedPressure:
         space, profile = self.space, self.task.body.profile
         return KinkedPressure(
-            space.contact.s, space.degree, space.chart, contact.normal[0], self._between.places,
-            self.end_exponents, leaving(profile), self._between.tolerance, bool(jumps(profile)),
+            space.contact.s, space.degree, space.chart, contact.normal[0], self.base.places,
+            self.end_exponents, leaving(profile), self.base.tolerance, bool(jumps(profile)),
         )  # fmt: skip
 
-    def continuation(self) -> Callable[[NDArray], Any]:
-        exponents, gaps = self.end_exponents, gaps_of(self._between.places)
-        return lambda X: slopes_towards_ends(X, gaps, exponents)
-
     def nearest(self, states: SolvedStates) -> float:
-        at = np.concatenate([[-1.0], self._between.kinks, [1.0]])
+        at = np.concatenate([[-1.0], self.base.kinks, [1.0]])
         return max(_CELLS * float(states.pressure.cells_beside(at).max()), _DIGITS)
 
     @property
     def measured_task(self) -> Task:
         """Task without places next to tips, where stresses are infinite."""
-        places, tips = self.task.places, self._between.tips
+        places, tips = self.task.places, self.base.tips
         X, points, around = places.X, places.points, places.around
         return replace(
             self.task,
@@ -304,17 +327,16 @@ class KinkedLevel(SingleLevel):
 
         Kinks are among the places: there it is a limit, which has less digits than what it is taken from.
         """
-        pressure, moments = states.pressure, states.contact.tested(self.moments[:, 1:6])
-        at_kinks = [pressure.at_kink(i) for i in range(len(self._between.kinks))]
-        across = _ACROSS[off_tips(_ACROSS, self._between.tips)]
+        pressure, across = states.pressure, ACROSS[off_tips(ACROSS, self.base.tips)]
+        at_kinks = [pressure.at_kink(i) for i in range(len(self.base.kinks))]
         σ = np.append(pressure.σ_YY(across), at_kinks)[None]
-        size = float(np.abs(σ).max())
-        unresolved = pressure.left_at_kinks / size if at_kinks else 0.0
-        return joined(INTENSITIES, ((moments, 2.0), (σ, size)), unresolved)
+        size = np.abs(σ).max(keepdims=True)
+        unresolved = pressure.left_at_kinks / float(size[0, 0]) if at_kinks else 0.0
+        return self.gauge_of_free(states, σ, size, unresolved)
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns:
         """Limits of stresses at both ends, and under kinks where they are finite."""
-        X, pressure, strain = self._between.kinks, states.pressure, states.displacement.strain
+        X, pressure, strain = self.base.kinks, states.pressure, states.displacement.strain
         σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
         u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
         g, response = float(states.contact.g[0]), states.task.response
@@ -340,17 +362,18 @@ class BetweenKinks(OwnMeshes):
 
     def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
         super().__init__(work, task, g)
-        near: dict[State, Lengths] = {}
+        ends = work.for_ends
         self._ends = climb(
-            work.for_ends, task, g,
-            lambda space, g: EndsLevel(work.for_ends, task, space, g, near), done=self._done,
-        )  # fmt: skip
+            ends, task, g, lambda space, g: EndsLevel(ends, task, space, g), done=self._done
+        )
 
     def _solved(self, g: NDArray, task: Task) -> SolvedStates:
         work, load = self._work, task.body.load
-        (lengths,), unseen = self._ends.level.lengths(g, np.array([load]))
-        between = EndsBetweenKinks(task.body, tuple(lengths.tolist()), work.plan.tolerance)
-        mesh = work.on(between.drawn(work.plan), refine=lambda plan: between.drawn(on_finer_cells(plan)))
+        lengths, unseen = self._ends.level.lengths(g, np.array([load]))
+        between = EndsBetweenKinks(task.body, tuple(lengths[:, 0].tolist()), work.plan.tolerance)
+        mesh = replace(
+            work, plan=between.drawn(work.plan), refine=lambda plan: between.drawn(on_finer_cells(plan))
+        )
         state = self._on(mesh, task, g, lambda space, g: KinkedLevel(mesh, task, space, g, between))
         state.errors[INTENSITIES] += self._ends.error.of(g, load)[INTENSITIES] + unseen
         return state
@@ -368,37 +391,27 @@ class BalancedLevel(SingleLevel):
     """Contact over layers without intensities, on a mesh drawn for its half-width.
 
     The contact has that half-width under a load of its own. Its half-width under the task's load is
-    estimated by the growth of loads on a half-plane.
+    estimated by the growth of loads on a half-plane. The task's lengths are over the half-width.
 
-    Args:
-        work, task, space, g: as of :class:`SingleLevel`; the task's lengths are over the half-width.
-        profile: profile of the punch.
-        near: middle of a contact near by [m].
-
-    Attributes:
-        half_width: half-width of the mesh [m].
+    The base of the level has the mesh's half-width and the middle of a contact near by.
     """
 
-    def __init__(
-        self, work: Discretisation, task: Task, space: Space, g: NDArray, profile: Any, near: float
-    ) -> None:
-        self._profile, self._near, self.half_width = profile, near, float(task.body.half_width)
-        super().__init__(work, task, space, g)
+    @property
+    def gaps(self) -> tuple[float, float]:  # type: ignore[override]
+        return (min(1.0, self.plan.tests.functions.h),) * 2
 
     @property
     def off(self) -> float:
         """Logarithm of the load of a contact of the mesh's half-width, over the task's."""
-        return -GROWTH * float(np.log(self.contact.half_width[0] / self.half_width))
+        return -GROWTH * float(np.log(self.contact.half_width[0] / self.base.lengths[1]))
 
     @property
     def lean(self) -> float:
         """Middle of the contact over the mesh's half-width."""
-        return float(self.contact.centre[0] / self.half_width)
+        return float(self.contact.centre[0] / self.base.lengths[1])
 
     def heights(self) -> NDArray[np.float64]:
-        h, unit = self.half_width, self.task.body.displacement
-        X = self._near + h * self.r
-        return np.stack([self._profile.height(X) / unit, h * self._profile.slope(X) / unit])
+        return np.stack([self.base.height(self.r), self.base.slope(self.r)])
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         """Contact without intensities.
@@ -406,38 +419,24 @@ class BalancedLevel(SingleLevel):
         Raises:
             SolveError: no load makes such a contact.
         """
-        (parts, loads, K), h = self.parts(g), self.half_width
+        (parts, loads, K), (near, h) = self.parts(g), self.base.lengths
         amplitudes = without_intensity(loads, K)
         # Over its own load the punch's height is that over the task's load times their quotient.
         _, share, slope = amplitudes[0].tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        half_width, centre = h * share ** (1.0 / GROWTH), self._near + h * slope / share
+        half_width, centre = h * share ** (1.0 / GROWTH), near + h * slope / share
         return self.punch.summed(g, parts, amplitudes).between(half_width, centre, True)
 
     def pressure(self, contact: ContactStates) -> Expansion:
         return self.over_flat(contact.tested(self.moments), contact.g, 1.0)
 
-    def continuation(self) -> Callable[[NDArray], Any] | None:
-        gap, exponents = min(1.0, self.plan.tests.functions.h), self.end_exponents
-        return lambda X: slopes_towards_ends(X, (gap, gap), exponents)
-
     def gauge(self, states: SolvedStates) -> Gauge:
-        """Gauge of the pressure, its moments over the load, and half-width and middle of the contact."""
-        pressure, moments = states.pressure, states.contact.tested(self.moments[:, 1:6])
-        h, σ = self.half_width, pressure.σ_YY(_ACROSS)
-        # Differences of the half-widths' logarithms are relative changes.
-        lengths = np.column_stack([np.log(states.contact.half_width / h), states.contact.centre / h])
-        groups = (σ, stresses.of_factor(σ)), (moments, 2.0), (lengths, 1.0)
-        return joined(INTENSITIES, groups, self.unresolved(states))
-
-    def unresolved(self, states: SolvedStates) -> NDArray[np.float64]:
-        """What the functions leave out of the pressure, over its largest factor, (states,)."""
-        pressure = states.pressure
+        pressure, σ = states.pressure, states.pressure.σ_YY(ACROSS)
         # What the last functions add is largest where they are multiplied by most.
-        factor = np.abs(pressure.series(_ACROSS)).max(axis=1)
-        ends = np.abs(pressure.series(ENDS)).max(axis=1)
-        return np.asarray(pressure.unresolved * ends / factor)
+        factor, ends = (np.abs(pressure.series(at)).max(axis=1) for at in (ACROSS, ENDS))
+        unresolved = pressure.unresolved * ends / factor
+        return self.gauge_of_free(states, σ, stresses.of_factor(σ), unresolved)
 
 
 class VaryingBalancedLevel(AlongLevel, BalancedLevel):
@@ -447,23 +446,22 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         body = self.task.body  # of the mesh's half-width
         return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
 
-    def _fitted(self, g: NDArray, tested: Callable[[NDArray], NDArray], **knots: float) -> Expansion:
-        return self.splines(g, np.full(len(g), self.task.body.half_width), tested, **knots)
-
     def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        parts = self.punch.parts(g)
-        of_each = self._fitted(
-            np.repeat(g, parts.shape[1]), lambda tests: self.punch.tested(parts, tests)[0]
-        )
-        return parts, self.punch.loads(parts), of_each.K_I.T[None]
+        parts, h = self.punch.parts(g), self.task.body.half_width
+        each = np.ones(parts.shape[1])
+        pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
+        return parts, self.punch.loads(parts), pressure.K_I.T[None]
 
     def pressure(self, contact: ContactStates) -> Expansion:
-        return self._fitted(contact.g, contact.tested, more=1.0)
+        return self.splines(contact.g, self._half_width, contact.tested, more=1.0)
 
-    def unresolved(self, states: SolvedStates) -> NDArray[np.float64]:
-        contact, σ = states.contact, states.pressure.σ_YY(_ACROSS)
-        coarse = self._fitted(contact.g, contact.tested, nearest=COARSE, more=1.0).σ_YY(_ACROSS)
-        return np.asarray(np.abs(coarse - σ).max(axis=1) / np.abs(σ).max(axis=1))
+    def gauge(self, states: SolvedStates) -> Gauge:
+        return self.free_gauge(states, self._half_width)
+
+    @property
+    def _half_width(self) -> NDArray[np.float64]:
+        """Half-width of the mesh [m], (1,)."""
+        return np.array([self.task.body.half_width])
 
     def continuation(self) -> None:
         # Next to an end where friction varies slopes have logarithms, which no series of powers follows.
@@ -510,8 +508,9 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
 #: Error of the half-width at a lower degree, and by how much that is lower; the error over the tolerance
 #: at the usual degree.
 _ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.5
-#: Least difference of the half-width's logarithm from which the growth of the load is computed.
-_APART = 1e-5
+#: Least difference of the half-width's logarithm from which the growth of the load is computed; error of
+#: that growth, which hardly depends on the degree; most trials at the usual degree.
+_APART, _OF_GROWTH, _TRIALS = 1e-5, 0.05, 5
 #: Largest error of the half-width over the tolerance once all is solved; else another mesh is drawn.
 _ERROR = 0.3
 
@@ -519,17 +518,23 @@ _ERROR = 0.3
 class OverLayers(OwnMeshes):
     """Contacts over layers, whose half-widths and middles are searched for on meshes that follow them."""
 
+    #: Growth of the load's logarithm with that of the half-width, of the last contact; None before.
+    _growth: float | None = None
+
     def _solved(self, g: NDArray, task: Task) -> SolvedStates:
-        # Half-widths of solved states under the load by the difference of their frictions.
+        # Half-widths under the load by those of solved states, the nearest by load, then by friction.
+        load = task.body.load
         near = [
-            (abs(other - float(g[0])), float(state.contact.half_width[0]))
-            for (other, load), state in self._kept.items()
-            if load == task.body.load
+            (
+                abs(float(np.log(load / other[1]))),
+                abs(other[0] - float(g[0])),
+                state.contact.half_width[0] * (load / other[1]) ** (1.0 / (self._growth or GROWTH)),
+            )
+            for other, state in self._kept.items()
         ]
-        #: The contact sought, its middle over the half-width, logarithms of loads by the half-width at
-        #: the last degree.
-        self._sought, self._g, self._lean, self._tried = task, g, 0.0, dict[float, float]()
-        drawn = self._half_width(min(near)[1] if near else float(task.body.half_width))
+        #: The contact sought, and its middle over the half-width.
+        self._sought, self._g, self._lean = task, g, 0.0
+        drawn = self._half_width(float(min(near)[-1] if near else task.body.half_width))
         state, lean, h = self._contact(drawn)
         if abs(h / drawn - 1.0) > _ERROR * self._work.plan.tolerance:
             state.level.close()
@@ -544,25 +549,40 @@ class OverLayers(OwnMeshes):
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
         mesh, task, level = self._drawn(h, self._work.stresses)
         state = self._on(mesh, task, self._g, level)
-        return state, state.level.lean, self._moved(h, state.level.off)
+        return state, state.level.lean, self._moved({h: state.level.off})
 
     def _half_width(self, h: float) -> float:
         """Half-width [m] of the contact that carries the load, from a half-width near by."""
         body, settled = self._sought.body, _SETTLED * self._work.plan.tolerance
-        punch = Punch(body.profile, 1.0, float(body.compression))
-        for lower, error in ((_LOWER, max(_ROUGH, settled)), (0, settled)):
-            # Loads of a low degree do not compare with those of a high one.
-            self._tried = {}
-            h = half_width_of_load(lambda h: self._off(h, lower, error), h, punch, error)  # noqa: B023
-            h = self._moved(h, self._tried[h])
+        tried, rough = dict[float, float](), max(_ROUGH, settled)
+
+        def off(h: float) -> float:
+            tried[h] = self._off(h, _LOWER, rough)
+            return tried[h]
+
+        h = half_width_of_load(off, h, Punch(body.profile, 1.0, float(body.compression)), rough)
+        h = self._moved(tried | {h: tried.pop(h)})
+        # Loads of a low degree do not compare with those of a high one, but they grow alike.
+        tried = {}
+        for _ in range(_TRIALS):
+            tried[h] = self._off(h, 0, settled)
+            error = abs(tried[h]) * (_OF_GROWTH if self._growth else 1.0)
+            h = self._moved(tried)
+            if error <= settled:
+                break
         return h
 
-    def _moved(self, h: float, off: float) -> float:
-        """Half-width under the task's load, by that under a load near by; its logarithm is off."""
-        (first, of_first), *_, (last, of_last) = 2 * [*self._tried.items()]
+    def _moved(self, tried: dict[float, float]) -> float:
+        """Half-width [m] under the task's load, by the last of some near by.
+
+        Args:
+            tried: logarithms of the loads of half-widths [m] over the task's.
+        """
+        (first, of_first), *_, (last, of_last) = 2 * [*tried.items()]
         apart = float(np.log(last / first))
-        growth = (of_last - of_first) / apart if abs(apart) > _APART else GROWTH
-        return h * float(np.exp(-off / growth))
+        if abs(apart) > _APART:
+            self._growth = (of_last - of_first) / apart
+        return last * float(np.exp(-of_last / (self._growth or GROWTH)))
 
     def _off(self, h: float, lower: int, error: float) -> float:
         """Logarithm of the load that makes a contact of half-width h [m], over the task's.
@@ -579,14 +599,18 @@ class OverLayers(OwnMeshes):
             with closing(solve(mesh.space(degree), self._g)) as level:
                 self._done.count(level.factor)
                 moved, self._lean = level.lean - self._lean, level.lean
-        self._tried[h] = level.off
         return level.off
 
     def _drawn(
         self, h: float, words: frozenset[str]
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
-        task, profile = scaled(self._sought, h), self._sought.body.profile
-        mesh = self._work.on(drawn_for(task, self._work.plan, words), words)
-        level = VaryingBalancedLevel if task.body.along else BalancedLevel
-        return mesh, task, lambda space, g: level(mesh, task, space, g, profile, h * self._lean)
+        task, plan = scaled(self._sought, h), self._work.plan
+        mesh = replace(self._work, plan=drawn_for(task, plan, words), stresses=words)
+        kind = VaryingBalancedLevel if task.body.along else BalancedLevel
+
+        def level(space: Space, g: NDArray) -> BalancedLevel:
+            base = EndsBetweenKinks(self._sought.body, (h * self._lean, h), plan.tolerance)
+            return kind(mesh, task, space, g, base)
+
+        return mesh, task, level

@@ -8,7 +8,6 @@ loads are similar, a friction is solved once, and its states differ in their len
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..contact import solution
 from ..contact.edges import Exponents
-from ..contact.pressure import Group
+from ..contact.pressure import Contacts, between_ends
 from ..contact.recovery import on_panels
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
@@ -86,16 +85,6 @@ class SolvedStates:
         return self.displacement.inside(self.contact.weights)
 
     @property
-    def raw_exponents(self) -> NDArray[np.float64]:
-        """Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2)."""
-        return self.level.recovery.exponents(self.contact.normal)
-
-    @property
-    def of_fit(self) -> NDArray[np.float64]:
-        """1 where the speed was fitted through others, 0 where it was solved, (states,)."""
-        return np.full(len(self.contact.g), float(self.fitted))
-
-    @property
     def centre_of_pressure(self) -> NDArray[np.float64]:
         """Centre of pressure over the half-width, from the middle, (states,)."""
         r = self.level.r
@@ -111,9 +100,9 @@ class SolvedStates:
         )  # fmt: skip
 
 
-def _of_all(name: str, axis: int = 0) -> Any:
-    """Property of a solution that joins an attribute of its solved states along an axis of states."""
-    return cached_property(lambda solution: solution._joined(attrgetter(name), axis))
+def _of_all(values: Callable[[SolvedStates], Any], axis: int = 0) -> Any:
+    """Property of a solution that joins values of its solved states along an axis of states."""
+    return cached_property(lambda solution: solution._joined(values, axis))
 
 
 @dataclass(frozen=True)
@@ -139,23 +128,31 @@ class Solution(solution.Solution):
         return np.concatenate([of(states) for states in self.solved], axis=axis).take(self.rows, axis)
 
     #: σ_XY/σ_YY, (states,).
-    g = _of_all("contact.g")
+    g = _of_all(lambda of: of.contact.g)
     #: Indentation of the punch's lowest point over N/(2μ), (states,).
-    v0 = _of_all("contact.v0")
+    v0 = _of_all(lambda of: of.contact.v0)
     #: K_I at the left and the right end, 0 at a free end, (states, 2).
-    K_I = _of_all("pressure.K_I")
-    #: Normal and tangential force over N/2, (states,).
-    normal_force, tangential_force = _of_all("contact.load"), _of_all("contact.friction")
+    K_I = _of_all(lambda of: of.pressure.K_I)
+    #: Normal force over N/2, (states,).
+    normal_force = _of_all(lambda of: of.contact.load)
+    #: Tangential force over N/2, (states,).
+    tangential_force = _of_all(lambda of: of.contact.friction)
     #: Centre of pressure over a, from the middle, (states,).
-    pressure_centre = _of_all("centre_of_pressure")
+    pressure_centre = _of_all(lambda of: of.centre_of_pressure)
     #: Residual of the integral equation under the pressure, relative, (states,).
-    residual = _of_all("off_equation")
+    residual = _of_all(lambda of: of.off_equation)
     #: Exponents at X = a and X = -a, fitted from the raw pressure, (states, 2).
-    exponents = _of_all("raw_exponents")
+    exponents = _of_all(lambda of: of.level.recovery.exponents(of.contact.normal))
     #: 1 where the state was fitted through other speeds, 0 where it was solved, (states,).
-    fitted = _of_all("of_fit")
+    fitted = _of_all(lambda of: np.full(len(of.contact.g), float(of.fitted)))
     #: σ_XX, σ_YY, σ_XY at points inside, (3, states, m).
-    inside = _of_all("below", 1)
+    inside = _of_all(lambda of: of.below, 1)
+    #: σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n).
+    interfaces = _of_all(lambda of: of.displacement.interfaces(of.contact.weights), 1)
+    #: Normal stress out of the plane at points inside, (states, m).
+    σ_ZZ = _of_all(lambda of: of.task.body.σ_ZZ(of.below, of.task.places.points[:, 1]))
+    #: Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (2, states).
+    largest = _of_all(lambda of: np.array(of.pressure.largest()), 1)
 
     @cached_property
     def local(self) -> Exponents:
@@ -172,12 +169,6 @@ class Solution(solution.Solution):
     def centre(self) -> NDArray[np.float64]:
         """Middle of the contact from the punch's axis [m], (states,)."""
         return self.growth * self._joined(lambda states: states.contact.centre)
-
-    @cached_property
-    def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (states,)."""
-        value, place = self._joined(lambda states: np.array(states.pressure.largest()), 1)
-        return value, place
 
     @property
     def resultant_ratio(self) -> NDArray[np.float64]:
@@ -202,17 +193,6 @@ class Solution(solution.Solution):
         turns = together([surface.turns for surface in each if surface.turns])
         return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
 
-    @cached_property
-    def interfaces(self) -> NDArray[np.float64]:
-        """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n)."""
-        return self._joined(lambda states: states.displacement.interfaces(states.contact.weights), 1)
-
-    @cached_property
-    def σ_ZZ(self) -> NDArray[np.float64]:
-        """Normal stress out of the plane at points inside, (states, m)."""
-        Y = self.places.points[:, 1]
-        return self._joined(lambda states: states.task.body.σ_ZZ(states.below, Y))
-
     @property
     def yield_turns(self) -> Turns | None:
         """Limits of stresses at ends and kinks, where an end is free."""
@@ -224,27 +204,21 @@ class Solution(solution.Solution):
         return max(states.level.nearest(states) for states in self.solved)
 
     @cached_property
-    def _punch(self) -> list[Group]:
-        """Each solved state on an elastic punch, mirrored at Y = 0."""
-        punch, one, unit = self.task.response.punch, np.zeros(1, dtype=int), np.ones(1)  # type: ignore[attr-defined]
-        return [
-            Group(punch, one, np.array([-g]), on_panels(states.pressure, i, α, β), unit, 0.0 * unit)
+    def _in_punch(self) -> Contacts:
+        """Contacts on an elastic punch, mirrored at Y = 0."""
+        pressures = [
+            on_panels(states.pressure, i, α, β)
             for states in self.solved
-            for i, (g, α, β) in enumerate(zip(states.contact.g, states.local.α, states.local.β))
+            for i, (α, β) in enumerate(zip(states.local.α, states.local.β))
         ]
+        each = [pressures[row] for row in self.rows]
+        return between_ends(self.task.response, self.g, each, 1.0).in_punch
 
     def _stresses_of_punch(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         X, Y = np.moveaxis(points, 2, 0)
         X = np.where(np.abs(np.abs(X) - 1.0) < _AT_END, np.sign(X) * (1.0 - _AT_END), X)
-        if len(points) == 1:
-            σ = np.concatenate([of.stresses(X, Y) for of in self._punch], axis=1)[:, self.rows]
-        else:
-            each = enumerate(self.rows)
-            σ = np.concatenate(
-                [self._punch[row].stresses(X[i : i + 1], Y[i : i + 1]) for i, row in each], axis=1
-            )
-        return σ * [[[1.0]], [[1.0]], [[-1.0]]]
+        return self._in_punch.stresses(X, Y) * [[[1.0]], [[1.0]], [[-1.0]]]
 
     @cached_property
     def inside_punch(self) -> NDArray[np.float64]:
@@ -254,7 +228,7 @@ class Solution(solution.Solution):
     @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
-        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self._punch[0].response
+        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self.task.response.punch  # type: ignore[attr-defined]
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
         punch = InSolid(
             response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST

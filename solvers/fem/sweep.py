@@ -12,7 +12,7 @@ first: the error of that prediction, and the change of the fit all over the swee
 fit. A fitted speed has that error and the error of the discretisation (:class:`Fit`).
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from typing import Any, NamedTuple, TypeAlias
 
@@ -38,7 +38,17 @@ from ..solids.half_plane import HalfPlane
 from .contact import PUNCHES, PunchLevel
 from .discretisation import Discretisation
 from .fields import Slopes
-from .ladder import PROBES, Estimate, Gauge, Solved, WorkDone, around, climb, size_of
+from .ladder import (
+    PROBES,
+    Estimate,
+    Gauge,
+    Solved,
+    WorkDone,
+    around,
+    climb,
+    largest_changes,
+    size_of,
+)
 from .punch import Punch
 from .space import Space
 
@@ -115,20 +125,15 @@ class HigherDegree(Exception):
     """A speed needs a higher degree than the speeds before were solved with."""
 
 
-def train(work: Discretisation, tasks: list[Task], say: Callable[[str], None]) -> "Fit | None":
+def train(work: Discretisation) -> "Fit | None":
     """Solve speeds until a fit through them gives the others to the tolerance.
 
     Where that may cost too much in vain, the fit serves the solved speeds alone; None for no fit.
-
-    Args:
-        work: gives spaces.
-        tasks: all speeds.
-        say: shows the work under way.
     """
-    degree = None
+    degree, say = None, work.progress.say
     while True:
         try:
-            fit = Fit(work, tasks, say, degree)
+            fit = Fit(work, degree)
             fit.train()
         except HigherDegree as higher:
             degree = higher.args[0]
@@ -145,7 +150,7 @@ class Fit:
     """Fit through solved speeds, and its error.
 
     Args:
-        work, tasks, say: as of :func:`train`.
+        work: has all speeds, and gives spaces.
         degree: degree to begin with; the plan's if None.
 
     Attributes:
@@ -159,29 +164,31 @@ class Fit:
             the solved speeds alone.
     """
 
-    def __init__(
-        self, work: Discretisation, tasks: list[Task], say: Callable[[str], None], degree: int | None
-    ) -> None:
+    def __init__(self, work: Discretisation, degree: int | None) -> None:
         assert work.plan.sweep
-        self._sweep = sweep = work.plan.sweep
-        self._kind = PUNCHES[work.plan.mode]
-        self._work, self._tasks, self._say = work, tasks, say
+        self._sweep, self._tasks = work.plan.sweep, list(work.tasks)
+        self._work, self._kind = work, PUNCHES[work.plan.mode]
         self.speeds: dict[int, Speed] = {}
         self.estimates: dict[float, Estimate] = {}
         self.rational: Barycentric | None = None
         self.error: dict[str, float] | None = None
-        probes = sweep.g if sweep.few else np.linspace(sweep.g[0], sweep.g[-1], PROBES)
-        self._probes = tasks[0].probes(probes)
+        g = self._sweep.g
+        self._probes = self._tasks[0].probes(g if self._sweep.few else np.linspace(g[0], g[-1], PROBES))
         #: Most speeds that are solved for a fit.
-        self._most = min(MOST, len(tasks) // 2)
+        self._most = min(MOST, len(self._tasks) // 2)
         # The fastest needs the highest degree: it is solved first, by every rank for itself.
-        first = int(np.argmin([task.response.margin for task in tasks]))
-        say(f"finite elements at c = {tasks[first].response.c:g}, of the fit")
-        solved = self._climbed(first, degree)
+        first = int(np.argmin([task.response.margin for task in self._tasks]))
+        solved = self._climbed(self._begun(first), degree)
         with closing(solved):
             level: PunchLevel = solved.level
             self.space, self.recovery, self.at = level.space, level.recovery, self._frictions(level)
-            self._take([self._speed(first, solved, {})])
+            self._take([self._speed(self._tasks[first], solved, {})])
+
+    def _begun(self, number: int) -> Task:
+        """Speed by its number; its solution begins."""
+        task = self._tasks[number]
+        self._work.progress.say(f"finite elements at c = {task.response.c:g}, of the fit")
+        return task
 
     @property
     def samples(self) -> list[Sample]:
@@ -288,7 +295,8 @@ class Fit:
                 return
             before, worst = self.rational, []
             error = self._solved(numbers)
-            if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in self._words):
+            words = next(iter(self.estimates.values())).errors
+            if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in words):
                 return  # no speed can be fitted to the tolerance
             if before and self._excess(error) <= 1.0:
                 changes = {number: self._change(before, number) for number in self._changed(before)}
@@ -357,13 +365,12 @@ class Fit:
 
     def _solve(self, number: int, measures: bool) -> Speed:
         """Solve a speed, with or without the measurement of its error."""
-        task, expected = self._tasks[number], list[Gauge]()
-        self._say(f"finite elements at c = {task.response.c:g}, of the fit")
+        task, expected = self._begun(number), list[Gauge]()
         if self.rational:
             with self.level(task) as predicted:
                 expected = predicted.gauges(*self._probes)
         if measures:
-            solved = self._climbed(number, self.space.degree)
+            solved = self._climbed(task, self.space.degree)
         else:
             level, done = self._kind(self._work, task, self.space, self._all), WorkDone()
             done.count(level.factor)
@@ -371,22 +378,22 @@ class Fit:
         with closing(solved):
             fits = expected and solved.level.space.degree <= self.space.degree
             off = largest_changes(solved.level.gauges(*self._probes), expected) if fits else {}
-            return self._speed(number, solved, off)
+            return self._speed(task, solved, off)
 
-    def _climbed(self, number: int, degree: int | None) -> Solved:
+    def _climbed(self, task: Task, degree: int | None) -> Solved:
         """Speed that is solved with the measurement of its error, from a degree on."""
-        work, task = self._work, self._tasks[number]
+        work = self._work
         return climb(
             work, task, self._all, lambda space, g: self._kind(work, task, space, g), degree,
             DISCRETISATION,
         )  # fmt: skip
 
-    def _speed(self, number: int, solved: Solved, off: dict[str, float]) -> Speed:
+    def _speed(self, task: Task, solved: Solved, off: dict[str, float]) -> Speed:
         level, error = solved.level, solved.error
         fits = level.space.degree <= self.space.degree
         estimate = Estimate(error.g, error.loads, error.errors) if error else None
-        sample = self._sampled(self._tasks[number], level) if fits else None
-        return Speed(number, level.space.degree, sample, solved.record(), estimate, off)
+        sample = self._sampled(task, level) if fits else None
+        return Speed(task.number, level.space.degree, sample, solved.record(), estimate, off)
 
     @property
     def _all(self) -> NDArray[np.float64]:
@@ -411,11 +418,6 @@ class Fit:
             if off.max() <= _BETWEEN:
                 break
         return at
-
-    @property
-    def _words(self) -> list[str]:
-        """Words of output.quantities whose errors are measured."""
-        return list(next(iter(self.estimates.values())).errors)
 
     def _least(self, word: str) -> float:
         """Smallest error of the discretisation."""
@@ -447,11 +449,6 @@ class Fit:
             with self.level(self._tasks[number], rational) as level:
                 gauges.append(level.gauges(*self._probes))
         return largest_changes(*gauges)
-
-
-def largest_changes(gauges: Sequence[Gauge], others: Sequence[Gauge]) -> dict[str, float]:
-    """Largest relative difference of two lists of gauges, by word of output.quantities."""
-    return {gauge.word: float(gauge.change(other).max()) for gauge, other in zip(gauges, others)}
 
 
 def by_turns(numbers: list[int], solve: Callable[[int], Speed], together: bool) -> list[Speed]:

@@ -16,7 +16,6 @@ hold it, if they are added only after each cell's own motion was subtracted.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -32,7 +31,7 @@ from ..rays import NEAR, rays
 from ..solids.half_plane import HalfPlane
 from .boundary import FarBoundary
 from .discretisation import Discretisation
-from .fields import Displacement, Gradients, InteriorGradients, Slopes
+from .fields import Displacement, InteriorGradients
 from .ladder import Level
 from .linear import LinearSolver, vector
 from .punch import ContactStates
@@ -395,31 +394,7 @@ class PiecesLevel(LoadsLevel):
         self.resultants = np.array([self._pieces.resultant(self._loads)])
 
     def displacement_at(self, task: Task) -> Displacement:
-        return PiecesDisplacement(task, self.space, self._pieces, self._loads)
+        return Displacement(task, gradients=lambda points: self._pieces.gradients(self._loads, points))
 
     def close(self) -> None:
         """Free nothing: the fields of pieces are arrays."""
-
-
-class PiecesDisplacement(Displacement):
-    """Displacement under pieces of a pressure; see :class:`Displacement`.
-
-    Args:
-        task: the speed, and the places.
-        space: space of the mesh of a single piece.
-        pieces: pieces of the pressure.
-        loads: linear loads that make up the pieces.
-    """
-
-    def __init__(self, task: Task, space: Space, pieces: Pieces, loads: LinearLoads) -> None:
-        super().__init__(task, space, ())
-        self._pieces, self._loads = pieces, loads
-
-    def _at(self, points: NDArray, side: int = 1) -> Gradients:
-        return Gradients([lambda: self._pieces.gradients(self._loads, points)])
-
-    @cached_property
-    def slopes(self) -> Slopes:
-        X = self._task.places.X
-        basis = self._at(np.column_stack([X, np.zeros(len(X))])).of_fields()[:, :, 0]
-        return Slopes(np.moveaxis(basis, 1, 0), np.zeros((len(X), basis.shape[-1])))

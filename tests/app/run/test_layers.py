@@ -366,6 +366,13 @@ def test_many_frictions_and_loads_are_those_of_each():
             assert differ <= 1e-6, path
 
 
+def test_the_search_for_a_half_width_takes_few_trials():
+    """Two at a low degree, from which loads are known to grow, two at the usual one; then four degrees."""
+    asked = {"solve.methods": ["fem"], "solve.tolerance": 1e-6, "friction.mu_c": [0.1, 0.4]}
+    data = coated(CYLINDER, asked).data
+    assert data["run/fem/factorisations"].sum() <= 2 * (2 + 2 + 4)
+
+
 def test_finite_elements_know_nothing_of_the_integral_equation(monkeypatch):
     """But where to begin: from another half-width they find the same."""
     asked = CYLINDER | {"solve.methods": ["fem"], "solve.tolerance": 1e-3}

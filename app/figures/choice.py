@@ -416,7 +416,7 @@ class Archive:
 
 
 #: What axes say of numbers over these.
-_OVER = {"N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$", "N^2/(4mu)": r" over $N^2/4\mu$"}
+_OVER = {"a": "$/a$", "N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$", "N^2/(4mu)": r" over $N^2/4\mu$"}
 
 
 def named(words: str, unit: str) -> str:

@@ -49,9 +49,7 @@ from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import unknowns
-from galinx.solvers.contact.residual import indentation, places
-from galinx.solvers.contact.solution import FLAT, Places, Task
-from galinx.solvers.errors import SolveError
+from galinx.solvers.contact.solution import FLAT, Task
 from galinx.solvers.profiles import smooth
 
 from ..console import Progress
@@ -171,29 +169,23 @@ def _spread(count: int, most: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
 
 
-def _tasks(plan: Plan, selected: NDArray[np.int64]) -> Iterator[tuple[Task, NDArray[np.int64]]]:
-    """Tasks of the speeds of some states, with the numbers of these states."""
-    order = plan.tasks.order
-    for i, (c, slices) in enumerate(zip(order.speeds, order.runs())):
-        own = np.concatenate(
-            [selected[(selected >= run.start) & (selected < run.stop)] for run in slices]
-        )
-        if len(own):
-            yield Task(i, plan.body, plan.body.response(c), plan.places, slices, order.loads), own
-
-
 def _computed(
     part: _Part, methods: Sequence[str], selected: NDArray[np.int64], quantities: Sequence[Quantity]
 ) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:
     """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
-    plan, data = part.plan, part.data
+    plan, data, order = part.plan, part.data, part.plan.tasks.order
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
     g, load = data[states.RATIO.path], data.get(LOAD.path)
     work = Work(alone, g, load, made, Clock(), np.zeros(plan.states, dtype=bool))
-    for task, rows in _tasks(plan, selected):
-        if f"c = {task.response.c:g}" not in failed:
+    for i, (c, runs_) in enumerate(zip(order.speeds, order.runs())):
+        rows = np.concatenate(
+            [selected[(run.start <= selected) & (selected < run.stop)] for run in runs_]
+        )
+        if len(rows) and f"c = {c:g}" not in failed:
+            response = plan.body.response(c)
+            task = Task(i, plan.body, response, plan.places, runs_, order.loads)
             yield rows, work.of_states(task, rows)
 
 
@@ -225,7 +217,7 @@ def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[st
         return
     assert plan.fem
     if states.INDENTATION.path in data and plan.fem.terms:
-        yield from _of_indentations(data, plan, selected)
+        yield from _of_indentations(part, selected)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
     if all(path in data for path in loads) and not np.allclose(
         data[loads[0]], data[loads[1]], rtol=_FROM_EXACT, atol=0.0, equal_nan=True
@@ -274,30 +266,17 @@ def _of_derived(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
                 yield f"{row.path} is not what the components give"
 
 
-def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
+def _of_indentations(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
     """Indentations v₀ that differ from those of the closed form's pressure."""
-    looked_at = replace(plan, places=Places(places()[0], np.empty((0, 2))))
-    method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
-    held, g = data[states.INDENTATION.path], data[states.RATIO.path]
-    for task, rows in _tasks(looked_at, selected):
-        load = plan.tasks.order.load(rows)
-        body = plan.body.loaded(load)
-        try:
-            with method.at(task, np.unique(g[rows])) as solver:
-                solution: Any = solver.states(g[rows], load)  # type: ignore[call-arg]
-                σ_YY = solution.surface.σ_YY
-        except SolveError:
-            continue
-        height = body.profile.height(solution.centre - solution.half_width)
-        ratio = body.ratio(g[rows], looked_at.places.X)
-        v0 = body.displacement * indentation(task.response, ratio, σ_YY, height / body.displacement)
+    row = replace(states.INDENTATION, method=CLOSED_FORM)
+    for rows, computed in _computed(part, (CLOSED_FORM,), selected, [row]):
+        held, v0 = part.held(row.path, rows), computed[row.path]
         # At a tip the rule that integrates the pressure has few digits.
-        far = np.abs(held[rows] - v0) > 1e-3 * np.abs(v0)
-        if far.any():
-            state = rows[far][0]
+        far = np.flatnonzero(np.abs(held - v0) > 1e-3 * np.abs(v0))
+        if len(far):
             yield (
-                f"{states.INDENTATION.path}: found {held[state]:g} m in state {state}, the pressure of "
-                f"the closed form gives {v0[far][0]:g} m"
+                f"{row.path}: found {held[far[0]]:g} m in state {rows[far[0]]}, the pressure of the "
+                f"closed form gives {v0[far[0]]:g} m"
             )
 
 

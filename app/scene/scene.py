@@ -36,7 +36,7 @@ from .sections import (
     ADVECTED,
     ElasticPunch,
     Friction,
-    HalfPlane,
+    GivenSolid,
     Motion,
     Output,
     Punch,
@@ -66,7 +66,7 @@ class Scene:
 
     title: str
     text: str
-    half_plane: HalfPlane
+    half_plane: GivenSolid
     punch: Punch
     friction: Friction
     motion: Motion

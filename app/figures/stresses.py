@@ -266,6 +266,10 @@ def _groups(
     return groups
 
 
+#: Indices, which the type of figures lacks, as formulas.
+_INDICES = {0x2080 + n: f"$_{n}$" for n in range(10)}
+
+
 def compared(
     archives: Sequence[Archive], labels: Sequence[str], pairs: Sequence[Sequence[int]],
     titles: Sequence[str],
@@ -294,7 +298,7 @@ def compared(
             Shown(
                 stressed[name], pairs[k][n],
                 look._replace(line=LINES[order % len(LINES)]) if several else look,
-                f"{label}, {titles[k]}" if several else label,
+                f"{label}, {titles[k].translate(_INDICES)}" if several else label,
                 1.0 if n else 2.0,  # the first shows below others that are the same
             )
             for n, (stressed, look, label) in enumerate(zip(of_all, styles, labels))

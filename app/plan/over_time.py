@@ -15,7 +15,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.meshes.waves import Reached
-from galinx.postprocess import over_time as checks
+from galinx.postprocess.over_time import IN_TIME, OF_SURFACE
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Leg, follow
@@ -301,18 +301,9 @@ class Starts:
 
     @property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which results are checked."""
-        if FEM not in self.methods:
-            return frozenset({checks.OF_SIE})
-        both = SIE in self.methods
-        names = {
-            checks.OF_FEM,
-            *(checks.BOTH,) * both,
-            *(checks.WORKS, checks.AT_ENDS) * (both and not self.time.steady),
-        }
-        if self.time.every:  # waves that are too sharp for cells have an estimate without a bound
-            names |= {checks.BALANCE, *(checks.ALONG,) * both, *(checks.OF_SURFACE,) * (not self.sharp)}
-        return frozenset(names)
+        """Names of the rules by which results are checked, where these have what the rules need."""
+        # Waves that are too sharp for cells have an estimate without a bound.
+        return IN_TIME - {OF_SURFACE} if self.sharp else IN_TIME
 
     @property
     def until_turn(self) -> str:

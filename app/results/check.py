@@ -348,6 +348,7 @@ def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[
             archived = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {archived!r}, its scene gives {value!r}"
     rules = frozenset[str]().union(*(each.rules for each in plans))
+    rules = (rules - IN_TIME) | compare.comparisons(data, attributes["load"], rules & IN_TIME).keys()
     if not rules <= {*json.loads(attributes["rules"])}:
         yield f"rules says {attributes['rules']!r}, its scene gives {json.dumps(sorted(rules))!r}"
     for name, positions in joined_positions(plans).items():

@@ -47,7 +47,7 @@ def film(of: Archive) -> Drawing:
     if not _has_strokes(of) and motion.has_film(of):
         moving, left_out = motion.film(of)
         return Drawing(FILM, "", moving.figure, left_out=left_out, film=moving)
-    labels, frames = of.labels, _frames(of)
+    frames = _frames(of)
     if len(frames) < motion.LEAST_FRAMES:
         raise BadInput(
             f"a film needs at least {motion.LEAST_FRAMES} states along strokes, found {len(frames)}; "
@@ -65,13 +65,13 @@ def film(of: Archive) -> Drawing:
     loop = Loops(of).of(frames[0])
     if loop is None:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
-    f, X = of.data[FRICTION.path], labels.values(PLACE)
+    f, X = of.data[FRICTION.path], of.parameter(PLACE)
     base = loop_panel([replace(loop, label="")])
 
     def panels(frame: int) -> list[Panel]:
         i = frames[frame]
         dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form=MARKERS)
-        title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
+        title = f"{of.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
         beside = (of_name[frame] for of_name in made)
         return [replace(base, curves=[*base.curves, dot], title=title), *beside]
 
@@ -87,14 +87,14 @@ def _has_strokes(of: Archive) -> bool:
 
 def _frames(of: Archive) -> list[int]:
     """States of one law and speed, in the order of travel."""
-    labels, states = of.labels, of.selected()
-    rest = [name for name in labels.varied(states) if name not in (STROKE, PLACE)]
+    states = of.selected()
+    rest = [name for name in of.varied(states) if name not in (STROKE, PLACE)]
     if not of.choice.states:
-        states = labels.where(states, **labels.fixed(rest, states))
+        states = of.where(states, **of.fixed(rest, states))
     elif rest:
         raise BadInput(f"--states: a film follows one law at one speed, found several {', '.join(rest)}")
-    strokes, X = labels.values(STROKE), labels.values(PLACE)
-    every = labels.distinct(STROKE)
+    strokes, X = of.parameter(STROKE), of.parameter(PLACE)
+    every = of.distinct(STROKE)
 
     def travelled(i: int) -> tuple[int, float]:
         return every.index(strokes[i]), X[i] if strokes[i].startswith("F") else -X[i]

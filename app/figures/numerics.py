@@ -41,7 +41,7 @@ def mesh(of: Archive) -> Drawing:
 
 def degrees(of: Archive) -> Drawing:
     """Figure of the convergence of K_I and of the pressure's moments with the polynomial degree."""
-    data, labels = of.data, of.labels
+    data = of.data
     c, c_of, change = (data[row.path] for row in (runs.RECORD["c"], states.SPEED, runs.CHANGES))
     measured = np.flatnonzero(change.any(axis=1)).tolist()
     shown = spread(measured, 6)  # speeds that can be told apart
@@ -57,7 +57,7 @@ def degrees(of: Archive) -> Drawing:
     errors = [(states.ESTIMATE[FEM], "_")] + [(states.TRUE_ERROR, "x")] * exact
     for i, look, off in zip(shown, looks(len(shown), ordered=True), aside):
         computed = np.flatnonzero(change[i] > 0.0)
-        label = labels.label(int(np.argmax(c_of == c[i])), [C]) if len(shown) > 1 else ""
+        label = of.label(int(np.argmax(c_of == c[i])), [C]) if len(shown) > 1 else ""
         curves.append(Curve(computed, change[i][computed], look, label, JOINED))
         at = np.array([data[runs.RECORD["degree"].path][i] + off])
         for row, marker in errors:

@@ -6,7 +6,7 @@ from matplotlib.text import Text
 from support import computed, scene_of
 
 from galinx.app.errors import BadInput
-from galinx.app.figures.choice import Archive, Choice, StateLabels
+from galinx.app.figures.choice import Archive, Choice
 from galinx.app.figures.stresses import Fields
 from galinx.app.figures.waves import answers, curve
 from galinx.app.results import check
@@ -188,8 +188,8 @@ def test_a_map_has_the_yield_strength_of_its_state():
 @pytest.mark.parametrize("dimensionless", [False, True])
 def test_speeds_over_several_wave_speeds_are_told_in_metres_per_second(dimensionless):
     result = swept_by(FLAT, "solid.E=[50, 200] GPa", "motion.speed=[100, 200, 300] m/s")
-    labels = StateLabels(result.data, result.scene, result.units(dimensionless))
-    said = [labels.text(state, ["c"]) for state in (0, len(labels.all) - 1)]
+    of = Archive(result.data, result.scene, Choice(units=result.units(dimensionless)))
+    said = [of.text(state, ["c"]) for state in (0, len(of.all) - 1)]
     assert [text.replace("\u202f", " ") for text in said] == ["V = 100 m/s", "V = 300 m/s"]
     text = summary(result.data, result.scene)
     assert "slides at 100 to 300 m/s, c = 0.03184 to 0.1911" in text

@@ -340,11 +340,6 @@ class Archive:
             f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
         )
 
-    @property
-    def size(self) -> Size | None:
-        """Size of the figure, where the user set one."""
-        return self.choice.size
-
 
 def drive_label(c: float, g: float, way: float) -> str:
     """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""

@@ -25,7 +25,7 @@ def mesh(of: Archive) -> Drawing:
     cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
     if cells is None:
         cells = fem.kind.build(fem.refinement, fem.cuts)
-    figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), of.size)
+    figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), of.choice.size)
     caption = (
         f"The {fem.mesh} mesh under the punch (black) and, nearer and nearer, its edge X = a: lines are "
         f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
@@ -75,7 +75,7 @@ def degrees(of: Archive) -> Drawing:
         "changes from the degree before, bars the error estimated at the last"
         f"{', crosses the true one, which has to lie below' * exact}."
     )
-    figure = render([panel], of.size or Size(COLUMN), notes=notes, high=0.72)
+    figure = render([panel], of.choice.size or Size(COLUMN), notes=notes, high=0.72)
     return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(c), "speeds"))
 
 

@@ -1,7 +1,7 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
 inside; friction along the contact; and stresses of several archives, one over the other."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -190,13 +190,14 @@ def surface_panels(along: Along, states: Sequence[int], label: str = "", **optio
 def stresses_along(of: Archive) -> dict[str, Along]:
     """Stresses along the surface by name, of all states: the chosen ones or those shown by default."""
     available, stressed = of.by_method(STATE, POINT), {}
-    X, places, position = of.data[SURFACE_X.path], places_of(of, of.all), position_name(of)
+    where = places_of(of, of.all), position_name(of)
     for name in of.choice.quantities or [name for name in SHOWN if name in available]:
         rows = available[require_one_of("quantity", name, available)]
         first = next(iter(rows.values()))
         words, sign = SHOWN.get(name, (short_name(first), 1.0))
         values = {each: sign * of.values(row) for each, row in rows.items()}
-        stressed[name] = Along(X, named(words, of.scaled(first).unit), values, places, position)
+        axis = named(words, of.scaled(first).unit)
+        stressed[name] = Along(of.data[SURFACE_X.path], axis, values, *where)
     return stressed
 
 
@@ -282,7 +283,7 @@ def compared(
         BadInput: an archive has no stresses along the surface, or measured points lie elsewhere.
     """
     for of, label in zip(archives, labels):
-        if not surface_names(of):
+        if not of.by_method(STATE, POINT):
             raise BadInput(
                 f'{label} holds no stresses along the surface; add "surface" to output.quantities'
             )
@@ -366,7 +367,7 @@ def friction_along(of: Archive) -> Drawing:
         *explained(pressures),
         note(Look(GREY, dotted, ""), "dotted: uniform $f$ of the same force"),
     ]
-    figure = render(panels, of.size, 0 if of.size else 3, notes, 0.8)
+    figure = render(panels, of.choice.size, 0 if of.choice.size else 3, notes, 0.8)
     caption = (
         "Friction along the contact, and the contact pressure beside that of uniform friction of the "
         "same force (dotted). At each end the pressure has the exponent of the friction there."
@@ -555,7 +556,7 @@ class Fields:
 
 def inside(of: Archive) -> Drawing:
     """Figure of maps of stresses at the slowest and the fastest speed."""
-    fields, choice, size = Fields(of), of.choice, of.size
+    fields, choice, size = Fields(of), of.choice, of.choice.size
     names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _MAPS if name in fields.names]
     varied, states = of.varied(), list(choice.states)
@@ -619,16 +620,14 @@ def _interfaces(of: Archive) -> list[float]:
     return (-factor * depths).tolist()
 
 
-def surface_names(of: Archive) -> list[str]:
-    """Names of the stresses that an archive has along the surface."""
-    return list(of.by_method(STATE, POINT))
-
-
-def interface_names(of: Archive) -> list[str]:
-    """Names of the stresses that an archive has along interfaces."""
-    return list(of.by_method(STATE, INTERFACE, ALONG))
-
-
 def map_names(of: Archive) -> list[str]:
     """Names of the stresses that an archive has maps of."""
     return Fields(of).names if of.has(stresses.MAP) and of.by_method(STATE, INSIDE) else []
+
+
+#: Names of the stresses that an archive has for a figure, by the figure's name.
+NAMES: dict[str, Callable[[Archive], Collection[str]]] = {
+    "surface": lambda of: of.by_method(STATE, POINT),
+    "interfaces": lambda of: of.by_method(STATE, INTERFACE, ALONG),
+    "inside": map_names,
+}

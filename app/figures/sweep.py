@@ -97,7 +97,7 @@ def parameters(of: Archive) -> Drawing:
     maps = sweep.maps()
     panels = maps or sweep.curves()
     methods = {method for name in sweep.drawn for method in sweep.columns[name].values}
-    size = of.size or (Size(COLUMN) if len(panels) == 1 else None)
+    size = of.choice.size or (Size(COLUMN) if len(panels) == 1 else None)
     figure = render(panels, size, notes=[] if maps else explained(methods), high=0.72)
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
     at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""

@@ -47,7 +47,6 @@ from ..figures.stresses import (
     Fields,
     map_names,
     stresses_along,
-    surface_names,
     surface_panels,
 )
 from ..figures.style import as_hex
@@ -200,10 +199,9 @@ def explorer(of: Archive) -> dict[str, Any] | None:
         ``states``: labels; ``of``: number of all states; ``surface``: for each stress a chart a state;
         ``maps``: name and charts of each stress inside.
     """
-    below = map_names(of)
-    if not surface_names(of) and not below:
+    below, surface = map_names(of), stresses_along(of)
+    if not surface and not below:
         return None
-    surface = stresses_along(of) if surface_names(of) else {}
     fields = Fields(of) if below else None
     inside = fields.X.size * fields.Y.size if fields else 1
     sizes = [inside, *(4 * len(along.X) for along in surface.values())]

@@ -80,8 +80,6 @@ def plain(text: str) -> str:
         if word == "vartheta":  # Unicode calls it a symbol
             return "ϑ"
         kind = "CAPITAL" if word[0].isupper() else "SMALL"
-        if word == "vartheta":
-            return "ϑ"
         name = {"lambda": "LAMDA"}.get(word.lower(), word.upper())
         try:
             return unicodedata.lookup(f"GREEK {kind} LETTER {name}")

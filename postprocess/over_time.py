@@ -77,9 +77,6 @@ def _logs(X: NDArray) -> NDArray[np.float64]:
     return np.array([xlogy(r, r) for r in (1.0 + X, 1.0 - X)])
 
 
-#: Names of rules: for both methods, for finite elements, and for the integral equation alone.
-BOTH, OF_FEM, OF_SIE = "over time", "estimate over time", "residual over time"
-
 #: Numbers that both methods give.
 COMPARED = rows.V0, rows.CENTRE, rows.K_I_LEFT, rows.K_I_RIGHT
 
@@ -180,9 +177,6 @@ def distances_from_steady(data: Mapping[str, Any], method: str) -> dict[str, NDA
     return {path: np.where(np.isfinite(values), values, np.nan) for path, values in datasets.items()}
 
 
-#: Names of rules: both methods' works, and the balance with energies.
-WORKS, BALANCE = "works over time", "energy over time"
-
 #: Terms of the balance: works and energy that come in, and energies that are held or radiated.
 DONE = rows.OF_LOAD[FEM], rows.OF_FRICTION[FEM], rows.CARRIED
 HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
@@ -255,40 +249,43 @@ def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
     return largest_surface_change(*([values[:, solved] for values in method] for method in (fem, sie)))
 
 
-#: Names of rules: for the surface by both methods, for finite elements, and for places beside both ends.
-ALONG, OF_SURFACE, AT_ENDS = "surface over time", "estimate on the surface over time", "ends over time"
 _AGAINST = "over time against the integral equation, over the largest"
 _FAR = "further than 0.01 a from the edges"
 
-for _name, _rule in {
-    BOTH: against(
+#: Name of the rule on estimates of stresses along the surface.
+OF_SURFACE = "estimate on the surface over time"
+
+_RULES = {
+    "over time": against(
         SIE, _both, f"v₀, centre times load and K_I {_AGAINST}", *COMPARED,
         beside=(rows.LOAD, rows.RATIOS, rows.CENTRES),
     ),
-    OF_FEM: largest(rows.ESTIMATE, "estimated error over time, over the largest"),
-    OF_SIE: largest(
+    "estimate over time": largest(rows.ESTIMATE, "estimated error over time, over the largest"),
+    "residual over time": largest(
         rows.RESIDUAL, "residual of the integral equation and of the load over time, relative"
     ),
-    WORKS: against(
+    "works over time": against(
         SIE, _until_turn, f"works of load and friction {_AGAINST}", rows.OF_LOAD, rows.OF_FRICTION
     ),
-    BALANCE: Rule(
+    "energy over time": Rule(
         "work without its energy over time, over the largest work", (*DONE, *HELD),
         lambda data, _: float(np.abs(energy_imbalance(data)).max()), tolerances=1.0,
     ),
-    ALONG: against(SIE, _along, f"σ_XX and σ_YY along the surface {_AGAINST} {_FAR}", *SURFACE),
+    "surface over time": against(
+        SIE, _along, f"σ_XX and σ_YY along the surface {_AGAINST} {_FAR}", *SURFACE
+    ),
     OF_SURFACE: largest(
         rows.SURFACE_ESTIMATE,
         f"estimated error of σ_XX and σ_YY along the surface over time, over the largest {_FAR}",
     ),
     # Its difference is reported, not judged: waves ahead of a fast punch are short.
-    AT_ENDS: against(
+    "ends over time": against(
         SIE, _until_turn, f"σ_XX 0.05 a beside both ends {_AGAINST}", rows.LEFT, rows.RIGHT,
         tolerances=None,
     ),
-}.items():  # fmt: skip
+}  # fmt: skip
+for _name, _rule in _RULES.items():
     RULES.register(_name, _rule)
 
-
 #: Names of all rules of motions in time.
-IN_TIME = frozenset({BOTH, OF_FEM, OF_SIE, WORKS, BALANCE, AT_ENDS, ALONG, OF_SURFACE})
+IN_TIME = frozenset(_RULES)

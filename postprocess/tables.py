@@ -216,7 +216,8 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     contact, count = units.contact, len(data[of.FRICTION.path])
     results, intensities = _columns(data, units, _OF_CONTACT), _columns(data, units, _K_I)
     indentation, pull = _columns(data, units, [_INDENTATION]), _columns(data, units, _PULL)
-    if (results or intensities or indentation) and units.half_width is contact.half_width:
+    given = units.half_width is contact.half_width and not units.dimensionless
+    if (results or intensities or indentation) and given:
         length = units.scale(CONTACT)
         width = np.full(count, contact.half_width) * length.factor
         results.insert(0, Column("half-width", width, length.unit, "half_width"))
@@ -302,8 +303,7 @@ def _columns(
 
 def _least(units: Units) -> dict[str, float]:
     """Sizes up to which numbers are rounding, by their unit or scale."""
-    lengths = (X_OVER_A,) if units.dimensionless else (X_OVER_A, CONTACT)
-    least = dict.fromkeys(lengths, _LEAST * float(np.max(units.length.factor)))
+    least = dict.fromkeys((X_OVER_A, CONTACT), _LEAST * float(np.max(units.length.factor)))
     return least | {_STRESS: _LEAST_STRESS * float(np.max(units.stress.factor))}
 
 

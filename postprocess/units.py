@@ -132,8 +132,10 @@ class Units:
         name = row.path.partition("/")[2].replace("/", "_") if name is None else name
         if row is states.VELOCITY:  # c in m/s
             return None
-        if self.dimensionless or row.unit == "none":
+        if row.unit == "none":
             return Scaled(name, row.unit)
+        if self.dimensionless:
+            return self.scale(row.scale if row.scale == CONTACT else row.unit)._replace(name=name)
         if row.scale == EDGE:
             return self._intensity(row, name)
         scaled = self.scale(row.scale or row.unit, row)
@@ -150,8 +152,10 @@ class Units:
             row: quantity whose unit this is; None for one of states.
         """
         if self.dimensionless:
-            archived = {CONTACT: "m"} | dict.fromkeys((OVER_A, X_OVER_A, OVER_C_S, OVER_N), "1")
-            return Scaled("", archived.get(kind, kind))
+            a = self.contact.half_width  # one for all states, whose own are among the lengths
+            over = {CONTACT: ("a", 1.0 / a), "J/m": ("N*a", 1.0 / (self.contact.load * a))}
+            archived = dict.fromkeys((OVER_A, X_OVER_A, OVER_C_S, OVER_N), ("1", 1.0))
+            return Scaled("", *(over | archived).get(kind, (kind, 1.0)))
         unit, factor, offset, size = self._in_si(kind, row)
         sizes = [size, *(other._in_si(kind, row)[3] for other in self.beside)]
         name, of_si = prefixed(unit, float(max(sizes)) or 1.0)

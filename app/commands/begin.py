@@ -127,7 +127,7 @@ def fit(
         raise BadInput(f"found no table, expected as in {program()} fit scenes/slip.csv")
     new = to if into and to.suffix == ".toml" else into
     folder = Path("fit") if into and new == to else to
-    inputs = options.inputs(*data, *([into] if into and new != into else []))
+    inputs = options.inputs(*data, into if new != into else None)
     scene_to = Target(new, None, overwrite or new == into, inputs) if new else None
     if into:
         read_scene(into)  # its faults are reported before the work

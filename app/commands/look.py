@@ -160,10 +160,6 @@ def _text(name: str, metavar: str, about: str, *parameter: str) -> Any:
     return click.option(f"--{name}", *parameter, default="", metavar=metavar, help=about)
 
 
-def _given(*files: Path | None) -> list[Path]:
-    return [file for file in files if file]
-
-
 @click.command()
 @click.argument("archives", type=options.FILE, nargs=-1, required=True)
 @click.option("-o", "to", type=options.PATH, help="Draw them as well: folder, or a file.")
@@ -195,7 +191,7 @@ def compare(
     comparison = Comparison(results, dimensionless, options.numbers(states) if states else ())
     if ranks.is_root():
         if to:
-            inputs = options.inputs(*archives, *_given(measured))
+            inputs = options.inputs(*archives, measured)
             files = Files(to, archives[0].stem, overwrite=overwrite, inputs=inputs)
             files.check(["compare"])
             written = files.write([comparison.drawing(points)])
@@ -252,7 +248,7 @@ def plot(
         method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
         measured=read_measured(measured) if measured else None,
     )  # fmt: skip
-    inputs = options.inputs(archive, *_given(measured))
+    inputs = options.inputs(archive, measured)
     files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, inputs)
     result = load(archive)
     if ranks.is_root():

@@ -99,10 +99,10 @@ overwrite = click.option(
 )
 
 
-def inputs(*files: Path) -> tuple[Path, ...]:
-    """Files that nothing may be written over: the given ones, users' models, and the log."""
+def inputs(*files: Path | None) -> tuple[Path, ...]:
+    """Files that nothing may be written over: the given ones but None, users' models, and the log."""
     log = click.get_current_context().params.get("log")
-    return (*files, *_extensions(), *([log] if log else []))
+    return tuple(file for file in (*files, *_extensions(), log) if file)
 
 
 def _extensions() -> tuple[Path, ...]:

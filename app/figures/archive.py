@@ -3,6 +3,7 @@ friction is, and what that does to the stresses."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 from galinx.postprocess.quantities import Quantity, over_time, runs
@@ -45,15 +46,14 @@ def film(of: Archive) -> Drawing:
         BadInput: there are too few states along the strokes.
     """
     if not _has_strokes(of) and motion.has_film(of):
-        moving, left_out = motion.film(of)
-        return Drawing(FILM, "", moving.figure, left_out=left_out, film=moving)
-    labels, frames = of.labels, _frames(of)
+        return motion.film(of)
+    frames = _frames(of)
     if len(frames) < motion.LEAST_FRAMES:
         raise BadInput(
             f"a film needs at least {motion.LEAST_FRAMES} states along strokes, found {len(frames)}; "
             "give motion.X_over_L more places"
         )
-    if _has(stresses.surface_names)(of):  # by one method
+    if _has("surface")(of):  # by one method
         stressed, x = stresses.stresses_along(of).values(), stresses.position_name(of, "")
         alone = [replace(along, values=dict([*along.values.items()][:1])) for along in stressed]
         made = [stresses.surface_panels(along, frames, x=x) for along in alone]
@@ -65,36 +65,36 @@ def film(of: Archive) -> Drawing:
     loop = Loops(of).of(frames[0])
     if loop is None:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
-    f, X = of.data[FRICTION.path], labels.values(PLACE)
+    f, X = of.data[FRICTION.path], of.parameter(PLACE)
     base = loop_panel([replace(loop, label="")])
 
     def panels(frame: int) -> list[Panel]:
         i = frames[frame]
         dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form=MARKERS)
-        title = f"{labels.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
+        title = f"{of.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
         beside = (of_name[frame] for of_name in made)
         return [replace(base, curves=[*base.curves, dot], title=title), *beside]
 
-    moving = Film(panels, len(frames), of.size)
-    left_out = of.not_shown(frames, "--figure film --states")
-    return Drawing(FILM, "", moving.figure, left_out=left_out, film=moving)
+    moving = Film(panels, len(frames), of.choice.size)
+    missing = of.not_shown(frames, "--figure film --states")
+    return Drawing(FILM, "", moving.figure, left_out=missing, film=moving)
 
 
 def _has_strokes(of: Archive) -> bool:
-    names = stresses.surface_names(of) or stresses.map_names(of)
+    names = stresses.NAMES["surface"](of) or stresses.map_names(of)
     return bool(names) and len(_frames(of)) >= motion.LEAST_FRAMES
 
 
 def _frames(of: Archive) -> list[int]:
     """States of one law and speed, in the order of travel."""
-    labels, states = of.labels, of.selected()
-    rest = [name for name in labels.varied(states) if name not in (STROKE, PLACE)]
+    states = of.selected()
+    rest = [name for name in of.varied(states) if name not in (STROKE, PLACE)]
     if not of.choice.states:
-        states = labels.where(states, **labels.fixed(rest, states))
+        states = of.where(states, **of.fixed(rest, states))
     elif rest:
         raise BadInput(f"--states: a film follows one law at one speed, found several {', '.join(rest)}")
-    strokes, X = labels.values(STROKE), labels.values(PLACE)
-    every = labels.distinct(STROKE)
+    strokes, X = of.parameter(STROKE), of.parameter(PLACE)
+    every = of.distinct(STROKE)
 
     def travelled(i: int) -> tuple[int, float]:
         return every.index(strokes[i]), X[i] if strokes[i].startswith("F") else -X[i]
@@ -102,9 +102,9 @@ def _frames(of: Archive) -> list[int]:
     return sorted(states.tolist(), key=travelled)
 
 
-def _has(names: Callable[[Archive], list[str]]) -> Callable[[Archive], bool]:
-    """Condition that an archive has some stresses of a kind, and the chosen ones among them."""
-    return lambda of: bool(there := names(of)) and set(of.choice.quantities) <= set(there)
+def _has(name: str) -> Callable[[Archive], bool]:
+    """Condition that an archive has some stresses for a figure, and the chosen ones among them."""
+    return lambda of: bool(there := stresses.NAMES[name](of)) and {*of.choice.quantities} <= {*there}
 
 
 def _holds(*rows: Quantity) -> Callable[[Archive], bool]:
@@ -118,13 +118,11 @@ _STRESSES = frozenset({"states", "quantities", "method"})
 
 #: By name, in the order they are drawn; the usual ones answer what is asked most.
 FIGURES = {
-    "surface": _Figure(
-        stresses.surface, _has(stresses.surface_names), _STRESSES | {"measured"}, _ALWAYS
-    ),
+    "surface": _Figure(stresses.surface, _has("surface"), _STRESSES | {"measured"}, _ALWAYS),
     "along": _Figure(
         stresses.friction_along, _holds(RATIO_ALONG), frozenset({"states", "method"}), _ALWAYS
     ),
-    "inside": _Figure(stresses.inside, _has(stresses.map_names), _STRESSES, _ALWAYS),
+    "inside": _Figure(stresses.inside, _has("inside"), _STRESSES, _ALWAYS),
     "parameters": _Figure(
         sweep.parameters, sweep.has_parameters, frozenset({"states", "method", "x", "y", "by"}), _ALWAYS
     ),
@@ -133,7 +131,7 @@ FIGURES = {
     ),
     "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_ALWAYS),
     "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_ALWAYS),
-    "interfaces": _Figure(stresses.interfaces, _has(stresses.interface_names), _STRESSES),
+    "interfaces": _Figure(stresses.interfaces, _has("interfaces"), _STRESSES),
     "pressures": _Figure(motion.pressures, _holds(*motion.PRESSURES)),
     "stresses": _Figure(motion.stresses, motion.has_surface),
     "energies": _Figure(motion.energies, _holds(*motion.ENERGIES)),
@@ -195,11 +193,7 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
         require_one_of("figure", name, dict.fromkeys([*available, FILM]))
         if ignored := choice.given - FIGURES[name].follows:
             raise BadInput(f"--figure {name} follows no {_options(ignored)}; leave that away")
-    quantities = dict.fromkeys(
-        name
-        for of_kind in (stresses.surface_names, stresses.interface_names, stresses.map_names)
-        for name in of_kind(plain)
-    )
+    quantities = dict.fromkeys(chain.from_iterable(of_kind(plain) for of_kind in stresses.NAMES.values()))
     for name in choice.quantities:
         require_one_of("quantity", name, quantities)
     usual = [name for name in available if FIGURES[name].usual(plain)]

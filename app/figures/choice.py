@@ -7,7 +7,6 @@ Parameters that distinguish an archive's states say which of them a figure shows
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -148,18 +147,28 @@ _NAMED = 6
 STROKE, PLACE, C, N = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED, LOAD))
 
 
-class StateLabels:
-    """Parameters that distinguish an archive's states, and how a legend names them.
+class Archive:
+    """Source of figures: an archive, its scene, and a choice of what is drawn.
+
+    Parameters that distinguish its states say which of them a figure shows, and a legend names them.
 
     Args:
-        data: datasets of the archive by path.
-        scene: the archive's scene.
-        units: of parameters.
+        data: datasets by path.
+        scene: of the archive.
+        choice: states, quantities, axes, size and units.
+
+    Attributes:
+        data, scene, choice: as given.
+        units: of the figures' numbers.
+        c_s: wave speed of the first solid [m/s].
+        parameters: quantities of the parameters that distinguish states, by name.
+        all: numbers of all states.
     """
 
-    def __init__(self, data: dict[str, Any], scene: Scene, units: Units | None = None) -> None:
-        self._data, self.c_s = data, scene.solid.c_s
-        self._units = units or Units(scene.body, data, dimensionless=True)
+    def __init__(self, data: dict[str, Any], scene: Scene, choice: Choice) -> None:
+        self.data, self.scene, self.choice = data, scene, choice
+        self.units = choice.units or Units(scene.body, data, dimensionless=True)
+        self.c_s = scene.solid.c_s
         self.parameters = {path.rpartition("/")[2]: row for path, row in parameters(data).items()}
         self.all = np.arange(len(data[SPEED.path]))
 
@@ -172,20 +181,20 @@ class StateLabels:
         """Names of the parameters that differ between some states, between all if not given."""
         return [name for name in self.parameters if len(self.distinct(name, states)) > 1]
 
-    def values(self, name: str) -> NDArray:
+    def parameter(self, name: str) -> NDArray:
         """Values of a parameter in all states, (states,); speeds over the wave speed of the first solid.
 
         In a sweep over solids one speed has several c, as the wave speed differs.
         """
-        values = self._data[column(name)]
-        if name != C or WAVE_SPEED.path not in self._data:
+        values = self.data[column(name)]
+        if name != C or WAVE_SPEED.path not in self.data:
             return values
-        V = values * self._data[WAVE_SPEED.path]
+        V = values * self.data[WAVE_SPEED.path]
         return np.array([float(f"{speed:.12g}") for speed in V]) / self.c_s
 
     def distinct(self, name: str, states: NDArray | Sequence[int] | None = None) -> list[Any]:
         """Distinct values of a parameter: numbers in ascending order, texts in the order of states."""
-        values = self.values(name)[self.all if states is None else np.asarray(states)].tolist()
+        values = self.parameter(name)[self.all if states is None else np.asarray(states)].tolist()
         return sorted(set(values)) if self.numeric(name) else list(dict.fromkeys(values))
 
     def numeric(self, name: str) -> bool:
@@ -195,7 +204,7 @@ class StateLabels:
     def where(self, states: NDArray, **values: Any) -> NDArray[np.int64]:
         """States whose named parameters have the given values, among some states."""
         for name, value in values.items():
-            states = states[self.values(name)[states] == value]
+            states = states[self.parameter(name)[states] == value]
         return states
 
     def ordered(self, states: NDArray) -> NDArray[np.int64]:
@@ -205,11 +214,11 @@ class StateLabels:
     def _places(self, name: str, states: NDArray) -> NDArray[np.int64]:
         """Positions of some states' values of a parameter among its distinct values, (states,)."""
         values = self.distinct(name, states)
-        return np.array([values.index(value) for value in self.values(name)[states].tolist()])
+        return np.array([values.index(value) for value in self.parameter(name)[states].tolist()])
 
     def label(self, state: int, names: Sequence[str]) -> str:
         """Named parameters of a state, with formulas in TeX."""
-        return ", ".join(self.values_label(name, [self.values(name)[state]]) for name in names)
+        return ", ".join(self.values_label(name, [self.parameter(name)[state]]) for name in names)
 
     def text(self, state: int, names: Sequence[str]) -> str:
         """Named parameters of a state, as plain text."""
@@ -224,29 +233,24 @@ class StateLabels:
         """Parameter with several values, of many the first, with formulas in TeX."""
         if not self.numeric(name):
             return _short([str(value) for value in values])
-        symbol, factor, in_unit = self.scale(name)
+        symbol, factor, in_unit = self.axis(name)
         text = f"${symbol} = {_short([number(factor * value) for value in values])}{unit(in_unit)}$"
-        if name == C and symbol != "V" and self._units.dimensionless and len(values) == 1:
+        if name == C and symbol != "V" and self.units.dimensionless and len(values) == 1:
             text += f" (${number(values[0] * self.c_s)}{unit('m/s')}$)"
         return text
 
-    def scale(self, name: str) -> tuple[str, float, str]:
+    def axis(self, name: str) -> tuple[str, float, str]:
         """Symbol in TeX of a numeric parameter, what its values are multiplied by, and its unit."""
         row = self.parameters[name]
-        scaled = self._units(row, name)
-        if (
-            name == C and scaled and WAVE_SPEED.path in self._data
-        ):  # over c_s one speed has several numbers
-            if self._units.dimensionless:
+        scaled = self.units(row, name)
+        if name == C and scaled and WAVE_SPEED.path in self.data:
+            if self.units.dimensionless:  # over c_s one speed has several numbers
                 return "V", self.c_s, "m/s"
-            return "V", float(self.c_s * np.max(scaled.factor / self._data[WAVE_SPEED.path])), scaled.unit
+            return "V", float(self.c_s * np.max(scaled.factor / self.data[WAVE_SPEED.path])), scaled.unit
         if scaled is None or np.ndim(scaled.factor) or scaled.offset:
             return str(row.symbol), 1.0, row.unit
-        return (
-            "V" if name == C and scaled.unit != "1" else str(row.symbol),
-            float(scaled.factor),
-            scaled.unit,
-        )
+        symbol = "V" if name == C and scaled.unit != "1" else str(row.symbol)
+        return symbol, float(scaled.factor), scaled.unit
 
     def fixed(self, names: Sequence[str], states: NDArray) -> dict[str, Any]:
         """Values of the named parameters at which the others are varied.
@@ -282,78 +286,6 @@ class StateLabels:
             for n, m in zip(*places)
         ]
 
-
-def drive_label(c: float, g: float, way: float) -> str:
-    """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""
-    towards = f", towards ${'-+'[int(way > 0)]}X$" * bool(c > 0.0 and way != 0)
-    return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
-
-
-def spread(values: Sequence[Any], most: int) -> list[Any]:
-    """At most so many of some values, the first and the last among them, evenly between these."""
-    if len(values) <= most:
-        return list(values)
-    return [values[n] for n in np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))]
-
-
-def states_for_panel(
-    labels: StateLabels, names: Sequence[str], states: NDArray, most: int
-) -> tuple[list[str], NDArray]:
-    """States for one panel: as many parameters vary as that leaves a readable number of curves.
-
-    Args:
-        labels: of the archive's states.
-        names: parameters that differ between ``states``, slowest first.
-        states: numbers of states.
-        most: curves in a panel.
-
-    Returns:
-        The parameters that vary, and the states.
-    """
-    # A sweep is looked at for what it sweeps; without one, strokes and places are.
-    swept = [name for name in names if name not in (STROKE, PLACE)]
-    varying: list[str] = []
-    count = 1
-    for name in [*swept, *(name for name in names if name not in swept)]:
-        values = len(labels.distinct(name, states))
-        if count * min(values, most) <= most or not varying:
-            varying.append(name)
-            count *= min(values, most)
-    rest = [name for name in names if name not in varying]
-    states = labels.where(states, **labels.fixed(rest, states))
-    for name in varying:
-        states = states[np.isin(labels.values(name)[states], spread(labels.distinct(name, states), most))]
-    return [name for name in names if name in varying], states
-
-
-def fewer(shown: int, count: int, things: str, how: str = "") -> str:
-    """Sentence on things that a figure does not show; "" where it shows all."""
-    return f"{count - shown} of {count} {things} not shown{how}." * (shown < count)
-
-
-def _short(words: Sequence[str], comma: str = ", ") -> str:
-    """The first of some words with commas between them, and "…" where there are more."""
-    return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
-
-
-class Archive:
-    """Source of figures: an archive, its scene, and a choice of what is drawn.
-
-    Args:
-        data: datasets by path.
-        scene: of the archive.
-        choice: states, quantities, axes, size and units.
-    """
-
-    def __init__(self, data: dict[str, Any], scene: Scene, choice: Choice) -> None:
-        self.data, self.scene, self.choice = data, scene, choice
-        self.units = choice.units or Units(scene.body, data, dimensionless=True)
-
-    @cached_property
-    def labels(self) -> StateLabels:
-        """Parameters that distinguish the states."""
-        return StateLabels(self.data, self.scene, self.units)
-
     def has(self, *rows: Quantity) -> bool:
         """Return True if the archive holds all of these quantities."""
         return all(row.path in self.data for row in rows)
@@ -383,7 +315,7 @@ class Archive:
 
     def selected(self) -> NDArray[np.int64]:
         """Chosen states, all by default."""
-        return np.array(self.choice.states) if self.choice.states else self.labels.all
+        return np.array(self.choice.states) if self.choice.states else self.all
 
     def not_shown(self, shown: Sequence[int], how: str) -> str:
         """Sentence on the states that a figure leaves out, and how to draw them; "" where it shows all.
@@ -392,31 +324,78 @@ class Archive:
             shown: states that the figure shows.
             how: options that draw others.
         """
-        labels = self.labels
-        missing = sorted(set(self.choice.states or labels.all.tolist()) - set(shown))
+        missing = sorted(set(self.choice.states or self.all.tolist()) - set(shown))
         if not missing:
             return ""
         absent = {
-            name: [value for value in labels.distinct(name) if value not in labels.values(name)[shown]]
-            for name in labels.varied()
+            name: [value for value in self.distinct(name) if value not in self.parameter(name)[shown]]
+            for name in self.varied()
         }
-        texts = [plain(labels.values_label(name, values)) for name, values in absent.items() if values]
+        texts = [plain(self.values_label(name, values)) for name, values in absent.items() if values]
         without = f" ({'; '.join(texts)})" if texts else ""
         runs = np.split(missing, np.flatnonzero(np.diff(missing) > 1) + 1)
         ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
         return (
-            f"{len(missing)} of {len(labels.all)} states not shown{without}: "
+            f"{len(missing)} of {len(self.all)} states not shown{without}: "
             f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
         )
 
-    @property
-    def size(self) -> Size | None:
-        """Size of the figure, where the user set one."""
-        return self.choice.size
+
+def drive_label(c: float, g: float, way: float) -> str:
+    """Legend label of a motion: its speed over c_s, σ_XY/σ_YY, and its way ±1 along X."""
+    towards = f", towards ${'-+'[int(way > 0)]}X$" * bool(c > 0.0 and way != 0)
+    return f"$c = {c:.4g}$, $\\sigma_{{XY}}/\\sigma_{{YY}} = {g:.4g}${towards}"
+
+
+def spread(values: Sequence[Any], most: int) -> list[Any]:
+    """At most so many of some values, the first and the last among them, evenly between these."""
+    if len(values) <= most:
+        return list(values)
+    return [values[n] for n in np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))]
+
+
+def states_for_panel(
+    of: Archive, names: Sequence[str], states: NDArray, most: int
+) -> tuple[list[str], NDArray]:
+    """States for one panel: as many parameters vary as that leaves a readable number of curves.
+
+    Args:
+        of: the archive.
+        names: parameters that differ between ``states``, slowest first.
+        states: numbers of states.
+        most: curves in a panel.
+
+    Returns:
+        The parameters that vary, and the states.
+    """
+    # A sweep is looked at for what it sweeps; without one, strokes and places are.
+    swept = [name for name in names if name not in (STROKE, PLACE)]
+    varying: list[str] = []
+    count = 1
+    for name in [*swept, *(name for name in names if name not in swept)]:
+        values = len(of.distinct(name, states))
+        if count * min(values, most) <= most or not varying:
+            varying.append(name)
+            count *= min(values, most)
+    rest = [name for name in names if name not in varying]
+    states = of.where(states, **of.fixed(rest, states))
+    for name in varying:
+        states = states[np.isin(of.parameter(name)[states], spread(of.distinct(name, states), most))]
+    return [name for name in names if name in varying], states
+
+
+def fewer(shown: int, count: int, things: str, how: str = "") -> str:
+    """Sentence on things that a figure does not show; "" where it shows all."""
+    return f"{count - shown} of {count} {things} not shown{how}." * (shown < count)
+
+
+def _short(words: Sequence[str], comma: str = ", ") -> str:
+    """The first of some words with commas between them, and "…" where there are more."""
+    return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
 
 
 #: What axes say of numbers over these.
-_OVER = {"N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$", "N^2/(4mu)": r" over $N^2/4\mu$"}
+_OVER = {"a": "$/a$", "N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$", "N^2/(4mu)": r" over $N^2/4\mu$"}
 
 
 def named(words: str, unit: str) -> str:

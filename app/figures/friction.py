@@ -48,7 +48,7 @@ class Loops:
     """Friction loops of an archive's states; states with the same law share theirs."""
 
     def __init__(self, of: Archive) -> None:
-        self.labels, legs = of.labels, of.scene.legs
+        self.archive, legs = of, of.scene.legs
         self.rows, self._X, self._f = (
             of.data[row.path] for row in (runs.LOOP_OF_STATE, runs.LOOP_X, runs.LOOP_F)
         )
@@ -61,9 +61,9 @@ class Loops:
         _, first = np.unique(self.rows, return_index=True)
         #: A state on each loop.
         self.first = np.array([state for state in first if self.rows[state] >= 0])
-        varied = self.labels.varied(self.first)
+        varied = self.archive.varied(self.first)
         # Loops differ with the speed only where the law depends on it.
-        self.names = [name for name in (C, *self.labels.law) if name in varied]
+        self.names = [name for name in (C, *self.archive.law) if name in varied]
 
     def of(self, state: int, called: Sequence[str] | None = None) -> Loop | None:
         """The loop that a state lies on, None where the archive has too many to hold it.
@@ -74,7 +74,7 @@ class Loops:
         """
         if (row := int(self.rows[state])) < 0:
             return None
-        label = self.labels.label(state, self.names if called is None else called)
+        label = self.archive.label(state, self.names if called is None else called)
         return Loop(label, self._X, self._f[row], self._strokes)
 
     @property
@@ -86,21 +86,21 @@ class Loops:
         """A panel with the loops of some states, each once."""
         once = list({int(self.rows[state]): state for state in reversed(states)}.values())[::-1]
         loops = [loop for loop in (self.of(state, called) for state in once) if loop]
-        return loop_panel(loops, len(called) == 1 and self.labels.numeric(called[0]), title)
+        return loop_panel(loops, len(called) == 1 and self.archive.numeric(called[0]), title)
 
     def panels(self) -> tuple[list[Panel], list[int]]:
         """All loops if they are few, else a panel for each parameter of the law, the others at the middle
         of their lists; and the states that they are of."""
         if len(self.first) <= _LOOPS:
-            states = self.labels.ordered(self.first).tolist()
+            states = self.archive.ordered(self.first).tolist()
             return [self.panel(states, self.names)], states
         shown, drawn = [], []
         for name in self.names:
             others = [other for other in self.names if other != name]
-            candidates = self.labels.where(self.first, **self.labels.fixed(others, self.first))
-            values = self.labels.values(name)
+            candidates = self.archive.where(self.first, **self.archive.fixed(others, self.first))
+            values = self.archive.parameter(name)
             states = spread(sorted(candidates.tolist(), key=lambda state: values[state]), _LOOPS)
-            shown.append(self.panel(states, [name], self.labels.label(states[0], others)))
+            shown.append(self.panel(states, [name], self.archive.label(states[0], others)))
             drawn += states
         return shown, drawn
 
@@ -146,9 +146,9 @@ def has_loop(of: Archive) -> bool:
 def friction(of: Archive) -> Drawing:
     """Figure of the loops that an archive's states lie on."""
     loops, choice = Loops(of), of.choice
-    labels, rows = loops.labels, loops.rows
+    rows = loops.rows
     if choice.states:
-        varied = [name for name in loops.names if name in labels.varied(choice.states)]
+        varied = [name for name in loops.names if name in of.varied(choice.states)]
         shown, drawn = [loops.panel(choice.states, varied)], list(choice.states)
     else:
         shown, drawn = loops.panels()
@@ -195,8 +195,8 @@ def slider(of: Archive) -> Drawing:
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
     states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)
-    labels = [loops.labels.label(states[law], called) for law in laws]
-    ordered = len(called) == 1 and loops.labels.numeric(called[0])
+    labels = [of.label(states[law], called) for law in laws]
+    ordered = len(called) == 1 and of.numeric(called[0])
     t, v, cycle_v = (of.values(row) for row in (runs.TIMES, runs.VELOCITY, runs.CYCLE_VELOCITY))
     cycle_f = data[runs.CYCLE_FRICTION.path]
     assert scene.slider is not None

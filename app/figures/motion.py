@@ -21,6 +21,7 @@ from galinx.solvers.contact.edges import under_punch
 from galinx.texts import number, plain
 
 from .choice import Archive, Drawing, both, drive_label, explained, fewer, named, spread
+from .files import FILM
 from .render import MARKERS, Curve, Film, Panel, Size, note, render
 from .stresses import SHOWN, Along, Shown, limits, position_name, surface_panel
 from .style import COLUMN, GREY, Look, looks
@@ -101,8 +102,8 @@ def time(of: Archive) -> Drawing:
     caption += " Friction follows its law along the strokes." * settings.by_law
     if len(shown) == 1:
         caption += f" At {plain(drive_label(*motions[0]))}."
-    columns = 2 if not of.size or of.size.width > 3.0 else 1
-    figure = render(panels, of.size, columns, explained(methods))
+    columns = 2 if not of.choice.size or of.choice.size.width > 3.0 else 1
+    figure = render(panels, of.choice.size, columns, explained(methods))
     return Drawing("time", caption, figure, left_out=_left_out(of, len(shown)))
 
 
@@ -129,7 +130,7 @@ def energies(of: Archive) -> Drawing:
         "meanwhile, of first order in the load, where all of these are of second."
     )
     notes = [note(_SUM, "all together", width=1.8)]
-    figure = render(panels, of.size, 0, notes, high=0.68)
+    figure = render(panels, of.choice.size, 0, notes, high=0.68)
     return Drawing("energies", caption, figure, left_out=_left_out(of))
 
 
@@ -201,7 +202,7 @@ def pressures(of: Archive) -> Drawing:
         "equation, at times after it touched; dashed in steady motion. While the load comes on the "
         "pressure grows, and then it shifts from one side to the other."
     )
-    figure = render([panel], of.size or Size(COLUMN), high=0.75)
+    figure = render([panel], of.choice.size or Size(COLUMN), high=0.75)
     return Drawing("pressures", caption, figure, left_out=_left_out(of))
 
 
@@ -236,7 +237,7 @@ def stresses(of: Archive) -> Drawing:
         "At the edges they grow without bound."
     )
     notes = explained(*(along.values for along in held.values()))
-    figure = render(panels, of.size, len(titles), notes)
+    figure = render(panels, of.choice.size, len(titles), notes)
     return Drawing("stresses", caption, figure, left_out=_left_out(of))
 
 
@@ -246,9 +247,9 @@ def has_film(of: Archive) -> bool:
     return enough or of.has(*PRESSURES)
 
 
-def film(of: Archive) -> tuple[Film, str]:
+def film(of: Archive) -> Drawing:
     """Film of the stresses along the surface of the first start, or of the pressure of the start whose
-    steady pressure leans most, beside the centre of the pressure; and what it leaves out."""
+    steady pressure leans most, beside the centre of the pressure."""
     label, t = _time(of)
     if has_surface(of) and len(of.data[rows.SURFACE_TIMES.path]) >= LEAST_FRAMES:
         start, (held, steps) = 0, _at_chosen_times(of)
@@ -281,4 +282,5 @@ def film(of: Archive) -> tuple[Film, str]:
         dot = Curve(t[i : i + 1], centre[i : i + 1], now, form=MARKERS)
         return [first, *others, replace(way, curves=[*way.curves, dot])]
 
-    return Film(panels, len(steps), of.size), _left_out(of)
+    moving = Film(panels, len(steps), of.choice.size)
+    return Drawing(FILM, "", moving.figure, left_out=_left_out(of), film=moving)

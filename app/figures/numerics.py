@@ -25,7 +25,7 @@ def mesh(of: Archive) -> Drawing:
     cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
     if cells is None:
         cells = fem.kind.build(fem.refinement, fem.cuts)
-    figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), of.size)
+    figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), of.choice.size)
     caption = (
         f"The {fem.mesh} mesh under the punch (black) and, nearer and nearer, its edge X = a: lines are "
         f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
@@ -41,12 +41,12 @@ def mesh(of: Archive) -> Drawing:
 
 def degrees(of: Archive) -> Drawing:
     """Figure of the convergence of K_I and of the pressure's moments with the polynomial degree."""
-    data, labels = of.data, of.labels
+    data = of.data
     change, solved = data[runs.CHANGES.path], runs.states_of_speeds(data, len(of.scene.each))
     measured = np.flatnonzero(change.any(axis=1)).tolist()
     shown = spread(measured, 6)  # speeds that can be told apart
     first = [int(solved[i][0]) for i in shown]
-    names = [name for name in labels.varied(first) if name == C or "." in name]
+    names = [name for name in of.varied(first) if name == C or "." in name]
 
     def largest(row: Quantity, i: int) -> float:
         return float(data[row.path][solved[i]].max())
@@ -59,7 +59,7 @@ def degrees(of: Archive) -> Drawing:
     errors = [(states.ESTIMATE[FEM], "_")] + [(states.TRUE_ERROR, "x")] * exact
     for i, state, look, off in zip(shown, first, looks(len(shown), ordered=True), aside):
         computed = np.flatnonzero(change[i] > 0.0)
-        label = labels.label(state, names) if len(shown) > 1 else ""
+        label = of.label(state, names) if len(shown) > 1 else ""
         curves.append(Curve(computed, change[i][computed], look, label, JOINED))
         at = np.array([data[runs.RECORD["degree"].path][i] + off])
         for row, marker in errors:
@@ -77,7 +77,7 @@ def degrees(of: Archive) -> Drawing:
         "changes from the degree before, bars the error estimated at the last"
         f"{', crosses the true one, which has to lie below' * exact}."
     )
-    figure = render([panel], of.size or Size(COLUMN), notes=notes, high=0.72)
+    figure = render([panel], of.choice.size or Size(COLUMN), notes=notes, high=0.72)
     return Drawing("degrees", caption, figure, left_out=fewer(len(shown), len(solved), "solutions"))
 
 

@@ -1,7 +1,7 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
 inside; friction along the contact; and stresses of several archives, one over the other."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -36,7 +36,6 @@ from .choice import (
     C,
     Drawing,
     N,
-    StateLabels,
     both,
     explained,
     fewer,
@@ -191,13 +190,14 @@ def surface_panels(along: Along, states: Sequence[int], label: str = "", **optio
 def stresses_along(of: Archive) -> dict[str, Along]:
     """Stresses along the surface by name, of all states: the chosen ones or those shown by default."""
     available, stressed = of.by_method(STATE, POINT), {}
-    X, places, position = of.data[SURFACE_X.path], places_of(of, of.labels.all), position_name(of)
+    where = places_of(of, of.all), position_name(of)
     for name in of.choice.quantities or [name for name in SHOWN if name in available]:
         rows = available[require_one_of("quantity", name, available)]
         first = next(iter(rows.values()))
         words, sign = SHOWN.get(name, (short_name(first), 1.0))
         values = {each: sign * of.values(row) for each, row in rows.items()}
-        stressed[name] = Along(X, named(words, of.scaled(first).unit), values, places, position)
+        axis = named(words, of.scaled(first).unit)
+        stressed[name] = Along(of.data[SURFACE_X.path], axis, values, *where)
     return stressed
 
 
@@ -210,11 +210,11 @@ _ENDS = {SHARP: ": at its edges they grow without bound.", PRESCRIBED: "."} | di
 def surface(of: Archive) -> Drawing:
     """Figure of stresses along the surface: a column for each speed, or else for each value of the
     parameter that varies most slowly."""
-    choice, labels, stressed = of.choice, of.labels, stresses_along(of)
+    choice, stressed = of.choice, stresses_along(of)
     width = choice.size.width if choice.size else PAGE
-    same = of.scene.body.alike and N in labels.parameters and not choice.states and of.units.dimensionless
-    states = labels.where(labels.all, **{N: labels.values(N)[0]}) if same else labels.all
-    groups = _groups(labels, states, choice.states, width)
+    same = of.scene.body.alike and N in of.parameters and not choice.states and of.units.dimensionless
+    states = of.where(of.all, **{N: of.parameter(N)[0]}) if same else of.all
+    groups = _groups(of, states, width)
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
     for n, (name, along) in enumerate(stressed.items()):
@@ -223,8 +223,8 @@ def surface(of: Archive) -> Drawing:
         low, high = min(y[0] for y in ranges), max(y[1] for y in ranges)
         alike = high - low <= 4.0 * min(y[1] - y[0] for y in ranges)
         for column, (title, numbers, names) in enumerate(groups):
-            called = [labels.label(i, names) if len(every) > 1 else "" for i in numbers]
-            shown = along.shown(labels.looks(numbers, names), called, rows=numbers)
+            called = [of.label(i, names) if len(every) > 1 else "" for i in numbers]
+            shown = along.shown(of.looks(numbers, names), called, rows=numbers)
             ylim = (low, high) if alike else ranges[column]
             panel = surface_panel(shown, ylim, title="" if n else title)
             panel = choice.measured.over_stress(panel, name, of.units) if choice.measured else panel
@@ -238,32 +238,33 @@ def surface(of: Archive) -> Drawing:
     )
     if same:
         caption += " Over N/(2a) they are the same under every load."
-    caption += labels.all_at(every)
+    caption += of.all_at(every)
     missing = of.not_shown(every, "--figure surface --states")
     return Drawing("surface", caption, figure, left_out=missing)
 
 
-def _groups(
-    labels: StateLabels, states: NDArray, requested: Sequence[int], width: float
-) -> list[tuple[str, list[int], list[str]]]:
+def _groups(of: Archive, states: NDArray, width: float) -> list[tuple[str, list[int], list[str]]]:
     """Title, states and parameters that distinguish them, by column."""
+    requested = of.choice.states
     states = np.array(requested) if requested else states
-    varied = labels.varied(states)
+    varied = of.varied(states)
     most = max(1, min(_COLUMNS, int(width / _LEAST)))
     by = varied[0] if len(varied) > 1 else ""
-    values = labels.distinct(by, states) if by else []
+    values = of.distinct(by, states) if by else []
     if not by or (requested and len(values) > most):
-        names, shown = (
-            (varied, states) if requested else states_for_panel(labels, varied, states, _CURVES)
-        )
+        names, shown = (varied, states) if requested else states_for_panel(of, varied, states, _CURVES)
         return [("", shown.tolist(), names)]
     groups = []
     for value in spread(values, most) if most > 1 else values[-1:]:
-        group, names = labels.where(states, **{by: value}), [name for name in varied if name != by]
+        group, names = of.where(states, **{by: value}), [name for name in varied if name != by]
         if not requested:
-            names, group = states_for_panel(labels, names, group, _CURVES)
-        groups.append((labels.label(int(group[0]), [by]), labels.ordered(group).tolist(), names))
+            names, group = states_for_panel(of, names, group, _CURVES)
+        groups.append((of.label(int(group[0]), [by]), of.ordered(group).tolist(), names))
     return groups
+
+
+#: Indices, which the type of figures lacks, as formulas.
+_INDICES = {0x2080 + n: f"$_{n}$" for n in range(10)}
 
 
 def compared(
@@ -282,7 +283,7 @@ def compared(
         BadInput: an archive has no stresses along the surface, or measured points lie elsewhere.
     """
     for of, label in zip(archives, labels):
-        if not surface_names(of):
+        if not of.by_method(STATE, POINT):
             raise BadInput(
                 f'{label} holds no stresses along the surface; add "surface" to output.quantities'
             )
@@ -294,7 +295,7 @@ def compared(
             Shown(
                 stressed[name], pairs[k][n],
                 look._replace(line=LINES[order % len(LINES)]) if several else look,
-                f"{label}, {titles[k]}" if several else label,
+                f"{label}, {titles[k].translate(_INDICES)}" if several else label,
                 1.0 if n else 2.0,  # the first shows below others that are the same
             )
             for n, (stressed, look, label) in enumerate(zip(of_all, styles, labels))
@@ -335,8 +336,8 @@ def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[n
 
 def friction_along(of: Archive) -> Drawing:
     """Figure of f over X, and of the pressure beside that of uniform friction of the same force."""
-    data, labels = of.data, of.labels
-    names, chosen = states_for_panel(labels, labels.varied(of.selected()), of.selected(), _FRICTIONS)
+    data = of.data
+    names, chosen = states_for_panel(of, of.varied(of.selected()), of.selected(), _FRICTIONS)
     states, rows = chosen.tolist(), {method: row for method, row in PRESSURE.items() if of.has(row)}
     resultant = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
     under, scale = np.abs(data[SURFACE_X.path]) < 1.0, of.scaled(next(iter(rows.values())))
@@ -350,14 +351,14 @@ def friction_along(of: Archive) -> Drawing:
         for method, p in pressures.items()
     }
     where = places_of(of, states), position_name(of, "position ")
-    styles, dotted = labels.looks(states, names), LINES[3]
+    styles, dotted = of.looks(states, names), LINES[3]
     f = Along(X, "friction coefficient $f$", {CLOSED_FORM: g}, *where)
     pressure = Along(X, named(SHOWN["sigma_YY"][0], scale.unit), pressures, *where)
     beside = replace(pressure, values={CLOSED_FORM: uniform})
     shown_beside = beside.shown([look._replace(line=dotted) for look in styles], width=0.7)
     ratio = Along(X, "pressure over that of uniform $f$", over, *where)
     panels = [
-        surface_panel(f.shown(styles, [labels.label(i, names) for i in states])),
+        surface_panel(f.shown(styles, [of.label(i, names) for i in states])),
         surface_panel([*pressure.shown(styles), *shown_beside]),
         surface_panel(ratio.shown(styles), at_y=(1.0,)),
     ]
@@ -366,7 +367,7 @@ def friction_along(of: Archive) -> Drawing:
         *explained(pressures),
         note(Look(GREY, dotted, ""), "dotted: uniform $f$ of the same force"),
     ]
-    figure = render(panels, of.size, 0 if of.size else 3, notes, 0.8)
+    figure = render(panels, of.choice.size, 0 if of.choice.size else 3, notes, 0.8)
     caption = (
         "Friction along the contact, and the contact pressure beside that of uniform friction of the "
         "same force (dotted). At each end the pressure has the exponent of the friction there."
@@ -388,14 +389,14 @@ _SIDES = {"above": "-", "below": (0, (4.0, 1.5))}
 
 def interfaces(of: Archive) -> Drawing:
     """Figure of stresses along interfaces: a column for each interface, or for some of many."""
-    labels, choice = of.labels, of.choice
-    states, width = of.selected(), choice.size.width if choice.size else PAGE
-    names = labels.varied(states)
+    choice, states = of.choice, of.selected()
+    width = choice.size.width if choice.size else PAGE
+    names = of.varied(states)
     if not choice.states:
-        names, states = states_for_panel(labels, names, states, _INTERFACE_CURVES)
-    numbers = labels.ordered(states).tolist()
-    styles = looks(len(numbers), len(names) == 1 and labels.numeric(names[0]))
-    called = [labels.label(i, names) if len(numbers) > 1 else "" for i in numbers]
+        names, states = states_for_panel(of, names, states, _INTERFACE_CURVES)
+    numbers = of.ordered(states).tolist()
+    styles = looks(len(numbers), len(names) == 1 and of.numeric(names[0]))
+    called = [of.label(i, names) if len(numbers) > 1 else "" for i in numbers]
     unit, depths = interface_depths(of.data)
     bodies = [of_state(of.scene, i)[0].body for i in (numbers if len(depths) > 1 else [0])]
     depths = depths[numbers] if len(depths) > 1 else depths
@@ -412,7 +413,7 @@ def interfaces(of: Archive) -> Drawing:
         of.by_method(STATE, INTERFACE, ALONG), position_name(of, "position along the interface ")
     )  # fmt: skip
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
-    X, places = of.data[ALONG_X.path], places_of(of, labels.all)
+    X, places = of.data[ALONG_X.path], places_of(of, of.all)
     panels: list[Panel] = []
     notes, methods = list[Any](), set[str]()
     for of_sides, words in _AT_INTERFACES.items():
@@ -440,7 +441,7 @@ def interfaces(of: Archive) -> Drawing:
     )
     if len(columns) < len(over_a):
         caption += f" {len(columns)} of {len(over_a)} interfaces are shown; a wider --size shows more."
-    caption += labels.all_at(numbers)
+    caption += of.all_at(numbers)
     missing = of.not_shown(numbers, "--figure interfaces --states")
     figure = render(panels, choice.size, across_, notes + explained(methods))
     return Drawing("interfaces", caption, figure, left_out=missing)
@@ -555,15 +556,15 @@ class Fields:
 
 def inside(of: Archive) -> Drawing:
     """Figure of maps of stresses at the slowest and the fastest speed."""
-    fields, labels, choice, size = Fields(of), of.labels, of.choice, of.size
+    fields, choice, size = Fields(of), of.choice, of.choice.size
     names = [require_one_of("quantity", name, fields.names) for name in choice.quantities]
     names = names or [name for name in _MAPS if name in fields.names]
-    varied, states = labels.varied(), list(choice.states)
+    varied, states = of.varied(), list(choice.states)
     if not states:  # first and last of the parameter that varies most slowly
-        every = labels.where(labels.all, **labels.fixed(varied[1:], labels.all))
+        every = of.where(of.all, **of.fixed(varied[1:], of.all))
         states = sorted({int(every[0]), int(every[-1])})
     alone, wide = len(names) == len(states) == 1, len(states) > 1
-    apart = labels.varied(states) or ([C] if C in varied or alone else [])
+    apart = of.varied(states) or ([C] if C in varied or alone else [])
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
@@ -583,7 +584,7 @@ def inside(of: Archive) -> Drawing:
             panels.append(replace(
                 panel, x=panel.x if not wide or n == len(names) - 1 else None,
                 y=panel.y if k == 0 else None, dashes=dashes,
-                title=labels.label(state, apart) if n == 0 or not wide else "",
+                title=of.label(state, apart) if n == 0 or not wide else "",
             ))  # fmt: skip
     maps = [panel.map for panel in panels if panel.map]
     both = any(m.above for m in maps)
@@ -592,11 +593,11 @@ def inside(of: Archive) -> Drawing:
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
     panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
-    fixed = [name for name in labels.parameters if name not in labels.varied(states)]
+    fixed = [name for name in of.parameters if name not in of.varied(states)]
     caption = (
         f"Stresses inside {'both bodies, above the contact' if both else 'below the punch'} (black bar)"
         f"{' the punch as a half-plane' * both}, {METHODS[method]}, at "
-        f"{labels.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
+        f"{of.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
         "bar its colours are clipped."
     )
     caption += " Dashed lines are the interfaces." * bool(dashes)
@@ -619,16 +620,14 @@ def _interfaces(of: Archive) -> list[float]:
     return (-factor * depths).tolist()
 
 
-def surface_names(of: Archive) -> list[str]:
-    """Names of the stresses that an archive has along the surface."""
-    return list(of.by_method(STATE, POINT))
-
-
-def interface_names(of: Archive) -> list[str]:
-    """Names of the stresses that an archive has along interfaces."""
-    return list(of.by_method(STATE, INTERFACE, ALONG))
-
-
 def map_names(of: Archive) -> list[str]:
     """Names of the stresses that an archive has maps of."""
     return Fields(of).names if of.has(stresses.MAP) and of.by_method(STATE, INSIDE) else []
+
+
+#: Names of the stresses that an archive has for a figure, by the figure's name.
+NAMES: dict[str, Callable[[Archive], Collection[str]]] = {
+    "surface": lambda of: of.by_method(STATE, POINT),
+    "interfaces": lambda of: of.by_method(STATE, INTERFACE, ALONG),
+    "inside": map_names,
+}

@@ -17,7 +17,6 @@ from .choice import (
     C,
     Drawing,
     N,
-    StateLabels,
     both,
     explained,
     named,
@@ -81,7 +80,7 @@ def has_parameters(of: Archive) -> bool:
     choice = of.choice
     if choice.x or choice.y or choice.by:
         return bool(columns_of(of))
-    return bool(_swept(of.labels, of.selected())) and bool(_Sweep(of).drawn)
+    return bool(_swept(of, of.selected())) and bool(_Sweep(of).drawn)
 
 
 def parameters(of: Archive) -> Drawing:
@@ -98,10 +97,10 @@ def parameters(of: Archive) -> Drawing:
     maps = sweep.maps()
     panels = maps or sweep.curves()
     methods = {method for name in sweep.drawn for method in sweep.columns[name].values}
-    size = of.size or (Size(COLUMN) if len(panels) == 1 else None)
+    size = of.choice.size or (Size(COLUMN) if len(panels) == 1 else None)
     figure = render(panels, size, notes=[] if maps else explained(methods), high=0.72)
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
-    at = f" at {of.labels.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
+    at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
     caption = f"What follows from {plain(sweep.label)}{at}."
     left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
@@ -126,23 +125,23 @@ class _Sweep:
 
     def __init__(self, of: Archive) -> None:
         self._of, self.columns = of, columns_of(of)
-        labels, choice, every = of.labels, of.choice, of.selected()
+        choice, every = of.choice, of.selected()
         self.beside: tuple[str, float] | None = None
         self.name, self.label, self.x = self._over(every)
-        varied = labels.varied(every)
+        varied = of.varied(every)
         others = [name for name in varied if name != self.name]
-        law = [name for name in others if name in (C, N, *labels.law)]
+        law = [name for name in others if name in (C, N, *of.law)]
         # Places are the strokes' only where nothing else is swept.
         usual = next(iter([*law, *others]), "")
         self.by = require_one_of("by", choice.by, others) if choice.by else usual
-        free = [self.by, *([self.name] if self.name in labels.parameters else labels.varied())]
-        self.fixed = labels.fixed([name for name in varied if name not in free], every)
-        states = labels.where(every, **self.fixed)
+        free = [self.by, *([self.name] if self.name in of.parameters else of.varied())]
+        self.fixed = of.fixed([name for name in varied if name not in free], every)
+        states = of.where(every, **self.fixed)
         self.groups = [("", states)]
         if self.by:
-            values = spread(labels.distinct(self.by, states), _CURVES)
-            own = [labels.where(states, **{self.by: value}) for value in values]
-            self.groups = [(labels.label(int(numbers[0]), [self.by]), numbers) for numbers in own]
+            values = spread(of.distinct(self.by, states), _CURVES)
+            own = [of.where(states, **{self.by: value}) for value in values]
+            self.groups = [(of.label(int(numbers[0]), [self.by]), numbers) for numbers in own]
         self.drawn, self.more = [require_one_of("y", y, self.columns) for y in choice.y], list[str]()
         if not self.drawn:
             apart = [self.name, *_LIMITS, *_FRICTIONS * (self.name == PLACE)]
@@ -162,34 +161,34 @@ class _Sweep:
 
     def _over(self, selected: NDArray) -> tuple[str, str, NDArray]:
         """Parameter or quantity that numbers are drawn over, the name of its axis, and its numbers."""
-        of, labels, requested = self._of, self._of.labels, self._of.choice.x
+        of, requested = self._of, self._of.choice.x
         columns = columns_of(of, method="")
-        numeric = [name for name in labels.parameters if labels.numeric(name)]
+        numeric = [name for name in of.parameters if of.numeric(name)]
         if requested:
             require_one_of("x", requested, [*numeric, _SPEED, *columns])
-        swept = _swept(labels, selected) or labels.varied(selected)
+        swept = _swept(of, selected) or of.varied(selected)
         usual = next((name for name in swept if name in numeric), "")
         name = C if requested == _SPEED else requested or usual
         if not name:
             raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
-        if name not in labels.parameters:
+        if name not in of.parameters:
             return name, named(columns[name].about, columns[name].unit), columns[name].best
         if requested == _SPEED and of.units.dimensionless:
-            return name, "speed $V$ (m/s)", labels.values(C) * labels.c_s
-        if name == C and labels.scale(C)[2] == "1":
-            self.beside = "speed (m/s)", labels.c_s
+            return name, "speed $V$ (m/s)", of.parameter(C) * of.c_s
+        if name == C and of.axis(C)[2] == "1":
+            self.beside = "speed (m/s)", of.c_s
         return name, *self._axis(name)
 
     def _axis(self, name: str) -> tuple[str, NDArray]:
         """Name of the axis of a parameter, and its numbers, (states,)."""
-        labels = self._of.labels
-        symbol, factor, unit = labels.scale(name)
-        about = f"speed ${symbol}$" if name == C and unit != "1" else _label(labels.parameters[name])
-        return named(about, unit), factor * labels.values(name)
+        of = self._of
+        symbol, factor, unit = of.axis(name)
+        about = f"speed ${symbol}$" if name == C and unit != "1" else _label(of.parameters[name])
+        return named(about, unit), factor * of.parameter(name)
 
     def curves(self) -> list[Panel]:
         """A panel for each column that is drawn, with a curve for each group."""
-        styles = looks(len(self.groups), not self.by or self._of.labels.numeric(self.by))
+        styles = looks(len(self.groups), not self.by or self._of.numeric(self.by))
         x, panels = np.concatenate([self.x[numbers] for _, numbers in self.groups]), []
         logarithmic = "x" * (_spans(x, _RATIOS) and _by_ratios(x))
         for name in self.drawn:
@@ -211,18 +210,18 @@ class _Sweep:
 
     def maps(self) -> list[Panel]:
         """A map for each column that is drawn, over two swept numbers; none where curves are drawn."""
-        labels, choice, every = self._of.labels, self._of.choice, self._of.selected()
+        of, choice, every = self._of, self._of.choice, self._of.selected()
         both_ = self.name, self.by
-        if not self.by or self.name not in labels.parameters or not labels.numeric(self.by) or choice.by:
+        if not self.by or self.name not in of.parameters or not of.numeric(self.by) or choice.by:
             return []
-        free = [name for name in labels.varied(every) if name not in both_]
-        every = labels.where(every, **labels.fixed(free, every))
-        across, up = (labels.distinct(name, every) for name in both_)
+        free = [name for name in of.varied(every) if name not in both_]
+        every = of.where(every, **of.fixed(free, every))
+        across, up = (of.distinct(name, every) for name in both_)
         small = min(len(across), len(up)) < _OF_MAP
         if small or len(every) != len(across) * len(up) or PLACE in both_:
             return []
         # States by the values of both parameters: the first changes along a row.
-        order = np.lexsort([labels.values(name)[every] for name in both_])
+        order = np.lexsort([of.parameter(name)[every] for name in both_])
         numbers = every[order].reshape(len(up), len(across))
         label, y = self._axis(self.by)
         x, y = self.x[numbers[0]], y[numbers[:, 0]]
@@ -277,11 +276,9 @@ def _label(row: Quantity) -> str:
     return text
 
 
-def _swept(labels: StateLabels, selected: NDArray) -> list[str]:
+def _swept(of: Archive, selected: NDArray) -> list[str]:
     """Names of numeric parameters with enough values for a curve, those with most values first."""
-    counts = {
-        name: len(labels.distinct(name, selected)) for name in labels.parameters if labels.numeric(name)
-    }
+    counts = {name: len(of.distinct(name, selected)) for name in of.parameters if of.numeric(name)}
     return sorted((name for name in counts if counts[name] >= _VALUES), key=lambda name: -counts[name])
 
 

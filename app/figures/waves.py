@@ -277,7 +277,9 @@ def flutter(of: Archive) -> Drawing:
         caption += (
             f" Solids are those of the first state; others differ in {' and '.join(of.scene.swept)}."
         )
-    return Drawing("flutter", caption, render([panel], of.size or Size(COLUMN), notes=notes, high=0.72))
+    return Drawing(
+        "flutter", caption, render([panel], of.choice.size or Size(COLUMN), notes=notes, high=0.72)
+    )
 
 
 def _thresholds(scene: Scene) -> tuple[NDArray, NDArray, str, str]:

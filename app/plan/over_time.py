@@ -15,19 +15,19 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.meshes.waves import Reached
-from galinx.postprocess import over_time as checks
+from galinx.postprocess.over_time import IN_TIME, OF_SURFACE
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Leg, follow
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
-from galinx.solvers.solids.solid import Solid
 from galinx.solvers.transient.history import Drive, Load, Way
 from galinx.solvers.transient.line_load import fastest
 from galinx.texts import counted
 
 from ..errors import BadInput
 from ..scene.scene import Scene
+from ..scene.sections import Time
 from .states import States
 
 #: Positions on a stroke between which friction is interpolated; fewest steps of a stroke.
@@ -213,27 +213,21 @@ class Starts:
     """All motions in time of a scene.
 
     Attributes:
+        scene: the scene, whose tolerance is relative to the largest value over time.
+        time: its section [time].
         drives: of the punch by speed over c_s.
         methods: names of the methods that compute them.
         ways: steps of the finite elements, an even number of each; directions from that of the first
             stroke, 1, on. The integral equation computes the first way.
         load: over time.
-        steady: True where they begin in steady motion, False where they begin at rest.
-        tolerance: accuracy, relative to the largest value over time.
-        every: time over a/c_s from one output of the surface to the next, None for none.
-        solid: what the punch slides over.
-        a: half-width of the punch [m].
     """
 
+    scene: Scene
+    time: Time
     drives: dict[float, tuple[Drive, ...]]
     methods: tuple[str, ...]
     ways: tuple[Way, ...]
     load: Load
-    steady: bool
-    tolerance: float
-    every: float | None
-    solid: Solid
-    a: float
 
     @property
     def steps(self) -> int:
@@ -253,7 +247,7 @@ class Starts:
     @property
     def outputs(self) -> NDArray[np.int64]:
         """Numbers of steps that precede each output of the surface, all even; (outputs,)."""
-        times = np.arange(1.0, self.end / (every := self.every or np.inf) + 1e-6) * every
+        times = np.arange(1.0, self.end / (every := self.time.every or np.inf) + 1e-6) * every
         return np.unique(2 * np.abs(np.subtract.outer(times, self.times(2))).argmin(axis=1) + 2)
 
     def directions(self, drive: Drive) -> NDArray[np.float64]:
@@ -307,18 +301,9 @@ class Starts:
 
     @property
     def rules(self) -> frozenset[str]:
-        """Names of the rules by which results are checked."""
-        if FEM not in self.methods:
-            return frozenset({checks.OF_SIE})
-        both = SIE in self.methods
-        names = {
-            checks.OF_FEM,
-            *(checks.BOTH,) * both,
-            *(checks.WORKS, checks.AT_ENDS) * (both and not self.steady),
-        }
-        if self.every:  # waves that are too sharp for cells have an estimate without a bound
-            names |= {checks.BALANCE, *(checks.ALONG,) * both, *(checks.OF_SURFACE,) * (not self.sharp)}
-        return frozenset(names)
+        """Names of the rules by which results are checked, where these have what the rules need."""
+        # Waves that are too sharp for cells have an estimate without a bound.
+        return IN_TIME - {OF_SURFACE} if self.sharp else IN_TIME
 
     @property
     def until_turn(self) -> str:
@@ -332,7 +317,7 @@ class Starts:
 
     def words(self) -> list[str]:
         """Plan in words, one line for each method."""
-        begin = "from steady motion on" if self.steady else "from rest"
+        begin = "from steady motion on" if self.time.steady else "from rest"
         what = f"{counted(self.count, 'start')} {begin}, to t = {self.end:g} a/c_s"
         turn = f"; {self.until_turn}" * bool(self.until_turn)
         lines = [f"integral equation in time: {what}{turn}"] if SIE in self.methods else []
@@ -349,7 +334,7 @@ class Starts:
 
     def response(self, c: float) -> HalfPlane:
         """HalfPlane of the solid at a speed over c_s; of layers with lengths over a."""
-        return self.solid.response(c, self.a)
+        return self.scene.solid.response(c, self.scene.body.half_width)
 
     def levels(self, c: float) -> tuple[Level, Level]:
         """Two levels: a coarser one, which measures the error, and the one that is archived.
@@ -357,21 +342,21 @@ class Starts:
         The coarser one has half as many steps, a degree less, and cells that grow faster, so that
         waves are too short for cells from little more than half the distance on.
         """
-        digits, gap = -log10(self.tolerance), self.solid.limit() - c
+        digits, gap = -log10(self.scene.solve.tolerance), self.scene.solid.limit() - c
         degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
-        depths = tuple((self.solid.depths / self.a).tolist())
+        depths = tuple((self.scene.solid.depths / self.scene.body.half_width).tolist())
         degree += (gap < _SHORT or bool(depths)) and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
         slow = min(1.0, gap / _SLOW) ** 0.5
         long = _LONG + _LONGER * max(digits - 3.0, 0.0)
         size = _SIZE * slow * min(1.0, self.shortest / long)
-        seen = min(size, _SEEN_SIZE * slow) if self.every else size
+        seen = min(size, _SEEN_SIZE * slow) if self.time.every else size
         growth = _GROWTH * _FINER ** (digits - 3.0)
-        beyond = _HELD / self.tolerance if self.steady else 0.0
+        beyond = _HELD / self.scene.solve.tolerance if self.time.steady else 0.0
         ratio = _SHARP_RATIO if self.sharp else _RATIO
         width, depth = self._reach(fastest(self.response(c)), c)
         if depths:
-            slower = min(1.0, self.solid.slowest / self.solid.c_s)
+            slower = min(1.0, self.scene.solid.slowest / self.scene.solid.c_s)
             size, seen = (min(side * slower, _OF_LAYER * depths[0]) for side in (size, seen))
         coarse, fine = (
             Reached(
@@ -389,7 +374,7 @@ class Starts:
         it arrives a little earlier.
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
-        beside, below = _SEEN if self.every else (0.0, 0.0)
+        beside, below = _SEEN if self.time.every else (0.0, 0.0)
         if len(self.strokes) > 1:
             farthest = c * max(self.strokes)
             return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0
@@ -433,17 +418,7 @@ def starts(scene: Scene, states: States) -> Starts | None:
             f"solve.methods: found sie only, which computes no way back, and the punch turns round at "
             f"{ways[0].duration:.6g} a/c_s: expected fem, too, or time.end no later than that"
         )
-    planned = Starts(
-        drives,
-        methods,
-        ways,
-        load,
-        steady,
-        tolerance,
-        scene.time.every,
-        scene.solid,
-        scene.body.half_width,
-    )
+    planned = Starts(scene, scene.time, drives, methods, ways, load)
     for c in drives if FEM in methods else ():
         if (unknowns := planned.levels(c)[1].unknowns) > LARGEST:
             raise BadInput(

@@ -649,6 +649,7 @@ def interface_grid(body: Contact, several: np.ndarray | None = None) -> tuple[np
     depths = body.solid.depths / body.half_width if several is None else several
     near = np.concatenate([_from_edge(min(depth, 1.0)) for depth in depths.tolist()])
     near = np.concatenate([-near, near])
-    far = np.geomspace(5.0, max(_FARTHEST, 5.0 * depths[-1]), 49)
-    X = np.concatenate([np.linspace(-5.0, 5.0, 161), near - 1.0, near + 1.0, -far, far])
+    seen = stresses.FARTHEST
+    far = np.geomspace(seen, max(_FARTHEST, seen * depths[-1]), 49)
+    X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
     return depths, np.unique(np.round(X, 9))

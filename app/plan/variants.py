@@ -74,11 +74,9 @@ def joined_states(plans: Sequence[Plan]) -> States:
     each, counts = [plan.friction for plan in plans], [plan.states for plan in plans]
     if len(plans) == 1:
         return each[0]
-
-    def joined(arrays: Sequence[NDArray]) -> NDArray:
-        return np.concatenate(arrays)
-
-    columns = {name: joined([states.columns[name] for states in each]) for name in each[0].columns}
+    columns = {
+        name: np.concatenate([states.columns[name] for states in each]) for name in each[0].columns
+    }
     scenes = [plan.scene for plan in plans]
     values = {WAVE_SPEED: [scene.solid.c_s for scene in scenes]}
     if not scenes[0].body.found:
@@ -89,10 +87,10 @@ def joined_states(plans: Sequence[Plan]) -> States:
     before = np.cumsum([0, *(len(states.loops) for states in each[:-1])]).tolist()
     loop = [np.where(states.loop < 0, -1, states.loop + n) for states, n in zip(each, before)]
     return replace(
-        each[0], columns=columns, loop=joined(loop),
-        **{name: joined([getattr(states, name) for states in each])
+        each[0], columns=columns, loop=np.concatenate(loop),
+        **{name: np.concatenate([getattr(states, name) for states in each])
            for name in ("inner", "directions", "loops")},
-        works={path: joined([states.works[path] for states in each]) for path in each[0].works},
+        works={path: np.concatenate([states.works[path] for states in each]) for path in each[0].works},
     )  # fmt: skip
 
 

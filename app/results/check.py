@@ -44,14 +44,11 @@ from galinx.postprocess.quantities.quantity import (
     SIE,
     STATE,
 )
-from galinx.postprocess.quantities.quantity import SPEED as SPEEDS
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import unknowns
-from galinx.solvers.contact.residual import indentation, places
-from galinx.solvers.contact.solution import FLAT, Places, Task
-from galinx.solvers.errors import SolveError
+from galinx.solvers.contact.solution import FLAT, Task
 from galinx.solvers.profiles import smooth
 
 from ..console import Progress
@@ -75,36 +72,15 @@ _FROM_EXACT = 1e-2
 _ONE_MESH = ("contact", "traction", FREE_ENDS)
 
 
-class _Part:
-    """An archive as that of a single variant, with its scene and plan.
+def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
+    """Differences between numbers of a variant and numbers computed again, one sentence each.
 
-    Args:
-        archive: of all variants.
-        plan: of the variant.
+    States and their rows are numbered as in the archive of all variants.
     """
-
-    def __init__(self, archive: Archive, plan: Plan) -> None:
-        self._archive, self._first, self.scene, self.plan = archive, plan.rows.start, plan.scene, plan
-        quantities, speeds = table(), slice(plan.speed, plan.speed + len(plan.tasks))
-        rows = {STATE: plan.rows, SPEEDS: speeds}
-        self.data: Mapping[str, Any] = {
-            path: values[own] if (own := rows.get((*quantities[path].over, "")[0])) else values
-            for path, values in archive.data.items()
-        }
-        self.attributes, self.names = archive.attributes, archive.names
-
-    def held(self, path: str, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Archived values of some states, (states, …)."""
-        return np.asarray(self._archive.rows(rows + self._first, [path])[path])
-
-
-def _of_part(part: _Part) -> Iterator[str]:
-    """Differences between archived numbers and numbers computed again, one sentence each."""
-    plan = part.plan
-    if runs.RECORD["c"].path in part.data and not len(part.data[runs.FAILURES.path]):
-        yield from _of_record(part.data, plan)
-    few = _spread(plan.states, _FEW)
-    more = _spread(plan.states, _SMOOTH) if smooth(plan.body.profile) else few
+    if runs.RECORD["c"].path in archive.data and not len(archive.data[runs.FAILURES.path]):
+        yield from _of_record(archive.data, plan)
+    few = _spread(plan, _FEW)
+    more = _spread(plan, _SMOOTH) if smooth(plan.body.profile) else few
     for method in (CLOSED_FORM, SIE):
         by = (method, LOCAL) if method == CLOSED_FORM else (method,)
         # Residuals may be rounding alone; comparisons have them.
@@ -114,14 +90,14 @@ def _of_part(part: _Part) -> Iterator[str]:
         many = max(_NUMBERS // max(sum(int(np.prod(plan.shape(row))) for row in quick), 1), _FEW)
         again = few if method == SIE else more
         if method == CLOSED_FORM and FLAT not in plan.body.lacks:
-            again = _spread(plan.states, min(_FLAT, many))
+            again = _spread(plan, min(_FLAT, many))
         for rows, selected in ((quick, again), (slow, few)):
             methods = (method,) * (method in plan.methods)
-            for numbers, computed in _computed(part, methods, selected, rows) if rows else ():
-                yield from _different(part, numbers, computed)
-    if plan.fem and not part.scene.layers:
-        yield from _of_derived(part, more)
-        yield from _of_finite_elements(part, more)
+            for numbers, computed in _computed(archive, plan, methods, selected, rows) if rows else ():
+                yield from _different(archive, plan, numbers, computed)
+    if plan.fem and not plan.scene.layers:
+        yield from _of_derived(archive, plan, more)
+        yield from _of_finite_elements(archive, plan, more)
 
 
 #: Words of earlier archives, and those that stand for them now.
@@ -149,9 +125,9 @@ def _without_numbers(text: str) -> str:
 
 def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
     """Speeds, cells and unknowns of finite elements that differ from those of the scene."""
-    fem, c = plan.fem, plan.tasks.order.speeds
+    fem, c, own = plan.fem, plan.tasks.order.speeds, slice(plan.speed, plan.speed + len(plan.tasks))
     assert fem
-    record = {name: data[row.path] for name, row in runs.RECORD.items()}
+    record = {name: data[row.path][own] for name, row in runs.RECORD.items()}
     if not np.allclose(record["c"], c, rtol=1e-12, atol=0.0):
         yield f"{runs.RECORD['c'].path} holds other speeds than its scene has"
     if fem.mode in _ONE_MESH:
@@ -166,46 +142,44 @@ def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
             )
 
 
-def _spread(count: int, most: int) -> NDArray[np.int64]:
-    """Numbers of at most so many states, the first and the last among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
-
-
-def _tasks(plan: Plan, selected: NDArray[np.int64]) -> Iterator[tuple[Task, NDArray[np.int64]]]:
-    """Tasks of the speeds of some states, with the numbers of these states."""
-    order = plan.tasks.order
-    for i, (c, slices) in enumerate(zip(order.speeds, order.runs())):
-        own = np.concatenate(
-            [selected[(selected >= run.start) & (selected < run.stop)] for run in slices]
-        )
-        if len(own):
-            yield Task(i, plan.body, plan.body.response(c), plan.places, slices, order.loads), own
+def _spread(plan: Plan, most: int) -> NDArray[np.int64]:
+    """Numbers of at most so many states of a variant, the first and the last among them."""
+    first, last = plan.rows.start, plan.rows.stop - 1
+    return np.unique(np.linspace(first, last, min(plan.states, most)).round().astype(int))
 
 
 def _computed(
-    part: _Part, methods: Sequence[str], selected: NDArray[np.int64], quantities: Sequence[Quantity]
-) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:
+    archive: Archive, plan: Plan, methods: Sequence[str], selected: NDArray[np.int64],
+    quantities: Sequence[Quantity],
+) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:  # fmt: skip
     """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
-    plan, data = part.plan, part.data
+    data, order = archive.data, plan.tasks.order
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
     g, load = data[states.RATIO.path], data.get(LOAD.path)
-    work = Work(alone, g, load, made, Clock(), np.zeros(plan.states, dtype=bool))
-    for task, rows in _tasks(plan, selected):
-        if f"c = {task.response.c:g}" not in failed:
+    work = Work(alone, g, load, made, Clock(), np.zeros(len(g), dtype=bool))
+    for i, (c, runs_) in enumerate(zip(order.speeds, order.runs(plan.tasks.first))):
+        rows = np.concatenate(
+            [selected[(run.start <= selected) & (selected < run.stop)] for run in runs_]
+        )
+        if len(rows) and f"c = {c:g}" not in failed:
+            response = plan.body.response(c)
+            task = Task(i, plan.body, response, plan.places, runs_, order.loads)
             yield rows, work.of_states(task, rows)
 
 
-def _different(part: _Part, rows: NDArray[np.int64], computed: Mapping[str, NDArray]) -> Iterator[str]:
+def _different(
+    archive: Archive, plan: Plan, rows: NDArray[np.int64], computed: Mapping[str, NDArray]
+) -> Iterator[str]:
     """Differences between archived and computed values, one sentence each."""
-    for path, values in computed.items():
-        held = part.held(path, rows)
+    for path, held in archive.rows(rows, computed).items():
+        values = computed[path]
         with np.errstate(invalid="ignore"):
             finite = np.where(np.isfinite(values), np.abs(values), 0.0)
             axes = tuple(range(1, values.ndim))
             size = np.maximum(finite, 0.0 if values.ndim == 1 else finite.max(axis=axes, keepdims=True))
-            allowed = _TOLERANCES * part.plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
+            allowed = _TOLERANCES * plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
             # The place of a largest value may lie anywhere where the values are flat.
             is_place = path.endswith(("_position", "_over_a", "_X", "_Y"))
             near = np.abs(held - values) <= allowed * size + _PLACE * is_place
@@ -215,22 +189,19 @@ def _different(part: _Part, rows: NDArray[np.int64], computed: Mapping[str, NDAr
             yield f"{path} is not what is computed of state {rows[i]}"
 
 
-def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
+def _of_finite_elements(archive: Archive, plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
     """Comparisons of finite elements with the closed form that fail, even if the scene asks for none."""
-    data, scene, plan, body = part.data, part.scene, part.plan, part.plan.body
-    refusal = METHODS[CLOSED_FORM].refusal
-    if part.attributes["verdict"] == "FAIL" or refusal(scene, body, None):
+    scene, body, refusal = plan.scene, plan.body, METHODS[CLOSED_FORM].refusal
+    if archive.attributes["verdict"] == "FAIL" or refusal(scene, body, None):
         return
     if body.solid.limit() <= max(plan.tasks.order.speeds):
         return
     assert plan.fem
-    if states.INDENTATION.path in data and plan.fem.terms:
-        yield from _of_indentations(data, plan, selected)
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
-    if all(path in data for path in loads) and not np.allclose(
-        data[loads[0]], data[loads[1]], rtol=_FROM_EXACT, atol=0.0, equal_nan=True
-    ):
-        yield f"{' and '.join(loads)} are not near each other"
+    if {*loads} <= {*archive.names}:
+        first, other = (archive.data[path][plan.rows] for path in loads)
+        if not np.allclose(first, other, rtol=_FROM_EXACT, atol=0.0, equal_nan=True):
+            yield f"{' and '.join(loads)} are not near each other"
     # Next to kinks numbers are infinite, or nearly so; and of yield a few states were looked at.
     exact = [
         row for row in QUANTITIES.values()
@@ -239,66 +210,53 @@ def _of_finite_elements(part: _Part, selected: NDArray[np.int64]) -> Iterator[st
     ]  # fmt: skip
     rules = {name: rule for name, rule in compare.RULES.items() if {*rule.needs} & {*exact}}
     needed = {row.path: row for rule in rules.values() for row in rule.needs}
-    archived = [path for path in needed if path in part.names and needed[path].method != CLOSED_FORM]
-    for rows, computed in _computed(part, (CLOSED_FORM,), selected, exact):
-        for path in archived:
-            computed[path] = part.held(path, rows) if STATE in needed[path].over else data[path]
-        for name, figure in compare.comparisons(computed, plan.tasks.order.load(rows), rules).items():
+    archived = [path for path in needed if path in archive.names and needed[path].method != CLOSED_FORM]
+    v0 = states.INDENTATION
+    if v0.path in archive.names and plan.fem.terms:
+        exact.append(replace(v0, method=CLOSED_FORM))
+    for rows, computed in _computed(archive, plan, (CLOSED_FORM,), selected, exact):
+        if v0.path in computed:
+            held, own = archive.data[v0.path][rows], computed.pop(v0.path)
+            # At a tip the rule that integrates the pressure has few digits.
+            for i in np.flatnonzero(np.abs(held - own) > 1e-3 * np.abs(own))[:1]:
+                yield (
+                    f"{v0.path}: found {held[i]:g} m in state {rows[i]}, the pressure of the closed form "
+                    f"gives {own[i]:g} m"
+                )
+        computed |= archive.rows(rows, archived)
+        load = plan.tasks.order.load(rows - plan.rows.start)
+        for name, figure in compare.comparisons(computed, load, rules).items():
             allowed = compare.RULES[name].allowed(plan.tolerance)
             if allowed is not None and not figure <= max(_FROM_EXACT, _TOLERANCES * allowed):
                 yield f"{rules[name].text}: {figure:.1e} in states {rows[0]} ..."
 
 
-def _of_derived(part: _Part, selected: NDArray[np.int64]) -> Iterator[str]:
+def _of_derived(archive: Archive, plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
     """Stresses inside and tensions under the punch that do not follow from archived components."""
-    body = part.plan.body
+    body = plan.body
 
     def inside(components: list[NDArray]) -> Any:
         σ = np.array(components)
-        return SimpleNamespace(inside=σ, σ_ZZ=body.σ_ZZ(σ, part.data[stresses.INSIDE_Y.path]))
+        return SimpleNamespace(inside=σ, σ_ZZ=body.σ_ZZ(σ, archive.data[stresses.INSIDE_Y.path]))
 
     def surface(components: list[NDArray]) -> Any:
-        return SimpleNamespace(surface=SimpleNamespace(places=part.plan.places, σ_YY=components[0]))
+        return SimpleNamespace(surface=SimpleNamespace(places=plan.places, σ_YY=components[0]))
 
     for components, derived, solution in (
         (stresses.STRESSES_INSIDE[FEM], stresses.INVARIANTS_INSIDE[FEM], inside),
         ((stresses.PRESSURE[FEM],), (validity.TENSION[FEM], validity.TENSION_X[FEM]), surface),
     ):
-        if any(row.path not in part.names for row in (*components, *derived)):
+        paths = [row.path for row in (*components, *derived)]
+        if not {*paths} <= {*archive.names}:
             continue
-        given = solution([part.held(row.path, selected) for row in components])
+        held = archive.rows(selected, paths)
+        given = solution([held[row.path] for row in components])
         for row in derived:
             assert row.of
-            held = part.held(row.path, selected)
-            if not np.allclose(held, row.of(given, body), rtol=1e-9, atol=1e-12, equal_nan=True):
+            if not np.allclose(
+                held[row.path], row.of(given, body), rtol=1e-9, atol=1e-12, equal_nan=True
+            ):
                 yield f"{row.path} is not what the components give"
-
-
-def _of_indentations(data: Mapping[str, Any], plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
-    """Indentations v₀ that differ from those of the closed form's pressure."""
-    looked_at = replace(plan, places=Places(places()[0], np.empty((0, 2))))
-    method = METHODS[CLOSED_FORM].made(looked_at, Progress(), Clock())
-    held, g = data[states.INDENTATION.path], data[states.RATIO.path]
-    for task, rows in _tasks(looked_at, selected):
-        load = plan.tasks.order.load(rows)
-        body = plan.body.loaded(load)
-        try:
-            with method.at(task, np.unique(g[rows])) as solver:
-                solution: Any = solver.states(g[rows], load)  # type: ignore[call-arg]
-                σ_YY = solution.surface.σ_YY
-        except SolveError:
-            continue
-        height = body.profile.height(solution.centre - solution.half_width)
-        ratio = body.ratio(g[rows], looked_at.places.X)
-        v0 = body.displacement * indentation(task.response, ratio, σ_YY, height / body.displacement)
-        # At a tip the rule that integrates the pressure has few digits.
-        far = np.abs(held[rows] - v0) > 1e-3 * np.abs(v0)
-        if far.any():
-            state = rows[far][0]
-            yield (
-                f"{states.INDENTATION.path}: found {held[state]:g} m in state {state}, the pressure of "
-                f"the closed form gives {v0[far][0]:g} m"
-            )
 
 
 #: States checked together; relative difference within which numbers computed again agree on any machine.
@@ -329,9 +287,8 @@ def faults(path: Path) -> list[str]:
                 ]
                 texts += [f'warnings does not have "{text}"' for text in given]
             for plan in plans if fits else ():
-                part = _Part(archive, plan)
                 name = f"with {plan.scene.variant}: " if len(plans) > 1 else ""
-                texts += [name + text for text in _of_part(part)]
+                texts += [name + text for text in _of_variant(archive, plan)]
         return [*texts, *_of_numbers(archive), *_of_verdict(archive, scene)]
 
 
@@ -369,6 +326,7 @@ def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[
             archived = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {archived!r}, its scene gives {value!r}"
     rules = frozenset[str]().union(*(each.rules for each in plans))
+    rules = (rules - IN_TIME) | compare.comparisons(data, attributes["load"], rules & IN_TIME).keys()
     if not rules <= {*json.loads(attributes["rules"])}:
         yield f"rules says {attributes['rules']!r}, its scene gives {json.dumps(sorted(rules))!r}"
     for name, positions in joined_positions(plans).items():

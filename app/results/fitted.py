@@ -22,6 +22,7 @@ from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction import fit as solver
 from galinx.solvers.friction.fit import FittedLaw, Measured
 from galinx.solvers.parameters import parameters
+from galinx.texts import with_prefix
 
 from ..console import Progress
 from ..errors import BadInput, excerpt, listed, nearest, short
@@ -124,6 +125,12 @@ def read(path: Path) -> Table:
         raise BadInput(f"{path}: found one position in all rows, expected a motion")
     if not timed and X[0] < 0.0:
         raise BadInput(f"found the slip {X[0]:g} m, expected slips from 0 on")
+    if not timed and X[0] > np.ptp(X):
+        ends = " to ".join(with_prefix(x, "m") for x in (X[0], X[-1]))
+        raise BadInput(
+            f"{path}, line {table.line(0)}: found slips from {ends}, expected slips from 0 on, since "
+            "rest: most of the stroke is missing; if the motion begins there, take off the first slip"
+        )
     if not timed and X[0] > 0.0:  # counted from rest, of which the table has no row
         clock = X = np.append(0.0, X)
         f = np.append(np.nan, f)

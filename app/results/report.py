@@ -45,7 +45,6 @@ from ..figures.stresses import (
     Fields,
     map_names,
     stresses_along,
-    surface_names,
     surface_panels,
 )
 from ..figures.style import as_hex
@@ -198,18 +197,17 @@ def explorer(of: Archive) -> dict[str, Any] | None:
         ``states``: labels; ``of``: number of all states; ``surface``: for each stress a chart a state;
         ``maps``: name and charts of each stress inside.
     """
-    labels, below = of.labels, map_names(of)
-    if not surface_names(of) and not below:
+    below, surface = map_names(of), stresses_along(of)
+    if not surface and not below:
         return None
-    surface = stresses_along(of) if surface_names(of) else {}
     fields = Fields(of) if below else None
     inside = fields.X.size * fields.Y.size if fields else 1
     sizes = [inside, *(4 * len(along.X) for along in surface.values())]
-    shown = spread(labels.all.tolist(), max(1, _NUMBERS // max(sizes)))
-    varied = labels.varied()
+    shown = spread(of.all.tolist(), max(1, _NUMBERS // max(sizes)))
+    varied = of.varied()
     made: dict[str, Any] = {
-        "states": [f"state {i}{': ' * bool(varied)}{labels.text(i, varied)}" for i in shown],
-        "of": len(labels.all), "surface": [], "maps": [],
+        "states": [f"state {i}{': ' * bool(varied)}{of.text(i, varied)}" for i in shown],
+        "of": len(of.all), "surface": [], "maps": [],
     }  # fmt: skip
     for along in surface.values():
         label = METHODS[min(along.values, key=lambda method: method == FEM)]  # that of the line

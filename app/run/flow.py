@@ -23,6 +23,7 @@ from galinx import __version__
 from galinx.clock import Clock
 from galinx.postprocess.compare import RULES, comparisons
 from galinx.postprocess.journal import Journal, Part, joined
+from galinx.postprocess.over_time import IN_TIME
 from galinx.postprocess.quantities import column, declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.validity import Steady, Validity
@@ -298,7 +299,9 @@ def compute(
         motions = solve_motions(plan.starts, clock, partial(progress.done, what="starts"))
         put(motions)
         if ranks.is_root():
-            judge.see(comparisons(motions, plan.body.load, rules))
+            made = comparisons(motions, plan.body.load, rules & IN_TIME)
+            judge.see(made)
+            rules = (rules - IN_TIME) | made.keys()
     if plan.methods and (plan.fem or ranks.is_root()):
         judge.validity.see({column(name): values for name, values in states.columns.items()})
         _solve(sink, judge, progress, journal, plans, states, clock)

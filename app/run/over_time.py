@@ -73,9 +73,9 @@ def _joined(starts: Starts, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
             g = drive(t)
             centres = _steady_centres(starts, c, g)
             K_I = late = np.array(np.nan)  # over layers there is no formula
-            if not len(starts.solid.depths):
+            if not len(starts.scene.solid.depths):
                 K_I = np.array(FlatPunch(starts.response(c), g[-1]).K_I)
-                late = np.array(approach(starts.solid, c, g[-1]).within(0.01))
+                late = np.array(approach(starts.scene.solid, c, g[-1]).within(0.01))
             every.append({
                 rows.SPEED.path: np.array(c), rows.RATIO.path: g[-1], rows.RATIOS.path: g,
                 rows.STEADY_CENTRE.path: centres[-1], rows.CENTRES.path: centres,
@@ -87,9 +87,9 @@ def _joined(starts: Starts, by_job: dict[_Job, list[_Datasets]]) -> _Datasets:
                 every[-1] |= by_job[name, c][i]
     whole = {path: np.array([datasets[path] for datasets in every]) for path in every[0]}
     whole |= {rows.TIMES.path: t, rows.LOAD.path: starts.load(t)}
-    if starts.every:
+    if starts.time.every:
         whole |= {rows.SURFACE_TIMES.path: t[starts.outputs - 1], rows.SURFACE_PLACES.path: ON_SURFACE}
-    if SIE in starts.methods and not starts.steady:
+    if SIE in starts.methods and not starts.time.steady:
         whole[rows.PLACES.path] = PLACES
     for name in starts.methods:
         whole |= over_time.distances_from_steady(whole, name)
@@ -101,7 +101,7 @@ def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.flo
     different, which = np.unique(ratios, return_inverse=True)
     response: Any = starts.response(c)
     if len(response.depths):
-        stack, accuracy = response.stack(response.a), 0.1 * starts.tolerance
+        stack, accuracy = response.stack(response.a), 0.1 * starts.scene.solve.tolerance
         punch = Punch(Flat(response.a), response.a, 1.0)
         solved, _ = LayersUnderPunch(response.surface, stack, accuracy, punch).solved(different)
         weights = weights_between(np.array([contact.g for contact in solved]), different)
@@ -124,10 +124,10 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
     """Motions at a speed up to the first turn, NaN after it."""
     first, response, drives = starts.ways[0], starts.response(c), starts.drives[c]
     shortest = min(starts.shortest, *(drive.shortest for drive in drives))
-    largest = min(_STEP, shortest / _OF_RAMP) * min(starts.tolerance / 1e-3, 1.0) ** 0.2
+    largest = min(_STEP, shortest / _OF_RAMP) * min(starts.scene.solve.tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.h / largest - 1e-9))
-    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.tolerance), 0.0))
-    surface, alone = bool(starts.every), starts.methods == (SIE,)
+    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.scene.solve.tolerance), 0.0))
+    surface, alone = bool(starts.time.every), starts.methods == (SIE,)
 
     def at_steps(values: NDArray) -> NDArray[np.float64]:
         padded = np.full((starts.steps, *values.shape[1:]), np.nan)
@@ -139,7 +139,7 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
         punches = {
             way: StartingPunch(
                 response,
-                starts.solid.limit(),
+                starts.scene.solid.limit(),
                 first.duration,
                 first.steps * finer,
                 terms,
@@ -150,10 +150,10 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
             for way in {drive.way for drive in drives}
         }
         for drive in drives:
-            course = punches[drive.way].course(drive, starts.load, starts.steady)
+            course = punches[drive.way].course(drive, starts.load, starts.time.steady)
             K_I = np.array([course.K_left, course.K_right]) * (1.0 if starts.smooth else np.nan)
             datasets = _contact(SIE, course.v0, course.centre, *K_I)
-            if not starts.steady:
+            if not starts.time.steady:
                 datasets |= {
                     rows.OF_LOAD[SIE].path: course.work_of_load,
                     rows.OF_FRICTION[SIE].path: course.work_of_friction,
@@ -224,12 +224,12 @@ def _at_level(
     response = starts.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, starts.solid.form, clock=clock)
+    space = Space(*mesh, TAGS, Physical(), level.degree, starts.scene.solid.form, clock=clock)
     motion, motions = Motion(space, response, starts.sharp), []
     solver = SlidingInTime(motion, clock)
-    surface = SurfaceInTime(motion, np.append(_ENDS, ON_SURFACE) if starts.every else _ENDS)
+    surface = SurfaceInTime(motion, np.append(_ENDS, ON_SURFACE) if starts.time.every else _ENDS)
     watching: list[Watch] = [lambda u, w, way: surface.strain(u)]
-    if starts.every and level.every == 1:
+    if starts.time.every and level.every == 1:
         watching.append(Energies(motion))
     with clock("steps in time"):
         for drive in starts.drives[c]:
@@ -237,7 +237,7 @@ def _at_level(
                 Way(drive.way * way.direction, way.duration, way.steps // level.every)
                 for way in starts.ways
             ]
-            run = solver.run(ways, drive, starts.load, starts.steady, watching)
+            run = solver.run(ways, drive, starts.load, starts.time.steady, watching)
             u_X = run.watched[0][1:, : len(_ENDS)]  # on the free surface beside both ends
             left, right = response.σ_XX(u_X, 0.0 * u_X, 0.0 * u_X).T
             datasets = {
@@ -246,7 +246,7 @@ def _at_level(
                 rows.OF_FRICTION[FEM].path: run.work_of_friction, rows.LEFT[FEM].path: left,
                 rows.RIGHT[FEM].path: right,
             }  # fmt: skip
-            if starts.every:
+            if starts.time.every:
                 datasets |= _after_steps(surface, run, starts.outputs // level.every, response, drive)
             if len(run.watched) > 1:  # changes since t = 0; the work of carrying adds up step by step
                 strain, kinetic, all_strain, all_kinetic, momentum = (

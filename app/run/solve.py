@@ -13,7 +13,8 @@ from galinx.clock import Clock
 from galinx.postprocess import compare
 from galinx.postprocess.journal import Part
 from galinx.postprocess.quantities import states
-from galinx.postprocess.quantities.quantity import LOCAL
+from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, LOCAL
+from galinx.postprocess.quantities.quantity import METHODS as IN_WORDS
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.solution import Contact, Method, Solver, Task
 from galinx.solvers.errors import SolveError
@@ -21,9 +22,10 @@ from galinx.solvers.errors import SolveError
 from ..methods import METHODS
 from ..plan.plan import Plan
 
-#: Clock's steps by method: what solves a speed, and what evaluates solutions.
-_SOLVED = {"fem": "finite elements", "closed_form": "closed form"}
-_EVALUATED = _SOLVED | {"fem": "recovery"}
+
+def _step(method: str, evaluated: bool = False) -> str:
+    """Name of the step of the clock in which a method solves a speed, or evaluates its solutions."""
+    return "recovery" if evaluated and method == FEM else IN_WORDS.get(method, method)
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Work:
         """Prepare the methods for all speeds; collective, before speeds are shared out over the ranks."""
         for name, method in self.methods.items():
             if hasattr(method, "begin"):
-                with self.clock(_SOLVED.get(name, name)):
+                with self.clock(_step(name)):
                     method.begin()
 
     def batches(self, task: Task) -> list[list[slice]]:
@@ -127,7 +129,7 @@ class Work:
         for name, method in self.methods.items():
             try:
                 together = self.load is None or METHODS[name].loads
-                with self.clock(_SOLVED.get(name, name)):
+                with self.clock(_step(name)):
                     solvers[name] = (
                         stack.enter_context(method.at(task, np.unique(g))) if together else None
                     )
@@ -142,7 +144,7 @@ class Work:
         """Quantities of states by path, NaN where a method fails; and True where all methods solve."""
         g, load = self.g[rows], None if self.load is None else self.load[rows]
         solved = np.ones(len(g), dtype=bool)
-        with self.clock(_SOLVED["closed_form"]):
+        with self.clock(_step(CLOSED_FORM)):
             local = task.body.local_exponents(task.response, g, load)
             # Without a solution of states.
             known = SimpleNamespace(
@@ -154,7 +156,7 @@ class Work:
             if name not in solvers:
                 data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)
                 continue
-            with self.clock(_EVALUATED.get(name, name)):
+            with self.clock(_step(name, evaluated=True)):
                 values, own, why = self._by(name, solvers[name], task, g, load)
             data, solved = data | values, solved & own
             if why:

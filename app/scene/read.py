@@ -19,6 +19,7 @@ import numpy as np
 
 from galinx import files
 from galinx.solvers.friction import LAWS
+from galinx.solvers.profiles import has_free_end
 from galinx.texts import unseen
 
 from ..console import program
@@ -216,17 +217,30 @@ _RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
 
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
-    """Scenes of all combinations of swept numbers, up to the first with faults."""
+    """Scenes of all combinations of swept numbers; ends of all contacts are free where some are."""
     punch = tree.get("punch")
     if isinstance(punch, dict) and "solid" in punch:  # a section of its own
         tree["punch.solid"] = punch.pop("solid") or {"kind": "isotropic"}
     _fill_in_materials(tree)
     before = len(faults)
     swept = _swept(tree, faults)
+    if len(faults) > before:
+        return []
+    scenes = _variants(tree, swept, text, faults)
+    if len({has_free_end(scene.punch.profile) for scene in scenes}) > 1:  # a tilt through 0
+        scenes = _variants(tree, swept, text, faults, free_ends=True)
+    return scenes
+
+
+def _variants(
+    tree: dict[str, Any], swept: Mapping[str, tuple[float, ...]], text: str, faults: list[str],
+    free_ends: bool = False,
+) -> list[Scene]:  # fmt: skip
+    """Scenes of all combinations of swept numbers, up to the first with faults."""
     scenes: list[Scene] = []
-    for combination in product(*swept.values()) if len(faults) == before else ():
+    for combination in product(*swept.values()):
         values, own = dict(zip(swept, combination)), list[str]()
-        scene = _checked(_with_values(tree, values), text, values, own)
+        scene = _checked(_with_values(tree, values), text, values, own, free_ends)
         of_variant = f"with {in_words(values)}: " if scenes else ""
         faults += [f"{of_variant}{fault}" for fault in own]
         if scene is None or faults:
@@ -303,7 +317,7 @@ def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str,
 
 
 def _checked(
-    tree: dict[str, Any], text: str, swept: Mapping[str, float], faults: list[str]
+    tree: dict[str, Any], text: str, swept: Mapping[str, float], faults: list[str], free_ends: bool
 ) -> Scene | None:
     """Scene of single numbers, or None after its faults are added."""
     before = len(faults)
@@ -327,7 +341,7 @@ def _checked(
         return None
     scene = Scene(
         title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
-        swept=swept, elastic_punch=read.pop("punch.solid"), **read,
+        swept=swept, elastic_punch=read.pop("punch.solid"), free_ends=free_ends, **read,
     )  # fmt: skip
     if steady and not named and scene.solve.methods:
         scene = replace(scene, output=replace(scene.output, quantities=usual_quantities(scene)))

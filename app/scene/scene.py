@@ -36,7 +36,7 @@ from .sections import (
     ADVECTED,
     ElasticPunch,
     Friction,
-    HalfPlane,
+    GivenSolid,
     Motion,
     Output,
     Punch,
@@ -61,11 +61,12 @@ class Scene:
         swept: values of swept numbers by their keys, those of the first variant where it has some.
         variants: scenes of all combinations of swept numbers; the scene itself is as the first. None for
             a scene without swept numbers, and for a variant.
+        free_ends: an end of the contact may be free in one of several variants, and so in each.
     """
 
     title: str
     text: str
-    half_plane: HalfPlane
+    half_plane: GivenSolid
     punch: Punch
     friction: Friction
     motion: Motion
@@ -78,6 +79,7 @@ class Scene:
     steady: bool = False
     swept: Mapping[str, float] = field(default_factory=dict)
     variants: tuple["Scene", ...] = ()
+    free_ends: bool = False
 
     @property
     def variant(self) -> str:
@@ -121,7 +123,9 @@ class Scene:
         pressure = LinearPressure(*np.array(self.solve.pressure).T) if self.solve.own_pressure else None
         strength = self.half_plane.yield_strength
         along = None if _not_varying(self) else self.along
-        return make_contact(self.solid, self.punch.profile, self.punch.load, pressure, strength, along)
+        return make_contact(
+            self.solid, self.punch.profile, self.punch.load, pressure, strength, along, self.free_ends
+        )
 
     @cached_property
     def along(self) -> dict[float, Along]:

@@ -103,23 +103,9 @@ def key(
 _POSITIVE, _NOT_NEGATIVE = Range(above=0.0), Range(at_least=0.0)
 
 
-def _yield_strength() -> Any:
-    return key(
-        Number("Pa", _POSITIVE), "uniaxial yield strength", None,
-        'for the quantity `"yield"`; stresses alone need none',
-    )  # fmt: skip
-
-
-def _material() -> Any:
-    return key(
-        Choice(LIBRARY), "name of a solid of the library, gives `kind` and constants", None,
-        "what is written beside it replaces the material's",
-    )  # fmt: skip
-
-
 @dataclass(frozen=True, kw_only=True)
-class HalfPlane:
-    """[solid]: an elastic solid, its material, and its yield strength [Pa], None if not given."""
+class GivenSolid:
+    """[solid], and keys of other solids: an elastic solid, its material, and its yield strength [Pa]."""
 
     solid: Solid
     material: str | None = key(
@@ -127,24 +113,24 @@ class HalfPlane:
         "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
         "what is written beside it replaces the material's",
     )  # fmt: skip
-    yield_strength: float | None = _yield_strength()
+    yield_strength: float | None = key(
+        Number("Pa", _POSITIVE), "uniaxial yield strength", None,
+        'for the quantity `"yield"`; stresses alone need none',
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElasticPunch:
-    """[punch.solid]: the solid of an elastic punch, its speed over the contact [m/s], and strength [Pa].
+class ElasticPunch(GivenSolid):
+    """[punch.solid]: the solid of an elastic punch, and its speed over the contact [m/s].
 
     Raises:
         ValueError: the speed is not below that of the wave along the solid's surface.
     """
 
-    solid: Solid
-    material: str | None = _material()
     speed: float = key(
         Number("m/s", _NOT_NEGATIVE), "speed of the punch's solid over the contact", 0.0,
         "at rest in the frame of the contact it slides; with a speed of its own it rolls",
     )  # fmt: skip
-    yield_strength: float | None = _yield_strength()
 
     def __post_init__(self) -> None:
         limit = self.solid.limit() * self.solid.c_s
@@ -156,19 +142,16 @@ class ElasticPunch:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LayerTable:
+class LayerTable(GivenSolid):
     """[[layer]]: a layer, whose constants at its lower face, ``to``, are still as TOML gives them.
 
     Raises:
         ValueError: a key is missing, or stands without the one that it belongs to.
     """
 
-    solid: Solid
-    yield_strength: float | None = _yield_strength()
     thickness: float | None = key(
         Number("m", _POSITIVE), "thickness", None, without="the last depth of `properties`"
     )
-    material: str | None = _material()
     to: dict[str, Any] | None = key(
         Constants(), "constants at the lower face", None,
         "the layer is graded; those at its upper face stand beside it", without="as at the upper face",
@@ -789,7 +772,7 @@ SWEPT = ("solid", "layer", "punch", "punch.solid", "friction")
 
 #: Sections of a scene, by name.
 SECTIONS: dict[str, Section] = {
-    "solid": Section(HalfPlane, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
+    "solid": Section(GivenSolid, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
     "layer": LayerSections(
         LayerTable, SOLIDS, "kind", "isotropic", or_else=", or material, or properties", heading="[[{}]]"
     ),

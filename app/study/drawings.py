@@ -17,7 +17,7 @@ from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import fields
 from galinx.texts import number, plain
 
-from ..figures.choice import PLACE, STROKE, Archive, C, Choice, Drawing, StateLabels
+from ..figures.choice import PLACE, STROKE, Archive, C, Choice, Drawing
 from ..figures.friction import Loops, loop_panel, loops_figure
 from ..figures.numerics import mesh_figure
 from ..figures.render import MARKERS, Curve, Panel, lines_and_markers, render
@@ -163,16 +163,16 @@ LAWS_SHOWN: dict[str, tuple[str, dict[str, tuple[Any, ...]]]] = {
 
 def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Figs 1 to 10 of the study from an archive of scenes/study.toml, and two that it speaks of."""
-    loops, fig6 = Loops(Archive(data, scene, Choice())), scenes.read(SCENES / "fig6.toml")
-    reference = _state(loops.labels, REFERENCE)
+    of, fig6 = Archive(data, scene, Choice()), scenes.read(SCENES / "fig6.toml")
+    reference = _state(of, REFERENCE)
     yield Drawing("fig1", _PROBLEM, problem_figure())
-    yield Drawing("fig2", _LOOP, loops_figure([loops.panel([reference], [])], []))
+    yield Drawing("fig2", _LOOP, loops_figure([Loops(of).panel([reference], [])], []))
     yield Drawing("fig3", _PROCEDURE, procedure_figure())
     yield _block(scenes.read(SCENES / "box.toml"))
-    yield stresses_drawing("fig5", data, loops.labels)
+    yield stresses_drawing("fig5", data, of)
     yield Drawing("fig6", _PARAMETERS, _loops(Loops(_archive(fig6))))
     for name in ("fig7", "fig8", "fig9", "fig10"):
-        yield stresses_drawing(name, data, loops.labels)
+        yield stresses_drawing(name, data, of)
     yield _sinusoidal(scenes.read(SCENES / "sinusoidal.toml"))
     yield _laws(scene, data[SURFACE_X.path])
 
@@ -223,7 +223,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         own = replace(scene, friction=friction, motion=motion)
         states = enumerate_states(own)
         archive = Archive(states.datasets, own, Choice())
-        at = [_state(archive.labels, {STROKE: FM2, C: c}) for c in (SLOW, FAST)]
+        at = [_state(archive, {STROKE: FM2, C: c}) for c in (SLOW, FAST)]
         punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in at]
         slow, fast = (
             [[np.where(under_punch(X), punch.σ_YY(X), np.nan)], [punch.σ_XX(X)]] for punch in punches
@@ -236,24 +236,24 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
     left = loop_panel(loops)
     panels = [replace(left, curves=[*left.curves, *dots], title="loops, and the place shown")]
     panels += _stress_panels([(f"FM2, $X/L = {_AT:g}$", curves)])
-    notes = lines_and_markers(*_slow_and_fast(archive.labels, at))
+    notes = lines_and_markers(*_slow_and_fast(archive, at))
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
     return Drawing("laws", _LAWS.format(laws=names, at=_AT), render(panels, None, 3, notes, high=0.95))
 
 
 def _loops(loops: Loops) -> Any:
     """Loops over speed, then over each parameter of the law."""
-    labels = loops.labels
+    of = loops.archive
     over = {C: (REFERENCE, SPEEDS)} | {name: (MILDER, values) for name, values in VARIED.items()}
     panels = []
     for name, (at, values) in over.items():
-        states = [_state(labels, at | {name: value}) for value in values]
+        states = [_state(of, at | {name: value}) for value in values]
         others = [other for other in REFERENCE if other != name]
         # A panel of the archive's has every loop once; that of the speeds shows that there is but one.
         shown = [loop for loop in (loops.of(state, [name]) for state in states) if loop]
         if name == C:
             shown = [replace(loop, label=f"$c = {number(c)}$") for loop, c in zip(shown, SPEEDS)]
-        panels.append(loop_panel(shown, True, labels.label(states[0], others)))
+        panels.append(loop_panel(shown, True, of.label(states[0], others)))
     return loops_figure(panels, shown)
 
 
@@ -287,7 +287,7 @@ def _stress_panels(rows: Sequence[tuple[str, Mapping[str, list[Shown]]]]) -> lis
     ]
 
 
-def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Drawing:
+def stresses_drawing(name: str, data: dict[str, Any], of: Archive) -> Drawing:
     """A figure of stresses by its name: row by row, and below them the differences of both methods."""
     figure, X = STRESSES[name], data[SURFACE_X.path]
     single = len(figure.speeds) == 1
@@ -298,26 +298,26 @@ def stresses_drawing(name: str, data: dict[str, Any], labels: StateLabels) -> Dr
     for value in figure.rows:
         at = figure.at | {figure.row: value}
         pairs = [
-            [_state(labels, at | {figure.curve: curve, C: c}) for c in figure.speeds]
+            [_state(of, at | {figure.curve: curve, C: c}) for c in figure.speeds]
             for curve in figure.curves
         ]
         states += pairs
         first, last = [pair[0] for pair in pairs], [pair[-1] for pair in pairs]
         markers, by = _values(data, marked, last) if solved[marked] else None, [figure.curve]
-        styles, called = labels.looks(first, by), [labels.label(i, by) for i in first]
+        styles, called = of.looks(first, by), [of.label(i, by) for i in first]
         stressed = _stresses(X, _values(data, CLOSED_FORM, first), markers)
         curves = {name: along.shown(styles, called) for name, along in stressed.items()}
         if name == "fig7":
-            travelled = _state(labels, at | {STROKE: BM1, C: SLOW, PLACE: 1.0 - value})
+            travelled = _state(of, at | {STROKE: BM1, C: SLOW, PLACE: 1.0 - value})
             label = "BM1 (SS), $X/L$ travelled since its turn"
             for name_, along in _stresses(X, _values(data, CLOSED_FORM, [travelled])).items():
                 curves[name_].append(Shown(along, 0, Look(COLOURS[6], LINES[3], ""), label, 0.8))
-        rows.append((labels.label(first[0], [figure.row]), curves))
+        rows.append((of.label(first[0], [figure.row]), curves))
     panels = _stress_panels(rows)
     panels = [*(replace(panel, x=None) for panel in panels[:-2]), *panels[-2:]]
     if not single and solved[FEM]:
         panels += [_difference_panel(data, states, column, panels[column]) for column in range(2)]
-    says = ("closed form", "finite elements") if single else _slow_and_fast(labels, states[0])
+    says = ("closed form", "finite elements") if single else _slow_and_fast(of, states[0])
     drawn = render(panels, None, 2, lines_and_markers(*says), high=0.5)
     return Drawing(name, figure.caption + _ENDS, drawn)
 
@@ -338,9 +338,9 @@ def _difference_panel(
     )  # fmt: skip
 
 
-def _slow_and_fast(labels: StateLabels, states: Sequence[int]) -> tuple[str, str]:
+def _slow_and_fast(of: Archive, states: Sequence[int]) -> tuple[str, str]:
     """Legend texts of lines and markers, for two states at the study's speeds."""
-    slow, fast = (labels.label(state, [C]) for state in states)
+    slow, fast = (of.label(state, [C]) for state in states)
     return f"SS, {slow}", f"HS, {fast}"
 
 
@@ -349,6 +349,6 @@ def _values(data: dict[str, Any], method: str, states: Any) -> NDArray[np.float6
     return np.array([data[rows[method].path][states] for rows in (PRESSURE, IN_PLANE)])
 
 
-def _state(labels: StateLabels, values: dict[str, Any]) -> int:
+def _state(of: Archive, values: dict[str, Any]) -> int:
     """Number of the first state whose named parameters have the given values."""
-    return int(labels.where(labels.all, **values)[0])
+    return int(of.where(of.all, **values)[0])

@@ -21,7 +21,7 @@ from .edges import EdgeExponents, Exponents
 from .equation import LayersUnderPunch, SolvedContact, under_punch, weights_between
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS, Contacts, Group, Pressure
-from .residual import of_contact, of_field
+from .residual import indentation, of_contact, of_field, places
 from .solution import Solution, Task, solved_once
 from .stresses import Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import InSolid
@@ -111,6 +111,14 @@ class ExactSolution(Solution):
         """
         flat = FlatPunch(self.task.response, self.g)
         return np.column_stack(flat.strained_within(strain / self.task.body.strain))
+
+    @property
+    def v0(self) -> NDArray[np.float64]:
+        """Indentation over N/(2μ) of the solid, uniform, by :func:`residual.indentation`; (states,)."""
+        X, body = places()[0], self.body
+        σ_YY = self.contacts.on_surface(X)[1][self._rows]
+        height = body.profile.height(self.centre - self.half_width) / body.displacement
+        return indentation(self.task.response, body.ratio(self.g, X), σ_YY, height)
 
     @cached_property
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

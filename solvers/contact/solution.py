@@ -488,15 +488,16 @@ def make_contact(
     pressure: LinearPressure | None = None,
     yield_strength: float | None = None,
     along: Mapping[float, Along] | None = None,
+    free_ends: bool = False,
 ) -> Contact:
     """Contact of the kind that a punch, or a prescribed pressure, makes on a solid.
 
-    Arguments are its attributes.
+    Arguments are its attributes; and ``free_ends``: its ends are searched for even where both are sharp.
 
     Where an end is free the punch determines the pressure, and a prescribed one is left out.
     """
     kind: type[Contact] = PrescribedContact if pressure else Contact
-    if has_free_end(profile):
+    if free_ends or has_free_end(profile):
         kind, pressure = FreeEndContact, None
     return kind(solid, profile, load, pressure, yield_strength, along or {})
 

@@ -23,7 +23,7 @@ SIZES = {
     "N/m²": (1.0, _PASCAL), "kN/m²": (1e3, _PASCAL), "N/mm²": (1e6, _PASCAL), "kN/mm²": (1e9, _PASCAL),
     "kg/m^3": (1.0, (-3, 1, 0)), "deg": (1.0, (0, 0, 0)), "rad": (1.0, (0, 0, 0)),
     "m^(1-k)": (1.0, (0, 0, 0)),
-    "1": (1.0, (0, 0, 0)), "none": (1.0, (0, 0, 0)),
+    "1": (1.0, (0, 0, 0)), "none": (1.0, (0, 0, 0)), "a": (1.0, (0, 0, 0)),
 }  # fmt: skip
 
 CLOSED = {"solve.methods": ["closed_form"]}
@@ -87,15 +87,19 @@ def test_every_column_has_a_unit(name, dimensionless):
 
 
 def test_dimensionless_is_as_archived_and_nothing_stands_twice():
+    """But lengths of contacts, which are archived in m, and work of friction loops, in J/m."""
     result = kept("cylinder")
-    plain, si = result.units(dimensionless=True), result.units()
+    plain, si, a = result.units(dimensionless=True), result.units(), result.scene.body.half_width
     for path, row in table().items():
         scaled = plain(row)
         assert (scaled is None) == (path == "states/speed")
         if scaled:
-            assert scaled.unit == row.unit and scaled.factor == 1.0 and np.all(scaled.offset == 0.0)
-    # The half-width of a flat punch is in the scene and no dataset.
-    assert plain.scale(CONTACT).unit == "m" and plain.scale(CONTACT).factor == 1.0
+            kind = CONTACT if row.scale == CONTACT else row.unit
+            unit, of_SI = {CONTACT: ("a", a), "J/m": ("N*a", result.scene.punch.load * a)}.get(
+                kind, (row.unit, 1.0)
+            )
+            assert scaled.unit == unit and np.all(scaled.offset == 0.0), path
+            assert scaled.factor == pytest.approx(1.0 / of_SI, rel=1e-15), path
     names = [
         scaled.head for path, row in table().items() if path.startswith("states/") and (scaled := si(row))
     ]

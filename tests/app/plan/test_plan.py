@@ -11,6 +11,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import Order, enumerate_states
+from galinx.postprocess.quantities import stresses
 from galinx.solvers.contact.fem_plan import LEAST, swept, variable
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
@@ -183,3 +184,14 @@ def test_over_layers_it_is_the_logarithm_of_the_distance_to_the_limit(top):
     share = np.linspace(0.0, 0.99, 50)
     z = variable([solid.response(c) for c in share * solid.limit()])
     np.testing.assert_allclose(z, -np.log1p(-(share**2)), rtol=1e-9)
+
+
+def test_interfaces_are_seen_as_far_as_the_surface_finely_and_farther_coarsely(monkeypatch):
+    scene = template("coating")
+    for farthest in (5.0, 8.0):
+        monkeypatch.setattr(stresses, "FARTHEST", farthest)
+        _, X = planning.interface_grid(scene.body)
+        apart = np.diff(X)
+        near = np.abs(X[:-1] + apart / 2.0) < farthest
+        assert apart[near].max() <= 2.0 * farthest / 160.0 + 1e-9 < apart[~near].max()
+        assert X.min() == -X.max() <= -40.0

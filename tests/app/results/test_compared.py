@@ -144,6 +144,17 @@ def test_compare_prints_and_draws(two, tmp_path):
         assert done.returncode == 2 and said in done.stderr, done.stderr
 
 
+@pytest.mark.filterwarnings("error:Glyph")
+def test_a_figure_has_type_for_all_of_its_titles(tmp_path):
+    two = [
+        computed("tables4_5", PLAIN | {"friction.sigma0_over_load": [1e4, 2e4], "title": title})
+        for title in ("first", "second")
+    ]
+    comparison = Comparison(two)
+    assert any("σ₀" in title for title in comparison.titles)
+    comparison.drawing().figure.savefig(tmp_path / "both.png")
+
+
 def test_measured_points_lie_at_their_places(light, heavy, table):
     points = read(table(POINTS))
     pressure, tension = light.figure("surface", states=(1,), measured=points).axes

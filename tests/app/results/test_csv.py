@@ -171,3 +171,20 @@ def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
     assert refused.returncode == 2 and "is not a table of galinx" in refused.stderr
     both = here("csv", path, "--surface", "--inside")
     assert both.returncode == 2 and "--surface and --inside exclude each other" in both.stderr
+
+
+def test_dimensionless_lengths_of_contacts_are_over_the_half_width(tmp_path):
+    changes = {"solve.methods": ["sie"], "output.map": None, "output.quantities": ["friction", "sif"]}
+    path, result = tmp_path / "a.h5", computed("cylinder", changes)
+    result.save(path)
+    table, a = read(path, "states", True), result.scene.body.half_width
+    for name in ("half_width", "centre"):
+        expected = result.data[f"states/sie/{name}"] / a
+        np.testing.assert_allclose(numbers(table[f"sie_{name} [a]"]), expected, rtol=1e-15)
+
+
+def test_dimensionless_work_is_over_load_and_half_width(path, result):
+    table, unit = read(path, "histories", True), result.scene.punch.load * result.scene.body.half_width
+    expected = result.data["loops/cycle_dissipated"][0] / unit
+    np.testing.assert_allclose(numbers(table["cycle_dissipated [N*a]"])[0], expected, rtol=1e-15)
+    assert not [head for head in (*table, *read(path, "states", True)) if "J/m" in head or "[m]" in head]

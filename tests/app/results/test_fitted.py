@@ -131,6 +131,7 @@ def test_tables_of_all_conventions_are_one_measurement(tmp_path):
         ("slip,f\n0,0\n2,1\n1,1\n", "line 4: expected three or more rows in which the slip grows"),
         ("time,position,f\n0,1,0\n1,1,0\n2,1,0\n", "found one position in all rows, expected a motion"),
         ("slip [s],f\n0,0\n1,1\n2,1\n", "line 1, slip: found '1 s'"),
+        ("slip [mm],f\n5,0\n5.1,0.2\n5.2,0.3\n", "line 2: found slips from 5 mm to 5.2 mm, expected"),
         ("", "is empty"),
     ],
 )  # fmt: skip

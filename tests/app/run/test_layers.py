@@ -15,7 +15,7 @@ from support import THOROUGH, computed, scene_of
 import galinx
 from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
-from galinx.app.scene.sections import HalfPlane
+from galinx.app.scene.sections import GivenSolid
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import CONTACT, FAR, FREE
@@ -66,7 +66,7 @@ def of_stack(solid, c, f, quantities=("sif",), tolerance=1e-6):
     })  # fmt: skip
     return replace(
         base,
-        half_plane=HalfPlane(solid=solid.substrate),
+        half_plane=GivenSolid(solid=solid.substrate),
         layers=solid.layers,
         punch=replace(base.punch, profile=replace(base.punch.profile, half_width=1.0), loads=(1e-3,)),
         motion=replace(base.motion, c=(c,), speed=None),
@@ -367,7 +367,7 @@ def test_many_frictions_and_loads_are_those_of_each():
 
 
 def test_the_search_for_a_half_width_takes_few_trials():
-    """Two at a low degree, from which loads are known to grow, two at the usual one; then four degrees."""
+    """Two at a low degree, which show how loads grow, two at the usual one; then four degrees."""
     asked = {"solve.methods": ["fem"], "solve.tolerance": 1e-6, "friction.mu_c": [0.1, 0.4]}
     data = coated(CYLINDER, asked).data
     assert data["run/fem/factorisations"].sum() <= 2 * (2 + 2 + 4)

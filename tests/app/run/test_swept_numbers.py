@@ -6,7 +6,7 @@ from matplotlib.text import Text
 from support import computed, scene_of
 
 from galinx.app.errors import BadInput
-from galinx.app.figures.choice import Archive, Choice, StateLabels
+from galinx.app.figures.choice import Archive, Choice
 from galinx.app.figures.numerics import degrees
 from galinx.app.figures.stresses import Fields
 from galinx.app.figures.waves import answers, curve
@@ -14,7 +14,7 @@ from galinx.app.results import check
 from galinx.app.results.report import summary
 from galinx.app.results.result import load
 from galinx.app.scene.changes import from_words
-from galinx.postprocess.quantities import states, swept
+from galinx.postprocess.quantities import states, stresses, swept
 from galinx.postprocess.quantities.layers import INTERFACE_EXTREMES
 from galinx.postprocess.quantities.runs import states_of_speeds
 from galinx.postprocess.tables import parameters
@@ -95,8 +95,27 @@ def test_thicknesses_of_a_layer(scene, thin):
 
 
 def test_contacts_of_another_kind_are_no_sweep():
+    """Of a nearly incompressible solid finite elements have no stresses inside."""
+    inside = {"output.quantities": ["interior"], "output.points": [[0.0, -1.0]]}
+    both = {"solve": {"methods": ["closed_form", "fem"]}}
     with pytest.raises(BadInput, match="of another kind"):
-        swept_by(FLAT, "punch.tilt=['0 deg', '0.1 deg']")
+        swept_by(FLAT | both | inside, "solid.nu=[0.3, 0.5]")
+
+
+@pytest.mark.parametrize("method", ["closed_form", "fem"])
+def test_a_tilt_through_zero_is_that_of_each_punch(method):
+    solve = {"solve": {"methods": [method], "tolerance": 1e-5}}
+    result = swept_by(FLAT | solve, "punch.tilt=['-1e-5 deg', '0 deg', '1e-5 deg']")
+    assert result.verdict == "PASS" and len(result.data[states.SPEED.path]) == 24
+    for first in (0, 8, 16):  # 8 states of each tilt
+        _, single = alone(FLAT | solve, result, first)
+        a = single.scene.body.half_width
+        for row in (states.K_I_LEFT, states.K_I_RIGHT, stresses.PRESSURE, stresses.IN_PLANE):
+            path = row[method].path
+            held, expected = result.data[path][first : first + 8], single.data[path]
+            size = np.nanmax(np.abs(expected), axis=-1, keepdims=True)
+            assert np.allclose(held / size, expected / size, rtol=0.0, atol=1e-4, equal_nan=True), path
+        assert np.allclose(result.data[states.HALF_WIDTH[method].path], a, rtol=1e-12)
 
 
 ROUND = {
@@ -174,8 +193,8 @@ def test_a_map_has_the_yield_strength_of_its_state():
 @pytest.mark.parametrize("dimensionless", [False, True])
 def test_speeds_over_several_wave_speeds_are_told_in_metres_per_second(dimensionless):
     result = swept_by(FLAT, "solid.E=[50, 200] GPa", "motion.speed=[100, 200, 300] m/s")
-    labels = StateLabels(result.data, result.scene, result.units(dimensionless))
-    said = [labels.text(state, ["c"]) for state in (0, len(labels.all) - 1)]
+    of = Archive(result.data, result.scene, Choice(units=result.units(dimensionless)))
+    said = [of.text(state, ["c"]) for state in (0, len(of.all) - 1)]
     assert [text.replace("\u202f", " ") for text in said] == ["V = 100 m/s", "V = 300 m/s"]
     text = summary(result.data, result.scene)
     assert "slides at 100 to 300 m/s, c = 0.03184 to 0.1911" in text

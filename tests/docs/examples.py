@@ -10,7 +10,7 @@ import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from support import HOME, THOROUGH, clean_environment, here
+from support import HOME, THOROUGH, clean_environment, here, paper_run
 
 from galinx.app.cli import cli
 from galinx.app.commands import options
@@ -125,8 +125,12 @@ class Shelf:
 def _run(command, cwd):
     """Status and output of a command line."""
     words = words_of(command)
+    if not words:
+        results, said = paper_run()
+        shutil.copytree(results, cwd / results.name)
+        return 0, said
     of_shell = not command.startswith("./run.sh") or {">", "|"} & set(words)
-    if not of_shell and cwd.name != STARTED and words and words[0] not in _ON_ITS_OWN:
+    if not of_shell and cwd.name != STARTED and words[0] not in _ON_ITS_OWN:
         done = here(*words, cwd=cwd)
         return done.returncode, done.stdout + done.stderr
     done = subprocess.run(

@@ -34,8 +34,8 @@ _ON_ITS_OWN = ("-n", "-x")
 #: Commands that draw, of which most pages quote nothing: their options are read, and other tests draw.
 #: All are run where GALINX_THOROUGH asks for it.
 _DRAWING = ("plot", "report", "fields", "response", "dispersion")
-#: Commands that are run where a page quotes what they print, or names their archive there or in Python. Of
-#: the others a run is planned alone, and options of the rest are read.
+#: Commands that are run where a page quotes what they print, or names their archive there or in Python.
+#: Of the others a run is planned alone, and options of the rest are read.
 _COMPUTING = ("run", "paper", "show", "check", "compare", "csv", "fit", "schema")
 
 

@@ -129,6 +129,20 @@ def kept(name):
     return galinx.load(path)
 
 
+@cache
+def paper_run():
+    """Folder that ``./run.sh`` makes of the study, and what it says; whoever asks first runs it."""
+    folder = Path(os.environ["GALINX_KEPT"], "paper")
+    with open(folder.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not folder.exists():
+            folder.mkdir()
+            done = command(cwd=folder)
+            assert done.returncode == 0, done.stdout + done.stderr
+            (folder / "said").write_text(done.stdout + done.stderr, encoding="utf-8")
+    return folder / "results", (folder / "said").read_text(encoding="utf-8")
+
+
 def command(*arguments, cwd=HOME, **variables):
     """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text.
 

@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from graphlib import TopologicalSorter
 
 from support import HOME
@@ -21,9 +22,15 @@ ONE_PLACE = {
 }
 
 
+@cache
+def nodes(path):
+    """All that a file consists of."""
+    return [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+
+
 def imports(path):
     """Modules that a file imports, wherever in it."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from (alias.name.removeprefix("galinx.") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -91,7 +98,7 @@ def test_imports_inside_a_room_are_relative():
     faults = [
         f"{name}:{node.lineno}: {node.module}"
         for name, path in FILES.items()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in nodes(path)
         if isinstance(node, ast.ImportFrom) and not node.level
         if f"{node.module}.".startswith(f"galinx.{name.split('/')[0]}.")
     ]
@@ -117,7 +124,7 @@ def modules():
     }
     for name, path in known.items():
         found = set()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.ImportFrom):
                 module = source(node, path)
                 names = (f"{module}.{alias.name}" for alias in node.names)
@@ -144,7 +151,7 @@ def test_paths_of_datasets_are_spelled_in_their_table_alone():
     faults = []
     for name, path in FILES.items():
         if name.startswith(("app/", "postprocess/")) and not name.startswith("postprocess/quantities/"):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for node in nodes(path):
                 text = node.value if isinstance(node, ast.Constant) else None
                 if isinstance(text, str) and PATH.match(text):
                     faults.append(f"{name}:{node.lineno}: {text}")

@@ -10,7 +10,7 @@ import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from support import HOME, THOROUGH, clean_environment, here
+from support import HOME, THOROUGH, clean_environment, here, paper_run
 
 from galinx.app.cli import cli
 from galinx.app.commands import options
@@ -31,13 +31,12 @@ _STATUS = re.compile(r"#.*\bstatus (\d)\b")
 #: bring models, which would stay registered, or need a shell; what is left runs in this process.
 STARTED = "README.md"
 _ON_ITS_OWN = ("-n", "-x")
-#: Pages that quote what their runs print; of the others a run is planned alone whose archive no quote and
-#: no Python names, and what reads that archive has its options read.
-_PRINTED = (STARTED, "tutorial.md", "recipes.md", "howto_time.md", "howto_read_archive.md")
 #: Commands that draw, of which most pages quote nothing: their options are read, and other tests draw.
 #: All are run where GALINX_THOROUGH asks for it.
 _DRAWING = ("plot", "report", "fields", "response", "dispersion")
-_OF_ARCHIVES = ("run", "paper", "show", "check", "compare", "csv")
+#: Commands that are run where a page quotes what they print, or names their archive there or in Python.
+#: Of the others a run is planned alone, and options of the rest are read.
+_COMPUTING = ("run", "paper", "show", "check", "compare", "csv", "fit", "schema")
 
 
 def name_of(page):
@@ -69,12 +68,24 @@ def save_blocks(page, folder):
 
 def commands(page):
     """Lines with ./run.sh of indented blocks and of console blocks."""
-    found, language = [], None
+    return [command for command, _ in followed(page)]
+
+
+def followed(page):
+    """The same, each with whether a page quotes output before its next block of another kind."""
+    found, language, open_ = [], None, 0
     for line in text_of(page).splitlines():
         if line.startswith("```"):
             language = line[3:] if language is None else None
+            if language in ("console", "python", "toml"):
+                open_ = len(found)
         elif _COMMAND.match(line) and (language == "console" or (not language and line[:4] == "    ")):
-            found.append(line.strip())
+            found.append([line.strip(), False])
+            continue
+        if language == "text" or (language is None and line[:4] == "    "):
+            for one in found[open_:]:
+                one[1] = True
+            open_ = len(found)
     return found
 
 
@@ -125,8 +136,12 @@ class Shelf:
 def _run(command, cwd):
     """Status and output of a command line."""
     words = words_of(command)
+    if not words:
+        results, said = paper_run()
+        shutil.copytree(results, cwd / results.name)
+        return 0, said
     of_shell = not command.startswith("./run.sh") or {">", "|"} & set(words)
-    if not of_shell and cwd.name != STARTED and words and words[0] not in _ON_ITS_OWN:
+    if not of_shell and cwd.name != STARTED and words[0] not in _ON_ITS_OWN:
         done = here(*words, cwd=cwd)
         return done.returncode, done.stdout + done.stderr
     done = subprocess.run(
@@ -175,11 +190,11 @@ def run_page(page, shelf, folder):
     """Save the files of a page, run its commands in order, then its Python; what both print."""
     output, faults = "", []
     save_blocks(page, folder)
-    for command in commands(page):
+    for command, quoted in followed(page):
         words = words_of(command)
         if words and words[0] in NOT_RUN:
             continue
-        if words and not (THOROUGH or page.name == STARTED or _quoted(words, page)):
+        if words and not (THOROUGH or page.name == STARTED or _needed(words, page, quoted)):
             _read(words, folder)
             continue
         wanted = int((_STATUS.search(command) or [0, 0])[1])
@@ -191,14 +206,14 @@ def run_page(page, shelf, folder):
     return output + run_python(page, folder)
 
 
-def _quoted(words, page):
-    """Does a page need that a command is run: its archive, or what it says of the place it writes to?"""
+def _needed(words, page, quoted):
+    """Does a page need that a command is run: its output, its archive, or what it says of its place?"""
     name, own = words[2 if words[0] in _ON_ITS_OWN else 0], words[0] == "-x"
     if name in _DRAWING:
         words = words[2:] if own else words
         place, stem = words[words.index("-o") + 1] if "-o" in words else words[1], Path(words[1]).stem
         return any(f": {place}" in quote and stem in quote for quote in quotes(page))
-    if own or page.name in _PRINTED or name not in _OF_ARCHIVES:
+    if own or quoted or name not in _COMPUTING:
         return True
     shown = "\n".join([*quotes(page), *blocks(page, "python")])
     stems = [Path(word).stem for word in words if word.endswith(".h5")]
@@ -210,6 +225,7 @@ def _read(words, folder):
     """Plan what a command would compute, or read its options."""
     words = words[2:] if words[0] in _ON_ITS_OWN else words
     with chdir(folder):
+        words = words[: words.index(">")] if ">" in words else words
         context = cli.commands[words[0]].make_context(words[0], [*words[1:]])
         if words[0] == "run":
             given = (context.params[name] for name in ("scene", "changes", "unset"))

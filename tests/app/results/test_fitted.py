@@ -35,7 +35,7 @@ def strokes(name, parameters, seed=1):
     """Strokes of 0.1 mm there and back, faster and faster, with noise of 0.003."""
     ends, speeds = np.array([0, 1, 0.2, 1, 0, 0.7]) * 1e-4, np.geomspace(1e-4, 1e-2, 5)
     at = np.append(0.0, np.cumsum(np.abs(np.diff(ends)) / speeds))
-    t = np.append(0.0, np.concatenate([np.linspace(*leg, 41)[1:] for leg in pairwise(at)]))
+    t = np.append(0.0, np.concatenate([np.linspace(*leg, 26)[1:] for leg in pairwise(at)]))
     X = np.interp(t, at, ends)
     f = friction(build_model(LAWS[name], parameters), moves(t, X, True), len(t))
     f[0] = 0.0

@@ -162,7 +162,7 @@ def browsed(page, folder, script):
 
 
 #: Pages of all kinds: what they have differs.
-PAGES = ("flat", "table1", "cylinder", "coating", "slider")
+PAGES = ("table1", "cylinder", "coating", "slider")
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="Debian's package chromium is not installed")

@@ -51,7 +51,7 @@ def test_what_innermost_cells_leave_is_in_the_estimate(mesh, degree, cuts, c):
 
 
 #: Cells are halved so often where multigrids are tried; steps hardly depend on it.
-HALVED = 4 if THOROUGH else 2
+HALVED = 4 if THOROUGH else 1
 
 
 @pytest.fixture(scope="module")

@@ -141,7 +141,8 @@ def test_friction_by_its_law_is_followed_by_both_methods():
     """From rest, along two strokes that go the same way: there is no turn between them."""
     law = {"friction.model": "dahl", "friction.mu_c": 0.6, "friction.sigma0_over_load": "600 1/m",
            "friction.pre_sliding": "1 mm", "punch.half_width": "1 mm"}  # fmt: skip
-    more = {"time.friction": "law", "motion.strokes": ["forward", "forward"], "time.every": 1.0}
+    more = {"time.friction": "law", "motion.strokes": ["forward", "forward"], "time.every": 1.0,
+            "time.end": 2.0}  # fmt: skip
     result = computed("start_from_rest", QUICK | law | more)
     data = result.data
     assert np.isfinite(data["time/sie/K_I_left"]).all() and np.ptp(data["time/ratio"][0]) > 0.3
@@ -152,7 +153,7 @@ def test_friction_by_its_law_is_followed_by_both_methods():
     away = np.abs(np.abs(data["time/surface/X_over_a"]) - 1.0) > 0.05
     for name in ("sigma_XX", "sigma_YY", "sigma_XY"):
         by_fem, by_sie = (data[f"time/surface/{of}/{name}"][0][:, away] for of in ("fem", "sie"))
-        assert by_sie.shape[0] == 3 and np.ptp(by_sie[-1]) > 0.2
+        assert by_sie.shape[0] == 2 and np.ptp(by_sie[-1]) > 0.2
         np.testing.assert_allclose(by_fem, by_sie, atol=0.02 * np.abs(by_sie).max())
 
 

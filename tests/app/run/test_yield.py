@@ -144,6 +144,7 @@ def test_layers_of_the_solid_itself_are_a_uniform_solid(thickness):
 def test_no_sample_is_larger_and_some_come_near(thickness):
     changes = {
         "solve.tolerance": 1e-5,
+        "friction": {"mu": [0.05, 0.5]},
         "output.quantities": ["friction", "sif", "surface", "interfaces", "interior", "yield"],
         "output.map": {"X": [-2, 2, 81], "Y": [-3, -0.05, 60]},
     }

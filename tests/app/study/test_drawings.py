@@ -7,8 +7,9 @@ formulas of their own.
 import numpy as np
 import pytest
 from study_reference import f_of, stresses
-from support import HOME, computed
+from support import HOME, paper_run
 
+import galinx
 from galinx.app.study.drawings import of_study
 
 SS, HS = 4.786e-7, 0.6
@@ -44,8 +45,8 @@ ROWS = {
 
 @pytest.fixture(scope="module")
 def study_run():
-    """The study, finite elements among it, which need not be as good as those of the verdict."""
-    return computed("study", {"solve.tolerance": 1e-3})
+    """The study by both methods."""
+    return galinx.load(paper_run()[0] / "study.h5")
 
 
 @pytest.fixture(scope="module")

@@ -84,7 +84,8 @@ def test_places_that_coincide_by_rounding_have_no_polynomial_between_them():
     """Next to a turn a piece of a billionth is sampled more closely than numbers are apart."""
     piece = 0.5 + 1e-9 / (1.0 + np.exp(-np.linspace(-18.0, 18.0, 109)))
     value, place = largest(lambda X: -((X - 0.5) ** 2), [np.linspace(-1.0, 0.5, 9), piece])
-    assert value == pytest.approx(0.0, abs=1e-18) and place == pytest.approx(0.5, abs=1e-9)
+    # Rounding of a polynomial through values of 0.04 is the machine's.
+    assert value == pytest.approx(0.0, abs=1e-17) and place == pytest.approx(0.5, abs=1e-9)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

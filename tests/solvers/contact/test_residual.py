@@ -89,7 +89,7 @@ def test_over_layers_a_pressure_of_the_equation_leaves_nothing_and_a_wrong_one_i
     solid, g = layered(graded), 0.4
     response = solid.response(0.3 * solid.limit(), 1.0)
     speed = LayersUnderPunch(response, response.stack(1.0), 1e-9, Punch(Flat(1.0), 1.0, 1.0))
-    pressure = speed.contact(g).pressure
+    pressure, layers = speed.contact(g).pressure, [Scaled(Kernel(response.stack(1.0), 1e-9), 1.0)]
     ends = np.array([pressure.α]), np.array([pressure.β])
 
     def σ_YY(r, ε=0.0):
@@ -97,10 +97,8 @@ def test_over_layers_a_pressure_of_the_equation_leaves_nothing_and_a_wrong_one_i
         return (weight * pressure.series(r) * (1.0 + ε * r))[None]
 
     def left_with(ε):
-        return residual.of_pressure(
-            response, np.array([g]), ends, np.zeros_like, lambda r: σ_YY(r, ε),
-            layers=[Scaled(Kernel(response.stack(1.0), 1e-9), 1.0)],
-        )[0]  # fmt: skip
+        wrong = lambda r: σ_YY(r, ε)  # noqa: E731
+        return residual.of_pressure(response, np.array([g]), ends, np.zeros_like, wrong, layers=layers)[0]
 
     assert left_with(0.0) <= 1e-7
     for ε in (1e-2, 1e-4):

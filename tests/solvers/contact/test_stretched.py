@@ -21,8 +21,8 @@ ENDS = np.array([-1.0, 1.0])
 def pressure():
     """By the integral equation, of a layer whose modulus is ten times as large at its lower face."""
     response = Layered((Layer(0.2, SOFT, HARD),), HARD).response(0.45)
-    kernel = Kernel(response.stack(1.0), 1e-9)
-    return converged_pressure(Equation(response, kernel, -0.5, np.zeros_like), 1e-8).pressure
+    kernel = Kernel(response.stack(1.0), 1e-8)
+    return converged_pressure(Equation(response, kernel, -0.5, np.zeros_like), 1e-7).pressure
 
 
 def read(pressure, stretch, count):

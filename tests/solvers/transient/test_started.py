@@ -197,7 +197,7 @@ def test_finite_elements_see_no_interface_between_equal_solids():
     np.testing.assert_allclose(other, one, atol=1e-10 * np.abs(one).max())
 
 
-@pytest.mark.parametrize("solid, g", [(SOLID, -0.4), (random_solid(2), 0.4)])
+@pytest.mark.parametrize("solid, g", [*[(SOLID, -0.4)] * THOROUGH, (random_solid(2), 0.4)])
 def test_what_is_left_falls_like_1_over_t(solid, g):
     """The first term of a series with t log t in the next: two times tell it without most of that."""
     c = 0.5 * solid.limit()

@@ -25,7 +25,7 @@ _ONE_NUMBER = {"friction.mu": "friction.mu_c", "friction.mu_c": "friction.mu"}
 
 #: Section with a number, as ``layer[0]``; and a list or a range with one unit for all, as ``[1, 2] mm``.
 _NUMBERED = re.compile(r"(\w+)\[(\d{1,3})\]")
-_WITH_UNIT = re.compile(r"(\[[^\[\]{}\"']*\])\s*([^\s\[\]\"'][^\[\]\"']*)")
+_WITH_UNIT = re.compile(r"(\[[^\[\]{}\"']*\]|\{[^{}]*\})\s*([^\s\[\]{}\"'][^\[\]{}\"']*)")
 
 #: Longest text that a change may set, in characters: the time of tomlkit grows with their square.
 _LONGEST = 10_000
@@ -72,13 +72,18 @@ def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any
 
 
 def _with_unit(value: str) -> Any:
-    """A list of numbers with their unit, of ``[5, 10, 20] µm``; any other text unchanged."""
+    """A list or a range of numbers with their unit, of ``[5, 10, 20] µm``; any other text unchanged."""
     match = _WITH_UNIT.fullmatch(value)
     if not match:
         return value
-    return [
-        f"{number.strip()} {match[2]}" for number in match[1].strip("[]").split(",") if number.strip()
-    ]
+    given, unit = match[1], match[2]
+    if given.startswith("["):
+        return [f"{number.strip()} {unit}" for number in given.strip("[]").split(",") if number.strip()]
+    try:
+        table = tomlkit.value(given).unwrap()
+    except (TOMLKitError, ValueError):
+        return value
+    return {key: f"{end} {unit}" if key in ("from", "to") else end for key, end in table.items()}
 
 
 def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:

@@ -4,7 +4,7 @@ import re
 import tomllib
 
 import pytest
-from support import SCENE, at_most
+from support import SCENE, at_most, scene_of
 
 from galinx.app.errors import BadInput
 from galinx.app.scene.changes import changed, from_words
@@ -251,3 +251,15 @@ def test_points_pressures_and_depths_may_be_in_files(tmp_path):
 def test_faults_of_a_file_are_told(tmp_path, csv, message):
     with pytest.raises(BadInput, match=message):
         read(scene_beside(tmp_path, csv))
+
+
+@pytest.mark.parametrize("spacing, middle", [("", 11e-3), (', spacing = "log"', 40e-6**0.5)])
+def test_one_unit_for_a_list_or_a_range(spacing, middle):
+    words = f"punch.radius={{from=2, to=20, number=3{spacing}}} mm", "punch.load=[50, 100] N/mm"
+    changed_scene = scene_of("cylinder", from_words(words))
+    radii = {variant.punch.profile.radius for variant in changed_scene.variants}
+    assert sorted(radii) == pytest.approx([2e-3, middle, 20e-3])
+    assert changed_scene.punch.loads == (50e3, 100e3)
+    for word in ("{from=2, to} mm", "{1, 2} mm", "{} mm"):
+        with pytest.raises(BadInput, match="punch.radius"):
+            scene_of("cylinder", from_words([f"punch.radius={word}"]))

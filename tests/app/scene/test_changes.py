@@ -261,5 +261,5 @@ def test_one_unit_for_a_list_or_a_range(spacing, middle):
     assert sorted(radii) == pytest.approx([2e-3, middle, 20e-3])
     assert changed_scene.punch.loads == (50e3, 100e3)
     for word in ("{from=2, to} mm", "{1, 2} mm", "{} mm"):
-        with pytest.raises(BadInput, match="punch.radius"):
+        with pytest.raises(BadInput, match=r"punch\.radius"):
             scene_of("cylinder", from_words([f"punch.radius={word}"]))

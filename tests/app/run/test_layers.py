@@ -367,7 +367,7 @@ def test_many_frictions_and_loads_are_those_of_each():
 
 
 def test_the_search_for_a_half_width_takes_few_trials():
-    """Two at a low degree, from which loads are known to grow, two at the usual one; then four degrees."""
+    """Two at a low degree, which tell how loads grow, two at the usual one; then four degrees."""
     asked = {"solve.methods": ["fem"], "solve.tolerance": 1e-6, "friction.mu_c": [0.1, 0.4]}
     data = coated(CYLINDER, asked).data
     assert data["run/fem/factorisations"].sum() <= 2 * (2 + 2 + 4)

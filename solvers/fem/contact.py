@@ -9,7 +9,7 @@ width is, and the displacement prescribed under the punch is a combination of fe
 tilted flat base, 1, s and s² for a parabola, as many polynomials as it takes for any other smooth
 profile. Load and vanishing intensities at free ends are linear in their amplitudes, from which half-width
 and middle follow; of a parabola directly, of other profiles by the conditions of
-:mod:`galinx.solvers.contact.free_ends`. Every friction and every load is solved in the basis of the
+:mod:`galinx.solvers.contact.ends`. Every friction and every load is solved in the basis of the
 speed.
 """
 

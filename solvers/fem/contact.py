@@ -390,9 +390,7 @@ class FreeLevel(PunchLevel):
     def gauge(self, states: SolvedStates) -> Gauge:
         moments = states.contact.tested(self.moments)
         gauge = of_pressure(self.over_flat(moments, states.contact.g), moments)
-        lengths = np.column_stack([states.contact.half_width, states.contact.centre])
-        groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
-        return joined(gauge.word, groups, gauge.unresolved)
+        return self.gauge_of_free(states, gauge.values, gauge.scale, gauge.unresolved)
 
 
 #: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left.

@@ -256,8 +256,16 @@ def state_field(scene, number, extent=10.0, degree=None):
 
     with closing(solve_states(scene, [number], [degree], extent)) as states:
         solved = next(states)
-        whole = solved.sampled(extent).gathered(solved.comm)
+        whole = gathered(solved.sampled(extent), solved.comm)
         return None if whole is None else in_si(solved, whole)
+
+
+def gathered(field, comm):
+    """The pieces of a sampled field of all ranks in one, on rank 0; None on the others."""
+    from galinx.solvers.fem.export import joined
+
+    pieces = comm.gather(field)
+    return None if pieces is None else joined(pieces)
 
 
 def small_punch(c=0.6, **options):

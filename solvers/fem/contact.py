@@ -9,7 +9,7 @@ width is, and the displacement prescribed under the punch is a combination of fe
 tilted flat base, 1, s and s² for a parabola, as many polynomials as it takes for any other smooth
 profile. Load and vanishing intensities at free ends are linear in their amplitudes, from which half-width
 and middle follow; of a parabola directly, of other profiles by the conditions of
-:mod:`galinx.solvers.contact.free_ends`. Every friction and every load is solved in the basis of the
+:mod:`galinx.solvers.contact.ends`. Every friction and every load is solved in the basis of the
 speed.
 """
 
@@ -298,7 +298,7 @@ class AlongLevel(PunchLevel):
             lambda r: self.facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 
-    def free_gauge(self, states: SolvedStates, half_width: NDArray) -> Gauge:
+    def gauge_by_knots(self, states: SolvedStates, half_width: NDArray) -> Gauge:
         """Gauge of contacts with free ends and half-widths [m], (states,), whose knots are moved."""
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
@@ -343,7 +343,13 @@ class FreeLevel(PunchLevel):
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         (parts, loads, K), linear = self.parts(g), _LINEAR.get(type(body.profile))
-        solved = linear(body, loads, K) if linear else self._smooth(g, body, loads, K)
+        if linear:
+            return self.summed(g, parts, linear(body, loads, K))
+        (m, h), _ = self.ends(g, body, loads, K)
+        return self.summed(g, parts, self.smooth(body, loads, m, h))
+
+    def summed(self, g: NDArray, parts: NDArray, solved: "_Solved") -> ContactStates:
+        """Contacts by their parts and these parts' amplitudes."""
         amplitudes, lowest, ends = solved
         contact = self.punch.summed(g, parts, amplitudes).between(**ends)
         if not np.all((contact.half_width > 0.0) & np.isfinite(contact.half_width)):
@@ -377,10 +383,9 @@ class FreeLevel(PunchLevel):
             ends.append(last)
         return np.transpose(ends), np.array([condition.unseen for condition in conditions])
 
-    def _smooth(self, g: NDArray, body: Contact, loads: NDArray, K: NDArray) -> _Solved:
-        """Amplitudes of v = -v₀ + the punch's height with the load, and no intensity at both ends."""
-        punch, count, (m, h) = body.profile, loads.shape[1] - 1, self.ends(g, body, loads, K)[0]
-        units = body.displacement * np.ones(len(g))
+    def smooth(self, body: Contact, loads: NDArray, m: NDArray, h: NDArray) -> _Solved:
+        """Amplitudes of v = -v₀ + the punch's height with the load, between ends [m] that are known."""
+        punch, count, units = body.profile, loads.shape[1] - 1, body.displacement * np.ones(len(m))
         each = zip(m.tolist(), h.tolist(), units.tolist())
         slopes = np.array([slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit for m, h, unit in each])
         ends = {"half_width": h, "centre": m, "free": True, "unresolved": left_out(slopes, count)}
@@ -395,9 +400,7 @@ class FreeLevel(PunchLevel):
     def gauge(self, states: SolvedStates) -> Gauge:
         moments = states.contact.tested(self.moments)
         gauge = of_pressure(self.over_flat(moments, states.contact.g), moments)
-        lengths = np.column_stack([states.contact.half_width, states.contact.centre])
-        groups = (gauge.values, gauge.scale), (lengths, lengths[:, :1])
-        return joined(gauge.word, groups, gauge.unresolved)
+        return self.gauge_of_free(states, gauge.values, gauge.scale, gauge.unresolved)
 
 
 #: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left.
@@ -431,53 +434,48 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         loads = np.broadcast_to(body.load, g.shape).tolist()
-        own, *others = zip(*(self._balanced(*state) for state in zip(g.tolist(), loads)))
-        amplitudes, h, m, lowest, unresolved = (np.array(of) for of in others)
-        # Fields were added from state to state.
-        fields = max(parts.shape[1] for parts in own)
-        parts = np.array([np.pad(of, ((0, 0), (0, fields - of.shape[1]))) for of in own])
-        contact = self.punch.summed(g, parts, amplitudes).between(h, m, True, unresolved=unresolved)
-        return replace(contact, v0=contact.v0 + lowest)
+        ends = [self._balanced(*state) for state in zip(g.tolist(), loads)]
+        m, h = np.transpose(ends)
+        numbers = [self._number(*state) for state in zip(g.tolist(), h.tolist())]
+        parts = self.punch.parts(np.array(numbers))
+        return self.summed(g, parts, self.smooth(body, self.punch.loads(parts), m, h))
 
-    def _balanced(self, g: float, load: float) -> tuple[Any, ...]:
-        """Parts, amplitudes, half-width, middle, depth of the lowest point and slope beyond the shapes.
+    def _number(self, g: float, h: float) -> float:
+        """Number by which the punch knows the friction of a half-width [m]."""
+        return self._numbers.setdefault(self.task.body.friction(g, h), float(len(self._numbers)))
+
+    def _balanced(self, g: float, load: float) -> tuple[float, float]:
+        """Middle and half-width [m] of a contact without intensities; its search adds fields.
 
         Raises:
             SolveError: no contact carries the load.
         """
         from scipy.optimize import root  # a slow import
 
-        body, punch, count = self.task.body.loaded(load), self.task.body.profile, self.shapes
-        unit = float(body.displacement)
+        body, each = self.task.body.loaded(load), np.ones(1 + self.shapes)
         m, scale = self._ends.get((g, load), (0.0, float(body.half_width)))
 
-        def contact(m: float, h: float) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-            """Parts, amplitudes under the load, intensities at both ends, and all shapes of the punch."""
-            number = self._numbers.setdefault(body.friction(g, h), float(len(self._numbers)))
-            parts, each = self.punch.parts(np.array([number])), np.ones(1 + count)
-            pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
-            loads = self.punch.loads(parts)
-            shapes = slopes_of_shapes(punch, m, h, 2 * (1 + count)) / unit
-            (amplitudes,) = carrying(loads, shapes[None, :count])
-            return parts[0], amplitudes, amplitudes @ pressure.K_I, shapes
+        def ends(x: NDArray) -> tuple[float, float]:
+            return scale * float(x[0]), scale * float(np.exp(x[1]))
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
-            return contact(scale * x[0], scale * float(np.exp(x[1])))[2]
+            m, h = ends(x)
+            parts = self.punch.parts(np.array([self._number(g, h)]))
+            pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
+            amplitudes, *_ = self.smooth(body, self.punch.loads(parts), np.array([m]), np.array([h]))
+            return amplitudes[0] @ pressure.K_I
 
         x = root(intensities, [m / scale, 0.0], tol=_BALANCED).x
-        m, h = scale * float(x[0]), scale * float(np.exp(x[1]))
-        parts, amplitudes, K, shapes = contact(m, h)
-        if not np.abs(K).max() < _OF_INTENSITIES:
+        if not np.abs(intensities(x)).max() < _OF_INTENSITIES:
             raise SolveError("no contact of a finite half-width carries the load")
-        self._ends[g, load] = m, h
-        lowest = float(punch.height(np.array(m))) / unit
-        return parts, amplitudes, h, m, lowest, float(left_out(shapes, count))
+        self._ends[g, load] = ends(x)
+        return ends(x)
 
     def pressure(self, contact: ContactStates) -> Expansion:
         return self.splines(contact.g, contact.half_width, contact.tested, more=1.0)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        return self.free_gauge(states, states.contact.half_width)
+        return self.gauge_by_knots(states, states.contact.half_width)
 
 
 def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:

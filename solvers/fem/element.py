@@ -76,7 +76,7 @@ class Element:
         """Blocks of the element matrices of cells.
 
         Args:
-            H: the form at unit gradients and pressure, symmetric, see :meth:`.forms.Form.density`; one
+            H: the form at unit gradients and pressure, symmetric, see :meth:`.forms.Form.densities`; one
                 for all cells, (4, 4) or (5, 5); one for each, (m, 4, 4); or one for each of their points
                 of quadrature, (m, 4, 4, second, first).
             chart: of the mesh, at a speed.

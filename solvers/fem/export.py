@@ -129,11 +129,6 @@ class SampledField:
     displacement: NDArray[np.float64]
     gradient: NDArray[np.float64]
 
-    def gathered(self, comm: MPI.Comm) -> "SampledField | None":
-        """The pieces of all ranks in one, on rank 0; None on the others. Collective."""
-        pieces = comm.gather(self)
-        return None if pieces is None else _joined(pieces)
-
 
 def sample(
     space: Space,
@@ -177,7 +172,7 @@ def sample(
             points = chart.to_physical(image(vertices[cell], at))
             pieces.append(_without_unused(SampledField(points, quads, displacement, gradient)))
     field.destroy()
-    return _joined(pieces)
+    return joined(pieces)
 
 
 def _split(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -225,7 +220,7 @@ def _without_unused(field: SampledField) -> SampledField:
     )
 
 
-def _joined(pieces: Sequence[SampledField]) -> SampledField:
+def joined(pieces: Sequence[SampledField]) -> SampledField:
     """All pieces in one, in their order."""
     first = np.cumsum([0, *(len(piece.points) for piece in pieces)])
     return SampledField(

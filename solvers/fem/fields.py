@@ -181,20 +181,6 @@ class Gradients:
             yield slice(first, first + len(basis)), np.einsum("nijf,sf->snij", basis, weights)
             first += len(basis)
 
-    def of_each(self, weights: NDArray) -> NDArray[np.float64]:
-        """μ ∂u_i/∂X_j over N/(2a), where each combination has points of its own.
-
-        Args:
-            weights: of the fields, (states, fields); the first n/states points are those of the first
-                combination, the next ones of the second, and so on.
-
-        Returns:
-            Array (states, n/states, 2, 2).
-        """
-        states, fields = weights.shape
-        each = self.of_fields()[..., :fields].reshape(states, -1, 2, 2, fields)
-        return np.einsum("snijf,sf->snij", each, weights)
-
 
 class InteriorGradients(Gradients):
     """Displacement gradients along X and Y at given points by the fields' values at nodes.
@@ -377,13 +363,14 @@ class Displacement:
 
     def at(self, points: NDArray, weights: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
-        flat = points.reshape(-1, 2)
+        flat, response = points.reshape(-1, 2), self._task.response
         gradients = self._at(flat)
         if len(points) == 1:
-            return self._task.response.stresses_at(flat[:, 1], gradients.of(weights))
-        each = gradients.of_each(weights)
-        whole = self._task.response.stresses_at(flat[:, 1], each.reshape(1, -1, 2, 2))
-        return whole.reshape(3, *each.shape[:2])
+            return response.stresses_at(flat[:, 1], gradients.of(weights))
+        (states, n, _), fields = points.shape, weights.shape[1]
+        of_states = gradients.of_fields()[..., :fields].reshape(states, n, 2, 2, fields)
+        each = np.einsum("snijf,sf->snij", of_states, weights)
+        return response.stresses_at(flat[:, 1], each.reshape(1, -1, 2, 2)).reshape(3, states, n)
 
     def interfaces(self, weights: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below along every interface, (4, states, interfaces, n).

@@ -35,12 +35,15 @@ class Form:
     constants: tuple[str, ...]
     mixed: bool = False
 
-    def density(self, response: Any) -> NDArray[np.float64]:
-        """The integrand at unit gradients, u,X u,Y v,X v,Y, and at unit pressure: (4, 4) or (5, 5)."""
-        return _density(self, tuple(float(getattr(response, name)) for name in self.constants))
-
     def densities(self, constants: NDArray) -> NDArray[np.float64]:
-        """The integrand at unit gradients for each row of constants, (m, 4, 4) or (m, 5, 5)."""
+        """The integrand at unit gradients, u,X u,Y v,X v,Y, and at unit pressure, by constants.
+
+        Args:
+            constants: in the form's order, (m, constants).
+
+        Returns:
+            Array (m, 4, 4) or (m, 5, 5).
+        """
         rows, which = np.unique(constants, axis=0, return_inverse=True)
         return np.array([_density(self, tuple(row)) for row in rows.tolist()])[which]
 

@@ -456,7 +456,7 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         return self.splines(contact.g, self._half_width, contact.tested, more=1.0)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        return self.free_gauge(states, self._half_width)
+        return self.gauge_by_knots(states, self._half_width)
 
     @property
     def _half_width(self) -> NDArray[np.float64]:
@@ -468,22 +468,11 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         return None
 
 
-def scaled(task: Task, half_width: float) -> Task:
-    """Task under one load whose lengths are over the half-width [m] of a contact."""
-    depths = task.body.solid.depths / half_width  # type: ignore[attr-defined]
-    return replace(
-        task,
-        body=make_contact(task.body.solid, Flat(half_width), task.body.load, along=task.body.along),
-        response=replace(task.response, a=half_width),  # type: ignore[type-var]
-        places=replace(task.places, interfaces=depths),
-    )
-
-
 def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
     """Plan of a mesh drawn for a contact over layers.
 
     Args:
-        task: the task of :func:`scaled`.
+        task: the speed, with lengths over the half-width of the mesh.
         plan: plan of all contacts.
         words: words of output.quantities that request stresses.
     """
@@ -605,12 +594,19 @@ class OverLayers(OwnMeshes):
         self, h: float, words: frozenset[str]
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
-        task, plan = scaled(self._sought, h), self._work.plan
+        sought, plan = self._sought, self._work.plan
+        depths = sought.body.solid.depths / h  # type: ignore[attr-defined]
+        task = replace(
+            sought,
+            body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along),
+            response=replace(sought.response, a=h),  # type: ignore[type-var]
+            places=replace(sought.places, interfaces=depths),
+        )
         mesh = replace(self._work, plan=drawn_for(task, plan, words), stresses=words)
         kind = VaryingBalancedLevel if task.body.along else BalancedLevel
 
         def level(space: Space, g: NDArray) -> BalancedLevel:
-            base = EndsBetweenKinks(self._sought.body, (h * self._lean, h), plan.tolerance)
+            base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
             return kind(mesh, task, space, g, base)
 
         return mesh, task, level

@@ -85,18 +85,15 @@ class LoadedHalfPlane:
             self.fields.append(vector(self.factor.A, column + moved))
         self.resultants.append(resultant)
 
-    def corrections(self) -> list[PETSc.Vec]:
-        """Corrections of the fields, whose last digit is one of the motion of the whole half-plane.
+    def correct(self) -> None:
+        """Add the corrections of all fields as fields of loads without a resultant. Collective.
 
-        They are the fields of the loads less the forces of the cells' deformation. Collective.
+        The last digit of a field is one of the motion of the whole half-plane. Its correction is the
+        field of its load less the forces of the cells' deformation.
         """
         residuals = np.column_stack(self._loads) - self._forces_of_deformation()
         residuals[self.space.far_dofs - self._first] = 0.0
-        return [vector(self.factor.A, column) for column in self.factor.solve(residuals).T]
-
-    def correct(self) -> None:
-        """Add the corrections of all fields as fields of loads without a resultant. Collective."""
-        self.fields += self.corrections()
+        self.fields += [vector(self.factor.A, column) for column in self.factor.solve(residuals).T]
         self.resultants += [0.0] * len(self.resultants)
 
     def _forces_of_deformation(self) -> NDArray[np.float64]:
@@ -156,18 +153,16 @@ class LinearLoads:
         try:
             loaded.load(lambda left, right: right / 2.0)
             loaded.load(lambda left, right: left / 2.0)
-            corrections = loaded.corrections()
-            outer = _deformed(space, loaded.fields) + _deformed(space, corrections)
+            loaded.correct()
+            outer = _deformed(space, loaded.fields[:FIELDS]) + _deformed(space, loaded.fields[FIELDS:])
             #: Values less those of a cell's first node, (cells, nodes of a cell, 2, FIELDS).
             self._shapes = np.concatenate([
                 space.extended(outer[cells], response, np.arange(len(outer))[cells])
                 for cells in [slice(0), *space.pieces(len(outer))]
             ])  # fmt: skip
-            for correction in corrections:
-                correction.destroy()
         finally:
             loaded.destroy()
-        self.resultants, self.factor = np.array(loaded.resultants), loaded.factor
+        self.resultants, self.factor = np.array(loaded.resultants[:2]), loaded.factor
 
     def gradients(self, points: NDArray) -> NDArray[np.float64]:
         """μ ∂u_i/∂X_j over the load's largest stress, at points (n, 2) with Y <= 0: (n, 2, 2, FIELDS).

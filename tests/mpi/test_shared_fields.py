@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import space_on, state_field
+from support import gathered, space_on, state_field
 
 from galinx import template
 from galinx.app.results.fields import Solved, solve_states, write_fields
@@ -23,9 +23,8 @@ def test_ranks_sample_together_what_one_samples(mesh, extent):
         space = space_on(mesh, Refinement(5, 0.35, 2, (3.0,) * 4), 5, comm)
         punch = SlidingPunch(space, MovingFrame(2.0, 0.6))
         weights = punch.states(-0.66).weights[0]
-        found.append(
-            sample(space, MovingFrame(2.0, 0.6), punch.fields, weights, extent, 4).gathered(comm)
-        )
+        field = sample(space, MovingFrame(2.0, 0.6), punch.fields, weights, extent, 4)
+        found.append(gathered(field, comm))
         punch.destroy()
     alone, shared = found
     assert (shared is None) == (MPI.COMM_WORLD.rank > 0)

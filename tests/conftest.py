@@ -36,8 +36,12 @@ FEM = (
         "compiler", "direct", "dolfinx_space", "element", "punch", "space", "versions",
     )),
 )  # fmt: skip
-#: The longest file comes first, so that no worker has it left when the others are done.
-FIRST = "docs/test_pages.py"
+#: The longest files come first, so that no worker has one left when the others are done.
+FIRST = (
+    "docs/test_pages.py", "app/test_matrix.py", "solvers/transient/test_started.py",
+    "app/run/test_layers.py", "app/run/test_over_time.py", "app/run/test_interruptions.py",
+    "app/run/test_motions_mirrored.py", "app/figures/test_figures.py", "app/results/test_report.py",
+)  # fmt: skip
 
 
 def pytest_configure(config):
@@ -54,7 +58,7 @@ def pytest_unconfigure(config):
 
 
 def pytest_collection_modifyitems(items):
-    items.sort(key=lambda item: place_of(item) != FIRST)
+    items.sort(key=lambda item: (*FIRST, place_of(item)).index(place_of(item)))
     for item in items:
         place = place_of(item)
         if place.startswith(FAST) and not SLOW & set(item.fixturenames):

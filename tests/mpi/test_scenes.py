@@ -13,7 +13,16 @@ from galinx.app.scene.library import templates
 from galinx.solvers.fem.ladder import ROUNDING
 
 #: What ranks agree on they agree on at every tolerance.
-SCENES = {name: template(name, {"solve.tolerance": 1e-3}) for name in templates()}
+ROUGH = {"solve.tolerance": 1e-3}
+
+
+def of_two_speeds(name):
+    """A scene at the first and the last of its speeds: the mesh of each is decomposed alike."""
+    speeds = template(name).motion.c or ()
+    return template(name, ROUGH | ({"motion.c": [speeds[0], speeds[-1]]} if len(speeds) > 2 else {}))
+
+
+SCENES = {name: of_two_speeds(name) for name in templates()}
 #: Largest differences: relative of what a scene is run for, absolute of errors and fitted exponents, and
 #: of stresses over the median of their size, since they are derivatives. What rounding does to stresses
 #: is in their estimates ``ROUNDING`` times.

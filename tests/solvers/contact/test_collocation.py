@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from collocation_reference import Collocation
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.equation import UNIFORM, Equation
@@ -18,20 +17,6 @@ def test_a_flat_punch_has_one_coefficient(c, g):
     assert pressure.c[0] == pytest.approx(-2.0 * punch.K_I, rel=1e-13)
     np.testing.assert_allclose(pressure.c[1:], 0.0, atol=1e-12)
     np.testing.assert_allclose(pressure.K_I, punch.K_I, rtol=1e-12)
-
-
-@pytest.mark.parametrize("g", [0.0, 0.66, -1.2])
-def test_a_profile_has_the_pressure_of_the_reference(g):
-    frame = MovingFrame(2.2, 0.7)
-
-    def slope(r):
-        return np.sin(2.0 * r) - 0.3 * r**2
-
-    pressure = Equation(frame, UNIFORM, g, slope).pressure(30)
-    reference = Collocation(frame, g, 24, slope)
-    r = np.linspace(-0.999, 0.999, 21)
-    np.testing.assert_allclose(pressure.σ_YY(r), reference.σ_YY(r), rtol=1e-11)
-    np.testing.assert_allclose(pressure.K_I, reference.K_I, rtol=1e-11)
 
 
 def test_a_tilted_punch_has_the_second_coefficient_of_the_formula():

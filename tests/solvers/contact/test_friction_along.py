@@ -135,17 +135,6 @@ def test_stiff_bristles_come_to_one_friction_as_their_length_predicts():
     np.testing.assert_allclose(np.divide(off[1:], off[:-1]), 0.1, rtol=0.1)
 
 
-def test_mirrored_friction_mirrors_the_pressure():
-    response = ISOTROPIC.response(0.5)
-    one = FlatAlong(response, tabulated([(-1, 0.2), (0.3, 0.6), (1, 0.1)], -1.0))
-    other = FlatAlong(response, tabulated([(-1, 0.1), (-0.3, 0.6), (1, 0.2)], 1.0))
-    np.testing.assert_allclose(one.σ_YY(PLACES), other.σ_YY(-PLACES), rtol=1e-9)
-    law = Dahl(0.5, 2e3, 1.0)
-    forward, backward = (advected(law, s, 1.0, 1e-3, -1.0) for s in (1, -1))
-    np.testing.assert_allclose(forward(PLACES), -backward(-PLACES), rtol=1e-12)
-    assert forward(np.ones(1)) == 0.0 and forward(-np.ones(1)) < -0.45
-
-
 def test_an_advected_law_without_memory_is_one_number():
     along = advected(Coulomb(0.4), 1, 1.0, 1e-3, -1.0)
     assert along.mean == pytest.approx(-0.4, rel=1e-15) and not along.kinks

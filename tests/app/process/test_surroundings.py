@@ -74,11 +74,10 @@ def test_a_scene_for_several_ranks_is_a_file(tmp_path):
 @pytest.mark.parametrize(
     "variables",
     [
-        {"PMI_RANK": "1", "PMI_SIZE": "4"},
-        {"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "1"},
+        {"PMI_RANK": "1", "PMI_SIZE": "4", "OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "1"},
         {"PMI_RANK": "many", "PMI_SIZE": ""},
     ],
-    ids=["MPICH", "Open MPI", "nonsense"],
+    ids=["MPICH and Open MPI", "nonsense"],
 )
 def test_what_another_mpirun_left_is_no_rank(tmp_path, variables):
     scripts = [HOME / "run.sh"], [sys.executable, "-m", "galinx"]  # which asks MPI

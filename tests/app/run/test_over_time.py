@@ -159,7 +159,7 @@ def test_friction_by_its_law_is_followed_by_both_methods():
 
 #: A coating that starts from rest.
 COATED = {
-    "time.end": 2.0, "time.load_ramp": 2.0, "time.step": 0.1, "motion.speed": None, "motion.c": 0.3,
+    "time.end": 1.5, "time.load_ramp": 1.5, "time.step": 0.1, "motion.speed": None, "motion.c": 0.3,
     "friction.mu_c": 0.4, "solve.methods": ["sie", "fem"], "solve.tolerance": 1e-2,
     "output.quantities": ["friction", "time"],
 }  # fmt: skip

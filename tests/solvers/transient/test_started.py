@@ -54,7 +54,7 @@ BOTH = {
     "rotated": ((ROTATED, 0.6 * ROTATED.limit(), -0.4, 3.0, 14, 3.0, 16), {},
                 (5e-4, 5e-4, 5e-4, 1e-4, 1e-5)),
     "layers": (
-        (STACK, 0.3, -0.4, 3.0, 18, 2.0, 16), {"degree": 6, "mesh": over_layers(3.0)},
+        (STACK, 0.3, -0.4, 2.0, 14, 2.0, 16), {"degree": 6, "mesh": over_layers(2.0)},
         (1e-4, 2e-3, 1e-3, 1e-4, 1e-5)),
 }  # fmt: skip
 

@@ -1,6 +1,7 @@
 """Commands to begin with: init, materials and schema; and fit, for measured friction."""
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -121,7 +122,7 @@ def fit(
 
     if not ranks.is_root():
         return errors.GOOD
-    named = [words[0]] if not model and "." not in words[0] and not Path(words[0]).exists() else []
+    named = [words[0]] if not model and "." not in words[0] and not os.path.exists(words[0]) else []
     data = [Path(word) for word in words[len(named) :]]
     if not data:
         raise BadInput(f"found no table, expected as in {program()} fit scenes/slip.csv")

@@ -109,6 +109,13 @@ def test_commands_are_those_that_are_tried():
     assert {*GOOD} == {*cli.commands}
 
 
+@pytest.mark.parametrize("name", [name for name, (files, _) in GOOD.items() if files != []])
+def test_a_command_refuses_what_is_no_file_for_it(name, said):
+    for word in BAD_FILES:
+        status, _, err = said([name, word])
+        assert status == 2 and err.count("error: ") == 1, (name, word, status, err)
+
+
 @pytest.mark.parametrize("n", range(LINES))
 def test_a_command_line_ends_with_its_status(n, said):
     if not os.path.exists("quick.h5"):

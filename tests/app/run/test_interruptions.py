@@ -25,7 +25,8 @@ from galinx.solvers.fem.punch import SlidingPunch
 #: What a run says that was stopped or killed: rank 0 of its finished states where it can, run.sh of a
 #: rank that is gone, and so may MPI.
 SAID = re.compile(
-    r"(\[.*\n)*(?=.)(error: interrupted; (\d+ finished states are kept, go on with --resume"
+    r"(\[.*\n|warning: .*\n)*(?=.)"
+    r"(error: interrupted; (\d+ finished states are kept, go on with --resume"
     r"|nothing was (finished|written))\n)?"
     r"(error: ranks could not be started, or were killed .*; a run goes on with --resume\n)?"
 )

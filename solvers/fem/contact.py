@@ -535,7 +535,8 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     amplitudes = carrying(loads, c1[:, None])
     lifted = (K[:, side] * amplitudes).sum(axis=1) < 0.0
     amplitudes = np.where(lifted[:, None], without_intensity(loads, K[:, [side]]), amplitudes)
-    h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a base that is not tilted lifts off nowhere
+        h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
     centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)

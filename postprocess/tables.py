@@ -500,22 +500,22 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"
 
 
-def sheets_of_run(data: dict[str, Any], units: Units, title: str, width: int) -> list[Sheet]:
-    """Tables of what was computed: states, sliders and motions in time, those that there are."""
-    states = states_sheet(data, units, title, width)
-    sheets = states, sliders_sheet(data, units, width), starts_sheet(data, units, width)
+def sheets_of_run(data: dict[str, Any], units: Units, title: str | None, width: int) -> list[Sheet]:
+    """Tables of what was computed: states, unless the title is None, sliders and motions in time."""
+    states = [] if title is None else [states_sheet(data, units, title, width)]
+    sheets = *states, sliders_sheet(data, units, width), starts_sheet(data, units, width)
     return [sheet for sheet in sheets if sheet.rows]
 
 
 def sheets_of_archive(
-    data: dict[str, Any], units: Units, title: str, width: int, strokes: bool
+    data: dict[str, Any], units: Units, title: str | None, width: int, strokes: bool
 ) -> list[Sheet]:
     """All tables, that of states first.
 
     Args:
         data: datasets of the archive by path.
         units: of the result.
-        title: of the first table.
+        title: of the first table, None to leave it away.
         width: characters of a line.
         strokes: True where strokes were asked for, which have friction loops.
     """

@@ -342,7 +342,8 @@ def page(
     covered = {"surface": large and large["surface"], "inside": large and large["maps"]}
     shown = [each for each in pictures if not covered.get(each["name"])]
     few = len(data[states.FRICTION.path]) <= BESIDE
-    tables = sheets_of_archive(data, units, "Every state", _WIDE * few, not scene.steady)
+    title = "Every state" if few else None  # many have a table of their own, to search
+    tables = sheets_of_archive(data, units, title, _WIDE * few, not scene.steady)
     # The study's tables that the archive has all states of, for the study's solid.
     published = [
         intensities(name, rows, limit_of_steady_motion(name, data, scene.body.half_width))
@@ -357,7 +358,7 @@ def page(
         "summary": summary(data, scene),
         "warnings": json.loads(attributes["warnings"]),
         "reasons": json.loads(attributes["verdict_reasons"]),
-        "tables": tables if few else tables[1:],
+        "tables": tables,
         "sheets": published if sheets is None else sheets,
         "states": None if few else states_table(data, units),
         "explorer": large,

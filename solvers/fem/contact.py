@@ -265,13 +265,14 @@ class AlongLevel(PunchLevel):
         return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
     def splines(
-        self, g: NDArray, half_width: NDArray, tested: Callable[[NDArray], NDArray],
+        self, g: NDArray, half_width: NDArray | None, tested: Callable[[NDArray], NDArray],
         nearest: float = _NEXT, more: float = 0.0,
     ) -> Expansion:  # fmt: skip
         """Pressure of contacts, by splines without knots within a distance of ends and kinks.
 
         Args:
-            g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
+            g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,), None
+                for that of the task.
             tested: normal forces times tests (nodes, n), (states, n).
             nearest: distance over a of knots from ends and kinks, over the root of a length.
             more: added to the exponents of sharp edges.
@@ -298,8 +299,16 @@ class AlongLevel(PunchLevel):
             lambda r: self.facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 
-    def gauge_by_knots(self, states: SolvedStates, half_width: NDArray) -> Gauge:
-        """Gauge of contacts with free ends and half-widths [m], (states,), whose knots are moved."""
+    def intensities(self, parts: NDArray, g: Any, half_width: float | None = None) -> NDArray[np.float64]:
+        """Intensities of the parts (1, parts, fields) of one state at both ends, (parts, 2)."""
+        count = parts.shape[1]
+        lengths = None if half_width is None else np.full(count, half_width)
+        return self.splines(
+            g * np.ones(count), lengths, lambda tests: self.punch.tested(parts, tests)[0]
+        ).K_I
+
+    def gauge_by_knots(self, states: SolvedStates, half_width: NDArray | None) -> Gauge:
+        """Gauge of contacts with free ends, by moved knots; half-widths as of :meth:`splines`."""
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
         coarse = self.splines(contact.g, half_width, contact.tested, COARSE, 1.0)
@@ -452,7 +461,7 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         """
         from scipy.optimize import root  # a slow import
 
-        body, each = self.task.body.loaded(load), np.ones(1 + self.shapes)
+        body = self.task.body.loaded(load)
         m, scale = self._ends.get((g, load), (0.0, float(body.half_width)))
 
         def ends(x: NDArray) -> tuple[float, float]:
@@ -461,9 +470,8 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         def intensities(x: NDArray) -> NDArray[np.float64]:
             m, h = ends(x)
             parts = self.punch.parts(np.array([self._number(g, h)]))
-            pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
             amplitudes, *_ = self.smooth(body, self.punch.loads(parts), np.array([m]), np.array([h]))
-            return amplitudes[0] @ pressure.K_I
+            return amplitudes[0] @ self.intensities(parts, g, h)
 
         x = root(intensities, [m / scale, 0.0], tol=_BALANCED).x
         if not np.abs(intensities(x)).max() < _OF_INTENSITIES:

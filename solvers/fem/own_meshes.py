@@ -447,21 +447,14 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
 
     def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        parts, h = self.punch.parts(g), self.task.body.half_width
-        each = np.ones(parts.shape[1])
-        pressure = self.splines(g * each, h * each, lambda tests: self.punch.tested(parts, tests)[0])
-        return parts, self.punch.loads(parts), pressure.K_I.T[None]
+        parts = self.punch.parts(g)
+        return parts, self.punch.loads(parts), self.intensities(parts, g).T[None]
 
     def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, self._half_width, contact.tested, more=1.0)
+        return self.splines(contact.g, None, contact.tested, more=1.0)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        return self.gauge_by_knots(states, self._half_width)
-
-    @property
-    def _half_width(self) -> NDArray[np.float64]:
-        """Half-width of the mesh [m], (1,)."""
-        return np.array([self.task.body.half_width])
+        return self.gauge_by_knots(states, None)
 
     def continuation(self) -> None:
         # Next to an end where friction varies slopes have logarithms, which no series of powers follows.

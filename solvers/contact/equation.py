@@ -145,13 +145,15 @@ _ROUNDING = 2e-12
 _TO_KINKS_ALONG = (12, 0.2), (18, 0.35)
 #: Finer and finer resolutions: numbers of polynomials, and, where the kernel is rough, longest panels.
 _TERMS: list[Resolution] = [16, 24, 36, 54, 81, 121, 181, 271, 406, 609, 913, 1369, 1400]
-_PANELS: list[Resolution] = (1.4 * 0.7 ** np.arange(12)).tolist()
+_PANELS: list[Resolution] = (1.4 * 0.7 ** np.arange(14)).tolist()
+#: Longest panel below which panels get shorter in t only: in x shorter ones add unknowns and rounding.
+_SETTLED = 0.5
 
 
 class _NoLayers:
     """Kernel of a uniform half-plane, whose equation has none."""
 
-    rough, error = False, 0.0
+    rough, error, length = False, 0.0, np.inf
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         return np.zeros((*np.shape(x), 4))
@@ -256,7 +258,9 @@ class Equation:
         friction, response = self.friction, self.response
         kinks = tuple(sorted({*self.kinks, *friction.kinks, *friction.weak_kinks}))
         grading = _TO_KINKS_ALONG[bool(self.kinks)] if friction.varies else TO_BEND
-        panels = Panels(self.α, self.β, finest, kinks, *grading, rough=self.kernel.rough)
+        panels = Panels(
+            self.α, self.β, finest, kinks, *grading, rough=self.kernel.rough, settled=_SETTLED
+        )
         x, t = panels.x, panels.t
         apart = panels.apart(x[:, None], x - x[:, None])
         np.fill_diagonal(apart, np.inf)
@@ -276,7 +280,7 @@ class Equation:
         b = np.vstack([np.stack([slope(t) * scale for slope in slopes], axis=-1), loads])
         c = lstsq(A, b, lapack_driver="gelsy", check_finite=False)[0].T
         if friction.varies:
-            return ExpansionAlong(self.α, self.β, c, panels, friction=friction)
+            return ExpansionAlong(self.α, self.β, c, panels, friction=friction, length=self.kernel.length)
         return Expansion(self.α, self.β, c, panels)
 
 

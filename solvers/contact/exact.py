@@ -18,7 +18,7 @@ from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .edges import EdgeExponents, Exponents
-from .equation import LayersUnderPunch, SolvedContact, under_punch, weights_between
+from .equation import OF_ENDS, LayersUnderPunch, SolvedContact, under_punch, weights_between
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS, Contacts, Group, Pressure
 from .residual import indentation, of_contact, of_field, places
@@ -274,6 +274,8 @@ class Layers:
             solved, interpolated = [SolvedContact(0.0, fine, before=coarse)], None
         else:
             solved, interpolated = layers.solved(g)
+            if self.tolerance <= OF_ENDS:
+                body.keep(task.response.c, layers.punch.unit, solved)
         nodes: list[Nodes] = []
         if interpolated is not None:
             each = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))

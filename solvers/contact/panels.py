@@ -56,6 +56,7 @@ def ends_of_panels(
     steps: int = TO_TIP,
     grading: float = _TO_KINK,
     reach: float = _REACH,
+    settled: float = 0.0,
 ) -> NDArray[np.float64]:
     """Ends of panels in x, (panels + 1,).
 
@@ -67,10 +68,12 @@ def ends_of_panels(
         steps: number of panels that do, to either side; -1 for panels that only end there.
         grading: length of a panel over that of the next.
         reach: |x| up to which there are panels.
+        settled: longest panel below which only panels in t get shorter: what varies over a length in t is
+            smooth in x next to the ends.
     """
     half = [0.0]
     while half[-1] < reach - 1e-9:
-        half.append(min(half[-1] + float(_longest(half[-1], finest)), reach))
+        half.append(min(half[-1] + float(_longest(half[-1], finest, settled)), reach))
     ends = np.concatenate([-np.array(half[:0:-1]), half])
     at = stretched(np.array(kinks, dtype=float))
     at = at[np.abs(at) < reach]
@@ -82,17 +85,18 @@ def ends_of_panels(
     ends = np.unique(np.concatenate([others, graded[np.abs(graded) < reach], [-reach, reach]]))
     while True:
         middle = (ends[1:] + ends[:-1]) / 2.0
-        long = np.diff(ends) > 1.5 * _longest(middle, finest)
+        long = np.diff(ends) > 1.5 * _longest(middle, finest, settled)
         if not long.any():
             return ends
         ends = np.sort(np.append(ends, middle[long]))
 
 
-def _longest(x: Any, finest: float) -> NDArray[np.float64]:
+def _longest(x: Any, finest: float, settled: float) -> NDArray[np.float64]:
     """Longest panel in x at places x, with the shape of x."""
     limits, lengths = np.array(_LONGEST).T
     longest = lengths[np.searchsorted(limits, np.abs(x), side="right")]
-    return np.asarray(np.minimum(finest * longest, 2.0 * finest * np.cosh(np.abs(x) / 2.0) ** 2))
+    in_t = 2.0 * finest * np.cosh(np.abs(x) / 2.0) ** 2
+    return np.asarray(np.minimum(max(finest, settled) * longest, in_t))
 
 
 def stretched(r: NDArray) -> NDArray[np.float64]:
@@ -108,7 +112,7 @@ class Panels(Functions):
     Attributes:
         α, β: exponents.
         finest: longest panel in t.
-        kinks, steps, grading, reach: as in :func:`ends_of_panels`.
+        kinks, steps, grading, reach, settled: as in :func:`ends_of_panels`.
         nodes: points of a panel.
         rough: True if kernels in integrals may have a logarithm at 0.
     """
@@ -122,10 +126,11 @@ class Panels(Functions):
     reach: float = _REACH
     nodes: int = NODES
     rough: bool = True
+    settled: float = 0.0
 
     @cached_property
     def ends(self) -> NDArray[np.float64]:
-        return ends_of_panels(self.finest, self.kinks, self.steps, self.grading, self.reach)
+        return ends_of_panels(self.finest, self.kinks, self.steps, self.grading, self.reach, self.settled)
 
     @cached_property
     def half(self) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ Lengths are over the contact's half-width a, stresses over N/(2a), N the load pe
 :class:`Contact` has the units of both in SI.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -314,6 +314,17 @@ class Contact:
     @cached_property
     def _solved(self) -> dict[tuple[float, float, float], tuple[float, Any]]:
         return {}
+
+    def keep(self, c: float, unit: float, contacts: Sequence[Any]) -> None:
+        """Keep contacts of this load that a method solved to a millionth, so that none is solved twice.
+
+        Args:
+            c: their speed over the wave speed.
+            unit: of their lengths [m].
+            contacts: see :class:`galinx.solvers.contact.equation.SolvedContact`.
+        """
+        for contact in contacts:
+            self._solved[c, contact.g, float(self.load)] = unit, contact
 
     @property
     def depths(self) -> tuple[str, NDArray[np.float64]]:

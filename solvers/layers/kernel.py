@@ -261,6 +261,11 @@ class Kernel:
         """True where the kernel has a logarithm and a jump at 0."""
         return bool(np.any(self.order))
 
+    @property
+    def length(self) -> float:
+        """Length over which the kernel varies next to 0, over a."""
+        return float(self.stack.layers[0].H) if self.stack.layers else np.inf
+
     def _regular(self, k: NDArray) -> NDArray[Any]:
         regular = self.stack.admittance(k).reshape(-1, 4)
         if self.rough:
@@ -306,6 +311,11 @@ class Scaled:
     def rough(self) -> bool:
         """True where the kernel has a logarithm and a jump at 0."""
         return self.kernel.rough
+
+    @property
+    def length(self) -> float:
+        """Length over which the kernel varies next to 0, over the other unit."""
+        return self.kernel.length / self.size
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The kernels at positions over the other unit, (..., 4)."""

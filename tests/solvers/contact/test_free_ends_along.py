@@ -107,9 +107,10 @@ def test_constant_friction_is_one_number(profile, seed):
     np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), np.ravel(expected), atol=5e-9)
 
 
-@pytest.mark.parametrize("profile", [Flat(2e-3), CYLINDER])
-def test_constant_friction_over_layers_is_one_number(profile):
-    solid = Layered((Layer(1e-3, Isotropic(7.5e9, 0.3, 1200.0)),), ISOTROPIC)
+@pytest.mark.parametrize("profile, thickness", [(Flat(2e-3), 1e-3), (CYLINDER, 1e-3), (CYLINDER, 2e-5)])
+def test_constant_friction_over_layers_is_one_number(profile, thickness):
+    """The contact is some seventy times as wide as the thinnest layer is thick."""
+    solid = Layered((Layer(thickness, Isotropic(7.5e9, 0.3, 1200.0)),), ISOTROPIC)
     friction = tabulated([(-1, 0.4), (1, 0.4)], -1.0)
     contact, _, response = solved(solid, friction, profile)
     one = under_punch(make_contact(solid, profile, LOAD), response, 1e-7).contact(-0.4)

@@ -110,7 +110,9 @@ class Column:
     @property
     def constant(self) -> bool:
         """True where all states have the same."""
-        return len(set(self.texts())) == 1
+        texts = map(self._text, {*self.shown()})
+        first = next(texts, None)
+        return first is not None and all(text == first for text in texts)
 
     def shown(self, count: int | None = None) -> list[Any]:
         """The first cells, those that are rounding as 0, and places of such as NaN."""
@@ -121,12 +123,14 @@ class Column:
 
     def texts(self, count: int | None = None) -> list[str]:
         """The first cells as text."""
-        cells = self.shown(count)
-        return [cell if isinstance(cell, str) else number(float(cell), self.digits) for cell in cells]
+        return [self._text(cell) for cell in self.shown(count)]
+
+    def _text(self, cell: Any) -> str:
+        return cell if isinstance(cell, str) else number(float(cell), self.digits)
 
     def words(self, i: int) -> str:
         """Cell of state ``i`` with its unit."""
-        text = self.texts()[i]
+        text = self.texts(i + 1)[i]
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
 

@@ -121,7 +121,8 @@ def of_pressure(
     H = (own_there * loads) @ divided + own * σ * of_constant
     defect = H - response.q * ratio * σ - slope(s)
     for i, kernel in enumerate(layers):
-        by_kernel = kernel(s[:, None] - rule.t)
+        if not i or kernel.size != layers[i - 1].size:
+            by_kernel = kernel(s[:, None] - rule.t)
         defect[i] += (by_kernel[..., 3] + by_kernel[..., 2] * there[i]) @ loads[i]
     return np.asarray(np.abs(defect).max(axis=1) / np.abs(own * σ).max(axis=1))
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.solvers.contact import BELOW, ON_SURFACE, VARYING
 from galinx.solvers.contact.solution import IN_PUNCH, OUT_OF_PLANE
-from galinx.solvers.contact.stresses import extreme_in_plane, principal, von_mises
+from galinx.solvers.contact.stresses import principal, von_mises
 from galinx.solvers.parameters import Range
 
 from .quantity import (
@@ -72,25 +72,25 @@ FARTHEST = 5.0
 _METHODS = (CLOSED_FORM, FEM, SIE)
 
 
-def _extreme(end: str, sign: float, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
+def _extreme(end: str, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
     """Quantities of the highest or the lowest in-plane stress, and of its place."""
     path = f"states/{{method}}/sigma_XX_{end}"
     value = by_method(
         path, "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, body: extreme_in_plane(s, body, sign)[0], _METHODS,
+        (STATE,), lambda s, _: getattr(s, f"{what}_in_plane")[0], _METHODS,
         asked_by=ON_SURFACE,
     )  # fmt: skip
     place = by_method(
         f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
-        lambda s, body: extreme_in_plane(s, body, sign)[1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
+        lambda s, _: getattr(s, f"{what}_in_plane")[1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
     )  # fmt: skip
     return value, place
 
 
-HIGHEST, HIGHEST_X = _extreme("max", 1.0, "highest")
-LOWEST, LOWEST_X = _extreme("min", -1.0, "lowest")
+HIGHEST, HIGHEST_X = _extreme("max", "highest")
+LOWEST, LOWEST_X = _extreme("min", "lowest")
 
 
 def estimate(word: str, name: str, **own: str) -> dict[str, Quantity]:

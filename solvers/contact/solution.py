@@ -21,7 +21,7 @@ from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
 from .prescribed_pressure import LinearPressure
-from .stresses import Places
+from .stresses import Places, extreme_in_plane
 from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
@@ -612,6 +612,16 @@ class Solution:
     def strength(self) -> Any:
         """Yield of the states."""
         return self.body.strength(self)
+
+    @cached_property
+    def highest_in_plane(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Highest in-plane stress and its place, see :func:`.stresses.extreme_in_plane`."""
+        return extreme_in_plane(self, self.body, 1.0)
+
+    @cached_property
+    def lowest_in_plane(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lowest in-plane stress and its place."""
+        return extreme_in_plane(self, self.body, -1.0)
 
 
 #: σ_YY over N/(2a) at positions X over a under the punch.

@@ -10,9 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.hdf5 import archive as reader
-from galinx.postprocess.quantities import Quantity, over_time, runs, table
+from galinx.postprocess.quantities import Quantity, over_time, preferred, runs, table
 from galinx.postprocess.quantities.quantity import ALONG, FRICTION_ALONE, INSIDE, INTERFACE, POINT, STATE
-from galinx.postprocess.quantities.states import FRICTION, LOAD, MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.states import (
+    FRICTION,
+    INNER_STATE,
+    LOAD,
+    MOTION,
+    POSITION,
+    RATIO,
+    RESULTANT_RATIO,
+    SPEED,
+)
 from galinx.postprocess.tables import parameters, state_columns, states_of_sliders
 from galinx.postprocess.units import Units
 from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
@@ -119,6 +128,8 @@ def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
         (f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, np.asarray(c.values)) for c in first
     ]
     taken = {column.path for column in first}
+    if preferred(data, RESULTANT_RATIO):  # these stand for a friction that varies along the contact
+        taken |= {FRICTION.path, RATIO.path, INNER_STATE.path}
     for path, row in table().items():
         if path not in data or path.split("/")[0] not in ("states", "interfaces") or path in taken:
             continue

@@ -54,13 +54,18 @@ LOAD = Quantity(
 )  # fmt: skip
 FRICTION = Quantity(
     "states/f", "1",
-    "friction coefficient F/N, positive in forward motion; mean of f over X where it varies along X",
+    "friction coefficient F/N, positive in forward motion; where it varies along X its mean over X, "
+    "between free ends that over the first contact at rest",
     (STATE,),
 )  # fmt: skip
-RATIO = Quantity("states/g", "1", "sigma_XY/sigma_YY under the punch, its mean where it varies", (STATE,))
-INNER_STATE = Quantity(
-    "states/inner_state", "1", "inner state of the friction law, as its page says", (STATE, INNER)
+RATIO = Quantity(
+    "states/g", "1", "sigma_XY/sigma_YY under the punch, its mean as that of f where it varies", (STATE,)
 )
+INNER_STATE = Quantity(
+    "states/inner_state", "1",
+    "inner state of the friction law, as its page says; of bristles that never leave the contact",
+    (STATE, INNER),
+)  # fmt: skip
 VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=NOT_NEGATIVE)
 SPEED_LIMIT = Quantity(
     "states/speed_limit", "m/s", "speed of the wave along the surface, below which a punch has to be",

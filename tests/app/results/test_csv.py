@@ -188,3 +188,21 @@ def test_dimensionless_work_is_over_load_and_half_width(path, result):
     expected = result.data["loops/cycle_dissipated"][0] / unit
     np.testing.assert_allclose(numbers(table["cycle_dissipated [N*a]"])[0], expected, rtol=1e-15)
     assert not [head for head in (*table, *read(path, "states", True)) if "J/m" in head or "[m]" in head]
+
+
+def test_friction_along_the_contact_is_the_force_over_the_load(tmp_path):
+    """Its mean over the contact at rest, by which it is known, stands in no column."""
+    along = computed(
+        "tables4_5",
+        {
+            "motion": {"speed": "100 m/s"}, "solve.methods": ["sie"], "output": {"quantities": ["sif"]},
+            "punch": {"profile": "parabolic", "radius": "50 mm", "load": ["20 N/mm", "100 N/mm"]},
+            "friction": {"state": "advected", "model": "dahl", "mu_c": 0.4, "sigma0_over_load": 2000},
+        },
+    )  # fmt: skip
+    along.save(tmp_path / "along.h5")
+    found = read(tmp_path / "along.h5")
+    assert not {"g [1]", "inner_state_1 [1]"} & {*found}
+    force = -along.data["states/sie/resultant_ratio"]
+    np.testing.assert_allclose(numbers(found["f [1]"]), force, rtol=1e-12)
+    assert force[1] > 1.5 * force[0]

@@ -352,7 +352,7 @@ RULES: Registry[Rule] = Registry(
             at.PRESSURE, beside=(at.SURFACE_X,),
         ),
         "estimate of the integral equation": _estimate(
-            of.ESTIMATE[SIE], "the integral equation over layers", False
+            of.ESTIMATE[SIE], "the integral equation", False
         ),
         "stresses at interfaces": against(
             SIE, _over(stresses.of_interfaces),
@@ -366,10 +366,10 @@ RULES: Registry[Rule] = Registry(
             for method, name in ((FEM, "finite elements"), (SIE, "the integral equation"))
         },
         "estimate of sigma_XX, sie": _estimate(
-            at.ESTIMATE_IN_PLANE[SIE], "σ_XX of the integral equation over layers"
+            at.ESTIMATE_IN_PLANE[SIE], "σ_XX of the integral equation"
         ),
         "estimate inside, sie": _estimate(
-            at.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation over layers"
+            at.ESTIMATE_INSIDE[SIE], "stresses inside of the integral equation"
         ),
         **_both("ends", _over(lambda exact: exact[0]), "ends of the contact{}, over its half-width",
                 of.HALF_WIDTH, of.CENTRE),

@@ -199,18 +199,21 @@ class Panels(Functions):
         return slice(panel * self.nodes, (panel + 1) * self.nodes)
 
     @cached_property
-    def derivative(self) -> NDArray[np.float64]:
-        """Matrices from values in a panel to slopes dp/dt at its points, (panels, nodes, nodes)."""
-        τ, _, to_legendre = _legendre_panel(self.nodes)
-        of_τ = legendre.legvander(τ, self.nodes - 2) @ legendre.legder(to_legendre)
-        slope = 1.0 / (2.0 * np.cosh(self.x / 2.0) ** 2)
-        return of_τ / self.half[:, None, None] / slope.reshape(-1, self.nodes, 1)
+    def between(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Places in x between the points, one more in a panel, and values there from the panel's points.
 
-    def rows(self, kernel: Callable[[NDArray], NDArray]) -> NDArray[np.float64]:
-        """Weights of :meth:`row` for every point, (n, n, functions)."""
+        Returns:
+            Places, (panels * (nodes + 1),), and the matrix of each panel, (nodes + 1, nodes).
+        """
+        (τ, _, _), (_, _, to_legendre) = _legendre_panel(self.nodes + 1), _legendre_panel(self.nodes)
+        x = (self.middle[:, None] + self.half[:, None] * τ).ravel()
+        return x, legendre.legvander(τ, self.nodes - 1) @ to_legendre
+
+    def rows(self, kernel: Callable[[NDArray], NDArray], x: NDArray) -> NDArray[np.float64]:
+        """Weights of :meth:`row` for places x, (len(x), n, functions)."""
         if self.rough:
-            return np.array([self.row(kernel, x) for x in self.x.tolist()])
-        away = -self.apart(self.x[:, None], self.x - self.x[:, None])
+            return np.array([self.row(kernel, place) for place in x.tolist()])
+        away = -self.apart(x[:, None], self.x - x[:, None])
         return np.asarray(kernel(away) * self.weights[:, None])
 
     def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:

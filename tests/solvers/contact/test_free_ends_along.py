@@ -5,6 +5,8 @@ ends under a slope f is τ = N̂ σ = cos(πα) S f - S Z (1/π) ⨍ S f/(Z (s -
 ∫ t S f/Z dt = -∫ τ dt (Gakhov, Boundary value problems, §47).
 """
 
+from itertools import pairwise, starmap
+
 import numpy as np
 import pytest
 from random_solids import random_solid
@@ -19,6 +21,7 @@ from galinx.solvers.profiles.punches import Flat, Parabolic, Wedge
 from galinx.solvers.solids.isotropic import Isotropic
 
 ISOTROPIC, LOAD, CYLINDER = Isotropic(2.5e9, 0.3, 1000.0), 1e4, Parabolic(0.1)
+WEDGE = Wedge(0.01)
 PLACES = np.array([-0.999, -0.3, 0.6, 0.95])
 
 
@@ -38,8 +41,8 @@ def rule(first, last):
     return 1.0 + first + from_first, 1.0 - last + to_last, weights
 
 
-def reference(response, g, m, h, unit):
-    """∫ S f/Z dt, ∫ t S f/Z dt and τ at places, of the slope f = (m + h t) over a unit."""
+def reference(response, g, f, tip=()):
+    """∫ S f/Z dt, ∫ t S f/Z dt and τ at places, of the slope f, which jumps at the tips."""
     # Bristles give way within a short distance from X = a, towards which panels are graded.
     x, w = np.polynomial.legendre.leggauss(16)
     ends = np.append(2.0 * 0.5 ** np.arange(50.0), 0.0)
@@ -55,18 +58,19 @@ def reference(response, g, m, h, unit):
         at, apart = α(right), right[:, None] - ahead
         E = ((α(ahead) - at[:, None]) / np.where(apart == 0.0, np.inf, apart)) @ w
         Z = right ** (1.0 + at) * left**-at * np.exp(E)
-        return t, at, Z, -np.sin(np.pi * at) * (m + h * t) / unit / Z
+        return t, at, Z, -np.sin(np.pi * at) * f(t) / Z
 
     def τ(X):
         (t,), (at,), (Z,), (F,) = Z_and_F(*np.array([[1.0 + X], [1.0 - X]]))
         H = F * np.log((1.0 - t) / (1.0 + t))
-        for left, right, weights in (rule(-1.0, X), rule(X, 1.0)):
+        for left, right, weights in starmap(rule, pairwise(sorted([-1.0, *tip, X, 1.0]))):
             beside, _, _, of = Z_and_F(left, right)
             H += ((of - F) / np.where(beside == t, np.inf, beside - t)) @ weights
         S = -np.sin(np.pi * at)
-        return np.cos(np.pi * at) * S * (m + h * t) / unit - S * Z * H / np.pi
+        return np.cos(np.pi * at) * S * f(t) - S * Z * H / np.pi
 
-    left, right, weights = rule(-1.0, 1.0)
+    each = starmap(rule, pairwise([-1.0, *tip, 1.0]))
+    left, right, weights = (np.concatenate(of) for of in zip(*each))
     t, _, _, F = Z_and_F(left, right)
     return F @ weights, (t * F) @ weights, np.array([τ(X) for X in PLACES])
 
@@ -76,24 +80,31 @@ def of_dahl(μ, stiffness, a):
     return lambda right: μ * np.expm1(-stiffness / μ * a * right)
 
 
-@pytest.mark.parametrize("seed, stiffness", [(0, 3000.0), (2, 1000.0)])
-def test_cylinder_with_advected_dahl_against_15_digits(seed, stiffness):
-    solid, friction = random_solid(seed) if seed else ISOTROPIC, None
-    half_width = make_contact(solid, CYLINDER, LOAD).half_width
+@pytest.mark.parametrize(
+    "profile, seed, stiffness, error",
+    [(CYLINDER, 0, 3000.0, 1e-7), (CYLINDER, 2, 1000.0, 1e-7), (WEDGE, 0, 300.0, 1e-7)],
+)
+def test_punch_with_advected_dahl_against_15_digits(profile, seed, stiffness, error):
+    """That of a wedge has a tip, next to which the pressure is infinite."""
+    solid = random_solid(seed) if seed else ISOTROPIC
+    half_width = make_contact(solid, profile, LOAD).half_width
     friction = advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, half_width, -1.0)
-    contact, body, response = solved(solid, friction)
+    contact, body, response = solved(solid, friction, profile, tolerance=error)
     m, h = contact.centre * half_width, contact.half_width * half_width
-    # μ v,X over N/(2h) is 2 h P'/(N/μ).
-    unit = CYLINDER.radius * body.compression / (2.0 * h)
-    balance, load, τ = reference(response, of_dahl(0.6, stiffness, h), m, h, unit)
+
+    def slope(t):  # μ v,X over N/(2h) is 2 h P'/(N/μ)
+        return 2.0 * h * profile.slope(m + h * t) / body.compression
+
+    tip = (-m / h,) if profile is WEDGE else ()
+    balance, load, τ = reference(response, of_dahl(0.6, stiffness, h), slope, tip)
     assert abs(balance) < 1e-8
     if not seed:
         assert load == pytest.approx(2.0 * response.n, rel=1e-8)
     own = response.n + friction.at(h)(PLACES) * response.n12
-    np.testing.assert_allclose(own * contact.pressure.σ_YY(PLACES), τ, rtol=1e-7)
+    np.testing.assert_allclose(own * contact.pressure.σ_YY(PLACES), τ, rtol=error)
 
 
-@pytest.mark.parametrize("profile", [CYLINDER, Wedge(0.01)])
+@pytest.mark.parametrize("profile", [CYLINDER, WEDGE])
 @pytest.mark.parametrize("seed", [0, 2])
 def test_constant_friction_is_one_number(profile, seed):
     solid = random_solid(seed) if seed else ISOTROPIC

@@ -12,9 +12,10 @@ the integrand is a sum of Legendre polynomials, whose Cauchy integrals are Legen
 second kind.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
+from math import ceil, log
 from typing import Any
 
 import numpy as np
@@ -34,8 +35,8 @@ _LONGEST, _SLOPES, _LONGEST_OF_WEIGHT = ((8.0, 2.0), (15.0, 3.5), (np.inf, 6.0))
 #: cusp, and where only the pressure that layers add is resolved; both for slopes.
 _TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, (5, 0.2), 0.5, 46
 #: Panels towards a place where a kernel is rough: their grading and number; distance over a panel's
-#: length within which a place is near it.
-_GRADING, _STEPS, _NEAR = 0.2, 22, 1.0
+#: length within which a place is near it, and below which it is at its end.
+_GRADING, _STEPS, _NEAR, _CLOSEST = 0.2, 22, 1.0, 1e-16
 #: Positions on which kernels are held at once, over those of a rule.
 _TOGETHER = 200
 #: Distance from a free end within which a pressure is continued, and up to which it is fitted for that.
@@ -179,7 +180,7 @@ class Panels(Functions):
         """t(x + δ) - t(x), to all digits."""
         return np.asarray(np.sinh(δ / 2.0) / (np.cosh(x / 2.0) * np.cosh((x + δ) / 2.0)))
 
-    def basis(self, x: NDArray, panel: int) -> NDArray[np.float64]:
+    def basis(self, x: NDArray, panel: int | NDArray) -> NDArray[np.float64]:
         """Matrix from values at a panel's points to those at its places x, (len(x), nodes)."""
         τ = (x - self.middle[panel]) / self.half[panel]
         return np.asarray(legendre.legvander(τ, self.nodes - 1) @ _legendre_panel(self.nodes)[2])
@@ -221,31 +222,38 @@ class Panels(Functions):
 
         The kernel may be rough where t = t(x).
         """
-        away = -self.apart(x, self.x - x)
+        x, reach = min(max(x, -self.reach), self.reach), _NEAR * np.diff(self.ends)
+        near = np.flatnonzero((self.ends[:-1] - reach <= x) & (x <= self.ends[1:] + reach)).tolist()
+        panels, δ, weights = zip(*[(panel, *part) for panel in near for part in self._towards(x, panel)])
+        sizes, (δ, weights) = [len(of) for of in δ], map(np.concatenate, (δ, weights))
+        places, own = x + δ, np.repeat(panels, sizes)
+        away = -self.apart(x, np.append(self.x - x, δ))
         away[away == 0.0] = 1.0  # the panels near x are replaced below
-        by_rule = kernel(away)
+        by_rule, values = np.split(kernel(away), [len(self.x)])
         integrals = by_rule * self.weights[:, None]
-        for panel, half in enumerate(self.half.tolist()):
-            low, high = self.ends[panel], self.ends[panel + 1]
-            if low - _NEAR * 2.0 * half <= x <= high + _NEAR * 2.0 * half:
-                δ, weights = self._towards(x, float(low), float(high))
-                places, near = x + δ, self.of(panel)
-                values = kernel(-self.apart(x, δ)) * (weights * self.density(places))[:, None]
-                beyond = self.weights[near] - self.dx[near] * self.density(self.x[near])
-                integrals[near] = self.basis(places, panel).T @ values
-                integrals[near] += beyond[:, None] * by_rule[near]
+        for panel in near:
+            there = self.of(panel)
+            integrals[there] = self._beyond[there, None] * by_rule[there]
+        values, basis = values * (weights * self.density(places))[:, None], self.basis(places, own)
+        for panel, rows in zip(panels, np.split(np.arange(len(own)), np.cumsum(sizes)[:-1])):
+            integrals[self.of(panel)] += basis[rows].T @ values[rows]
         return np.asarray(integrals)
 
-    @staticmethod
-    def _towards(x: float, low: float, high: float) -> tuple[NDArray, NDArray]:
-        """Distances from a place and weights on a panel, graded towards it or the nearer end."""
-        steps = np.concatenate([[0.0], _GRADING ** np.arange(_STEPS, -1, -1.0)])
-        middle, half = (steps[1:] + steps[:-1]) / 2.0, np.diff(steps) / 2.0
-        s, ds = (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
+    @cached_property
+    def _beyond(self) -> NDArray[np.float64]:
+        """Weights of what is beyond the reach, (n,)."""
+        return self.weights - self.dx * self.density(self.x)
+
+    def _towards(self, x: float, panel: int) -> Iterator[tuple[NDArray, NDArray]]:
+        """Distances from a place and weights on both parts of a panel, graded towards it."""
+        low, high = self.ends[panel : panel + 2].tolist()
         at = min(max(x, low), high)
-        parts = [((at - x) + (end - at) * s, abs(end - at) * ds) for end in (low, high) if end != at]
-        places, weights = (np.concatenate(numbers) for numbers in zip(*parts))
-        return places, weights
+        for end in (low, high):
+            if length := abs(end - at):
+                # Parts of the panel need be no shorter than the place is far from it.
+                apart = log(max(abs(at - x) / length, _CLOSEST)) / log(_GRADING)
+                s, ds = _graded(min(ceil(apart), _STEPS))
+                yield (at - x) + (end - at) * s, length * ds
 
     def cauchy(self, f: NDArray, y: NDArray) -> NDArray[Any]:
         """Cauchy's integral of w f over w, C(y), (points,); a principal value where y is real.
@@ -366,6 +374,14 @@ def _without_pole(k: float, ξ: NDArray) -> NDArray[Any]:
     safe = np.where(small, 1.0, ξ)
     ratio = np.where(small, 1.0 - ξ / 2.0 + ξ**2 / 12.0 - ξ**4 / 720.0, safe / np.expm1(safe))
     return np.exp(k * ξ) * ratio
+
+
+@cache
+def _graded(steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points in (0, 1) and weights, graded towards 0 in so many steps, none where these are negative."""
+    ends = np.append(0.0, _GRADING ** np.arange(max(steps, 0), -1, -1.0))
+    middle, half = (ends[1:] + ends[:-1]) / 2.0, np.diff(ends) / 2.0
+    return (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
 
 
 #: Least distance in x from the end of a panel in its logarithm.

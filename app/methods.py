@@ -26,7 +26,7 @@ from galinx.solvers.contact.solution import (
     Contact,
     Method,
 )
-from galinx.solvers.profiles import smooth
+from galinx.solvers.profiles import kinks
 
 from .errors import finite_elements_installed
 
@@ -125,7 +125,7 @@ _LACKING = {
 def fem_mode(scene: Any) -> str:
     """Mode of a scene's finite elements, see :class:`galinx.solvers.contact.fem_plan.FemPlan`."""
     body = scene.body
-    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][not smooth(body.profile)]
+    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][len(kinks(body.profile)) > 0]
     return scene.solve.mode if mode == CONTACT else mode
 
 
@@ -133,7 +133,7 @@ def _fem_along_refusal(scene: Any, body: Contact) -> str:
     """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
     if scene.layers and body.friction_kinks:
         return "friction varies along a contact over layers, with kinks of friction"
-    if body.found and not smooth(body.profile):
+    if body.found and len(kinks(body.profile)):
         return "friction varies along the contact of a punch with kinks"
     moving = body.found and any(along.has_length for along in scene.along.values())
     return "kinks of friction move with the half-width" if moving and body.friction_kinks else ""

@@ -49,7 +49,7 @@ from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import unknowns
 from galinx.solvers.contact.solution import FLAT, Task
-from galinx.solvers.profiles import smooth
+from galinx.solvers.profiles import kinks
 
 from ..console import Progress
 from ..methods import METHODS
@@ -80,7 +80,7 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
     if runs.RECORD["c"].path in archive.data and not len(archive.data[runs.FAILURES.path]):
         yield from _of_record(archive.data, plan)
     few = _spread(plan, _FEW)
-    more = _spread(plan, _SMOOTH) if smooth(plan.body.profile) else few
+    more = few if len(kinks(plan.body.profile)) else _spread(plan, _SMOOTH)
     for method in (CLOSED_FORM, SIE):
         by = (method, LOCAL) if method == CLOSED_FORM else (method,)
         # Residuals may be rounding alone; comparisons have them.
@@ -206,7 +206,7 @@ def _of_finite_elements(archive: Archive, plan: Plan, selected: NDArray[np.int64
     exact = [
         row for row in QUANTITIES.values()
         if row.of and row.method == CLOSED_FORM and row.mode in scene.modes and row.asked_by != YIELD
-        and (smooth(body.profile) or row.over == (STATE,)) and not refusal(scene, body, row)
+        and (not len(kinks(body.profile)) or row.over == (STATE,)) and not refusal(scene, body, row)
     ]  # fmt: skip
     rules = {name: rule for name, rule in compare.RULES.items() if {*rule.needs} & {*exact}}
     needed = {row.path: row for rule in rules.values() for row in rule.needs}

@@ -141,11 +141,9 @@ class ExpansionAlong(Expansion):
 
     Attributes:
         friction: σ_XY/σ_YY over X/a.
-        length: over which layers vary the pressure next to a free end.
     """
 
     friction: Along = constant(0.0)
-    length: float = np.inf
 
     @property
     def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
@@ -156,7 +154,7 @@ class ExpansionAlong(Expansion):
         g, at_kinks = self.friction(r), np.abs(ENDS[:, None] - self.kinks).min(axis=1, initial=1.0)
         spread = np.ptp(self.friction(self.functions.t)) or 1.0
         slope = np.abs(np.diff(g)[:, 0]) / _STEP / spread
-        lengths = np.minimum(1.0 / np.maximum(slope, 1.0), np.minimum(at_kinks, self.length))
+        lengths = np.minimum(1.0 / np.maximum(slope, 1.0), at_kinks)
         c = self.functions.continued(self.c, free, tuple(lengths.tolist()))
         return replace(self, c=c, ends=free)
 

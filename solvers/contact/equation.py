@@ -261,8 +261,9 @@ class Equation:
         kinks = tuple(sorted({*self.kinks, *friction.kinks, *friction.weak_kinks}))
         grading = _TO_KINKS_ALONG[bool(self.kinks)] if friction.varies else TO_BEND
         panels = Panels(
-            self.α, self.β, finest, kinks, *grading, rough=self.kernel.rough, settled=_SETTLED
-        )
+            self.α, self.β, finest, kinks, *grading, rough=self.kernel.rough, settled=_SETTLED,
+            length=self.kernel.length,
+        )  # fmt: skip
         x, own = panels.between
         r, scale = np.tanh(x / 2.0), 1.0 / panels.weight(x)
         g, there = friction(panels.t), friction(r)
@@ -280,7 +281,7 @@ class Equation:
         b = np.vstack([np.stack([slope(r) * scale for slope in slopes], axis=-1), loads])
         c = lstsq(A, b, lapack_driver="gelsy", check_finite=False)[0].T
         if friction.varies:
-            return ExpansionAlong(self.α, self.β, c, panels, friction=friction, length=self.kernel.length)
+            return ExpansionAlong(self.α, self.β, c, panels, friction=friction)
         return Expansion(self.α, self.β, c, panels)
 
 

@@ -116,6 +116,7 @@ class Panels(Functions):
         kinks, steps, grading, reach, settled: as in :func:`ends_of_panels`.
         nodes: points of a panel.
         rough: True if kernels in integrals may have a logarithm at 0.
+        length: over which layers vary a pressure next to a free end.
     """
 
     α: float
@@ -128,6 +129,7 @@ class Panels(Functions):
     nodes: int = NODES
     rough: bool = True
     settled: float = 0.0
+    length: float = 1.0
 
     @cached_property
     def ends(self) -> NDArray[np.float64]:
@@ -342,7 +344,7 @@ class Panels(Functions):
         """
         continued = p.copy()
         for end in np.flatnonzero(free).tolist():
-            d = 2.0 / (1.0 + np.exp((2 * end - 1) * self.x)) / lengths[end]
+            d = 2.0 / (1.0 + np.exp((2 * end - 1) * self.x)) / min(lengths[end], self.length)
             fitted, near = (d > _MENDED) & (d < _KNOWN), d <= _MENDED
             c, *_ = np.linalg.lstsq(_to_end(d[fitted]), p[fitted] / d[fitted], rcond=None)
             continued[near] = d[near] * (_to_end(d[near]) @ c)

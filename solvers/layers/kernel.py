@@ -263,8 +263,11 @@ class Kernel:
 
     @property
     def length(self) -> float:
-        """Length over which the kernel varies next to 0, over a."""
-        return float(self.stack.layers[0].H) if self.stack.layers else np.inf
+        """Length over which the kernel varies next to 0, over a: that of the grading of a graded top."""
+        if not self.stack.layers:
+            return np.inf
+        graded = np.abs(self.order).max() / np.abs(inverse(self.stack.top.down)).max()
+        return float(1.0 / max(graded, 1.0 / self.stack.layers[0].H))
 
     def _regular(self, k: NDArray) -> NDArray[Any]:
         regular = self.stack.admittance(k).reshape(-1, 4)

@@ -11,7 +11,6 @@ from .profile import (
     jumps,
     kinks,
     leaving,
-    smooth,
 )
 
 __all__ = [
@@ -24,5 +23,4 @@ __all__ = [
     "jumps",
     "kinks",
     "leaving",
-    "smooth",
 ]  # fmt: skip

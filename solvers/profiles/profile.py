@@ -56,11 +56,6 @@ def jumps(profile: Any) -> bool:
     return getattr(profile, "jumps", False)
 
 
-def smooth(profile: Any) -> bool:
-    """Return True if the slope has all derivatives wherever there is a contact."""
-    return not len(kinks(profile)) or (exponent(profile) or 1.0) % 2.0 == 0.0
-
-
 def exponent(profile: Any) -> float | None:
     """Exponent k of a height c|X|^k; None for other heights."""
     return getattr(profile, "exponent", None)
@@ -81,7 +76,7 @@ def leaving(profile: Any) -> float:
     It is k - 1 for a height |X|^k. A whole number n stands for dⁿ log d: 1 where the slope's derivative
     jumps. 0 is for no kink, and for kinks at which the pressure is infinite.
     """
-    if smooth(profile) or jumps(profile):
+    if not len(kinks(profile)) or jumps(profile):
         return 0.0
     return (exponent(profile) or 2.0) - 1.0
 

@@ -97,7 +97,6 @@ class Power:
 
     about: ClassVar[str] = "power"
     sharp: ClassVar[tuple[bool, bool]] = (False, False)
-    kinks: ClassVar[tuple[float, ...]] = (0.0,)
 
     exponent: float = parameter("exponent", "exponent k", "", symbol="k", above=1.0, at_most=20.0)
     coefficient: float = parameter(
@@ -107,6 +106,10 @@ class Power:
 
     def __post_init__(self) -> None:
         check(self)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return () if self.exponent % 2.0 == 0.0 else (0.0,)
 
     def height(self, X: NDArray) -> NDArray[np.float64]:
         return self.coefficient * np.abs(X) ** self.exponent

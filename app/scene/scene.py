@@ -256,7 +256,11 @@ def _not_varying(scene: Scene) -> str:
         "a motion in time": scene.time is not None,
         "a slider": scene.slider is not None,
         f"a {punch.words()}": isinstance(punch, Flat) and punch.rise != 0.0,
-        "an elastic punch": scene.elastic_punch is not None,
+        "bristles that a rolling punch carries along, too": (
+            scene.friction.state == ADVECTED
+            and scene.elastic_punch is not None
+            and scene.elastic_punch.speed != 0.0
+        ),
         f'solve.mode = "{solve.mode}"': solve.mode != "contact",
         f'solve.mesh = "{solve.mesh}"': solve.mesh != "confocal",
         f'solve.solver = "{solve.solver}"': solve.solver not in ("auto", "direct"),

@@ -226,8 +226,8 @@ class Panels(Functions):
         """
         x, reach = min(max(x, -self.reach), self.reach), _NEAR * np.diff(self.ends)
         near = np.flatnonzero((self.ends[:-1] - reach <= x) & (x <= self.ends[1:] + reach)).tolist()
-        panels, δ, weights = zip(*[(panel, *part) for panel in near for part in self._towards(x, panel)])
-        sizes, (δ, weights) = [len(of) for of in δ], map(np.concatenate, (δ, weights))
+        panels, *parts = zip(*[(panel, *part) for panel in near for part in self._towards(x, panel)])
+        sizes, (δ, weights) = [len(part) for part in parts[0]], map(np.concatenate, parts)
         places, own = x + δ, np.repeat(panels, sizes)
         away = -self.apart(x, np.append(self.x - x, δ))
         away[away == 0.0] = 1.0  # the panels near x are replaced below

@@ -152,7 +152,7 @@ class Contact:
         else:
             reasons[LAYERED] = "the solid has no layers"
         if self.along:
-            reasons |= dict.fromkeys((FLAT, YIELD), "friction varies along the contact")
+            reasons |= dict.fromkeys((FLAT, YIELD, IN_PUNCH), "friction varies along the contact")
         return reasons
 
     @property

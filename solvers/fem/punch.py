@@ -443,7 +443,8 @@ class ElasticPunch(SlidingPunch):
 
     def __init__(
         self, space: Space, response: PairAtSpeed, solver: str = "direct",
-        heights: NDArray[np.float64] | None = None, along: None = None, least: float = LEAST,
+        heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
+        least: float = LEAST,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
@@ -451,17 +452,19 @@ class ElasticPunch(SlidingPunch):
         others = unit[1:]
         punch = SlidingPunch(space, response.punch, solver, others)
         each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, each, least=least)
+        super().__init__(space, response.plate, solver, each, along, least)
         self.response, self._parts = response, self._parts - len(others)
         self._moving_fields = self.fields[self._parts :]
         #: Forces in the plate by each unit of v', (n, 2, n).
         self._moving = np.concatenate([-self.forces[:1], self.forces[self._parts :]])
         self.fields, self.forces = self.fields[: self._parts], self.forces[: self._parts]
+        #: Combinations of displacements and tangential forces, orthonormal, (basis, 2 n).
+        self._basis: NDArray[np.float64] = np.empty((0, 2 * len(unit)))
         S = self._moving[:, 1].T
         S_punch = np.concatenate([-punch.forces[:1], punch.forces[1:]])[:, 1].T
         T, T_punch = (of.by_nodes()[:, 1].T for of in (self, punch))
         punch.destroy()
-        #: -v' by R, for g = 0 and for each unit of g; and matrices of the equations of R, likewise.
+        #: -v' by R, and by g R; and matrices of the equations of R, likewise.
         self._moved = -response.ratio * np.linalg.solve(S_punch, [unit, T_punch])
         self._equations = unit - S @ self._moved[0], -S @ self._moved[1] - T
         #: 0 where the punch is the softer one: all of the plate's displacement is in the basis then.
@@ -470,35 +473,53 @@ class ElasticPunch(SlidingPunch):
             self._rigid, self._moved = 0.0, np.linalg.solve(S, [unit, -T])
 
     def _changes(self, g: NDArray) -> NDArray[np.float64]:
-        """Displacements -v' and tangential forces g R of every part for every g, (states, parts, 2 n)."""
+        """Displacements -v' and tangential forces G R of every part for every g, (states, parts, 2 n)."""
         (first, second), (moved, by_g) = self._equations, self._moved
         forces, changes = self.forces[: self._parts, 1].T, []
         for value in g.tolist():
-            R = np.linalg.solve(first + value * second, forces)
-            changes.append(np.concatenate([(moved + value * by_g) @ R, value * R]).T)
+            G = self._along(value) if self._along else value * np.eye(len(first))
+            R = np.linalg.solve(first + second @ G, forces)
+            changes.append(np.concatenate([moved @ R + by_g @ (G @ R), G @ R]).T)
         return np.array(changes)
 
     def prepare(self, g: NDArray[np.float64]) -> None:
-        sample, n = spread(g, _SPREAD), len(self._moving)
-        units = np.array([-self.fields[0].array_r, *(field.array_r for field in self._moving_fields)])
-        changes = self._changes(np.concatenate([sample, -sample])).reshape(-1, 2 * n)
+        super().prepare(g)
+        self._forget_moving()
+
+    def _forget_moving(self) -> None:
+        while self._moving_fields:
+            self._moving_fields.pop().destroy()
+
+    def _grow(self, g: NDArray) -> None:
+        """Add fields until the basis has all that these frictions require."""
+        n = len(self._moving)
+        changes = self._changes(g).reshape(-1, 2 * n)
         changes /= np.linalg.norm(changes, axis=1, keepdims=True)
-        _, size, rows = np.linalg.svd(changes, full_matrices=False)
-        #: Combinations of displacements and tangential forces, (basis, 2 n).
-        self._basis = rows[size > self._left * size[0]]
-        b = self._tangential(self._basis[:, n:].T)
+        rest = changes - (changes @ self._basis.T) @ self._basis
+        _, size, rows = np.linalg.svd(rest, full_matrices=False)
+        more = rows[size > self._left * np.linalg.norm(changes, 2)]
+        if not len(more):
+            return
+        for _ in range(2):  # twice is enough
+            more = np.linalg.qr((more - (more @ self._basis.T) @ self._basis).T)[0].T
+        units = np.array([-self.fields[0].array_r, *(field.array_r for field in self._moving_fields)])
+        b = self._tangential(more[:, n:].T)
         fields, forces = self._refined(b, self._displacements(b), True, bool(np.any(g)))
-        for field, moved in zip(fields, self._basis[:, :n] @ units):
+        for field, moved in zip(fields, more[:, :n] @ units):
             field.setArray(field.array_r + moved)
         self.fields = [*self.fields, *fields]
-        forces += np.tensordot(self._basis[:, :n], self._moving, 1)
-        self.forces = np.concatenate([self.forces, forces])
-        for field in self._moving_fields:
-            field.destroy()
+        forces += np.tensordot(more[:, :n], self._moving, 1)
+        self.forces, self._basis = np.concatenate([self.forces, forces]), np.vstack([self._basis, more])
 
     def parts(self, g: NDArray[np.float64]) -> NDArray[np.float64]:
+        if not self._complete:
+            self._grow(g)
         first = np.broadcast_to(self._rigid * np.eye(self._parts), (len(g), self._parts, self._parts))
         return np.concatenate([first, self._changes(g) @ self._basis.T], axis=2)
+
+    def destroy(self) -> None:
+        self._forget_moving()
+        super().destroy()
 
 
 def sliding_punch(space: Space, response: HalfPlane, *args: Any, **options: Any) -> SlidingPunch:

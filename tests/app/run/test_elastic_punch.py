@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support import THOROUGH, computed, scene_of
 
+from galinx.app.errors import BadInput
 from galinx.app.results.result import compute, template
 
 PUNCHES = (
@@ -48,6 +49,36 @@ def test_both_methods_on_random_pairs_at_speed(seed):
     })  # fmt: skip
     assert result.verdict == "PASS", result.attributes
     assert np.all(result.data["states/fem/true_error"] <= result.data["states/fem/estimate"])
+
+
+@pytest.mark.parametrize("seed", range(20) if THOROUGH else [2, 3])
+def test_friction_along_the_contact_by_both_methods(seed):
+    random = np.random.default_rng(seed)
+    plate, solid, advected = _solid(random), _solid(random), bool(seed % 2)
+    friction = {"along": [[-1, random.uniform(0.0, 0.7)], [1, random.uniform(0.0, 0.7)]]}
+    if advected:
+        friction = {"model": "dahl", "mu_c": random.uniform(0.1, 0.7), "state": "advected"}
+        friction["sigma0_over_load"] = 10.0 ** random.uniform(2.5, 4.0)
+    speed = 0.0 if advected else random.choice([0.0, 0.5]) * _limit(solid)[1]
+    punch = PUNCHES[2 * (seed // 2 % 2)] | {"load": "50 N/mm", "solid": solid | {"speed": float(speed)}}
+    c = float(random.uniform(0.0, 0.7) * _limit(plate)[0])
+    result = computed("tables4_5", {
+        "solid": plate, "punch": punch, "friction": friction, "motion": {"c": c},
+        "solve": None, "output": None,
+    })  # fmt: skip
+    assert result.verdict == "PASS", result.attributes
+    # Stresses in the punch have the opposite friction, which only a number has.
+    assert not [name for name in result.data if "punch" in name.split("/")[-1]]
+    methods = sorted({name.split("/")[1] for name in result.data if name.endswith("/resultant_ratio")})
+    one, other = (result.data[f"states/{method}/resultant_ratio"] for method in methods)
+    np.testing.assert_allclose(one, other, rtol=1e-6)
+
+
+def test_what_rolls_carries_bristles_along():
+    punch = PUNCHES[2] | {"load": "50 N/mm", "solid": {"material": "steel", "speed": "10 m/s"}}
+    friction = {"model": "dahl", "mu_c": 0.3, "state": "advected", "sigma0_over_load": 1000}
+    with pytest.raises(BadInput, match="bristles that a rolling punch carries along, too"):
+        computed("tables4_5", {"punch": punch, "friction": friction, "motion": {"c": 0.1}})
 
 
 def test_a_scene_says_which_body_yields_first():

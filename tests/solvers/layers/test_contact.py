@@ -18,6 +18,7 @@ from galinx.solvers.contact.equation import (
     Jacobi,
     LayersUnderPunch,
     jacobi,
+    under_punch,
     weights_between,
 )
 from galinx.solvers.contact.panels import Panels
@@ -26,7 +27,7 @@ from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.profiles.punches import Flat
+from galinx.solvers.profiles.punches import Flat, Power
 from galinx.solvers.solids.isotropic import Isotropic
 
 #: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the
@@ -339,3 +340,14 @@ def test_a_contact_wider_than_what_is_known_of_the_punch_is_refused(side):
     speed = LayersUnderPunch(response, response.stack(1.0), 1e-4, Punch(profile, 1.0, LOAD))
     with pytest.raises(SolveError, match="known from"):
         speed.contact(0.0)
+
+
+def test_free_ends_over_a_graded_top_settle_with_few_unknowns():
+    """Next to them the pressure varies over the length of the grading; |X|⁴ has no kink to resolve."""
+    soft, hard = Isotropic(32e9, 0.3, 4000.0), Isotropic(155e9, 0.25, 5000.0)
+    solid = Layered((Layer(3e-4, soft, hard),), Isotropic(1e11, 0.3, 4000.0))
+    body = make_contact(solid, Power(4.0, 1e6), 2.4e4)
+    response = body.response(0.3 * solid.limit())
+    contact = under_punch(body, response, 1e-6).contact(-0.7)
+    assert contact.change <= 2.5e-7
+    assert contact.pressure.functions.finest > 0.3 and contact.pressure.kinks == ()

@@ -27,7 +27,6 @@ from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import Parameter, parameters
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
@@ -237,8 +236,8 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
         return
     if found := _not_varying(scene):
         yield (
-            f"friction varies along the contact, but found {found}; expected steady sliding of a punch "
-            "that is not tilted, with a direct solver"
+            f"friction varies along the contact, but found {found}; expected steady sliding, with a "
+            "direct solver"
         )
     elif FEM in scene.solve.methods:
         try:
@@ -251,11 +250,10 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
 
 def _not_varying(scene: Scene) -> str:
     """Reason why friction cannot vary along the contact, "" where it can."""
-    punch, solve = scene.punch.profile, scene.solve
+    solve = scene.solve
     reasons = {
         "a motion in time": scene.time is not None,
         "a slider": scene.slider is not None,
-        f"a {punch.words()}": isinstance(punch, Flat) and punch.rise != 0.0,
         "bristles that a rolling punch carries along, too": (
             scene.friction.state == ADVECTED
             and scene.elastic_punch is not None

@@ -114,6 +114,25 @@ def test_one_friction_along_a_coated_cylinder_is_a_number():
         np.testing.assert_allclose(of_along, of_number, rtol=1e-5)
 
 
+@pytest.mark.parametrize("tilt", ["0.001 deg", "0.02 deg"])
+def test_one_friction_along_a_tilted_punch_is_a_number(tilt):
+    """Between both edges, and where one lifts off; the mirror image has the opposite tilt and shear."""
+    punch = {"half_width": "1 mm", "load": "20 N/mm", "tilt": tilt}
+    by = {"punch": punch, "solve": {"methods": ["sie"]}}
+    along = slid({"along": [[-1, 0.4], [1, 0.4]]}, **by).data
+    number = slid({"mu": 0.4}, punch=punch, solve={"methods": ["closed_form"]}).data
+    names = "K_I_left", "K_I_right", "half_width", "centre"
+    for name in names:
+        of_along, of_number = along[f"states/sie/{name}"], number[f"states/closed_form/{name}"]
+        np.testing.assert_allclose(of_along, of_number, rtol=1e-7, atol=1e-12)
+    one = slid({"along": [[-1, 0.2], [1, 0.5]]}, **by).data
+    by["punch"] = punch | {"tilt": f"-{tilt}"}
+    other = slid({"along": [[-1, 0.5], [1, 0.2]], "sign": "eq25"}, **by).data
+    for name, mirrored, sign in zip(names, ("K_I_right", "K_I_left", *names[2:]), (1, 1, 1, -1)):
+        of_one, of_other = one[f"states/sie/{name}"], sign * other[f"states/sie/{mirrored}"]
+        np.testing.assert_allclose(of_one, of_other, rtol=1e-7, atol=1e-12)
+
+
 def test_flat_punches_over_layers_by_both_methods():
     layer = {"thickness": "1 mm", "E": "120 GPa", "nu": 0.3, "rho": 2400}
     sections = {"layer": [layer], "solve": {"methods": ["sie", "fem"], "tolerance": 1e-4}}

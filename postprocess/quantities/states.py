@@ -55,7 +55,7 @@ LOAD = Quantity(
 FRICTION = Quantity(
     "states/f", "1",
     "friction coefficient F/N, positive in forward motion; where it varies along X its mean over X, "
-    "between free ends that over the first contact at rest",
+    "between free ends that at rest",
     (STATE,),
 )  # fmt: skip
 RATIO = Quantity(
@@ -63,7 +63,7 @@ RATIO = Quantity(
 )
 INNER_STATE = Quantity(
     "states/inner_state", "1",
-    "inner state of the friction law, as its page says; of bristles that never leave the contact",
+    "inner state of the friction law, as its page says; not of advected ones",
     (STATE, INNER),
 )  # fmt: skip
 VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=NOT_NEGATIVE)

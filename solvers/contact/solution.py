@@ -288,7 +288,7 @@ class Contact:
         free = np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
         if self.ends == ONE_FREE:
             # The method that solves reports a contact that fails.
-            if not self.solid.layers:
+            if not self.solid.layers and not self.along:
                 with suppress(SolveError):
                     return np.asarray(self.loaded(load).contacts(response, g).of("free"))
                 return free

@@ -133,6 +133,17 @@ def test_one_friction_along_a_tilted_punch_is_a_number(tilt):
         np.testing.assert_allclose(of_one, of_other, rtol=1e-7, atol=1e-12)
 
 
+def test_an_edge_is_free_where_its_intensity_vanishes():
+    """The edge of a tilted punch lifts off at another tilt than with the mean friction all along."""
+    tilts = {"from": "0.0225 deg", "to": "0.0235 deg", "number": 11}
+    punch = {"half_width": "1 mm", "load": "20 N/mm", "tilt": tilts}
+    friction = {"along": [[-1, 0.0], [0.6, 0.0], [1, 0.9]]}
+    data = slid(friction, c=0.6, punch=punch, solve={"methods": ["sie"]}).data
+    free = data["states/sie/K_I_right"] == 0.0
+    assert 0 < free.sum() < 11
+    np.testing.assert_array_equal(data["states/alpha"] > 0.0, free)
+
+
 def test_flat_punches_over_layers_by_both_methods():
     layer = {"thickness": "1 mm", "E": "120 GPa", "nu": 0.3, "rho": 2400}
     sections = {"layer": [layer], "solve": {"methods": ["sie", "fem"], "tolerance": 1e-4}}

@@ -72,25 +72,25 @@ FARTHEST = 5.0
 _METHODS = (CLOSED_FORM, FEM, SIE)
 
 
-def _extreme(end: str, what: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
+def _extreme(end: str, what: str, i: int) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
     """Quantities of the highest or the lowest in-plane stress, and of its place."""
     path = f"states/{{method}}/sigma_XX_{end}"
     value = by_method(
         path, "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, _: getattr(s, f"{what}_in_plane")[0], _METHODS,
+        (STATE,), lambda s, _: s.extremes_in_plane[i][0], _METHODS,
         asked_by=ON_SURFACE,
     )  # fmt: skip
     place = by_method(
         f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
-        lambda s, _: getattr(s, f"{what}_in_plane")[1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
+        lambda s, _: s.extremes_in_plane[i][1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
     )  # fmt: skip
     return value, place
 
 
-HIGHEST, HIGHEST_X = _extreme("max", "highest")
-LOWEST, LOWEST_X = _extreme("min", "lowest")
+HIGHEST, HIGHEST_X = _extreme("max", "highest", 0)
+LOWEST, LOWEST_X = _extreme("min", "lowest", 1)
 
 
 def estimate(word: str, name: str, **own: str) -> dict[str, Quantity]:

@@ -254,7 +254,7 @@ class Panels(Functions):
             if length := abs(end - at):
                 # Parts of the panel need be no shorter than the place is far from it.
                 apart = log(max(abs(at - x) / length, _CLOSEST)) / log(_GRADING)
-                s, ds = _graded(min(ceil(apart), _STEPS))
+                s, ds = _graded(min(max(ceil(apart), 0), _STEPS))
                 yield (at - x) + (end - at) * s, length * ds
 
     def cauchy(self, f: NDArray, y: NDArray) -> NDArray[Any]:
@@ -380,8 +380,8 @@ def _without_pole(k: float, ξ: NDArray) -> NDArray[Any]:
 
 @cache
 def _graded(steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points in (0, 1) and weights, graded towards 0 in so many steps, none where these are negative."""
-    ends = np.append(0.0, _GRADING ** np.arange(max(steps, 0), -1, -1.0))
+    """Points in (0, 1) and weights, graded towards 0 in so many steps."""
+    ends = np.append(0.0, _GRADING ** np.arange(steps, -1, -1.0))
     middle, half = (ends[1:] + ends[:-1]) / 2.0, np.diff(ends) / 2.0
     return (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
 

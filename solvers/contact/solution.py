@@ -614,14 +614,9 @@ class Solution:
         return self.body.strength(self)
 
     @cached_property
-    def highest_in_plane(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Highest in-plane stress and its place, see :func:`.stresses.extreme_in_plane`."""
-        return extreme_in_plane(self, self.body, 1.0)
-
-    @cached_property
-    def lowest_in_plane(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Lowest in-plane stress and its place."""
-        return extreme_in_plane(self, self.body, -1.0)
+    def extremes_in_plane(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Highest and lowest in-plane stress over N/(2a), each with its place over a, (states,)."""
+        return [extreme_in_plane(self, self.body, sign) for sign in (1.0, -1.0)]
 
 
 #: σ_YY over N/(2a) at positions X over a under the punch.

@@ -192,6 +192,8 @@ class SlidingPunch(Punch):
         negligible: float = NEGLIGIBLE, least: float = LEAST,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
+        #: Product with G.
+        self._times = np.matmul if along else np.multiply
         nodes = space.contact
         A = space.assemble(response)
         both = np.column_stack([nodes.dofs(0), nodes.dofs(1)]).ravel()
@@ -258,7 +260,7 @@ class SlidingPunch(Punch):
         every = []
         for G, y in self._amplitudes(g):
             R = R0 + TV @ y
-            t = G @ R if self._along else G * R
+            t = self._times(G, R)
             size = np.maximum(np.linalg.norm(t, axis=1, keepdims=True), np.finfo(float).tiny)
             every.append(np.moveaxis((t - self._loads @ y) / size, 0, 1).reshape(len(R0), -1))
         return np.concatenate(every, axis=1)
@@ -477,9 +479,10 @@ class ElasticPunch(SlidingPunch):
         (first, second), (moved, by_g) = self._equations, self._moved
         forces, changes = self.forces[: self._parts, 1].T, []
         for value in g.tolist():
-            G = self._along(value) if self._along else value * np.eye(len(first))
-            R = np.linalg.solve(first + second @ G, forces)
-            changes.append(np.concatenate([moved @ R + by_g @ (G @ R), G @ R]).T)
+            G = self._along(value) if self._along else value
+            R = np.linalg.solve(first + self._times(second, G), forces)
+            t = self._times(G, R)
+            changes.append(np.concatenate([moved @ R + by_g @ t, t]).T)
         return np.array(changes)
 
     def prepare(self, g: NDArray[np.float64]) -> None:

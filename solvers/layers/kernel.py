@@ -266,8 +266,12 @@ class Kernel:
         """Length over which the kernel varies next to 0, over a: that of the grading of a graded top."""
         if not self.stack.layers:
             return np.inf
-        graded = np.abs(self.order).max() / np.abs(inverse(self.stack.top.down)).max()
-        return float(1.0 / max(graded, 1.0 / self.stack.layers[0].H))
+        return float(1.0 / max(np.abs(self.order).max() / self._size, 1.0 / self.stack.layers[0].H))
+
+    @property
+    def _size(self) -> float:
+        """Largest constant by which the surface's solid alone answers."""
+        return float(np.abs(inverse(self.stack.top.down)).max())
 
     def _regular(self, k: NDArray) -> NDArray[Any]:
         regular = self.stack.admittance(k).reshape(-1, 4)
@@ -280,8 +284,7 @@ class Kernel:
         """The kernel without the logarithm and the jump, tabulated by position."""
         finest = min(float(self.stack.layers[0].H), 1.0) / 4.0 * (1e-6 if self.rough else 1.0)
         accuracy = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
-        scale = float(np.abs(inverse(self.stack.top.down)).max())
-        return tabulated(self._regular, wavenumbers(self.stack), finest, self.reach, accuracy, scale)
+        return tabulated(self._regular, wavenumbers(self.stack), finest, self.reach, accuracy, self._size)
 
     @property
     def error(self) -> float:

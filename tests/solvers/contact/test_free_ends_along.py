@@ -81,15 +81,14 @@ def of_dahl(μ, stiffness, a):
 
 
 @pytest.mark.parametrize(
-    "profile, seed, stiffness, error",
-    [(CYLINDER, 0, 3000.0, 1e-7), (CYLINDER, 2, 1000.0, 1e-7), (WEDGE, 0, 300.0, 1e-7)],
+    "profile, seed, stiffness", [(CYLINDER, 0, 3000.0), (CYLINDER, 2, 1000.0), (WEDGE, 0, 300.0)]
 )
-def test_punch_with_advected_dahl_against_15_digits(profile, seed, stiffness, error):
+def test_punch_with_advected_dahl_against_15_digits(profile, seed, stiffness):
     """That of a wedge has a tip, next to which the pressure is infinite."""
     solid = random_solid(seed) if seed else ISOTROPIC
     half_width = make_contact(solid, profile, LOAD).half_width
     friction = advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, half_width, -1.0)
-    contact, body, response = solved(solid, friction, profile, tolerance=error)
+    contact, body, response = solved(solid, friction, profile)
     m, h = contact.centre * half_width, contact.half_width * half_width
 
     def slope(t):  # μ v,X over N/(2h) is 2 h P'/(N/μ)
@@ -101,7 +100,7 @@ def test_punch_with_advected_dahl_against_15_digits(profile, seed, stiffness, er
     if not seed:
         assert load == pytest.approx(2.0 * response.n, rel=1e-8)
     own = response.n + friction.at(h)(PLACES) * response.n12
-    np.testing.assert_allclose(own * contact.pressure.σ_YY(PLACES), τ, rtol=error)
+    np.testing.assert_allclose(own * contact.pressure.σ_YY(PLACES), τ, rtol=1e-7)
 
 
 @pytest.mark.parametrize("profile", [CYLINDER, WEDGE])

@@ -44,7 +44,7 @@ from galinx.solvers.contact.solution import (
     Places,
 )
 from galinx.solvers.errors import SolveError
-from galinx.solvers.profiles import exponent
+from galinx.solvers.profiles import radius
 from galinx.solvers.rays import NEAR
 from galinx.solvers.solids.half_plane import HalfPlane
 
@@ -241,7 +241,7 @@ def _shapes(scene: Scene, responses: Sequence[HalfPlane], g: NDArray) -> int:
     profile, most = scene.punch.profile, 0
     if scene.body.ends == ONE_FREE:
         return 1  # a tilted base
-    if exponent(profile) == 2.0:
+    if radius(profile):
         return 2
     ends = [max(responses, key=lambda r: r.margin), min(responses, key=lambda r: r.margin)]
     loads = np.repeat([min(scene.punch.loads), max(scene.punch.loads)], 3)

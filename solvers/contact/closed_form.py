@@ -33,8 +33,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import SolveError
-from ..profiles import check_reach, cusp, jumps
-from ..profiles.punches import Flat, Parabolic
+from ..profiles import check_reach, cusp, jumps, radius
+from ..profiles.punches import Flat
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, EdgeTraction, from_edge, under_punch
 from .ends import Punch, Rule, free_ends
@@ -295,15 +295,15 @@ def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contac
         )
     if isinstance(profile, Flat):
         return Contacts(_tilted(response, g, n, profile, load))
-    if isinstance(profile, Parabolic):
-        return Contacts((_parabolas(response, g, n, profile, load),))
+    if R := radius(profile):
+        return Contacts((_parabolas(response, g, n, R, load),))
     return Contacts(tuple(_by_quadrature(response, g, n, profile, load)))
 
 
-def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, profile: Parabolic, load: NDArray) -> Group:
+def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, R: float, load: NDArray) -> Group:
     flat = FlatPunch(response, g)
     a, b = 1.0 + flat.α, 1.0 + flat.β
-    h = np.sqrt(load * profile.radius * n / (2.0 * np.pi * a * b))
+    h = np.sqrt(load * R * n / (2.0 * np.pi * a * b))
     A = flat._sin / (np.pi * a * b)  # ∫ σ_YY = -2; sin πα is negative
     pressure = Weighted(a[:, None], b[:, None], A[:, None], np.zeros((len(g), 1)), 1)
     return Group(response, np.arange(len(g)), g, pressure, h, h * (b - a))

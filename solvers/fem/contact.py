@@ -36,7 +36,7 @@ from ..contact.recovery import (
 )
 from ..contact.solution import Contact, Task
 from ..errors import SolveError
-from ..profiles.punches import Flat, Parabolic
+from ..profiles import radius
 from .discretisation import Discretisation
 from .fields import Displacement
 from .ladder import Gauge, Level, joined, of_pressure
@@ -351,7 +351,7 @@ class FreeLevel(PunchLevel):
         return heights_of_shapes(self.r, self.shapes)
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
-        (parts, loads, K), linear = self.parts(g), _LINEAR.get(type(body.profile))
+        (parts, loads, K), linear = self.parts(g), _LINEAR.get(self.shapes)
         if linear:
             return self.summed(g, parts, linear(body, loads, K))
         (m, h), _ = self.ends(g, body, loads, K)
@@ -523,21 +523,18 @@ def _parabola(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
         loads: ∫σ_YY of every part, (states, parts).
         K: intensities of every part at both ends, (states, 2, parts).
     """
-    punch = body.profile
-    assert isinstance(punch, Parabolic)
     amplitudes = np.zeros_like(loads)
     amplitudes[:, :3] = without_intensity(loads[:, :3], K[..., :3])
     _, c1, c2 = amplitudes[:, :3].T
     with np.errstate(invalid="ignore"):
-        h = np.sqrt(punch.radius * c2 * body.displacement)
+        h = np.sqrt(radius(body.profile) * c2 * body.displacement)
     return amplitudes, c1**2 / (2.0 * c2), {"half_width": h, "centre": h * c1 / c2, "free": True}
 
 
 def _tilted(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     """Amplitudes of v = -v₀ + c₁ s with the load; c₁ is that of the tilt, or, where the higher edge is
     lifted, that without intensity there."""
-    punch = body.profile
-    assert isinstance(punch, Flat)
+    punch: Any = body.profile
     side = 1 if punch.rise > 0.0 else 0
     c1 = punch.rise * punch.half_width / body.displacement * np.ones(len(loads))
     amplitudes = carrying(loads, c1[:, None])
@@ -551,8 +548,8 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
     return amplitudes, np.abs(amplitudes[:, 1]), {"half_width": h, "centre": centre, "free": free}
 
 
-#: Solutions for profiles whose conditions are linear.
-_LINEAR = {Flat: _tilted, Parabolic: _parabola}
+#: Solutions by the number of polynomials whose sum is the punch, where conditions are linear.
+_LINEAR = {1: _tilted, 2: _parabola}
 
 #: Levels of punches on the mesh of all contacts, by the plan's mode.
 PUNCHES: dict[str, type[PunchLevel]] = {

@@ -11,6 +11,7 @@ from .profile import (
     jumps,
     kinks,
     leaving,
+    radius,
 )
 
 __all__ = [
@@ -23,4 +24,5 @@ __all__ = [
     "jumps",
     "kinks",
     "leaving",
+    "radius",
 ]  # fmt: skip

@@ -61,6 +61,11 @@ def exponent(profile: Any) -> float | None:
     return getattr(profile, "exponent", None)
 
 
+def radius(profile: Any) -> float | None:
+    """Radius of a parabola [m]; None for other heights."""
+    return 1.0 / float(profile.slope(np.ones(1))[0]) if exponent(profile) == 2.0 else None
+
+
 def cusp(profile: Any) -> float:
     """Exponent below 1 of the pressure's change by the distance from a kink; 0 for no cusp.
 

@@ -151,6 +151,18 @@ def test_finite_elements_find_the_ends_of_every_profile(name):
     assert 0.0 < in_plane <= tolerance and in_plane <= result.data["states/fem/estimate_sigma_XX"].max()
 
 
+def test_a_parabola_is_one_by_every_name():
+    """A power of the exponent 2 is the cylinder of its curvature, by both methods."""
+    few = {"motion.c": 0.5, "motion.strokes": ["forward"], "motion.X_over_L": [0.7],
+           "solve.tolerance": 1e-5, "punch.half_width": None}  # fmt: skip
+    names = {"punch.profile": "parabolic", "punch.radius": 0.02}, KINKED["power"] | {
+        "punch.exponent": 2.0, "punch.coefficient": 25.0,
+    }  # fmt: skip
+    cylinder, power = (computed("tables4_5", few | name).data for name in names)
+    for path in (f"states/{by}/{of}" for by in ("closed_form", "fem") for of in ("half_width", "centre")):
+        np.testing.assert_allclose(power[path], cylinder[path], rtol=1e-13)
+
+
 def random_punch(seed, rng):
     """A profile with kinks, by turns, in a solid and at a speed."""
     name = list(KINKED)[seed % 4]

@@ -91,6 +91,12 @@ def prefixed(unit: str, size: float) -> tuple[str, float]:
     return best
 
 
+def _known(values: Any) -> NDArray[np.float64]:
+    """Those of numbers that are no NaN, which stands for a state without a solution; 1 if all are."""
+    values = np.ravel(values)
+    return values[~np.isnan(values)] if not np.all(np.isnan(values)) else np.ones(1)
+
+
 class Units:
     """Units of a result, the same for every quantity of a kind.
 
@@ -167,9 +173,9 @@ class Units:
         a, N = (self.half_width, self.load) if of_states_ else (contact.half_width, contact.load)
         offset: Any = 0.0
         if kind == "N/(2a)":
-            unit, factor, size = "Pa", N / (2.0 * a), np.median(self.load / (2.0 * self.half_width))
+            unit, factor, size = "Pa", N / (2.0 * a), np.median(_known(self.load / (2.0 * self.half_width)))
         elif kind in (OVER_A, X_OVER_A, CONTACT):
-            unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(self.half_width)
+            unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(_known(self.half_width))
             offset = self.middle if kind == X_OVER_A and of_states_ else 0.0
         elif kind == OVER_C_S:
             unit, factor = "m/s", (self.c_s if of_states_ else contact.solid.c_s)

@@ -144,14 +144,7 @@ class Work:
         """Quantities of states by path, NaN where a method fails; and True where all methods solve."""
         g, load = self.g[rows], None if self.load is None else self.load[rows]
         solved = np.ones(len(g), dtype=bool)
-        with self.clock(_step(CLOSED_FORM)):
-            local = task.body.local_exponents(task.response, g, load)
-            # Without a solution of states.
-            known = SimpleNamespace(
-                local=local, g=g, places=task.places,
-                half_width=task.body.half_widths(task.response, g, load),
-            )  # fmt: skip
-            data = self._of(LOCAL, known, task.body.loaded(load))
+        data: dict[str, NDArray] = {}
         for name in self.methods:
             if name not in solvers:
                 data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)
@@ -161,6 +154,14 @@ class Work:
             data, solved = data | values, solved & own
             if why:
                 reasons.setdefault(name, why)
+        with self.clock(_step(CLOSED_FORM)):
+            local = task.body.local_exponents(task.response, g, load)
+            # Without a solution of states; contacts that methods solved are known by now.
+            known = SimpleNamespace(
+                local=local, g=g, places=task.places,
+                half_width=task.body.half_widths(task.response, g, load),
+            )  # fmt: skip
+            data |= self._of(LOCAL, known, task.body.loaded(load))
         return data, solved
 
     def _by(

@@ -239,13 +239,14 @@ class Contact:
         Args:
             g: numbers of the states, (states,).
             X: positions over a, (n,).
-            a: half-widths of the contacts [m], (states,); None for that of this contact.
+            a: half-widths of the contacts [m], (states,), NaN where there is none: the ratio is NaN,
+                too; None for that of this contact.
         """
         g = np.asarray(g)
         if not self.along:
             return g[:, None]
         each = zip(g.tolist(), np.broadcast_to(self.half_width if a is None else a, g.shape).tolist())
-        return np.stack([self.friction(*state)(X) for state in each])
+        return np.stack([self.friction(g, a)(X) if a == a else np.full(X.shape, a) for g, a in each])
 
     @property
     def friction_kinks(self) -> tuple[float, ...]:
@@ -264,12 +265,15 @@ class Contact:
     def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Half-widths [m] on which frictions depend, (states,), to a millionth; None where none does.
 
+        NaN stands for a contact that has no solution to a millionth.
+
         Args:
             response, g, load: as of :meth:`local_exponents`.
         """
         if not self._friction_has_length:
             return None
-        return np.array([unit * contact.half_width for unit, contact in self._each(response, g, load)])
+        each = self._each(response, g, load)
+        return np.array([unit * contact.half_width if contact else np.nan for unit, contact in each])
 
     def local_exponents(self, response: HalfPlane, g: NDArray, load: Any = None) -> Exponents:
         """Exponents of the pressure at the ends of states.
@@ -287,32 +291,36 @@ class Contact:
         """True where the left and the right end of states are free, (states, 2)."""
         free = np.tile(np.logical_not(getattr(self.profile, "sharp", (True, True))), (len(g), 1))
         if self.ends == ONE_FREE:
-            # The method that solves reports a contact that fails.
             if not self.solid.layers and not self.along:
                 with suppress(SolveError):
                     return np.asarray(self.loaded(load).contacts(response, g).of("free"))
                 return free
-            for i, N in enumerate(np.broadcast_to(self.loaded(load).load, g.shape).tolist()):
-                with suppress(SolveError):
-                    ((_, contact),) = self._each(response, g[[i]], N)
+            for i, (_, contact) in enumerate(self._each(response, g, load)):
+                if contact:
                     free[i] = contact.pressure.free
         return free
 
     def _each(self, response: HalfPlane, g: NDArray, load: Any) -> list[tuple[float, Any]]:
-        """Contacts by the integral equation to a millionth, and the units [m] of their lengths."""
+        """Contacts by the integral equation to a millionth, None for none; units [m] of their lengths.
+
+        The method that solves reports a contact that fails.
+        """
         from .equation import OF_ENDS, under_punch
 
         each, solved = [], self._solved
         for value, N in zip(g.tolist(), np.broadcast_to(self.loaded(load).load, g.shape).tolist()):
             state = response.c, value, N
             if state not in solved:
-                at_speed = under_punch(self.loaded(N), response, OF_ENDS)
-                solved[state] = at_speed.punch.unit, at_speed.contact(value, checked=False)
+                at_speed, contact = under_punch(self.loaded(N), response, OF_ENDS), None
+                with suppress(SolveError):
+                    contact = at_speed.contact(value, checked=False)
+                solved[state] = at_speed.punch.unit, contact
             each.append(solved[state])
         return each
 
     @cached_property
     def _solved(self) -> dict[tuple[float, float, float], tuple[float, Any]]:
+        """Contacts of :meth:`_each` by speed, friction and load; those of all loads are in one."""
         return {}
 
     def keep(self, c: float, unit: float, contacts: Sequence[Any]) -> None:
@@ -341,7 +349,11 @@ class Contact:
 
     def loaded(self, load: Any = None) -> Self:
         """Punch and half-plane under another load [N/m], a number or (states,); unchanged for None."""
-        return self if load is None else replace(self, load=load)
+        if load is None:
+            return self
+        other = replace(self, load=load)
+        vars(other)["_solved"] = self._solved
+        return other
 
     def growth(self, load: Any) -> Any:
         """Half-widths at other loads [N/m] over that at this load; None if contacts are not similar."""

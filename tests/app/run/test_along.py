@@ -5,6 +5,8 @@ import pytest
 from support import THOROUGH, computed
 
 from galinx.postprocess.tables import loops_sheet
+from galinx.solvers.contact.equation import LayersUnderPunch
+from galinx.solvers.errors import SolveError
 
 ISOTROPIC = {"E": "40 GPa", "nu": 0.3, "rho": 2000}
 ORTHOTROPIC = {
@@ -142,6 +144,32 @@ def test_an_edge_is_free_where_its_intensity_vanishes():
     free = data["states/sie/K_I_right"] == 0.0
     assert 0 < free.sum() < 11
     np.testing.assert_array_equal(data["states/alpha"] > 0.0, free)
+
+
+def test_a_load_without_a_contact_leaves_the_others_theirs(monkeypatch):
+    """Each contact is solved once, the one that has no solution once to its tolerance, once to 1e-6."""
+    solve, tried = LayersUnderPunch.contact, []
+
+    def contact(self, g, h=1.0, checked=True):
+        tried.append(self.punch.profile.radius / self.punch.unit)
+        if tried[-1] == max(tried):
+            raise SolveError("not resolved")
+        return solve(self, g, h, checked)
+
+    monkeypatch.setattr(LayersUnderPunch, "contact", contact)
+    friction = advected("dahl", mu_c=0.4, sigma0_over_load=1e4)
+    loads = {"profile": "parabolic", "radius": "50 mm", "load": ["10 N/mm", "100 N/mm", "30 N/mm"]}
+    only = {"solve": {"methods": ["sie"], "tolerance": 1e-6}}
+    result = slid(friction, punch=loads, **only)
+    (failure,) = result.data["run/failures"]
+    assert failure.endswith("N = 10000 N/m: not resolved") and result.verdict == "FAIL"
+    assert len(tried) == 4
+    alone = slid(friction, punch=loads | {"load": "30 N/mm"}, **only)
+    units, of_alone = ({column.name: column.unit for column in of.table()} for of in (result, alone))
+    assert {name: units[name] for name in of_alone} == of_alone
+    for path in ("states/sie/half_width", "states/alpha", "states/sie/resultant_ratio"):
+        of_all = result.data[path]
+        assert np.isnan(of_all[0]) and of_all[2] == alone.data[path][0]
 
 
 def test_flat_punches_over_layers_by_both_methods():

@@ -135,8 +135,6 @@ def _fem_along_refusal(scene: Any, body: Contact) -> str:
         return "friction varies along a contact over layers, with kinks of friction"
     if body.found and len(kinks(body.profile)):
         return "friction varies along the contact of a punch with kinks"
-    if body.ends == ONE_FREE:
-        return "friction varies along the contact of a tilted punch"
     moving = body.found and any(along.has_length for along in scene.along.values())
     return "kinks of friction move with the half-width" if moving and body.friction_kinks else ""
 

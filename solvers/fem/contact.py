@@ -34,7 +34,7 @@ from ..contact.recovery import (
     from_moments,
     without_zeros,
 )
-from ..contact.solution import Contact, Task
+from ..contact.solution import ONE_FREE, Contact, Task
 from ..errors import SolveError
 from ..profiles import radius
 from .discretisation import Discretisation
@@ -266,7 +266,7 @@ class AlongLevel(PunchLevel):
 
     def splines(
         self, g: NDArray, half_width: NDArray | None, tested: Callable[[NDArray], NDArray],
-        nearest: float = _NEXT, more: float = 0.0,
+        nearest: float = _NEXT, free: Any = False,
     ) -> Expansion:  # fmt: skip
         """Pressure of contacts, by splines without knots within a distance of ends and kinks.
 
@@ -275,7 +275,7 @@ class AlongLevel(PunchLevel):
                 for that of the task.
             tested: normal forces times tests (nodes, n), (states, n).
             nearest: distance over a of knots from ends and kinks, over the root of a length.
-            more: added to the exponents of sharp edges.
+            free: True where the left and the right end are free, broadcast to (states, 2).
         """
         body, degree = self.task.body, self.space.degree
         kinks = np.array(body.friction_kinks)
@@ -293,9 +293,10 @@ class AlongLevel(PunchLevel):
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
         local, at_nodes = body.edges(self.task.response, g, half_width), splines.values(self.r)
+        left, right = np.broadcast_to(free, (len(g), 2)).T
         # Nodal forces know of tests their interpolants only.
         return splines.fitted(
-            tested(at_nodes), local.α + more, local.β + more,
+            tested(at_nodes), local.α + right, local.β + left,
             lambda r: self.facets.interpolated(at_nodes.T, r).T,
         )  # fmt: skip
 
@@ -311,7 +312,7 @@ class AlongLevel(PunchLevel):
         """Gauge of contacts with free ends, by moved knots; half-widths as of :meth:`splines`."""
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
-        coarse = self.splines(contact.g, half_width, contact.tested, COARSE, 1.0)
+        coarse = self.splines(contact.g, half_width, contact.tested, COARSE, contact.free)
         off = np.abs(coarse.σ_YY(ACROSS) - σ) / size
         return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
@@ -419,9 +420,9 @@ ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 
 class VaryingFreeLevel(AlongLevel, FreeLevel):
-    """Free ends of smooth punches with friction that varies along the contact.
+    """Free ends of smooth punches and of tilted bases with friction that varies along the contact.
 
-    Middle and half-width are the root of the intensities at both ends, with the friction of each
+    Middle and half-width are the root of the intensities at the free ends, with the friction of each
     half-width.
     """
 
@@ -443,44 +444,52 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         loads = np.broadcast_to(body.load, g.shape).tolist()
-        ends = [self._balanced(*state) for state in zip(g.tolist(), loads)]
-        m, h = np.transpose(ends)
+        each = [self._balanced(*state) for state in zip(g.tolist(), loads)]
+        (m, h), free = np.transpose([lengths for lengths, _ in each]), np.array([of for _, of in each])
         numbers = [self._number(*state) for state in zip(g.tolist(), h.tolist())]
         parts = self.punch.parts(np.array(numbers))
-        return self.summed(g, parts, self.smooth(body, self.punch.loads(parts), m, h))
+        amplitudes, lowest, ends = self.smooth(body, self.punch.loads(parts), m, h)
+        if body.ends == ONE_FREE:
+            lowest = np.abs(amplitudes[:, 1])  # an edge is the lowest point of a tilted base
+        return self.summed(g, parts, (amplitudes, lowest, ends | {"free": free}))
 
     def _number(self, g: float, h: float) -> float:
         """Number by which the punch knows the friction of a half-width [m]."""
         return self._numbers.setdefault(self.task.body.friction(g, h), float(len(self._numbers)))
 
-    def _balanced(self, g: float, load: float) -> tuple[float, float]:
-        """Middle and half-width [m] of a contact without intensities; its search adds fields.
+    def _balanced(self, g: float, load: float) -> tuple[tuple[float, float], list[bool]]:
+        """Middle and half-width [m] of a contact, and which ends are free; its search adds fields.
 
         Raises:
             SolveError: no contact carries the load.
         """
         from scipy.optimize import root  # a slow import
 
-        body = self.task.body.loaded(load)
+        body, punch = self.task.body.loaded(load), self.task.body.profile
+        tilted, free = body.ends == ONE_FREE, np.logical_not(punch.sharp)
         m, scale = self._ends.get((g, load), (0.0, float(body.half_width)))
 
         def ends(x: NDArray) -> tuple[float, float]:
-            return scale * float(x[0]), scale * float(np.exp(x[1]))
+            h = scale * float(np.exp(x[-1]))
+            # The lower edge of a tilted base stays.
+            return float(np.sign(punch.rise) * (h - punch.half_width) if tilted else scale * x[0]), h
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
             m, h = ends(x)
             parts = self.punch.parts(np.array([self._number(g, h)]))
             amplitudes, *_ = self.smooth(body, self.punch.loads(parts), np.array([m]), np.array([h]))
-            return amplitudes[0] @ self.intensities(parts, g, h)
+            return (amplitudes[0] @ self.intensities(parts, g, h))[free]
 
-        x = root(intensities, [m / scale, 0.0], tol=_BALANCED).x
+        if tilted and intensities(whole := np.log([punch.half_width / scale]))[0] >= 0.0:
+            return ends(whole), [False, False]
+        x = root(intensities, [m / scale, 0.0][tilted:], tol=_BALANCED).x
         if not np.abs(intensities(x)).max() < _OF_INTENSITIES:
             raise SolveError("no contact of a finite half-width carries the load")
         self._ends[g, load] = ends(x)
-        return ends(x)
+        return ends(x), free.tolist()
 
     def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, contact.half_width, contact.tested, more=1.0)
+        return self.splines(contact.g, contact.half_width, contact.tested, free=contact.free)
 
     def gauge(self, states: SolvedStates) -> Gauge:
         return self.gauge_by_knots(states, states.contact.half_width)

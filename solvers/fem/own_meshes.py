@@ -451,7 +451,7 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         return parts, self.punch.loads(parts), self.intensities(parts, g).T[None]
 
     def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, None, contact.tested, more=1.0)
+        return self.splines(contact.g, None, contact.tested, free=True)
 
     def gauge(self, states: SolvedStates) -> Gauge:
         return self.gauge_by_knots(states, None)

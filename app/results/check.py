@@ -66,6 +66,8 @@ _FEW, _SMOOTH, _FLAT, _NUMBERS = 6, 24, 2000, 1_000_000
 #: Relative difference of closed forms, absolute one of places over a, and tolerances that equations are
 #: apart which were solved with other frictions beside them.
 _SAME_AGAIN, _PLACE, _TOLERANCES = 1e-6, 1e-3, 10.0
+#: Relative difference of estimated errors, and absolute one by rounding.
+_OF_ESTIMATES, _ROUNDED = 0.05, 1e-11
 #: Relative difference of finite elements and closed forms; comparisons say more.
 _FROM_EXACT = 1e-2
 #: Modes in which all speeds have one mesh.
@@ -182,7 +184,12 @@ def _different(
             allowed = _TOLERANCES * plan.tolerance if path.split("/")[1] == SIE else _SAME_AGAIN
             # The place of a largest value may lie anywhere where the values are flat.
             is_place = path.endswith(("_position", "_over_a", "_X", "_Y"))
-            near = np.abs(held - values) <= allowed * size + _PLACE * is_place
+            slack = _PLACE * is_place
+            if path.rpartition("/")[2].startswith("estimate"):
+                # Of changes that may be rounding, and of interpolation between many frictions.
+                many = len(np.unique(archive.data[states.RATIO.path])) > len(rows)
+                allowed, slack = _OF_ESTIMATES, _ROUNDED + plan.tolerance / 10.0 * many
+            near = np.abs(held - values) <= allowed * size + slack
         same = near | (held == values) | (np.isnan(held) & np.isnan(values))
         if not same.all():
             i = int(np.flatnonzero(~same.reshape(len(rows), -1).all(axis=1))[0])

@@ -563,16 +563,20 @@ class LayersUnderPunch:
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
 
+    def interpolates(self, g: NDArray) -> bool:
+        """True if contacts with frictions ``g``, (states,), are interpolated between few of them."""
+        profile = self.punch.profile
+        # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
+        rough = has_free_end(profile) and (isinstance(profile, Flat) or len(kinks(profile)))
+        return not (self.every or rough or len(g) <= _FEW)
+
     def solved(self, g: NDArray) -> tuple[list[SolvedContact], float | None]:
         """Contacts from which those with all of ``g`` follow, and the error where they are interpolated.
 
         Args:
             g: σ_XY/σ_YY, sorted, (states,).
         """
-        profile = self.punch.profile
-        # Kinks move over the contact with friction, and edges lift off at one: nothing is smooth in it.
-        rough = has_free_end(profile) and (isinstance(profile, Flat) or len(kinks(profile)))
-        if self.every or rough or len(g) <= _FEW:
+        if not self.interpolates(g):
             return self._each(g), None
         count = _FEW
         middle, half = (g[-1] + g[0]) / 2.0, (g[-1] - g[0]) / 2.0
@@ -584,10 +588,17 @@ class LayersUnderPunch:
             count = 2 * count - 1
 
     def _each(self, g: NDArray) -> list[SolvedContact]:
-        contacts: list[SolvedContact] = []
+        contacts, h = self._contacts, 1.0
         for value in g.tolist():
-            contacts.append(self.contact(value, contacts[-1].half_width if contacts else 1.0))
-        return contacts
+            if value not in contacts:
+                contacts[value] = self.contact(value, h)
+            h = contacts[value].half_width
+        return [contacts[value] for value in g.tolist()]
+
+    @cached_property
+    def _contacts(self) -> dict[float, SolvedContact]:
+        """Solved contacts by friction."""
+        return {}
 
     def contact(self, g: float, h: float = 1.0, checked: bool = True) -> SolvedContact:
         """The contact with a friction.

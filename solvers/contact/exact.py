@@ -271,16 +271,22 @@ class Layers:
             fine, coarse = (
                 replace(pressure, nodes=nodes, length=length, rough=rough) for nodes in (FINE, COARSE)
             )
-            solved, interpolated = [SolvedContact(0.0, fine, before=coarse)], None
-        else:
+            known: Any = [SolvedContact(0.0, fine, before=coarse)], [], 0.0
+        elif layers.interpolates(g):
             solved, interpolated = layers.solved(g)
+            each = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))
+            known = solved, [Nodes(groups) for groups in each], interpolated
+        else:
+            known = None
+
+        def states(own: NDArray) -> LayeredSolution:
+            if known:
+                return LayeredSolution(task, layers, *known, own)
+            solved, _ = layers.solved(np.unique(own))
             if self.tolerance <= OF_ENDS:
                 body.keep(task.response.c, layers.punch.unit, solved)
-        nodes: list[Nodes] = []
-        if interpolated is not None:
-            each = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))
-            nodes = [Nodes(groups) for groups in each]
-        states = partial(LayeredSolution, task, layers, solved, nodes, interpolated or 0.0)
+            return LayeredSolution(task, layers, solved, [], 0.0, own)
+
         return nullcontext(SimpleNamespace(states=states, record=dict))
 
 
@@ -450,11 +456,14 @@ class LayeredSolution(ExactSolution):
     ) -> None:  # fmt: skip
         super().__init__(task, g)
         self._layers, self._solved, self._interpolation = layers, solved, interpolation
+        changes = np.array([of.change for of in solved])
         if nodes:
             self._both = tuple(each.between(g) for each in nodes)
+            self._change = np.full(len(g), changes.max())
         else:
             which = np.searchsorted([of.g for of in solved], g)
             which = np.minimum(which, len(solved) - 1)  # one pressure is prescribed for all
+            self._change = changes[which]
             rows = [(solved[i], g, np.flatnonzero(which == i)) for i in np.unique(which)]
             self._both = tuple(Contacts(of) for of in zip(*(groups_of(layers, *each) for each in rows)))
         #: Contacts of the states, and those with fewer unknowns.
@@ -532,10 +541,9 @@ class LayeredSolution(ExactSolution):
         They add the change with the number of unknowns, the effect of the kernels' and the tables'
         errors, and the error of the interpolation over frictions.
         """
-        change = max(contact.change for contact in self._solved)
         return _Evaluated(
             {
-                INTENSITIES: lambda: np.full(len(self.g), change + self._shared),
+                INTENSITIES: lambda: self._change + self._shared,
                 ON_SURFACE: self._on_surface,
                 AT_INTERFACES: self._at_interfaces,
                 BELOW: self._below,

@@ -153,7 +153,11 @@ class Uniform:
         back = down @ up
         with np.errstate(all="ignore"):
             own = -(self.medium.up - self.medium.down @ back) @ inverse(_ONE - back)
-        return least(below + own)
+        # Between faces much nearer than the wavelength the stiffness is T over their distance at least;
+        # that of an incompressible solid goes as its third power, and has no digits.
+        kH = k * self.H
+        held = 1.0 / (kH * np.linalg.eigvalsh(self.medium.T_inverse)[-1])
+        return np.where(kH < _THIN, held, least(below + own))
 
     def carried(self, k: NDArray, below: NDArray) -> NDArray[Any]:
         """Displacement of the lower face by that of the upper one, (n, 2, 2).
@@ -173,6 +177,8 @@ class Uniform:
         return np.zeros((2, 2), dtype=complex)
 
 
+#: Thickness over the wavelength/2π below which a layer that is held on top holds what is below.
+_THIN = 1e-4
 #: Coefficients of the polynomials in which properties are expanded, at first and at most; size of the
 #: last ones that is small enough, and that which is rounding.
 _FEW, _MANY, _SMALL, _ROUNDING = 17, 513, 1e-12, 2e-15

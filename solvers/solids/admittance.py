@@ -53,7 +53,7 @@ class Admittance:
     @classmethod
     def of(cls, half_plane: HalfPlane) -> "Admittance":
         """Admittance of a uniform half-plane's solid."""
-        return cls.of_stiffness(half_plane.surface.C)
+        return half_plane.surface.admittance
 
     @classmethod
     def of_stiffness(cls, C: NDArray) -> "Admittance":
@@ -287,6 +287,11 @@ class AnisotropicFrame(UniformHalfPlane):
     @property
     def mirror_image(self) -> "AnisotropicFrame":
         return AnisotropicFrame(self.solid.mirrored, self.c)
+
+    @property
+    def admittance(self) -> Admittance:
+        """Admittance of the surface at all speeds."""
+        return self.solid
 
     @cached_property
     def C(self) -> NDArray[np.float64]:

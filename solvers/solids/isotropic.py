@@ -16,7 +16,8 @@ from galinx.texts import with_prefix
 
 from ..approximation import bisected
 from ..parameters import check, parameter
-from .half_plane import Roots, UniformHalfPlane
+from .admittance import Admittance
+from .half_plane import Roots, UniformHalfPlane, Waves
 from .solid import Solid, density, in_plane, modulus
 
 #: κ - 1 below which finite elements make the pressure an unknown of its own: ν > 0.49 in plane strain.
@@ -197,6 +198,12 @@ class MovingFrame(UniformHalfPlane):
         λ = (3.0 - self.κ) / (self.κ - 1.0) if self.k else inf
         return np.array([[2.0 + λ, λ, 0.0], [λ, 2.0 + λ, 0.0], [0.0, 0.0, 1.0]])
 
+    @property
+    def admittance(self) -> Admittance:
+        """Admittance of the surface at all speeds."""
+        (c11, c12, _), *_ = self.C.tolist()
+        return IsotropicAdmittance(c11, c12, 0.0, c11, 0.0)
+
     @cached_property
     def Y(self) -> NDArray[Any]:
         """Admittance of the surface by n, q and m, which keep their digits near the Rayleigh speed."""
@@ -224,6 +231,31 @@ class MovingFrame(UniformHalfPlane):
         """ω₁ … ω₄ of the study (Eqs 31, 33), with the signs of the relations above."""
         scale = 4.0 / (self.κ + 1.0)
         return scale * self.n / pi, scale * self.q, scale * self.m / pi, scale * self.q
+
+
+class IsotropicAdmittance(Admittance):
+    """Admittance of the surface of an isotropic solid, whose waves keep their digits up to ν = 1/2."""
+
+    mirrored = property(lambda self: self)  # type: ignore[assignment]
+
+    def waves(self, C: NDArray) -> Waves:
+        """Two waves with Im p > 0 at speeds C, (n,), by the formulas of :class:`MovingFrame`."""
+        C, k = np.asarray(C, dtype=complex), 1.0 / self.c11
+        # At real speeds the waves are those of Im C -> -0.
+        C2 = np.where(C.imag == 0.0, C - 1j * np.finfo(float).tiny, C) ** 2
+        s, d = np.sqrt(1.0 - C2), np.sqrt(1.0 - k * C2)
+        w = (1.0 + k - k * C2) / (1.0 + s * d)
+        across = (1.0 - k) / ((s + d) * w)
+        matrices = [[1j * d / w, -s * across], [-d * across, 1j * s * k / w]], [
+            [1j * d / w, 1.0 - s * across], [s * across - 1.0, 1j * s / w],
+        ]  # fmt: skip
+        G, L = (np.moveaxis(np.array(of), 2, 0) for of in matrices)
+        return Waves(Roots(1j * (s + d), -s * d), G, L)
+
+    @cached_property
+    def meeting(self) -> NDArray[np.float64]:
+        """Wave speeds over that of shear waves; that of dilatational ones is left out at ν = 1/2."""
+        return np.sqrt([1.0, self.c11][: 2 if np.isfinite(self.c11) else 1])
 
 
 def rayleigh_speed(κ: float) -> float:

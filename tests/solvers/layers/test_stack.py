@@ -125,6 +125,18 @@ def heavy():
                    Isotropic(1.0, 0.3, 1.0))  # fmt: skip
 
 
+def test_speed_limit_of_an_incompressible_graded_layer_is_the_limit_of_others():
+    """Slices of it, held on top, are much stiffer than waves longer than all layers have digits for."""
+
+    def limit(ν):
+        top, bottom = (Isotropic(E, ν, 1.0) for E in (1.0, 2.0))
+        stiff = Layer(11.0, Isotropic(50.0, 0.3, 1.5))
+        return Layered((Layer(1.0, top, bottom), stiff), Isotropic(20.0, 0.33, 0.5)).limit()
+
+    assert limit(0.5) == pytest.approx(limit(0.5 - 1e-7), rel=1e-6)
+    assert limit(0.5) == pytest.approx(Isotropic(1.0, 0.5, 1.0).limit(), rel=1e-9)
+
+
 def test_speed_limit_at_a_wavenumber_inside_is_found():
     solid = heavy()
     limit = solid.limit()

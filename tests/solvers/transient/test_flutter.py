@@ -1,5 +1,7 @@
 """Flutter thresholds against Stroh's eigenvectors: in 30 digits, and by counting growing waves."""
 
+from operator import attrgetter
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from stroh import Stroh, admittances
 import galinx
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
+from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.flutter import Side, thresholds
 from galinx.solvers.solids.pair import Pair
 
@@ -186,3 +189,30 @@ def test_the_same_two_bodies_upside_down_have_the_same_thresholds():
     plate, punch = material("copper", 30.0), material("zinc", -20.0)
     one = Pair(plate, punch, 100.0).flutter(400.0 / plate.c_s)
     np.testing.assert_allclose(Pair(punch, plate, 100.0).flutter(400.0 / punch.c_s), one, rtol=1e-7)
+
+
+@pytest.mark.parametrize("ν", [-0.4, 0.0, 0.3, 0.49])
+def test_waves_in_isotropic_solids_are_those_of_the_general_form(ν):
+    """At complex speeds, and on both sides of the real ones at which roots meet."""
+    rng, solid = np.random.default_rng(3), Isotropic(1.0, ν, 1.0).response(0.0)
+    C = np.concatenate([rng.normal(0.0, 3.0, 30) + 2j * rng.normal(size=30), rng.uniform(-4.0, 4.0, 30)])
+    own, general = solid.admittance, Admittance.of_stiffness(solid.C)
+    np.testing.assert_allclose(own.meeting, general.meeting, rtol=1e-12)
+    one, other = own.waves(C), general.waves(C)
+    for name in ("roots.sum", "roots.product", "G", "L"):
+        np.testing.assert_allclose(attrgetter(name)(one), attrgetter(name)(other), rtol=1e-10, atol=1e-11)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_thresholds_of_a_pair_have_their_limit_at_ν_one_half(seed):
+    """What differs from it goes as the ratio of the wave speeds, the root of 1 - 2ν."""
+    rng = np.random.default_rng(seed)
+    plate, E, ρ = Isotropic(1.0, rng.uniform(0.0, 0.45), 1.0), *10.0 ** rng.uniform(-1.0, 1.0, 2)
+    for order in (1, -1):
+        limit, near, nearer = (
+            np.array(Pair(*(plate, Isotropic(E, ν, ρ))[::order], 0.0).flutter(0.3))
+            for ν in (0.5, 0.5 - 1e-6, 0.5 - 1e-8)
+        )
+        assert (limit >= 0.0).all() and (
+            np.abs(nearer - limit) <= 0.11 * np.abs(near - limit) + 1e-9
+        ).all()

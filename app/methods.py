@@ -13,7 +13,12 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
-from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS
+from galinx.solvers.contact.fem_plan import (
+    FREE_ON_LAYERS,
+    OWN_MESHES,
+    PRESCRIBED_ON_LAYERS,
+    crowded_kinks,
+)
 from galinx.solvers.contact.solution import (
     FLAT,
     FREE,
@@ -161,6 +166,11 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
         lacks = lacks | {states.INDENTATION.path: "the far boundary moves with the load"}
     elif mode == OWN_MESHES and (solve.mesh != "confocal" or solve.degree):
         return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'
+    elif mode == OWN_MESHES and not quantity:
+        ends = (body.loaded(of(scene.punch.loads)) for of in (min, max))
+        crowded = [crowded_kinks(under.kinks_at_rest) for under in ends]  # type: ignore[attr-defined]
+        if all(crowded):
+            return f"the punch has {crowded[0]}; closed_form takes it"
     return _refusal(quantity, body, lacks)
 
 

@@ -519,7 +519,6 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
         enough = 10.0 ** np.ceil(np.log10(wanted * max(value / (limit or 1.0), 1.0)))
         lines.append(
             f"what to do: --set solve.tolerance={wanted / 10.0:.0e} computes finer and may pass; "
-            "another solve.degree or solve.mesh shows which method is off; "
             f"--set solve.tolerance={enough:.0e} accepts it"
         )
     return lines

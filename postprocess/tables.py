@@ -32,7 +32,7 @@ from .quantities import (
 from .quantities import states as of
 from .quantities.quantity import CONTACT, FEM, SIE, TEXT, X_OVER_A
 from .quantities.states import LOAD, MOTION, POSITION, SPEED
-from .units import Scaled, Units, as_archived, engineering, number
+from .units import Scaled, Units, as_archived, engineering, number, solved
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -307,14 +307,14 @@ def _columns(
 
 def _least(units: Units) -> dict[str, float]:
     """Sizes up to which numbers are rounding, by their unit or scale."""
-    least = dict.fromkeys((X_OVER_A, CONTACT), _LEAST * float(np.max(units.length.factor)))
-    return least | {_STRESS: _LEAST_STRESS * float(np.max(units.stress.factor))}
+    least = dict.fromkeys((X_OVER_A, CONTACT), _LEAST * float(solved(units.length.factor).max()))
+    return least | {_STRESS: _LEAST_STRESS * float(solved(units.stress.factor).max())}
 
 
 def _resultant(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Column of the resultant of a prescribed pressure; none where it is the load N."""
     row = preferred(data, of.RESULTANT | {FEM: of.NORMAL_FORCE})
-    if row is None or np.allclose(-data[row.path], units.load, rtol=1e-6):
+    if row is None or not np.any(np.abs(-data[row.path] / units.load - 1.0) > 1e-6):
         return []
     scale = units.scale(row.unit)
     return [Column("resultant of the pressure", scale.of(-data[row.path]), scale.unit, "resultant")]
@@ -546,8 +546,8 @@ def solved_speeds(data: Mapping[str, Any]) -> str:
     if of.FITTED.path not in data:
         return ""
     c, fitted = data[of.SPEED.path], data[of.FITTED.path]
-    solved = len(np.unique(c[fitted == 0.0]))
-    return f"finite elements: {solved} of {len(np.unique(c))} speeds solved, the others by a fit"
+    count = len(np.unique(c[fitted == 0.0]))
+    return f"finite elements: {count} of {len(np.unique(c))} speeds solved, the others by a fit"
 
 
 def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:

@@ -15,7 +15,7 @@ from galinx.solvers.contact.solution import Contact
 from galinx.texts import significant as number
 from galinx.texts import with_prefix
 
-from .quantities import Quantity, of_states, over_time, states, swept, table
+from .quantities import Quantity, of_states, over_time, preferred, states, swept, table
 from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
 
 
@@ -91,7 +91,7 @@ def prefixed(unit: str, size: float) -> tuple[str, float]:
     return best
 
 
-def _known(values: Any) -> NDArray[np.float64]:
+def solved(values: Any) -> NDArray[np.float64]:
     """Those of numbers that are no NaN, which stands for a state without a solution; 1 if all are."""
     values = np.ravel(values)
     return values[~np.isnan(values)] if not np.all(np.isnan(values)) else np.ones(1)
@@ -121,10 +121,9 @@ class Units:
         self.contact, self.data = contact, data
         self.half_width: Any = data.get(swept.HALF_WIDTH.path, contact.half_width)
         self.middle: Any = 0.0
-        for width, middle in zip(states.HALF_WIDTH.values(), states.CENTRE.values()):
-            if width.path in data and middle.path in data:
-                self.half_width, self.middle = data[width.path], data[middle.path]
-                break
+        width, middle = preferred(data, states.HALF_WIDTH), preferred(data, states.CENTRE)
+        if width and middle:
+            self.half_width, self.middle = data[width.path], data[middle.path]
         self.c_s: Any = data.get(swept.WAVE_SPEED.path, contact.solid.c_s)
         self.load: Any = data.get(states.LOAD.path, contact.load)
 
@@ -176,10 +175,10 @@ class Units:
             unit, factor, size = (
                 "Pa",
                 N / (2.0 * a),
-                np.median(_known(self.load / (2.0 * self.half_width))),
+                np.median(solved(self.load / (2.0 * self.half_width))),
             )
         elif kind in (OVER_A, X_OVER_A, CONTACT):
-            unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(_known(self.half_width))
+            unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(solved(self.half_width))
             offset = self.middle if kind == X_OVER_A and of_states_ else 0.0
         elif kind == OVER_C_S:
             unit, factor = "m/s", (self.c_s if of_states_ else contact.solid.c_s)

@@ -197,10 +197,9 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
     for name in choice.quantities:
         require_one_of("quantity", name, quantities)
     usual = [name for name in available if FIGURES[name].usual(plain)]
-    offered = available if whole or choice.given else usual or available[:1]
-    selected = list(named) or [
-        name for name in offered if name not in _BY_NAME and choice.given <= FIGURES[name].follows
-    ]
+    quick = [name for name in available if name not in _BY_NAME] or available[:1]
+    offered = quick if whole or choice.given else usual or quick[:1]
+    selected = list(named) or [name for name in offered if choice.given <= FIGURES[name].follows]
     if measured := choice.measured:
         selected = [name for name in selected if measured.lies_in(name, choice.quantities)]
         if not selected:
@@ -210,9 +209,10 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
             )
     drawable = [name for name in selected if name == FILM or FIGURES[name].has(of)]
     if not drawable or len(drawable) < len(named):
+        for_options = f" for {_options(choice.given)} together" if choice.given else ""
         raise BadInput(
-            f"the archive has nothing to draw for {_options(choice.given)} together; it has the figures "
-            f"{', '.join(available)}"
+            f"the archive has nothing to draw{for_options}; it has the figures "
+            f"{', '.join(available) or 'of no kind'}"
         )
     return drawable
 

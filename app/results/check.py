@@ -319,7 +319,7 @@ def _same(archived: Any, expected: Any) -> bool:
     if np.shape(archived) != np.shape(expected):
         return False
     if np.asarray(expected).dtype.kind != "f":
-        return bool((archived == expected).all())
+        return bool(np.all(archived == expected))
     size = np.nanmax(np.abs(expected), initial=0.0)
     return np.allclose(archived, expected, rtol=_SAME, atol=_SAME * size, equal_nan=True)
 
@@ -329,7 +329,7 @@ def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[
     plan = plans[0]
     attributes, data = archive.attributes, archive.data
     for name, value in scene_attributes(scene).items():
-        if name in attributes and attributes[name] != value:  # older layouts have fewer
+        if name in attributes and not _same(attributes[name], value):  # older layouts have fewer
             archived = np.asarray(attributes[name]).item()  # as Python writes it
             yield f"{name} says {archived!r}, its scene gives {value!r}"
     rules = frozenset[str]().union(*(each.rules for each in plans))

@@ -83,8 +83,8 @@ class Work:
             solvers = self._solvers(task, task.of(self.g), stack, reasons)
             for runs in self.batches(task):
                 rows = np.concatenate([np.arange(run.start, run.stop) for run in runs])
-                data, solved = self._solve(task, rows, solvers, reasons)
-                any_solved |= bool(solved.any())
+                data, solved, some = self._solve(task, rows, solvers, reasons)
+                any_solved |= bool(some)
                 with self.clock("comparison"):
                     for quantity in self.plan.quantities:
                         if quantity.of_data:
@@ -113,7 +113,7 @@ class Work:
         reasons: dict[str, str] = {}
         with ExitStack() as stack:
             solvers = self._solvers(task, self.g[rows], stack, reasons)
-            data, _ = self._solve(task, rows, solvers, reasons)
+            data, *_ = self._solve(task, rows, solvers, reasons)
         if reasons:
             raise SolveError("; ".join(reasons.values()))
         return data
@@ -140,18 +140,19 @@ class Work:
     def _solve(
         self, task: Task, rows: NDArray[np.int64], solvers: Mapping[str, Solver | None],
         reasons: dict[str, str],
-    ) -> tuple[dict[str, NDArray], NDArray[np.bool_]]:  # fmt: skip
-        """Quantities of states by path, NaN where a method fails; and True where all methods solve."""
+    ) -> tuple[dict[str, NDArray], NDArray[np.bool_], bool]:  # fmt: skip
+        """Quantities of states by path, NaN where a method fails; where all solve them; if any does."""
         g, load = self.g[rows], None if self.load is None else self.load[rows]
         solved = np.ones(len(g), dtype=bool)
         data: dict[str, NDArray] = {}
+        some = not self.methods
         for name in self.methods:
             if name not in solvers:
                 data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)
                 continue
             with self.clock(_step(name, evaluated=True)):
                 values, own, why = self._by(name, solvers[name], task, g, load)
-            data, solved = data | values, solved & own
+            data, solved, some = data | values, solved & own, some or bool(own.any())
             if why:
                 reasons.setdefault(name, why)
         with self.clock(_step(CLOSED_FORM)):
@@ -162,7 +163,7 @@ class Work:
                 half_width=task.body.half_widths(task.response, g, load),
             )  # fmt: skip
             data |= self._of(LOCAL, known, task.body.loaded(load))
-        return data, solved
+        return data, solved, some
 
     def _by(
         self, name: str, solver: Solver | None, task: Task, g: NDArray, load: Any
@@ -225,7 +226,7 @@ class Work:
             task: the speed.
             solvers: of its states, by method.
             reasons: why states could not be solved, by method.
-            solved: True where some states were solved by all methods.
+            solved: True where some states were solved by a method.
         """
         speed: dict[str, Any] = {"speed": self.plan.speed + task.number, "c": task.response.c}
         numbers: dict[str, Any] = {}

@@ -5,6 +5,8 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
+
 # Each module adds its own quantities; tables have them in this order.
 # isort: off
 from . import runs, states  # noqa: F401
@@ -78,9 +80,12 @@ def declared(path: str) -> Quantity:
 
 def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity | None:
     """Quantity by the first of finite elements, closed form and integral equation that an archive has;
-    None where it has none."""
-    there = (rows[method] for method in (FEM, CLOSED_FORM, SIE, "") if method in rows)
-    return next((row for row in there if row.path in data), None)
+    None where it has none. A method that solved no state is the last of them."""
+    there = [rows[method] for method in (FEM, CLOSED_FORM, SIE, "") if method in rows]
+    there = [row for row in there if row.path in data]
+    if len(data.get(runs.FAILURES.path, ())):
+        there.sort(key=lambda row: bool(np.isnan(data[row.path]).all()))
+    return next(iter(there), None)
 
 
 def of_states(path: str) -> bool:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import SolveError
 from ..friction.along import Along, constant
-from ..profiles import Profile, exponent, has_free_end, jumps, kinks
+from ..profiles import Profile, exponent, has_free_end, jumps, kinks, kinks_between
 from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
@@ -502,6 +502,13 @@ class FreeEndContact(Contact):
         from .closed_form import contacts
 
         return contacts(response, g, self.profile, self.compression)
+
+    @cached_property
+    def kinks_at_rest(self) -> NDArray[np.float64]:
+        """Positions of the punch's kinks over the half-width, at rest and without friction, (kinks,)."""
+        contact = self.contacts(self.solid.response(0.0), np.zeros(1))
+        (m,), (h,) = contact.of("centre"), contact.of("half_width")
+        return kinks_between(self.profile, m, h)
 
 
 def make_contact(

@@ -318,7 +318,8 @@ def at_and_between(
     """
     infinite = np.broadcast_to(infinite, turns.shape)
     few = np.column_stack([turns[:-1], between(turns, _COARSE)]).ravel()
-    each = σ_XX(np.append(few, 1.0))
+    with np.errstate(invalid="ignore"):  # an infinite weight at a free end, times 0, has no value there
+        each = σ_XX(np.append(few, 1.0))
     per = 1 + len(_COARSE)
     each[:, ::per][:, infinite] = np.nan
     ranked = np.concatenate([sign * each for sign in (1.0, -1.0)])

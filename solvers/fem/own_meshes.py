@@ -48,7 +48,7 @@ from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task, make_contact
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
-from ..profiles import check_reach, cusp, exponent, jumps, kinks, leaving
+from ..profiles import check_reach, cusp, exponent, jumps, kinks_between, leaving
 from ..profiles.punches import Flat
 from .contact import ACROSS, AlongLevel, FreeLevel, PunchLevel, without_intensity
 from .discretisation import Discretisation, on_finer_cells
@@ -223,9 +223,7 @@ class EndsBetweenKinks:
     @property
     def places(self) -> NDArray[np.float64]:
         """Positions of the kinks over the half-width."""
-        m, h = self.lengths
-        at = (np.array(kinks(self.body.profile), dtype=float) - m) / h
-        return at[np.abs(at) < 1.0]
+        return kinks_between(self.body.profile, *self.lengths)
 
     def height(self, r: NDArray) -> NDArray[np.float64]:
         """Height of the punch over N/(2μ) at places r over the half-width from the middle."""

@@ -10,6 +10,7 @@ from .profile import (
     has_free_end,
     jumps,
     kinks,
+    kinks_between,
     leaving,
     radius,
 )
@@ -23,6 +24,7 @@ __all__ = [
     "has_free_end",
     "jumps",
     "kinks",
+    "kinks_between",
     "leaving",
     "radius",
 ]  # fmt: skip

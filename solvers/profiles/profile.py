@@ -51,6 +51,12 @@ def kinks(profile: Any) -> Sequence[float]:
     return getattr(profile, "kinks", ())
 
 
+def kinks_between(profile: Any, centre: float, half_width: float) -> NDArray[np.float64]:
+    """Positions of the kinks inside a contact, from its middle and over its half-width, (kinks,)."""
+    at = (np.array(kinks(profile), dtype=float) - centre) / half_width
+    return at[np.abs(at) < 1.0]
+
+
 def jumps(profile: Any) -> bool:
     """Return True if the slope itself jumps at the kinks."""
     return getattr(profile, "jumps", False)

@@ -79,6 +79,15 @@ def test_a_report_has_all_tables_and_no_heading_without_text(name, tmp_path):
     assert not re.search(r"<h2[^>]*>[^<]*</h2>\s*<h2", text)
 
 
+def test_a_report_of_friction_over_an_elastic_pair_shows_flutter(tmp_path):
+    """What is drawn only by name elsewhere is all that such an archive has to show."""
+    friction = {"output.quantities": ["friction"], "punch.solid": {"material": "TiN"}}
+    along = {"friction.state": "advected", "motion.strokes": None, "motion.X_over_L": None}
+    result = compute(template("cylinder", friction | along | {"output.map": None}))
+    result.report(tmp_path / "report.html")
+    assert "<figcaption" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
 def data_of(page, name):
     text = page.read_text(encoding="utf-8")
     return json.loads(re.search(f'id="{name}-data">(.*?)</script>', text, re.DOTALL)[1])

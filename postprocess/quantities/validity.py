@@ -1,5 +1,8 @@
 """Quantities of where the answers do not hold: limits of a steady, linear solution with friction."""
 
+from collections.abc import Callable
+from typing import Any
+
 from galinx.solvers.contact import ON_SURFACE
 from galinx.solvers.contact.solution import PUNCH
 from galinx.solvers.contact.stresses import tension
@@ -46,13 +49,13 @@ FLUTTER = {
 }  # fmt: skip
 
 
-def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, ...]:
-    """Quantities of a distance from X = -a and from X = a."""
+def _within(name: str, reach: str, what: str, of: Callable[[Any], Any]) -> tuple[Quantity, ...]:
+    """Quantities of a distance from X = -a and from X = a, ``of`` a solution, (states, 2)."""
     return tuple(
         Quantity(
             f"states/closed_form/{name}_{side}", "1",
             f"{reach} from {at}, the distance within which {what}, over the half-width",
-            (STATE,), entry(lambda s: s.strained_within(strain), ..., i), CLOSED_FORM, PUNCH,
+            (STATE,), entry(of, ..., i), CLOSED_FORM, PUNCH,
             range=NOT_NEGATIVE, scale=OVER_A,
         )
         for i, (side, at) in enumerate({"left": "X = -a", "right": "X = a"}.items())
@@ -61,12 +64,12 @@ def _within(name: str, reach: str, strain: float, what: str) -> tuple[Quantity, 
 
 #: The slip velocity is V (1 + u,X).
 SLIP_REVERSED = _within(
-    "slip_reversed", "reach of reversed slip", 1.0,
-    "1 + u,X is negative at the load",
+    "slip_reversed", "reach of reversed slip", "1 + u,X is negative at the load",
+    lambda s: s.compressed_within(1.0),
 )  # fmt: skip
 STRAIN = _within(
-    "large_strain", "reach of large strain", LARGE_STRAIN,
-    "u,X is beyond 5 % at the load",
+    "large_strain", "reach of large strain", "|u,X| is beyond 5 % at the load",
+    lambda s: s.strained_within(LARGE_STRAIN),
 )  # fmt: skip
 
 

@@ -24,7 +24,7 @@ profile P, which :mod:`galinx.solvers.contact.ends` solves:
     ∫ P'(m + h s)/w ds = 0,        N/μ = h (sin πa/N̂) ∫ s P'(m + h s)/w ds.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -77,7 +77,7 @@ class FlatPunch(EdgeExponents, Pressure):
         """Φ(z) = (2/π)(z - 1)^α (z + 1)^β, see :class:`galinx.solvers.solids.half_plane.Potential`."""
         return 2.0 / np.pi * np.exp(self.α * np.log(z - 1.0) + self.β * np.log(z + 1.0))
 
-    def strained_within(self, strain: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def compressed_within(self, strain: float) -> NDArray[np.float64]:
         """Distances from X = -a and X = a, under the punch, within which -μ u,X over N/(2a) is large.
 
         Under the punch u,X is a multiple of the pressure, infinite at both edges. From its least value,
@@ -87,12 +87,52 @@ class FlatPunch(EdgeExponents, Pressure):
             strain: value of -μ u,X over N/(2a) that is exceeded there, positive.
 
         Returns:
-            Distances over a, of the shape of ``g``; the whole width is shared out between both ends.
+            Distances over a, (2, …) by the shape of ``g``; both ends share out the whole width.
         """
-        by_pressure = self.response.strain(self.g, 1.0, self._cot)
-        amplitude = np.maximum(-2.0 * self._sin / np.pi * by_pressure, np.finfo(float).tiny)
-        log_ratio = np.log(strain) - np.log(amplitude)  # their ratio may overflow
-        return self._within(self.β, self.α, log_ratio), self._within(self.α, self.β, log_ratio)
+        return self._distances(self._within, -self._by_pressure, strain)
+
+    def strained_within(self, strain: float) -> NDArray[np.float64]:
+        """Distances from X = -a and X = a, on both sides of these, within which |μ u,X| is large.
+
+        Beside the punch u,X is a multiple of the pressure's Hilbert transform.
+
+        Args:
+            strain: value of |μ u,X| over N/(2a) that is exceeded there, positive.
+
+        Returns:
+            Distances over a, (2, …) by the shape of ``g``.
+        """
+        beside = 2.0 / np.pi * np.abs(self.response.strain(self.g, 0.0, 1.0))
+        return np.maximum(
+            self._distances(self._within, np.abs(self._by_pressure), strain),
+            self._distances(self._beside, beside, strain),
+        )
+
+    @property
+    def _by_pressure(self) -> NDArray[np.float64]:
+        """μ u,X under the punch over N/(2a) and over (1 - X)^α (1 + X)^β."""
+        return np.asarray(2.0 * self._sin / np.pi * self.response.strain(self.g, 1.0, self._cot))
+
+    def _distances(
+        self, within: Callable[[Any, Any, Any], NDArray], amplitude: NDArray, strain: float
+    ) -> NDArray[np.float64]:
+        """Distances from both ends within which a strain of an amplitude is exceeded."""
+        # The ratio may overflow.
+        log_ratio = np.log(strain) - np.log(np.maximum(amplitude, np.finfo(float).tiny))
+        return np.array([within(self.β, self.α, log_ratio), within(self.α, self.β, log_ratio)])
+
+    @staticmethod
+    def _beside(own: Any, other: Any, level: Any) -> NDArray[np.float64]:
+        """Distance d with own·log d + other·log(2 + d) = level."""
+        t = (level - other * np.log(2.0)) / own  # as if 2 + d were 2
+        # Concave and falling, and not above the level here: Newton's steps never pass the answer.
+        for _ in range(_STEPS):
+            d = np.exp(t)
+            excess = own * t + other * np.log(2.0 + d) - level
+            t, before = t - excess / (own + other * d / (2.0 + d)), t
+            if np.allclose(t, before, rtol=0.0, atol=1e-15):
+                break
+        return np.exp(t)
 
     @staticmethod
     def _within(own: Any, other: Any, level: Any) -> NDArray[np.float64]:

@@ -104,13 +104,16 @@ class ExactSolution(Solution):
     #: Of friction that varies along the contact: centre of pressure over a, (states,).
     pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
 
-    def strained_within(self, strain: float) -> NDArray[np.float64]:
-        """Distances over a from X = -a and X = a within which -u,X exceeds a strain, (states, 2).
-
-        Under flat punches only.
+    def compressed_within(self, strain: float) -> NDArray[np.float64]:
+        """Distances over a from both ends within which -u,X exceeds a strain under a flat punch, (states, 2).
         """
         flat = FlatPunch(self.task.response, self.g)
-        return np.column_stack(flat.strained_within(strain / self.task.body.strain))
+        return flat.compressed_within(strain / self.task.body.strain).T
+
+    def strained_within(self, strain: float) -> NDArray[np.float64]:
+        """Distances over a from both ends of a flat punch within which |u,X| exceeds a strain, (states, 2)."""
+        flat = FlatPunch(self.task.response, self.g)
+        return flat.strained_within(strain / self.task.body.strain).T
 
     @property
     def v0(self) -> NDArray[np.float64]:

@@ -310,7 +310,9 @@ class Group:
         σ_YY = np.where(np.abs(r) < 1.0, self.pressure.σ_YY(r), 0.0)
         ratio, H, C = self.pressure.transforms(self.g[:, None], r)
         σ_XX = self.response.in_plane(ratio, σ_YY, H, self.response.m * C + self.strain(r))
-        return np.array([σ_XX, np.broadcast_to(σ_YY, σ_XX.shape)])
+        # Where friction varies along the contact its number stands for it, and states may share it.
+        shape = len(self.rows), σ_XX.shape[-1]
+        return np.array([np.broadcast_to(σ, shape) for σ in (σ_XX, σ_YY)])
 
     def strain(self, r: NDArray) -> Any:
         """Strain μ u,X over N/(2a) that layers add on the surface at r, (rows, points)."""
@@ -318,12 +320,13 @@ class Group:
 
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
-        return self.pressure.inside(self.response, self.g[:, None], X, Y)
+        σ = self.pressure.inside(self.response, self.g[:, None], X, Y)
+        return np.broadcast_to(σ, (3, len(self.rows), σ.shape[-1]))
 
     def stresses(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n), on the surface, too: (3, rows, n)."""
         on = Y == 0.0
-        σ = self.inside(X, np.where(on, -1.0, Y))
+        σ = self.inside(X, np.where(on, -1.0, Y)).copy()
         columns = on.any(axis=0)
         if columns.any():
             σ_XX, σ_YY = self.surface(X[:, columns])

@@ -58,7 +58,7 @@ class Element:
         self._weights = np.outer(weights, weights)
         value, slope = lagrange(nodes, self._points)
         gradient = [(slope, value), (value, slope)]
-        self.nodes, self.inner = len(reference), inner
+        self.nodes, self.inner = len(reference), np.asarray(inner, dtype=int)
         self.size = 2 * len(reference) + pressures**2
         self.at_once = max(16, _NUMBERS // self.size**2)
         self._pressures, self._side = pressures, len(nodes)

@@ -27,7 +27,7 @@ def test_within_the_zones_the_surface_is_pressed_together_more(c, g, strain):
         κ = response.κ
         return (punch.σ_XX(X) - (3.0 - κ) / (κ + 1.0) * punch.σ_YY(X)) * (κ + 1.0) / 8.0
 
-    left, right = punch.strained_within(strain)
+    left, right = punch.compressed_within(strain)
     least = punch.α - punch.β  # where the pressure is least
     for end, width in ((-1.0, left), (1.0, right)):
         if -u_X(least) >= strain:
@@ -41,8 +41,29 @@ def test_without_friction_the_zones_are_those_of_a_root():
     """σ_YY = -(2/π)/√(1 - X²) over N/(2a), u,X = q σ_YY."""
     strain, q = 3.0, SOLID.response(0.0).q
     width = 1.0 - np.sqrt(1.0 - (2.0 * q / (np.pi * strain)) ** 2)
-    for found in FlatPunch(SOLID.response(0.0), 0.0).strained_within(strain):
+    for found in FlatPunch(SOLID.response(0.0), 0.0).compressed_within(strain):
         np.testing.assert_allclose(found, width, rtol=1e-13)
+
+
+@pytest.mark.parametrize("ν, c, g", [(0.5, 0.0, 0.7), (0.25, 0.9, -0.4), (0.3, 0.93, 0.4), (0.45, 0.3, 0.0)])
+@pytest.mark.parametrize("strain", [0.02, 0.5, 50.0])
+def test_outside_the_zones_of_large_strain_the_surface_is_strained_less(ν, c, g, strain):
+    """Under the punch and beside it, beyond the Rayleigh speed, too; on the border it is that strain."""
+    response = Isotropic(1.0, ν, 1.0).response(c)
+    punch = FlatPunch(response, g)
+    for sign, d in zip((-1.0, 1.0), punch.strained_within(strain)):
+        end, other = (punch.α, punch.β)[:: int(sign)]
+        least = 2.0 * end / (end + other)  # distance of the least pressure
+        largest = []
+        for side in (1.0, -1.0):
+            X = sign * (1.0 + side * d * np.array([1.0, 1.0 + 1e-6, 1.3]))
+            if side < 0.0 and d * 1.3 >= least:
+                continue
+            κ, σ_YY = response.κ, punch.σ_YY(X) if side < 0.0 else 0.0
+            u_X = np.abs((punch.σ_XX(X) - (3.0 - κ) / (κ + 1.0) * σ_YY) * (κ + 1.0) / 8.0)
+            assert (u_X[1:] <= strain * (1.0 + 1e-9)).all()
+            largest.append(u_X[0])
+        assert max(largest) == pytest.approx(strain, rel=1e-6) or d >= 0.7 * least
 
 
 def test_states_have_their_speed_and_their_wave_crossings():

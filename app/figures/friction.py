@@ -20,8 +20,8 @@ from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Axes of a loop.
 X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
-#: Loops that can be told apart in a panel, and sliders in a figure.
-_LOOPS, _SLIDERS = 6, 6
+#: Loops that can be told apart in a panel, and sliders in a figure; cycles of these over time.
+_LOOPS, _SLIDERS, _CYCLES = 6, 6, 12
 
 
 @dataclass(frozen=True)
@@ -205,11 +205,15 @@ def slider(of: Archive) -> Drawing:
     velocity = named("velocity $v$", scale.unit)
     styles = looks(len(laws), ordered)
     cycles = [(law, look) for law, look in zip(laws, styles) if np.isfinite(cycle_v[law]).all()]
+    # Of more cycles a line would be a band.
+    shown, period = float(t[-1]), np.nan_to_num(of.values(runs.PERIOD)[laws]).max()
+    if period and shown > 2.0 * _CYCLES * period:
+        shown = _CYCLES * float(period)
     panels = [
         Panel(
             named("time $t$", of.scaled(runs.TIMES).unit), velocity,
             curves=[Curve(t, v[law], look, label) for law, look, label in zip(laws, styles, labels)],
-            at_y=(drive,), xlim=(0.0, float(t[-1])),
+            at_y=(drive,), xlim=(0.0, shown),
         )
     ]  # fmt: skip
     if cycles:
@@ -223,6 +227,8 @@ def slider(of: Archive) -> Drawing:
         caption += (
             " Where no loop is drawn the mass has no cycle in the end: it slides steadily or sticks."
         )
+    if shown < t[-1]:
+        caption += f" Of the velocity the first {_CYCLES} cycles are shown."
     missing = fewer(len(laws), count, f"laws{several * ' and loads'}")
     return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
 

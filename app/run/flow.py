@@ -208,8 +208,8 @@ def gathered(parts: Iterable[Part], most: int) -> Iterator[Part]:
         yield joined(small)
 
 
-#: Archived times of a slider, and times of its last cycle.
-_TIMES, _STEPS = 4001, 1001
+#: Archived times of a slider, evenly spaced, and at most in its slips; times of its last cycle.
+_TIMES, _IN_SLIPS, _STEPS = 4001, 20_000, 1001
 
 
 def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None) -> dict[str, NDArray]:
@@ -222,14 +222,17 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
     Raises:
         BadInput: a motion could not be followed.
     """
-    slider, motions = scene.slider, list[dict[str, Any]]()
+    slider, motions, rides = scene.slider, list[dict[str, Any]](), list[Any]()
     assert slider is not None
-    times, of = np.linspace(0.0, slider.duration, _TIMES), len(scene.punch.loads) * scene.friction.count
+    of = len(scene.punch.loads) * scene.friction.count
     for n, (load, law) in enumerate(product(scene.punch.loads, scene.friction.laws())):
         try:
-            ride = pull(slider, law, load, lambda share, n=n: done(n + share, of))  # type: ignore[misc]
+            rides.append(pull(slider, law, load, lambda share, n=n: done(n + share, of)))  # type: ignore[misc]
         except ValueError as error:
             raise BadInput(f"slider: {error}") from None
+    slips = [ride.slips(slider.duration, max(_IN_SLIPS // of, 1)) for ride in rides]
+    times = np.unique(np.concatenate([np.linspace(0.0, slider.duration, _TIMES), *slips]))
+    for ride in rides:
         last, (x, v, f) = cycle(ride, slider.drive_speed), ride.at(times)
         cycle_v, cycle_f = np.full((2, _STEPS), np.nan)
         if np.isfinite(last.period):

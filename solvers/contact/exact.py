@@ -105,13 +105,12 @@ class ExactSolution(Solution):
     pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
 
     def compressed_within(self, strain: float) -> NDArray[np.float64]:
-        """Distances over a from both ends within which -u,X exceeds a strain under a flat punch, (states, 2).
-        """
+        """Distances over a from both ends within which -u,X exceeds a strain, (states, 2)."""
         flat = FlatPunch(self.task.response, self.g)
         return flat.compressed_within(strain / self.task.body.strain).T
 
     def strained_within(self, strain: float) -> NDArray[np.float64]:
-        """Distances over a from both ends of a flat punch within which |u,X| exceeds a strain, (states, 2)."""
+        """Distances over a from both ends within which |u,X| exceeds a strain, (states, 2)."""
         flat = FlatPunch(self.task.response, self.g)
         return flat.strained_within(strain / self.task.body.strain).T
 

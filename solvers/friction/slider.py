@@ -30,6 +30,10 @@ _PERIODS = 10
 _CYCLES, _SAME = 8, 1e-8
 
 
+#: Share of the largest velocity from which on a mass slips, and times in a slip besides its fastest one.
+_SLIPS, _IN_A_SLIP = 1e-3, 24
+
+
 @dataclass(frozen=True)
 class Slider:
     """A mass on a driven spring: m dv/dt = k e + d (V - v) - N f, de/dt = V - v, from rest, e = 0."""
@@ -104,6 +108,27 @@ class Ride:
         if self._repeats:
             values[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
         return values
+
+    def slips(self, end: float, most: int) -> NDArray[np.float64]:
+        """Times in the slips up to an end [s], rising: fast slips are over between times far apart.
+
+        Args:
+            end: last time [s].
+            most: most times; of more slips so many are picked.
+        """
+        if self.cycle is None:
+            return np.empty(0)
+        begun, v = self.crossings, self.v[self.cycle]
+        t, period = self.t[self.cycle] - begun[-2], begun[-1] - begun[-2]
+        if self._repeats:
+            begun = np.append(begun, np.arange(begun[-1], end, period)[1:])
+        fast = t[v > _SLIPS * v.max()]
+        inside = np.linspace(0.0, len(fast) - 1.0, _IN_A_SLIP)
+        inside = np.append(np.interp(inside, np.arange(len(fast)), fast), t[v.argmax()])
+        each = np.ceil(len(begun) * len(inside) / most).astype(int)
+        # The end of a cycle is the beginning of the next slip.
+        times = (begun[::each, None] + np.where(inside > period / 2.0, inside - period, inside)).ravel()
+        return np.unique(times[(times >= 0.0) & (times <= end)])
 
     @property
     def cycle(self) -> slice | None:

@@ -45,7 +45,9 @@ def test_without_friction_the_zones_are_those_of_a_root():
         np.testing.assert_allclose(found, width, rtol=1e-13)
 
 
-@pytest.mark.parametrize("ν, c, g", [(0.5, 0.0, 0.7), (0.25, 0.9, -0.4), (0.3, 0.93, 0.4), (0.45, 0.3, 0.0)])
+@pytest.mark.parametrize(
+    "ν, c, g", [(0.5, 0.0, 0.7), (0.25, 0.9, -0.4), (0.3, 0.93, 0.4), (0.45, 0.3, 0.0)]
+)
 @pytest.mark.parametrize("strain", [0.02, 0.5, 50.0])
 def test_outside_the_zones_of_large_strain_the_surface_is_strained_less(ν, c, g, strain):
     """Under the punch and beside it, beyond the Rayleigh speed, too; on the border it is that strain."""

@@ -288,5 +288,5 @@ def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):
     alone = computed("tables4_5", changes | {"punch.load": 1.0})
     assert alone.verdict == "PASS" and "states/fem/half_width" not in alone.data
     assert alone.data["states/closed_form/half_width"] == pytest.approx(a[0], rel=1e-12)
-    with pytest.raises(BadInput, match="kinks.*closed_form takes it"):
+    with pytest.raises(BadInput, match=r"kinks.*closed_form takes it"):
         computed("tables4_5", changes | {"punch.load": 1.0, "solve.methods": ["fem"]})

@@ -113,6 +113,21 @@ def test_a_stick_slip_that_comes_back_goes_on_so():
     np.testing.assert_allclose([x - 40.0 * slip, v, f], short.at(t), rtol=0.0, atol=1e-7)
 
 
+def test_every_slip_has_its_peak_among_the_times_of_slips():
+    """Each lasts a hundredth of the time between two; the drive's distance is that of the slips."""
+    slider, end = Slider(2.0, 2e6, 10.0, 0.01, 20.0), 20.0
+    law = of("stribeck", mu_c=0.4, mu_s=0.6, stribeck_velocity=1e-3)
+    ride = pull(slider, law, 1e4)
+    last, times = cycle(ride, 0.01), ride.slips(end, 100_000)
+    v = ride.at(times)[1]
+    tops = np.flatnonzero((v[1:-1] > v[:-2]) & (v[1:-1] >= v[2:])) + 1
+    assert len(tops) == int((end - ride.crossings[0]) / last.period) + 1
+    np.testing.assert_allclose(v[tops], last.peak, rtol=1e-6)
+    np.testing.assert_allclose(np.diff(times[tops]), last.period, rtol=1e-5)
+    few = ride.slips(end, 500)
+    assert 250 < len(few) <= 500 and set(few) <= set(times)
+
+
 def test_what_rings_without_end_is_told(monkeypatch):
     import galinx.solvers.friction.slider as module
 

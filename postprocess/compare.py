@@ -472,12 +472,13 @@ def checked(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
     """
     figures = judged(attributes)
     kinds: dict[str, list[float]] = {"two methods agree to": [], "estimated error": [], "residual": []}
+    by_text = {rule.text: rule for rule in RULES.values()}
     for text, (value, _) in figures.items():
-        if "nodal forces" not in text and "not finite" not in text:
-            words = ("estimated error", "residual")
-            kinds[next((word for word in words if text.startswith(word)), "two methods agree to")].append(
-                value
-            )
+        kind = next((kind for kind in kinds if text.startswith(kind)), "")
+        if text in by_text and len({row.method for row in by_text[text].needs} - {""}) > 1:
+            kind = "two methods agree to"
+        if kind:
+            kinds[kind].append(value)
     limits = [limit for text, (_, limit) in figures.items() if "nodal forces" not in text]
     parts = [f"{kind} {max(values):.0e}" for kind, values in kinds.items() if values]
     if not parts:
@@ -512,16 +513,23 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
         times = f", {value / limit:.2g} times what is wanted, {limit:g}" if limit else ""
         lines.append(f"{text}: {value:.1e}{times}{_worst_state(text, data, attributes)}")
     lines += [r for r in json.loads(attributes["verdict_reasons"]) if r.startswith("not solved")]
-    if over:
-        value, limit = max(over.values(), key=lambda pair: pair[0] / (pair[1] or 1.0))
-        limits = [limit for _, limit in figures.values()]
-        wanted = max(limits, key=limits.count)
-        enough = 10.0 ** np.ceil(np.log10(wanted * max(value / (limit or 1.0), 1.0)))
-        lines.append(
-            f"what to do: --set solve.tolerance={wanted / 10.0:.0e} computes finer and may pass; "
-            f"--set solve.tolerance={enough:.0e} accepts it"
-        )
+    by_text = {rule.text: rule.tolerances for rule in RULES.values()}
+    # Tolerances that are wanted, and that would be enough, of figures whose limits follow the tolerance.
+    wanted, enough = (
+        [pair[i] / share for text, pair in over.items() if (share := by_text.get(text))] for i in (1, 0)
+    )
+    if wanted:
+        lines.append(f"what to do: --set solve.tolerance={min(wanted) / 10.0:.0e} may pass")
+        loosest, most = 10.0 ** np.ceil(np.log10(max(enough))), _LOOSEST[in_time.TIMES.path in data]
+        if len(wanted) == len(over) and loosest <= most:
+            lines[-1] += f"; {loosest:.0e} accepts it"
+    elif over:
+        lines.append("no solve.tolerance changes this: it has a limit of its own")
     return lines
+
+
+#: Largest tolerance of a scene, and of one with motions in time.
+_LOOSEST = 0.1, 1e-2
 
 
 def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
@@ -529,6 +537,8 @@ def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, An
     rule = next((rule for rule in RULES.values() if rule.text == text), None)
     count, load = len(data[of.SPEED.path]), data.get(of.LOAD.path, attributes["load"])
     if rule is None or count < 2 or any(row.path not in data for row in rule.needs):
+        return ""
+    if not all(STATE in row.over for row in rule.needs if row.method):
         return ""
     rows = table()
     figures = []

@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from ..parameters import parameter
 from .law import FrictionLaw
 
+#: Rise of friction with speed, over the damper that is critical, from which on a motion is stiff, and
+#: speeds at which it is evaluated.
+_STIFF, _SPEEDS = 30.0, 200
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
-#: scales of the motion; the first is for laws without memory, whose motions are not stiff.
+#: scales of the motion; the first is for motions that are not stiff, of laws without memory.
 _EXPLICIT = ("DOP853", 1e-12, 1e-14)
 _IMPLICIT = ("BDF", 1e-10, 1e-12), ("Radau", 1e-10, 1e-12)
 #: Stops, starts and switches of a law after which a motion is given up.
@@ -28,8 +31,6 @@ _PERIODS = 10
 #: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
 #: motion: the tolerance leaves about as much in a cycle.
 _CYCLES, _SAME = 8, 1e-8
-
-
 #: Share of the largest velocity from which on a mass slips, and times in a slip besides its fastest one.
 _SLIPS, _IN_A_SLIP = 1e-3, 24
 
@@ -226,6 +227,11 @@ class _Motion:
         self._slow = _AT_REST * slider.drive_speed
         # Size of the spring's extension [m].
         self._length = max(load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
+        # Over such rates a mass on its spring hardly moves before friction has slowed it down.
+        V = slider.drive_speed * np.geomspace(_AT_REST, 1.0 / _AT_REST, _SPEEDS)
+        rises = np.diff([float(law.friction(self.z, 1, speed)) for speed in V]) / np.diff(V)
+        rate = load * rises.max() / np.sqrt(slider.mass * slider.stiffness)
+        self._stiff = bool(law.flow(self.z, 1, slider.drive_speed).any() or rate > _STIFF)
         # Rates that are smooth enough need no stop.
         self._stops = type(law).settle is not FrictionLaw.settle
 
@@ -327,8 +333,7 @@ class _Motion:
         last, reason = min(self.slider.duration - self.t, self._longest), ""
         start = np.array([self.e, self.v, *self.z])
         scales = np.array([self._length, drive, *np.ones_like(self.z)])
-        remembers = self.law.flow(self.z, s, drive).any()
-        for scheme, relative, absolute in _IMPLICIT if remembers else (_EXPLICIT, *_IMPLICIT):
+        for scheme, relative, absolute in _IMPLICIT if self._stiff else (_EXPLICIT, *_IMPLICIT):
             solve = partial(
                 solve_ivp, self._rates, y0=start, method=scheme, events=events, rtol=relative,
                 atol=absolute * scales, dense_output=True,

@@ -184,6 +184,32 @@ def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
     return int(logs.argmax()) if logs.max() > -np.inf else None
 
 
+#: Steps of Newton's method that are always enough, and the step after which the next is no digit.
+_STEPS, _LAST = 60, 1e-10
+
+
+def inverted(
+    function: Callable[[NDArray], tuple[NDArray, NDArray]], values: NDArray, start: NDArray,
+    low: float = 0.0, high: float = np.inf,
+) -> NDArray[np.float64]:  # fmt: skip
+    """Arguments at which a growing function has given values, by Newton's method, (n,).
+
+    Args:
+        function: gives its values and slopes at arguments, (n,) each.
+        values: of the function, (n,).
+        start: arguments to begin with, (n,).
+        low, high: bounds of the arguments.
+    """
+    x = start
+    for _ in range(_STEPS):
+        now, slope = function(x)
+        step = (values - now) / slope
+        x = np.clip(x + step, low, high)
+        if np.all(np.abs(step) <= _LAST):
+            break
+    return x
+
+
 #: Halvings of an interval at most: more than digits.
 _CLOSE = 60
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, parameter
+from ..parameters import parameter
 from .law import LAWS, MeasuredFriction
 from .maxwell_slip import check_elements, elements, spread
 from .stribeck import StribeckCurve
@@ -39,7 +39,7 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         check_elements(self.elements)
 
     @classmethod

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from galinx.texts import with_prefix
 
 from ..approximation import bisected
-from ..parameters import check, numbers, parameter
+from ..parameters import numbers, parameter
 from .admittance import Admittance, AnisotropicFrame
 from .flutter import Side, thresholds
 from .solid import USUAL_STIFFNESS, Solid, angle, density, in_plane, modulus
@@ -148,7 +148,7 @@ class Orthotropic(PlaneSolid):
     plane: str = in_plane()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         meaning = {
             (0, 1): "1 - nu12² E2/E1",
             (0, 2): "1 - nu13² E3/E1",
@@ -204,7 +204,7 @@ class Cubic(PlaneSolid):
     plane: str = in_plane()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         normal = np.full((3, 3), self.c12) + (self.c11 - self.c12) * np.eye(3)
         check_minors(normal, {(0, 1): "1 - (c12/c11)²", (0, 1, 2): "(1 - c12/c11)² (1 + 2 c12/c11)"})
 
@@ -251,7 +251,7 @@ class Anisotropic(PlaneSolid):
     plane: str = in_plane()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         for name, value in zip(("c11", "c22", "c66"), np.diag(self.stiffness).tolist()):
             if value <= 0.0:
                 raise ValueError(f"stiffness: found {name} = {value:g} Pa, expected a number > 0")

@@ -38,6 +38,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
+from ..approximation import legendre_panel
 from ..layers.layered import LayeredHalfPlane, LayersAtSpeed
 from ..layers.stiffness import Medium, Uniform
 from ..solids.admittance import Admittance
@@ -211,8 +212,8 @@ class Kernel:
 
 def interpolation(points: int, at: NDArray) -> NDArray[np.float64]:
     """Matrix from values at Gauss's points to values at other places from -1 to 1, (places, points)."""
-    t, _ = leggauss(points)
-    return np.asarray(np.linalg.solve(legvander(t, points - 1).T, legvander(at, points - 1).T).T)
+    _, _, to_legendre = legendre_panel(points)
+    return np.asarray(legvander(at, points - 1) @ to_legendre)
 
 
 def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:

@@ -29,6 +29,13 @@ def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return τ, w, (np.arange(nodes) + 0.5)[:, None] * legvander(τ, nodes - 1).T * w
 
 
+def gauss_in_panels(edges: NDArray, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gauss's points in panels between edges, panel by panel, and weights, (panels·points,) each."""
+    t, w = leggauss(points)
+    half = np.diff(edges)[:, None] / 2.0
+    return (edges[:-1, None] + half * (1.0 + t)).ravel(), (half * w).ravel()
+
+
 def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
     """Values and derivatives at ``t`` of the polynomials that are 1 at one node, 0 at the others.
 

@@ -11,12 +11,12 @@ from itertools import groupby
 from math import ceil, log10, sqrt
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import IN_TIME, OF_SURFACE
 from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.solvers.approximation import gauss_in_panels
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Leg, follow
 from galinx.solvers.profiles.punches import Flat
@@ -257,11 +257,9 @@ class Starts:
 
     def dissipated(self, c: float, drive: Drive) -> NDArray[np.float64]:
         """Work ∫ f V N dt of friction after each step over N a, but for its second order; (steps,)."""
-        x, w = leggauss(4)
-        h, t = np.repeat([way.h for way in self.ways], [way.steps for way in self.ways]), self.times()
-        at = (t - h)[:, None] + h[:, None] * (1.0 + x) / 2.0
-        work = self.directions(drive) * h / 2.0 * ((-drive(at) * self.load(at)) @ w)
-        return np.asarray(c * np.cumsum(work))
+        t, w = gauss_in_panels(np.append(0.0, self.times()), 4)
+        power = np.reshape(-drive(t) * self.load(t) * w, (self.steps, -1)).sum(axis=1)
+        return np.asarray(c * np.cumsum(self.directions(drive) * power))
 
     @property
     def strokes(self) -> list[float]:

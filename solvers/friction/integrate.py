@@ -162,7 +162,8 @@ def _smooth_piece(
             raise ValueError(f"{type(law).__name__} could not be integrated: {result.message}")
         return result
 
-    piece = solve(*ends, z, [_event(law, s, V, n) for n in ahead] or None)
+    events = [event(lambda _, z, n=n: law.switches(z, s, V)[n], 1.0, True) for n in ahead]
+    piece = solve(*ends, z, events or None)
     if piece.status == 0:
         return ends[1], piece.y[:, -1], piece.sol
     met = {n: float(t[0]) for n, t in zip(ahead, piece.t_events) if len(t)}
@@ -173,12 +174,16 @@ def _smooth_piece(
     return at, solve(before, at, state).y[:, -1] if before < at else state, piece.sol
 
 
-def _event(law: Any, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:
-    def passed(_: float, z: NDArray) -> float:
-        return float(law.switches(z, s, V)[n])
+def event(function: Callable[..., float], direction: float, terminal: bool) -> Callable[..., float]:
+    """Event of SciPy's integrators where a function of time and state is zero.
 
-    passed.terminal, passed.direction = True, 1.0  # type: ignore[attr-defined]
-    return passed
+    Args:
+        function: of time and state.
+        direction: 1 where it grows, -1 where it falls, 0 for both.
+        terminal: True where the integration ends there.
+    """
+    function.direction, function.terminal = direction, terminal  # type: ignore[attr-defined]
+    return function
 
 
 @dataclass(frozen=True)

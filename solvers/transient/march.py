@@ -58,8 +58,7 @@ class Radau:
         ])  # fmt: skip
         self._steps, h = steps, end / steps
         self._length = ceil(_LONGER * steps)
-        self._h, self._nodes = h, A.sum(axis=1)
-        self.times = self._stages(steps)
+        self.times = h * (np.arange(steps)[:, None] + A.sum(axis=1))
         # With this radius what comes round and the enlarged rounding are of one size.
         self._radius = _ROUNDING ** (1.0 / (steps + self._length))
         half = self._length // 2 + 1
@@ -68,9 +67,6 @@ class Radau:
         values, self._vectors = np.linalg.eig(Δ)
         self._inverse = np.linalg.inv(self._vectors)
         self.s = (values / h).ravel()
-
-    def _stages(self, steps: int) -> NDArray[np.float64]:
-        return np.asarray(self._h * (np.arange(steps)[:, None] + self._nodes))
 
     def answered(self, response: NDArray, given: NDArray) -> NDArray[np.float64]:
         """Sum of a response's convolutions with many functions, after each step, (steps, n).
@@ -127,16 +123,12 @@ class FrictionInterpolation:
         self._response, self._terms = response, terms
         self._middle, self._half = (least + most) / 2.0, (most - least) / 2.0
         self.middle = Basis(response, self._middle, terms)
-        count = 1 if self._half < _SAME else 2
-        self._take(count)
-        while 1 < count < _MOST and self._off() > _ACCURACY:
-            count += 1
-            self._take(count)
-
-    def _take(self, count: int) -> None:
         low, high = self._middle - self._half, self._middle + self._half
-        self._at = polynomial_through(chebyshev_nodes(count, low, high))
-        self.bases = [Basis(self._response, g, self._terms) for g in self._at.nodes.tolist()]
+        for count in (1,) if self._half < _SAME else range(2, _MOST + 1):
+            self._at = polynomial_through(chebyshev_nodes(count, low, high))
+            self.bases = [Basis(response, g, terms) for g in self._at.nodes.tolist()]
+            if self._off() <= _ACCURACY:
+                break
 
     def _off(self) -> float:
         values = np.array([basis.pressure(_PLACES) for basis in self.bases])

@@ -13,13 +13,12 @@ each s once, whatever the friction, and is smooth in each panel of distances but
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from ..approximation import gauss_in_panels
 from ..solids.half_plane import HalfPlane
 from .history import History
 from .line_load import both_sides, interpolation
@@ -48,9 +47,20 @@ class AlongSurface:
     def __init__(
         self, response: HalfPlane, rayleigh: float, s: NDArray, X: NDArray, way: int = 1
     ) -> None:
-        self._response, self._s, self._X = response, s, X
-        self._kernels = both_sides(response, rayleigh, way)
-        self._slowest = 1.0 / (rayleigh - response.c)
+        self._response, self._X = response, X
+        least, last = max(float(np.abs(X).min()) - 1.0, 0.0), 1.0 + float(np.abs(X).max())
+        near = 2.0 ** -np.arange(_NEAR, 1, -1.0)
+        even = np.linspace(_EVEN, last, int(np.ceil((last - _EVEN) / _EVEN)) + 1)
+        edges = np.concatenate([[0.0], near[near < _EVEN], even])
+        edges = edges[np.searchsorted(edges, least, side="right") - 1 :]
+        # Edges of panels of distances over a, growing from 0, or from little less than the least.
+        self._edges = divided(edges, s, 1.0 / (rayleigh - response.c))
+        self._x, _ = gauss_in_panels(self._edges, _POINTS)
+        # û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each.
+        self._tables = [
+            np.array([kernel(self._x, at, True)[2:] for at in s])
+            for kernel in both_sides(response, rayleigh, way)
+        ]
 
     def strains(self, basis: Basis) -> NDArray[np.complex128]:
         """û,X over N̂/(2aμ) of each polynomial of the pressure where σ_XY = g σ_YY, (s, places, terms)."""
@@ -59,10 +69,10 @@ class AlongSurface:
         σ = np.zeros((len(X), pressure.terms))
         σ[under] = pressure(X[under])
         local = answer.q * σ + slope * _hilbert(X, pressure, σ)
-        strains = np.repeat(local[None].astype(np.complex128), len(self._s), axis=0)
+        strains = np.repeat(local[None].astype(np.complex128), len(self._tables[0]), axis=0)
         pole = slope / (pi * self._x)
         for table, sign in zip(self._tables, (1.0, -1.0)):
-            rest = table[:, 0] + sign * (g * table[:, 1] + pole)
+            rest = table[:, 0] + g * table[:, 1] + sign * pole
             sums = self._sums(sign, pressure).reshape(len(self._x), -1)
             strains += (rest @ sums).reshape(strains.shape)
         return strains
@@ -98,30 +108,6 @@ class AlongSurface:
         weights = np.zeros((len(x), len(edges) - 1, _POINTS))
         weights[np.arange(len(x)), panel] = by_point
         return weights.reshape(len(x), -1)
-
-    @cached_property
-    def _edges(self) -> NDArray[np.float64]:
-        """Edges of panels of distances over a, growing from 0, or from little less than the least."""
-        least, last = max(float(np.abs(self._X).min()) - 1.0, 0.0), 1.0 + float(np.abs(self._X).max())
-        near = 2.0 ** -np.arange(_NEAR, 1, -1.0)
-        even = np.linspace(_EVEN, last, int(np.ceil((last - _EVEN) / _EVEN)) + 1)
-        edges = np.concatenate([[0.0], near[near < _EVEN], even])
-        edges = edges[np.searchsorted(edges, least, side="right") - 1 :]
-        return divided(edges, self._s, self._slowest)
-
-    @cached_property
-    def _x(self) -> NDArray[np.float64]:
-        t, _ = leggauss(_POINTS)
-        half = np.diff(self._edges)[:, None] / 2.0
-        return np.asarray((self._edges[:-1, None] + half * (1.0 + t)).ravel())
-
-    @cached_property
-    def _tables(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each."""
-        ahead, behind = (
-            np.array([kernel(self._x, s, True)[2:] for s in self._s]) for kernel in self._kernels
-        )
-        return ahead, behind
 
 
 def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]:
@@ -287,7 +273,5 @@ def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray
 
     times, still = np.append(0.0, t), np.zeros((1, forces.shape[1]))
     F, u = CubicSpline(times, np.vstack([first, forces])), CubicSpline(times, np.vstack([still, ways]))
-    y, w = np.polynomial.legendre.leggauss(4)
-    half = np.diff(times)[:, None] / 2.0
-    at = times[:-1, None] + half * (1.0 + y)
-    return np.asarray(np.cumsum(((F(at) * u(at, 1)).sum(axis=-1) * w * half).sum(axis=-1)))
+    at, w = (values.reshape(-1, 4) for values in gauss_in_panels(times, 4))
+    return np.asarray(np.cumsum(((F(at) * u(at, 1)).sum(axis=-1) * w).sum(axis=-1)))

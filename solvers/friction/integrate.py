@@ -174,7 +174,7 @@ def _smooth_piece(
     return at, solve(before, at, state).y[:, -1] if before < at else state, piece.sol
 
 
-def event(function: Callable[..., float], direction: float, terminal: bool) -> Callable[..., float]:
+def event(function: Callable[..., Any], direction: float, terminal: bool) -> Callable[..., Any]:
     """Event of SciPy's integrators where a function of time and state is zero.
 
     Args:

@@ -390,8 +390,9 @@ def both_sides(half_plane: HalfPlane, rayleigh: float, way: int) -> tuple[Side, 
     if len(half_plane.depths):
         layered: Any = half_plane
         rayleigh, layers = layered.solid.surface.limit(), [UniformLayers.of(layered)]
-    ahead = [Kernel(surface, V, rayleigh), *(Echoes(sheets, V) for sheets in layers)]
-    behind = [Kernel(surface.mirrored, -V, rayleigh), *(Echoes(of.mirrored, -V) for of in layers)]
+    ahead: list[Side] = [Kernel(surface, V, rayleigh), *(Echoes(sheets, V) for sheets in layers)]
+    behind: list[Side] = [Kernel(surface.mirrored, -V, rayleigh)]
+    behind += [Echoes(sheets.mirrored, -V) for sheets in layers]
 
     def mirrored(x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
         values = sum(part(x, s, slopes) for part in behind)

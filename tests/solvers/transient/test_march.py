@@ -13,8 +13,15 @@ from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.history import smooth
 from galinx.solvers.transient.line_load import both_sides
-from galinx.solvers.transient.march import FrictionInterpolation, Radau, Residual
-from galinx.solvers.transient.punch import ON_SURFACE, PLACES, AlongSurface, StartingPunch
+from galinx.solvers.transient.punch import (
+    ON_SURFACE,
+    PLACES,
+    AlongSurface,
+    FrictionInterpolation,
+    Radau,
+    Residual,
+    StartingPunch,
+)
 from galinx.solvers.transient.transform import Basis, Transformed
 
 

@@ -33,6 +33,7 @@ from scipy.sparse import coo_matrix, csr_matrix
 
 from ..approximation import lagrange
 from ..solids.half_plane import HalfPlane
+from ..transient.punch import BOX
 from . import cells, versions
 from .space import Space
 
@@ -276,10 +277,6 @@ def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:
     product = np.empty_like(w)
     product[0::2], product[1::2] = A @ w[0::2], A @ w[1::2]  # SciPy is slow with two columns
     return product
-
-
-#: Half-width and depth over a of the box.
-BOX = 3.0, 2.0
 
 
 class Energies:

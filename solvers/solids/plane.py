@@ -1,6 +1,7 @@
 """Orthotropic, cubic and anisotropic solids: stiffness in the plane of the scene."""
 
 from abc import abstractmethod
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi, sin
@@ -45,7 +46,12 @@ class PlaneSolid(Solid):
 
     @cached_property
     def _limit(self) -> float:
-        return bisected(self._at_rest.is_stiff_at, 1.0)
+        def stiff(c: float) -> bool:
+            with suppress(ValueError):
+                return self.response(c).least_stiffness > 0.0
+            return False
+
+        return bisected(stiff, 1.0)
 
     def limit(self) -> float:
         """Speed of the wave along the surface over ``c_s``: there the surface's stiffness, which falls

@@ -369,6 +369,8 @@ def _hilbert(X: NDArray, pressure: Weighted, σ: NDArray) -> NDArray[np.float64]
     return np.asarray(transform / pi)
 
 
+#: Half-width and depth over a of the box round the punch whose energies are computed.
+BOX = 3.0, 2.0
 #: Distance over a beyond the ends of the contact at which σ_XX is computed: it is infinite at them.
 BESIDE = 0.05
 #: Distances over a from the ends of places beside the punch, and all places of stresses, X over a.

@@ -191,7 +191,8 @@ def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
     return int(logs.argmax()) if logs.max() > -np.inf else None
 
 
-#: Steps of Newton's method that are always enough, and the step after which the next is no digit.
+#: Steps of Newton's method, and halvings of an interval, that are always enough; step after which
+#: Newton's next is no digit.
 _STEPS, _LAST = 60, 1e-10
 
 
@@ -217,10 +218,6 @@ def inverted(
     return x
 
 
-#: Halvings of an interval at most: more than digits.
-_CLOSE = 60
-
-
 def bisected(
     holds: Callable[[float], bool], high: float, low: float = 0.0, accuracy: float = 0.0
 ) -> float:
@@ -233,7 +230,7 @@ def bisected(
     """
     if holds(high):
         return high
-    for _ in range(_CLOSE):
+    for _ in range(_STEPS):
         middle = (low + high) / 2.0
         if high - low <= accuracy * high or not low < middle < high:
             break

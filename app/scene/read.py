@@ -77,7 +77,7 @@ def control_characters(tree: dict[str, Any]) -> Iterator[str]:
                 waiting.append((inside, entry))
 
 
-#: Most rows of a file of them.
+#: Most rows of a file of them, and most variants of a scene.
 _MOST = 10_000
 #: End of the names of such files.
 _NAMED = re.compile(r"\.csv[\"']", re.IGNORECASE)
@@ -212,8 +212,8 @@ def parse(text: str, name: str = "scene") -> Scene:
     raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
 
 
-#: Keys of a range, and most variants of a scene.
-_RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
+#: Keys of a range.
+_RANGE = {"from", "to", "number"}
 
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
@@ -270,10 +270,8 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
                     values[f"{path}.{key}"] = tuple(dict.fromkeys(numbers))
                 except ValueError as error:
                     faults.append(f"{path}.{key} ({keys[key].about}): {error}")
-    if (count := prod(map(len, values.values()))) > _MOST_VARIANTS:
-        faults.append(
-            f"{listed([*values])}: found {count} combinations, expected at most {_MOST_VARIANTS}"
-        )
+    if (count := prod(map(len, values.values()))) > _MOST:
+        faults.append(f"{listed([*values])}: found {count} combinations, expected at most {_MOST}")
     if values and (other := [name for name in ("time", "slider") if name in tree]):
         faults.append(
             f"{listed([*values])}: found several values beside [{other[0]}], which is of a single solid "

@@ -9,6 +9,7 @@ import re
 import tomllib
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping
+from copy import copy
 from dataclasses import replace
 from itertools import product
 from math import prod
@@ -304,13 +305,12 @@ def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str,
     variant = dict(tree)
     for path, value in values.items():
         section, _, key = path.rpartition(".")
-        name, bracket, number = section.partition("[")
-        if bracket:
-            tables = list(variant[name])
-            tables[int(number[:-1])] = tables[int(number[:-1])] | {key: value}
-            variant[name] = tables
+        name, _, number = section.partition("[")
+        given = variant[name] = copy(variant[name])
+        if number:
+            given[int(number[:-1])] = given[int(number[:-1])] | {key: value}
         else:
-            variant[name] = variant[name] | {key: value}
+            given[key] = value
     return variant
 
 
@@ -349,10 +349,8 @@ def _checked(
 
 def _fill_in_materials(tree: dict[str, Any]) -> None:
     """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
-    if "solid" in tree:
-        tree["solid"] = _with_constants(tree["solid"])
-    if "punch.solid" in tree:
-        tree["punch.solid"] = _with_constants(tree["punch.solid"])
+    for name in tree.keys() & {"solid", "punch.solid"}:
+        tree[name] = _with_constants(tree[name])
     if isinstance(tree.get("layer"), list):
         tree["layer"] = [_with_constants(table) for table in tree["layer"]]
 

@@ -141,7 +141,7 @@ class Motion:
         """Damping of waves that far cells are too large for, for one component."""
         dofs, legendre, rates = self._damping
         both = np.kron(legendre, legendre)
-        matrices = both.T @ (rates.reshape(len(dofs), -1, 1) * both)
+        matrices = both.T @ (rates.reshape(len(dofs), both.shape[1], 1) * both)
         return self._sum(matrices, dofs[:, 0].reshape(len(dofs), both.shape[1]) // 2)
 
     @property

@@ -217,7 +217,13 @@ class Transformed:
         return self._tested(basis, tests, 2)
 
     def _tested(self, basis: Basis, tests: Weighted, first: int) -> NDArray[np.complex128]:
-        """Tested displacement by σ_YY, a row of responses, and by g σ_YY, the next row."""
+        """Tested displacement of each polynomial of the pressure for every s, (s, tests, terms).
+
+        Args:
+            basis: of the pressure.
+            tests: weighted polynomials.
+            first: row of the responses to σ_YY; the next one is that to σ_XY.
+        """
         both = shared(self._x, tests, basis.pressure)
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         ahead, behind = (values[:, first] + basis.g * values[:, first + 1] for values in self._values)

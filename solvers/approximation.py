@@ -29,6 +29,13 @@ def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return τ, w, (np.arange(nodes) + 0.5)[:, None] * legvander(τ, nodes - 1).T * w
 
 
+def gauss_in_panels(edges: NDArray, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gauss's points in panels between edges, panel by panel, and weights, (panels·points,) each."""
+    t, w = leggauss(points)
+    half = np.diff(edges)[:, None] / 2.0
+    return (edges[:-1, None] + half * (1.0 + t)).ravel(), (half * w).ravel()
+
+
 def lagrange(nodes: NDArray, t: ArrayLike) -> tuple[NDArray, NDArray]:
     """Values and derivatives at ``t`` of the polynomials that are 1 at one node, 0 at the others.
 
@@ -184,8 +191,31 @@ def leja(z: NDArray, chosen: Sequence[int]) -> int | None:
     return int(logs.argmax()) if logs.max() > -np.inf else None
 
 
-#: Halvings of an interval at most: more than digits.
-_CLOSE = 60
+#: Steps of Newton's method, and halvings of an interval, that are always enough; step after which
+#: Newton's next is no digit.
+_STEPS, _LAST = 60, 1e-10
+
+
+def inverted(
+    function: Callable[[NDArray], tuple[NDArray, NDArray]], values: NDArray, start: NDArray,
+    low: float = 0.0, high: float = np.inf,
+) -> NDArray[np.float64]:  # fmt: skip
+    """Arguments at which a growing function has given values, by Newton's method, (n,).
+
+    Args:
+        function: gives its values and slopes at arguments, (n,) each.
+        values: of the function, (n,).
+        start: arguments to begin with, (n,).
+        low, high: bounds of the arguments.
+    """
+    x = start
+    for _ in range(_STEPS):
+        now, slope = function(x)
+        step = (values - now) / slope
+        x = np.clip(x + step, low, high)
+        if np.all(np.abs(step) <= _LAST):
+            break
+    return x
 
 
 def bisected(
@@ -200,7 +230,7 @@ def bisected(
     """
     if holds(high):
         return high
-    for _ in range(_CLOSE):
+    for _ in range(_STEPS):
         middle = (low + high) / 2.0
         if high - low <= accuracy * high or not low < middle < high:
             break

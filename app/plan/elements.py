@@ -40,7 +40,6 @@ from galinx.solvers.contact.solution import (
     ONE_FREE,
     PRESCRIBED,
     SHARP,
-    Contact,
     Places,
 )
 from galinx.solvers.errors import SolveError
@@ -91,21 +90,21 @@ def lacking(needed: float) -> str:
     return f"about {needed / 1e9:.2g} GB, of which this machine has {free / 1e9:.2g} GB free"
 
 
-def faults(scene: Scene, body: Contact, places: Places, alone: bool) -> Iterator[str]:
+def faults(scene: Scene, places: Places, alone: bool) -> Iterator[str]:
     """Faults of what finite elements cannot compute, one sentence each.
 
     Args:
-        scene, body, places: the scene, its contact, and the points where stresses are output.
+        scene, places: the scene, and the points where stresses are output.
         alone: no other method solves the contact.
     """
     solve, mixed, words = scene.solve, scene.solid.nearly_incompressible, scene.solid.words
-    if solve.mode == "traction" and not solve.own_pressure and FLAT in body.lacks:
+    if solve.mode == "traction" and not solve.own_pressure and FLAT in scene.body.lacks:
         yield (
             'solve.mode = "traction": found a punch that is not flat, whose pressure has no closed form; '
             'give solve.pressure, or take mode = "contact"'
         )
     if solve.own_pressure:
-        yield from _faults_of_pressure(scene, body.knots)
+        yield from _faults_of_pressure(scene, scene.body.knots)
     points = np.concatenate([places.points, places.around])
     far, limit = float(np.abs(points).max(initial=0.0)), farthest_inside(scene)
     if far > limit:

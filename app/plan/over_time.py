@@ -11,18 +11,19 @@ from itertools import groupby
 from math import ceil, log10, sqrt
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import IN_TIME, OF_SURFACE
 from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.solvers.approximation import gauss_in_panels
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Leg, follow
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.transient.history import Drive, Load, Way
 from galinx.solvers.transient.line_load import fastest
+from galinx.solvers.transient.punch import BOX
 from galinx.texts import counted
 
 from ..errors import BadInput
@@ -169,11 +170,9 @@ _CROSSED = 2.0
 _HELD = 5.0
 #: Size of a ring of cells at the edges over that of the ring outside it; where waves are sharp.
 _RATIO, _SHARP_RATIO = 0.25, 0.5
-#: Largest distance over a from the punch along the surface, and depth over a, of outputs.
-_SEEN = 2.0, 2.0
-#: Side of cells over a where the surface is output, where waves ahead of the punch are short, and
-#: half-width and depth over a of these cells.
-_SEEN_SIZE, _SEEN_CELLS = 2.0 / 3.0, (4.0, 2.0)
+#: Side of cells over a where the surface is output, where waves ahead of the punch are short; they go
+#: on beside the box of outputs.
+_SEEN_SIZE, _BESIDE_BOX = 2.0 / 3.0, 1.0
 #: Largest side of cells over the uppermost layer's thickness.
 _OF_LAYER = 2.0
 #: Steps by which the mesh's end is later than the motion's, for implicit steps.
@@ -257,11 +256,9 @@ class Starts:
 
     def dissipated(self, c: float, drive: Drive) -> NDArray[np.float64]:
         """Work ∫ f V N dt of friction after each step over N a, but for its second order; (steps,)."""
-        x, w = leggauss(4)
-        h, t = np.repeat([way.h for way in self.ways], [way.steps for way in self.ways]), self.times()
-        at = (t - h)[:, None] + h[:, None] * (1.0 + x) / 2.0
-        work = self.directions(drive) * h / 2.0 * ((-drive(at) * self.load(at)) @ w)
-        return np.asarray(c * np.cumsum(work))
+        t, w = gauss_in_panels(np.append(0.0, self.times()), 4)
+        power = np.reshape(-drive(t) * self.load(t) * w, (self.steps, -1)).sum(axis=1)
+        return np.asarray(c * np.cumsum(self.directions(drive) * power))
 
     @property
     def strokes(self) -> list[float]:
@@ -361,7 +358,7 @@ class Starts:
         coarse, fine = (
             Reached(
                 max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths, seen,
-                _SEEN_CELLS,
+                (BOX[0] + _BESIDE_BOX, BOX[1]),
             )
             for of in (_GROWN * growth, growth)
         )  # fmt: skip
@@ -374,7 +371,7 @@ class Starts:
         it arrives a little earlier.
         """
         T = self.end * (1.0 + _EARLIER / self.steps)
-        beside, below = _SEEN if self.time.every else (0.0, 0.0)
+        beside, below = (BOX[0] - 1.0, BOX[1]) if self.time.every else (0.0, 0.0)
         if len(self.strokes) > 1:
             farthest = c * max(self.strokes)
             return 1.0 + beside + fast * T / 2.0 + farthest, (fast * T + below) / 2.0

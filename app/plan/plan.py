@@ -104,7 +104,6 @@ class Plan:
         scene: the scene, or the variant.
         done: called with the number of laws whose friction is computed, and with that of all laws.
         followed: friction of all its states, None where nothing of the plan depends on it.
-        body: contact of punch and solid, under the first of the loads.
         places: points where stresses are output.
         methods: names of the methods that solve the contact, none for friction alone.
         quantities: evaluated from their solutions, in the order of the table.
@@ -119,7 +118,6 @@ class Plan:
     scene: Scene
     done: Callable[[int, int], None]
     followed: States | None
-    body: Contact
     places: Places
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
@@ -129,6 +127,11 @@ class Plan:
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
     speed: int = 0
+
+    @property
+    def body(self) -> Contact:
+        """Contact of punch and solid, under the first of the loads."""
+        return self.scene.body
 
     @property
     def tolerance(self) -> float:
@@ -231,18 +234,18 @@ def too_many(states: int) -> Iterator[str]:
 
 
 def _faults(
-    scene: Scene, body: Contact, methods: Collection[str], places: Places, refusals: dict[str, str]
+    scene: Scene, methods: Collection[str], places: Places, refusals: dict[str, str]
 ) -> Iterator[str]:
     """Faults of outputs without an answer by the scene's methods, one sentence each.
 
     Args:
-        scene, body: the scene and its contact.
+        scene: the scene.
         methods: that solve the contact.
         places: points where stresses are output.
         refusals: of the methods that the scene names for outputs that need contact mechanics, with the
             reasons why they do not solve it, "" for those that do.
     """
-    states, solve = order(scene), scene.solve
+    states, solve, body = order(scene), scene.solve, scene.body
     yield from too_many(len(states))
     sliders = scene.friction.count * len(states.loads)
     if SLIDER in scene.output.quantities and sliders > _SLIDERS:
@@ -259,7 +262,7 @@ def _faults(
                 f"{listed(wrong)}, expected numbers from {_LEAST:.0e} to {_MOST:.0e}"
             )
     if scene.layers:
-        yield from _faults_of_layers(scene, body, unsolved=bool(refusals) and not methods)
+        yield from _faults_of_layers(scene, unsolved=bool(refusals) and not methods)
     if GIVEN_ENDS in body.lacks:
         about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
         if solve.mode == "traction":
@@ -279,17 +282,17 @@ def _faults(
                 "matrices of their own"
             )
     if FEM in methods:
-        yield from elements.faults(scene, body, places, alone={*methods} == {FEM})
+        yield from elements.faults(scene, places, alone={*methods} == {FEM})
 
 
-def _faults_of_layers(scene: Scene, body: Contact, unsolved: bool) -> Iterator[str]:
+def _faults_of_layers(scene: Scene, unsolved: bool) -> Iterator[str]:
     """Fault of outputs and methods that are not computed over layers, with all reasons.
 
     Args:
-        scene, body: the scene and its contact.
+        scene: the scene.
         unsolved: True where none of its methods solves the contact.
     """
-    solve = scene.solve
+    solve, body = scene.solve, scene.body
     computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
     reasons = [
         f'output.quantities has "{word}"' for word in scene.output.quantities if word not in computed
@@ -511,7 +514,7 @@ def make_plan(
     points = np.reshape(scene.output.inside, (-1, 2))
     depths, positions = interface_grid(body)
     places = Places(surface_grid(), points, around, depths, positions if along is None else along)
-    for fault in _faults(scene, body, methods, places, {name: refusals[name] for name in named}):
+    for fault in _faults(scene, methods, places, {name: refusals[name] for name in named}):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
     # Whoever names all methods wants those that solve it; and in a uniform solid the closed form is the
@@ -532,7 +535,7 @@ def make_plan(
             "to holds up to there, and later numbers are those of finite elements alone"
         )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
-    quantities, refused = _quantities(scene, body, methods, modes)
+    quantities, refused = _quantities(scene, methods, modes)
     given = {quantity.asked_by for quantity in quantities}
     warnings += [
         f"output.quantities: {of} cannot be computed: {why}"
@@ -547,7 +550,7 @@ def make_plan(
     skipped += _skipped(scene, contact, given)
     skipped += [f"{quantity.path}: {why}" for quantity, why in refused]
     plan = Plan(
-        scene=scene, done=done, followed=friction, body=body, places=places, methods=methods,
+        scene=scene, done=done, followed=friction, places=places, methods=methods,
         quantities=quantities, tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions,
         skipped=tuple(skipped), warnings=tuple(warnings), speed=first[1],
     )  # fmt: skip
@@ -567,7 +570,7 @@ def _output_places(scene: Scene, places: Places) -> Places:
 
 
 def _quantities(
-    scene: Scene, body: Contact, methods: tuple[str, ...], modes: tuple[str, ...]
+    scene: Scene, methods: tuple[str, ...], modes: tuple[str, ...]
 ) -> tuple[tuple[Quantity, ...], list[tuple[Quantity, str]]]:
     """Quantities that are evaluated, and those that a method cannot give, with the reason."""
     computed: dict[str, Quantity] = {}
@@ -583,7 +586,7 @@ def _quantities(
             and all(need in computed for need in quantity.needs)
         )
         kind = METHODS.get(quantity.method)
-        if applies and kind and (why := kind.refusal(scene, body, quantity)):
+        if applies and kind and (why := kind.refusal(scene, scene.body, quantity)):
             refused.append((quantity, why))
         elif applies:
             computed[path] = quantity

@@ -205,13 +205,14 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         for c, law, n, many in _laws(friction, of_laws):
             V, L = c * scene.solid.c_s, friction.pre_sliding
             strokes = follow(law, legs, L, scene.places, V, advance, many)
-            f[at : at + n] = _joined([stroke.f for stroke in strokes])
-            inner = _joined([stroke.z for stroke in strokes], -2)
+            f[at : at + n] = np.concatenate([stroke.f for stroke in strokes], axis=-1)
+            inner = np.concatenate([stroke.z for stroke in strokes], axis=-2)
             z.append(np.broadcast_to(inner, (n, *inner.shape[-2:])))
             formula = many or law.exact(law.rest(), 1, 1.0, np.zeros(1)) is not None
             most = LOOPS if formula else INTEGRATED_LOOPS
             if at < most:
-                drawn = _joined([s.f for s in follow(law, legs, L, fine, V, advance_finely, many)])
+                on_loops = follow(law, legs, L, fine, V, advance_finely, many)
+                drawn = np.concatenate([stroke.f for stroke in on_loops], axis=-1)
                 loops.append(np.broadcast_to(drawn, (n, drawn.shape[-1]))[: most - at])
                 done_on = works(law, legs, L, V, advance_finely, many)
                 for name, rows in taken.items():
@@ -239,7 +240,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     return States(
         _columns(scene, order_, _of_all(order_, f)), _of_all(order_, np.concatenate(z)),
         _of_all(order_, np.tile(along, (count, 1))), _of_all(order_, np.tile(loop[:, None], f.shape[1])),
-        _joined(fine), drawn_loops, archived,
+        np.concatenate(fine), drawn_loops, archived,
     )  # fmt: skip
 
 
@@ -265,7 +266,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
     return {
         "motion": np.array([leg.name for leg in scene.legs])[legs],
-        "X_over_L": _joined(list(scene.places))[place],
+        "X_over_L": np.concatenate(scene.places)[place],
         "c": c,
         **({"load": N[load]} if len(N) > 1 else {}),
         **{key: np.full(f.size, value) for key, value in scene.swept.items()},
@@ -308,7 +309,3 @@ def _laws(friction: Friction, of_laws: Sequence[float]) -> Iterator[tuple[float,
             yield c, friction.together(columns, rows), rows.stop - rows.start, True
         for law in () if together else friction.laws():
             yield c, law, 1, False
-
-
-def _joined(parts: list[NDArray], axis: int = -1) -> NDArray:
-    return np.concatenate(parts, axis=axis)

@@ -136,17 +136,9 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
 
     motions = []
     with clock("integral equation in time"):
+        limit, steps = starts.scene.solid.limit(), first.steps * finer
         punches = {
-            way: StartingPunch(
-                response,
-                starts.scene.solid.limit(),
-                first.duration,
-                first.steps * finer,
-                terms,
-                surface,
-                way,
-                alone,
-            )
+            way: StartingPunch(response, limit, first.duration, steps, terms, surface, way, alone)
             for way in {drive.way for drive in drives}
         }
         for drive in drives:

@@ -8,17 +8,10 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Item
 
-from galinx.solvers.friction import LAWS
-from galinx.solvers.parameters import parameters
-from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS
 
 from ..errors import BadInput, excerpt, nearest, short
-
-#: Keys that a material sets, or that a solid of another kind may not have.
-_CONSTANTS = ["kind", "yield_strength"] + [
-    key for kind in SOLIDS.values() for key in parameters(kind) if key != "plane"
-]
+from .sections import SECTIONS
 
 #: Two names of a number: a new value is given to that name which the scene has.
 _ONE_NUMBER = {"friction.mu": "friction.mu_c", "friction.mu_c": "friction.mu"}
@@ -118,12 +111,6 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
         raise BadInput(f"{name} cannot be changed: brackets are nested too deeply") from None
 
 
-#: Keys that name a model, and the models by name.
-_CHOSEN: dict[str, Mapping[str, Any]] = {
-    "solid.kind": SOLIDS, "punch.solid.kind": SOLIDS, "punch.profile": PROFILES, "friction.model": LAWS
-}  # fmt: skip
-
-
 def _stale(keys: Mapping[str, Any], changes: Mapping[str, Any]) -> list[str]:
     """Keys that a newly chosen material replaces, or that only other models than the new one have.
 
@@ -132,33 +119,24 @@ def _stale(keys: Mapping[str, Any], changes: Mapping[str, Any]) -> list[str]:
         changes: new values by key.
     """
     stale: list[str] = []
-    for chosen, models in _CHOSEN.items():
-        section = chosen.rpartition(".")[0]
-        if models is SOLIDS and f"{section}.material" in changes:
-            stale += [f"{section}.{key}" for key in _CONSTANTS]
-            continue
-        old = keys.get(chosen, "isotropic" if models is SOLIDS else None)
-        model = changes.get(chosen)
-        if not isinstance(model, str) or model not in models or model == old:
-            continue
-        own = parameters(models[model])
-        every = {key for kind in models.values() for key in parameters(kind)}
-        if models is SOLIDS:
-            every = every - {"plane"} | {"material", "yield_strength"}
-        stale += [
-            path for path in keys
-            if path.rpartition(".")[0] == section
-            and _parameter(path.rpartition(".")[2]) in every - own.keys()
-        ]  # fmt: skip
-        tables = keys.get(f"{section}.vary", ())
+    for name in ("solid", "punch.solid", "punch", "friction"):
+        section, gone = SECTIONS[name], set[str]()
+        chosen, solid = f"{name}.{section.chosen}", section.models is SOLIDS
+        model, alternatives = changes.get(chosen, ""), section.alternatives
+        if solid and f"{name}.material" in changes:
+            gone = section.every.keys() - section.own.keys() - {"plane"} | {"yield_strength"}
+        elif (
+            isinstance(model, str)
+            and model in alternatives
+            and model != keys.get(chosen, section.default)
+        ):
+            gone = section.every.keys() - alternatives[model].keys()
+            gone |= {"material", "yield_strength"} if solid else set()
+        stale += [f"{name}.{key}" for key in gone]
+        tables = keys.get(f"{name}.vary", ())
         varied = {key for table in tables for key in table} if isinstance(tables, list) else set()
-        stale += [f"{section}.vary"] * bool(varied & every - own.keys())
+        stale += [f"{name}.vary"] * bool(varied & gone)
     return stale
-
-
-def _parameter(key: str) -> str:
-    """Name of the parameter that a key sets."""
-    return {"sigma0": "sigma0_over_load", "mu": "mu_c"}.get(key, key)
 
 
 def _keys(tree: Mapping[str, Any]) -> dict[str, Any]:
@@ -238,7 +216,7 @@ def _item(value: Any) -> Any:
     return tomlkit.value(f"[{', '.join(entry.as_string() for entry in items)}]")
 
 
-def with_law(text: str, section: str, name: str = "scene") -> str:
+def with_law(text: str, fitted: str, name: str) -> str:
     """A scene's text with the friction law of another section ``[friction]``, and that one's comments.
 
     Raises:
@@ -248,7 +226,8 @@ def with_law(text: str, section: str, name: str = "scene") -> str:
         own = tomlkit.parse(text).get("friction", {})
     except TOMLKitError as error:
         raise BadInput(f"{name} cannot be changed: {error}") from None
-    every = {"model", "vary", *(key for law in LAWS.values() for key in parameters(law))}
-    stale = [key for key in own if _parameter(key) in every] if isinstance(own, dict) else []
-    law = {f"friction.{key}": item for key, item in tomlkit.parse(section)["friction"].items()}
+    section = SECTIONS["friction"]
+    kept = {key for key, (_, entry) in section.own.items() if not entry.stands_for}
+    stale = own.keys() & section.every.keys() - kept if isinstance(own, dict) else ()
+    law = {f"friction.{key}": item for key, item in tomlkit.parse(fitted)["friction"].items()}
     return changed(text, {f"friction.{key}": None for key in stale} | law, name)

@@ -9,6 +9,7 @@ import re
 import tomllib
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping
+from copy import copy
 from dataclasses import replace
 from itertools import product
 from math import prod
@@ -77,7 +78,7 @@ def control_characters(tree: dict[str, Any]) -> Iterator[str]:
                 waiting.append((inside, entry))
 
 
-#: Most rows of a file of them.
+#: Most rows of a file of them, and most variants of a scene.
 _MOST = 10_000
 #: End of the names of such files.
 _NAMED = re.compile(r"\.csv[\"']", re.IGNORECASE)
@@ -212,8 +213,8 @@ def parse(text: str, name: str = "scene") -> Scene:
     raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
 
 
-#: Keys of a range, and most variants of a scene.
-_RANGE, _MOST_VARIANTS = {"from", "to", "number"}, 10_000
+#: Keys of a range.
+_RANGE = {"from", "to", "number"}
 
 
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
@@ -270,10 +271,8 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
                     values[f"{path}.{key}"] = tuple(dict.fromkeys(numbers))
                 except ValueError as error:
                     faults.append(f"{path}.{key} ({keys[key].about}): {error}")
-    if (count := prod(map(len, values.values()))) > _MOST_VARIANTS:
-        faults.append(
-            f"{listed([*values])}: found {count} combinations, expected at most {_MOST_VARIANTS}"
-        )
+    if (count := prod(map(len, values.values()))) > _MOST:
+        faults.append(f"{listed([*values])}: found {count} combinations, expected at most {_MOST}")
     if values and (other := [name for name in ("time", "slider") if name in tree]):
         faults.append(
             f"{listed([*values])}: found several values beside [{other[0]}], which is of a single solid "
@@ -306,13 +305,12 @@ def _with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str,
     variant = dict(tree)
     for path, value in values.items():
         section, _, key = path.rpartition(".")
-        name, bracket, number = section.partition("[")
-        if bracket:
-            tables = list(variant[name])
-            tables[int(number[:-1])] = tables[int(number[:-1])] | {key: value}
-            variant[name] = tables
+        name, _, number = section.partition("[")
+        given = variant[name] = copy(variant[name])
+        if number:
+            given[int(number[:-1])] = given[int(number[:-1])] | {key: value}
         else:
-            variant[name] = variant[name] | {key: value}
+            given[key] = value
     return variant
 
 
@@ -351,10 +349,8 @@ def _checked(
 
 def _fill_in_materials(tree: dict[str, Any]) -> None:
     """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
-    if "solid" in tree:
-        tree["solid"] = _with_constants(tree["solid"])
-    if "punch.solid" in tree:
-        tree["punch.solid"] = _with_constants(tree["punch.solid"])
+    for name in tree.keys() & {"solid", "punch.solid"}:
+        tree[name] = _with_constants(tree[name])
     if isinstance(tree.get("layer"), list):
         tree["layer"] = [_with_constants(table) for table in tree["layer"]]
 

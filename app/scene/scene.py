@@ -173,8 +173,6 @@ def in_words(swept: Mapping[str, float]) -> str:
 
 #: Names in output.quantities that need no contact.
 FRICTIONS = frozenset({FRICTION_ALONE, SLIDER, TIME})
-#: Usual lengths of a stroke [m].
-_STROKE = (1e-10, 1.0)
 #: Mean pressure over the shear modulus above which strains are far from small.
 _PRESSED = 0.1
 #: Slope of a punch above which its angle is far from small.
@@ -315,7 +313,7 @@ def oddities(scene: Scene) -> list[str]:
 
 def _unusual_numbers(scene: Scene) -> Iterator[str]:
     """Warnings about numbers beyond their usual range."""
-    pre_sliding = Parameter("pre_sliding", "", "m", usual=_STROKE)
+    pre_sliding = Parameter("pre_sliding", "", "m", usual=(1e-10, 1.0))
     given: list[tuple[str, dict[str, Parameter], dict[str, Any]]] = [
         ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
         ("friction", parameters(scene.friction.law), scene.friction.values),

@@ -572,6 +572,11 @@ class Section:
         """Sets of keys that a section can have, by name of the model; a single set, named "", without."""
         return {name: self._of(name) for name in self.models or ("",)}
 
+    @property
+    def every(self) -> dict[str, Key]:
+        """Keys that a section can have with any of its models."""
+        return {name: key for keys in self.alternatives.values() for name, key in keys.items()}
+
     def model(self, given: Mapping[str, Any]) -> str:
         """Name of the model of a section with these values, "" without models."""
         named = given.get(self.chosen)
@@ -792,7 +797,7 @@ SECTIONS: dict[str, Section] = {
 def schema() -> dict[str, Any]:
     """JSON schema (draft 7) of a scene."""
     properties: dict[str, Any] = {"title": {"type": "string", "description": "free text"}}
-    properties |= {name: _section(name, section.alternatives) for name, section in SECTIONS.items()}
+    properties |= {name: _section(name, section) for name, section in SECTIONS.items()}
     properties["punch"]["properties"]["solid"] = properties.pop("punch.solid")
     layer = properties["layer"]  # constants of its own, a material, or rows by depth
     constants = ["thickness", *layer.pop("required", [])]
@@ -809,17 +814,17 @@ def schema() -> dict[str, Any]:
     }
 
 
-def _section(name: str, alternatives: dict[str, dict[str, Key]]) -> dict[str, Any]:
+def _section(name: str, of: Section) -> dict[str, Any]:
     """JSON schema of a section with the keys of all its alternatives; required are those of every one."""
-    every = {name: key for keys in alternatives.values() for name, key in keys.items()}
+    alternatives = of.alternatives.values()
     needed = [
-        name
-        for name in every
-        if all(name in keys and keys[name].default is REQUIRED for keys in alternatives.values())
+        key
+        for key in of.every
+        if all(key in keys and keys[key].default is REQUIRED for keys in alternatives)
     ]
     section = {
         "type": "object",
-        "properties": {key: entry(described, name in SWEPT) for key, described in every.items()},
+        "properties": {key: entry(described, name in SWEPT) for key, described in of.every.items()},
         "additionalProperties": False,
     }
     if name.endswith("solid"):  # a material gives the constants

@@ -113,13 +113,10 @@ def in_units(given: Quantity, target: Units) -> float | None:
 
 @lru_cache(maxsize=1)
 def _registry() -> Any:
-    return _pint().UnitRegistry()
+    """Units of pint, which only scenes with rarer units pay for.
 
-
-def _pint() -> Any:
-    """pint, which only scenes with rarer units pay for, without array libraries that it looks for.
-
-    Those take longer to import than everything else that a friction loop needs.
+    The array libraries that pint looks for take longer to import than everything else that a friction
+    loop needs, and are hidden from it.
     """
     modules: dict[str, Any] = sys.modules
     hidden = [name for name in ("pandas", "xarray", "dask") if name not in modules]
@@ -129,7 +126,7 @@ def _pint() -> Any:
     finally:
         for name in hidden:
             del modules[name]
-    return pint
+    return pint.UnitRegistry()
 
 
 def to_si(value: Any, unit: str) -> float:
@@ -176,20 +173,22 @@ def _by_pint(given: Quantity, target: Units) -> float:
         ValueError: a unit is unknown, or dimensions differ; angles, counts and bits are no numbers.
     """
     table, products = _registry(), []
+    import pint  # found by _registry
+
     for units in (given.units, target):
         exponents: dict[str, int] = {}
         for name, exponent in units:
             try:
                 of_pint = table.get_name(name)
-            except _pint().UndefinedUnitError:
+            except pint.UndefinedUnitError:
                 raise ValueError(f"with the unknown unit {excerpt(name)}") from None
             exponents[of_pint] = exponents.get(of_pint, 0) + exponent
-        products.append(_pint().util.UnitsContainer(exponents))
+        products.append(pint.util.UnitsContainer(exponents))
     source, goal = products
     try:
         if table.get_root_units(source)[1] == table.get_root_units(goal)[1]:
             return float(table.Quantity(given.number, source).to(goal).magnitude)
-    except _pint().errors.PintError:
+    except pint.errors.PintError:
         raise ValueError("with units that have no zero and cannot be multiplied") from None
     dimension = table.get_dimensionality(source)
     counted = f"in {table.get_root_units(source)[1]}" if given.units else "without a unit"

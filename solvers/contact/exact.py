@@ -283,7 +283,8 @@ class Layers:
 
         def states(own: NDArray) -> LayeredSolution:
             if known:
-                return LayeredSolution(task, layers, *known, own)
+                solved, nodes, error = known
+                return LayeredSolution(task, layers, solved, nodes, error, own)
             solved, _ = layers.solved(np.unique(own))
             if self.tolerance <= OF_ENDS:
                 body.keep(task.response.c, layers.punch.unit, solved)

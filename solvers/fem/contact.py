@@ -465,7 +465,8 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
         """
         from scipy.optimize import root  # a slow import
 
-        body, punch = self.task.body.loaded(load), self.task.body.profile
+        body = self.task.body.loaded(load)
+        punch: Any = body.profile
         tilted, free = body.ends == ONE_FREE, np.logical_not(punch.sharp)
         m, scale = self._ends.get((g, load), (0.0, float(body.half_width)))
 

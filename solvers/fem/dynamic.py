@@ -33,6 +33,7 @@ from scipy.sparse import coo_matrix, csr_matrix
 
 from ..approximation import lagrange
 from ..solids.half_plane import HalfPlane
+from ..transient.punch import BOX
 from . import cells, versions
 from .space import Space
 
@@ -96,43 +97,6 @@ class Quadrature:
         return np.asarray(result.reshape(-1, 2 * q) @ self._both)
 
 
-class Damping:
-    """Damping of waves that no cell resolves, for scalar fields.
-
-    Args:
-        space: the finite element space.
-        sharp: True where there are such waves in all cells.
-
-    Attributes:
-        legendre: coefficients of orthonormal Legendre polynomials from values at the nodes, (n, n).
-        pairs: d_i + d_j of pairs of polynomials, (n, n).
-        rates: area times rate of each cell, (cells,).
-    """
-
-    def __init__(self, space: Space, sharp: bool = False) -> None:
-        _, nodes = cells.tensor_order(space.reference_nodes)
-        points, weights = leggauss(len(nodes) + 1)
-        values, _ = lagrange(nodes, (points + 1.0) / 2.0)
-        normed = legvander(points, len(nodes) - 1) * np.sqrt(2.0 * np.arange(len(nodes)) + 1.0)
-        self.legendre = normed.T @ (weights[:, None] / 2.0 * values)
-        orders, p = np.arange(len(nodes)), len(nodes) - 1
-        high = np.maximum(orders - round((_SHARP_KEPT if sharp else _KEPT) * p), 1e-9)
-        d = np.exp(-(((p - orders) / high) ** 2))
-        self.pairs = np.add.outer(d, d)
-        corners = space.vertices[:, :, :2]
-        J = cells.jacobian(corners, np.full((len(corners), 2), 0.5))
-        middle = corners.mean(axis=1)
-        far = np.maximum(np.abs(middle[:, 0]) - 1.0, -middle[:, 1]) > _FROM
-        rates = _SHARP_RATE if sharp else np.where(far, _RATE, 0.0)
-        self.rates = np.abs(np.linalg.det(J)) * rates / np.linalg.norm(J, axis=1).min(axis=1)
-
-    @property
-    def matrices(self) -> NDArray[np.float64]:
-        """Matrices D of all cells, nodes along both directions, (cells, n², n²)."""
-        both = np.kron(self.legendre, self.legendre)
-        return np.asarray(both.T @ (self.pairs.reshape(-1, 1) * both) * self.rates[:, None, None])
-
-
 @dataclass(frozen=True)
 class Motion:
     """Equations M ü + (D - 2c B) u̇ + K u = forces of a space on one rank, in the physical chart.
@@ -175,7 +139,10 @@ class Motion:
     @cached_property
     def D(self) -> csr_matrix:
         """Damping of waves that far cells are too large for, for one component."""
-        return self._sum(self.impedance[:, None, None] * self._damping.matrices, self._nodes)
+        dofs, legendre, rates = self._damping
+        both = np.kron(legendre, legendre)
+        matrices = both.T @ (rates.reshape(len(dofs), both.shape[1], 1) * both)
+        return self._sum(matrices, dofs[:, 0].reshape(len(dofs), both.shape[1]) // 2)
 
     @property
     def impedance(self) -> NDArray[np.float64]:
@@ -216,14 +183,29 @@ class Motion:
         return versions.cell_nodes(self.space.V)[:, grid.ravel()].astype(np.int64)
 
     @cached_property
-    def _damping(self) -> Damping:
-        return Damping(self.space, self.sharp)
+    def _damping(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        """Damping of waves that no cell resolves, in cells where there are such waves.
 
-    @cached_property
-    def _damped(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Unknowns of damped cells, (k, 2, n, n), and rates of pairs of polynomials, (k, 1, n, n)."""
-        rates = self._damping.rates * self.impedance
-        return self.dofs[rates > 0.0], rates[rates > 0.0, None, None, None] * self._damping.pairs
+        Returns:
+            Unknowns of the damped cells, (k, 2, n, n); coefficients of orthonormal Legendre polynomials
+            from values at a cell's nodes, (n, n); and rates d_i + d_j of pairs of these, times the area
+            and the rate of each cell, (k, 1, n, n).
+        """
+        _, nodes = cells.tensor_order(self.space.reference_nodes)
+        points, weights = leggauss(len(nodes) + 1)
+        values, _ = lagrange(nodes, (points + 1.0) / 2.0)
+        orders, p = np.arange(len(nodes)), len(nodes) - 1
+        normed = legvander(points, p) * np.sqrt(2.0 * orders + 1.0)
+        high = np.maximum(orders - round((_SHARP_KEPT if self.sharp else _KEPT) * p), 1e-9)
+        d = np.exp(-(((p - orders) / high) ** 2))
+        corners = self.space.vertices[:, :, :2]
+        J = cells.jacobian(corners, np.full((len(corners), 2), 0.5))
+        middle = corners.mean(axis=1)
+        far = np.maximum(np.abs(middle[:, 0]) - 1.0, -middle[:, 1]) > _FROM
+        rates = _SHARP_RATE if self.sharp else np.where(far, _RATE, 0.0)
+        rates = np.abs(np.linalg.det(J)) * rates / np.linalg.norm(J, axis=1).min(axis=1) * self.impedance
+        of_pairs = rates[rates > 0.0, None, None, None] * np.add.outer(d, d)
+        return self.dofs[rates > 0.0], normed.T @ (weights[:, None] / 2.0 * values), of_pairs
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:
@@ -282,7 +264,7 @@ class Motion:
 
     def dissipation(self, w: NDArray) -> float:
         """w·D w of velocities (unknowns,)."""
-        (dofs, rates), legendre = self._damped, self._damping.legendre
+        dofs, legendre, rates = self._damping
         coefficients = legendre @ (w[dofs] @ legendre.T)
         return float(np.vdot(coefficients, rates * coefficients))
 
@@ -295,10 +277,6 @@ def of_both(A: csr_matrix, w: NDArray) -> NDArray[np.float64]:
     product = np.empty_like(w)
     product[0::2], product[1::2] = A @ w[0::2], A @ w[1::2]  # SciPy is slow with two columns
     return product
-
-
-#: Half-width and depth over a of the box.
-BOX = 3.0, 2.0
 
 
 class Energies:

@@ -51,12 +51,6 @@ def clipped(corners: NDArray, extent: float) -> NDArray[np.float64]:
     return polygon
 
 
-def in_quads(count: int) -> NDArray[np.int64]:
-    """Quadrilaterals of a convex polygon of 3 or more corners, (n, 4); a triangle doubles its last."""
-    last = count - 1
-    return np.array([(0, i, min(i + 1, last), min(i + 2, last)) for i in range(1, last, 2)])
-
-
 def in_physical_plane(
     space: Space,
     response: HalfPlane,
@@ -166,11 +160,13 @@ def sample(
         for cell, u in zip(numbers, space.cell_values([field], response, numbers)[:, grid]):
             crossing = corners[touched[cell] & ~whole[cell]]
             at, cut = _cut(chart, vertices[cell], t, crossing, extent)
-            quads = np.concatenate([corners[whole[cell]], cut])
+            used, quads = np.unique(np.concatenate([corners[whole[cell]], cut]), return_inverse=True)
             displacement = reference_values(nodes, at, u)[..., 0]
             gradient = _gradients(chart, vertices[cell], nodes, at, u, n)
             points = chart.to_physical(image(vertices[cell], at))
-            pieces.append(_without_unused(SampledField(points, quads, displacement, gradient)))
+            pieces.append(
+                SampledField(points[used], quads.reshape(-1, 4), displacement[used], gradient[used])
+            )
     field.destroy()
     return joined(pieces)
 
@@ -191,10 +187,11 @@ def _cut(
     points, cut, count = [t], [np.empty((0, 4), dtype=np.int64)], len(t)
     for corners in chart.to_physical(image(vertices, t[quads])):  # counterclockwise, as all cells are
         polygon = clipped(corners, extent)
-        if len(polygon) >= 3:
+        if (last := len(polygon) - 1) >= 2:
             cells = np.broadcast_to(vertices, (len(polygon), 4, 2))
             points.append(pull_back(cells, chart.from_physical(polygon)))
-            cut.append(count + in_quads(len(polygon)))
+            parts = [(0, i, min(i + 1, last), min(i + 2, last)) for i in range(1, last, 2)]
+            cut.append(count + np.array(parts))  # the last corner of a triangle is doubled
             count += len(polygon)
     return np.concatenate(points), np.concatenate(cut)
 
@@ -210,14 +207,6 @@ def _gradients(
     t = np.where(at_edge[:, None], np.clip(t, 0.5 / n, 1.0 - 0.5 / n), t)
     gradients = gradients_in_plane(vertices, nodes, t, u)
     return chart.physical_gradients(image(vertices, t), gradients)[..., 0]
-
-
-def _without_unused(field: SampledField) -> SampledField:
-    """The field with only those points that a quadrilateral has."""
-    used, quads = np.unique(field.quads, return_inverse=True)
-    return SampledField(
-        field.points[used], quads.reshape(-1, 4), field.displacement[used], field.gradient[used]
-    )
 
 
 def joined(pieces: Sequence[SampledField]) -> SampledField:

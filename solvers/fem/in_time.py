@@ -30,11 +30,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve, solve
 from scipy.sparse import csr_matrix, identity, kron
-from scipy.special import roots_jacobi
 
 from galinx.clock import Clock
 
 from ..approximation import lagrange
+from ..contact.equation import gauss
 from ..transient.history import History, Way
 from .dynamic import Motion, of_both
 from .fields import SurfaceTrace, unit_facet
@@ -196,8 +196,7 @@ def _rule(
     """
     (α, β), half = exponents, (right - left) / 2.0
     at_left, at_right = β * ends[0], α * ends[1]
-    with np.errstate(invalid="ignore", divide="ignore"):  # SciPy replaces 0/0 where α + β = -1
-        x, w = roots_jacobi(points, at_right, at_left)
+    x, w = gauss(points, at_right, at_left)
     X, w = left + half * (1.0 + x), w * half ** (1.0 + at_left + at_right)
     w = w if ends[0] else w * (1.0 + X) ** β
     return (1.0 + x) / 2.0, w if ends[1] else w * (1.0 - X) ** α

@@ -36,12 +36,16 @@ class Along:
         ratio: σ_XY/σ_YY at positions X/a in [-1, 1], (n,): (n,).
         kinks: positions inside at which it is not smooth.
         weak_kinks: further ones, at which a higher derivative jumps: meshes need no cells for these.
+        over: gives it for another half-width [m]; None where it does not depend on that.
+        varies: False for one number all along the contact.
     """
 
     mean: float
     ratio: Callable[[NDArray], NDArray]
     kinks: tuple[float, ...] = ()
     weak_kinks: tuple[float, ...] = ()
+    over: Callable[[float], "Along"] | None = None
+    varies: bool = True
 
     def __call__(self, X: NDArray) -> NDArray[np.float64]:
         """σ_XY/σ_YY at X/a, beside the contact that at its nearer end, in the shape of X."""
@@ -49,45 +53,18 @@ class Along:
         return np.asarray(self.ratio(X.ravel())).reshape(X.shape)
 
     @property
-    def varies(self) -> bool:
-        """True if it is not one number all along the contact."""
-        return True
-
-    @property
     def has_length(self) -> bool:
         """True if it depends on the half-width of the contact."""
-        return False
+        return self.over is not None
 
     def at(self, a: float) -> "Along":
         """σ_XY/σ_YY over a contact of another half-width a [m]."""
-        return self
-
-
-@dataclass(frozen=True)
-class Constant(Along):
-    """One σ_XY/σ_YY all along the contact."""
-
-    varies = False
+        return self.over(a) if self.over else self
 
 
 def constant(g: float) -> Along:
     """Friction σ_XY/σ_YY = g all along the contact."""
-    return Constant(g, lambda X: np.full(X.shape, g))
-
-
-@dataclass(frozen=True)
-class Advected(Along):
-    """σ_XY/σ_YY of bristles that enter the contact at rest.
-
-    Attributes:
-        over: gives it for another half-width [m].
-    """
-
-    over: Callable[[float], Along] = constant
-    has_length = True
-
-    def at(self, a: float) -> Along:
-        return self.over(a)
+    return Along(g, lambda X: np.full(X.shape, g), varies=False)
 
 
 def tabulated(rows: Sequence[tuple[float, float]], factor: float) -> Along:
@@ -124,7 +101,7 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
     over = lru_cache(lambda a: advected(law, s, V, a, stress_ratio))
     digits = _EXACT if known else _INTEGRATED
     kinks, all_kinks = (_kinks(ratio, digits, beside) for beside in (_BESIDE, _BESIDE_WEAK))
-    return Advected(mean, ratio, kinks, tuple(sorted({*all_kinks} - {*kinks})), over)
+    return Along(mean, ratio, kinks, tuple(sorted({*all_kinks} - {*kinks})), over)
 
 
 def _kinks(function: Callable[[NDArray], NDArray], digits: float, short: float) -> tuple[float, ...]:

@@ -6,13 +6,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, parameter
+from ..approximation import inverted
+from ..parameters import parameter
 from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 #: y = -ln(1 - w) from which on the slip is its asymptote, and y of full slip.
 _FAR, _FULL = 14.0, 700.0
-#: Steps of Newton's method that are always enough, and the step after which the next is no digit.
-_STEPS, _CLOSE = 60, 1e-10
 
 
 @dataclass(frozen=True)
@@ -44,9 +43,6 @@ class BoucWen(FrictionLaw):
         "gamma", "shape γ of unloading", symbol=r"\gamma", at_least=0.0, below=1.0, default=0.5,
         note="0.5: unloading is a straight line",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
@@ -133,29 +129,21 @@ def _slip_to(w: float, n: float) -> NDArray[np.float64]:
 
 
 def _loaded_after(x: NDArray, n: float) -> NDArray[np.float64]:
-    """State w after slips x from 0, by Newton's method in y, of which slip is nearly linear."""
-    y = np.array(x, dtype=float)  # n = 1; for larger n, y is larger
-    for _ in range(_STEPS):
+    """State w after slips x from 0, by y = -ln(1 - w), of which slip is nearly linear."""
+
+    def slip(y: NDArray) -> tuple[NDArray, NDArray]:
         w = -np.expm1(-y)
         with np.errstate(divide="ignore", invalid="ignore"):
             slope = np.where(y > _FAR, 1.0 / n, np.exp(-y) / -np.expm1(n * np.log(w)))
-        slope = np.where(y == 0.0, 1.0, slope)
-        step = (x - _slip_of(y, n)) / slope
-        y = np.maximum(y + step, 0.0)
-        if np.all(np.abs(step) <= _CLOSE):
-            break
-    return -np.expm1(-y)
+        return _slip_of(y, n), np.where(y == 0.0, 1.0, slope)
+
+    # For n = 1 y is x, for larger n it is larger.
+    return -np.expm1(-inverted(slip, x, np.array(x, dtype=float)))
 
 
 def _unloaded_at(x: NDArray, most: float, k: float, n: float) -> NDArray[np.float64]:
     """Size |w| from which unloading to zero takes a slip x, at most ``most``, |w| at the start."""
-    u = np.minimum(x, most)
-    for _ in range(_STEPS):
-        step = (x - _slip(u, k, n)) * (1.0 - k * u**n)
-        u = np.clip(u + step, 0.0, most)
-        if np.all(np.abs(step) <= _CLOSE):
-            break
-    return u
+    return inverted(lambda u: (_slip(u, k, n), 1.0 / (1.0 - k * u**n)), x, np.minimum(x, most), high=most)
 
 
 LAWS.register("bouc_wen", BoucWen)

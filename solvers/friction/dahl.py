@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, parameter
+from ..parameters import parameter
 from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 
@@ -35,9 +35,6 @@ class Dahl(FrictionLaw):
         "delta", "Dahl's exponent", symbol=r"\delta_D", above=0.0, default=1.0,
         note="below 1, full slip is reached after a finite slip",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:

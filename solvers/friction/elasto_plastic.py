@@ -8,6 +8,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from ..approximation import inverted
 from ..parameters import parameter
 from .law import LAWS
 from .lugre import Bristles
@@ -17,8 +18,6 @@ from .lugre import Bristles
 _WIDTH, _FAR = 0.25, 40.0
 #: Gauss's rule of a panel.
 _NODES, _WEIGHTS = leggauss(16)
-#: Steps of Newton's method that are always enough, and the step after which the next is no digit.
-_STEPS, _CLOSE = 60, 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,12 +131,7 @@ class _Yielding:
         """Coordinate y after slips x from w, r <= w < 1; x < 0 counts as none."""
         target = self._at(-np.log1p(-np.asarray(w)))[0] + np.maximum(x, 0.0)
         y = self._near(np.minimum(target, self._x[-1])) + np.maximum(target - self._x[-1], 0.0)
-        for _ in range(_STEPS):
-            step = (target - self._at(y)[0]) / self._slopes(y)
-            y = np.maximum(y + step, self._first)
-            if np.all(np.abs(step) <= _CLOSE):
-                break
-        return y
+        return inverted(lambda y: (self._at(y)[0], self._slopes(y)), target, y, self._first)
 
     def short(self, x: NDArray, w: float) -> NDArray[np.float64]:
         """∫ (1 - w) dx over slips x from w."""

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, parameter
+from ..parameters import parameter
 from .law import LAWS, MeasuredFriction
 from .maxwell_slip import check_elements, elements, spread
 from .stribeck import StribeckCurve
@@ -39,7 +39,7 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         check_elements(self.elements)
 
     @classmethod
@@ -69,11 +69,8 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         return np.concatenate([f, 0.0 * slipping], axis=-1)
 
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Rates df_i/dd [1/m], and 0 of the directions of slip."""
-        f, slipping = np.split(z, 2)
-        with np.errstate(divide="ignore"):
-            attracted = self.C * (self.α - s * f / self.g(V)) / V
-        return np.append(s * np.where(s * slipping > 0.0, attracted, self.k), 0.0 * f)
+        """Rates df_i/dd [1/m] at a speed above 0, and 0 of the directions of slip."""
+        return self.flow(z, s, V) / V
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Rates df_i/dt [1/s], and 0 of the directions of slip."""

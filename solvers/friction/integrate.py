@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -86,42 +87,36 @@ def runge_kutta(
 
 
 def exactly(
-    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
+    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray, stops: bool = True
 ) -> NDArray[np.float64]:
-    """States by the law's exact solution, else by its rate integrated to the last digits, (slips, n)."""
+    """States by the law's exact solution, else by its rate, see :func:`adaptively`, (slips, n)."""
     states = law.exact(z, s, V, slip)
-    return adaptively(law, z, s, V, length, slip) if states is None else states
+    return adaptively(law, z, s, V, length, slip, stops) if states is None else states
 
 
-def closely(
-    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
-) -> NDArray[np.float64]:
-    """States by the law's exact solution, else by its rate integrated in the scheme's own steps.
-
-    Between these steps states are interpolated, to about 1e-9: for many places at once, as of a curve.
-    """
-    states = law.exact(z, s, V, slip)
-    return _integrated(law, z, s, V, length, slip, False) if states is None else states
+#: States by the law's exact solution, else interpolated: for many places at once, as of a curve.
+closely = partial(exactly, stops=False)
 
 
 def adaptively(
-    law: FrictionLaw, z: NDArray, s: int, V: float, length: float, slip: NDArray
+    law: Any, z: NDArray, s: int, V: float, length: float, slip: NDArray, stops: bool = True
 ) -> NDArray[np.float64]:
     """States by the law's rate, integrated by an adaptive scheme of order 8 (SciPy's DOP853), (slips, n).
 
-    It stops at every slip of ``slip``: between its own steps it is of lower order. A stroke with a
-    handful of states takes some milliseconds, with a hundred some 50.
+    Args:
+        law: the law.
+        z: state at the start, (n,).
+        s: direction, ±1.
+        V: speed [m/s].
+        length: length of the stroke [m].
+        slip: slips since the start [m], (slips,).
+        stops: True to stop at every slip: a stroke with a handful of states takes some milliseconds, with
+            a hundred some 50. Otherwise states between the scheme's own steps are interpolated, to about
+            1e-9.
 
     Raises:
         ValueError: the integration failed.
     """
-    return _integrated(law, z, s, V, length, slip, True)
-
-
-def _integrated(
-    law: Any, z: NDArray, s: int, V: float, length: float, slip: NDArray, stops: bool
-) -> NDArray[np.float64]:
-    """States at slips, at each of which the scheme stops or between whose steps it interpolates."""
     at, back = np.unique(np.clip(slip, 0.0, length), return_inverse=True)
     states, d, passed = np.empty((len(at), len(z))), 0.0, set[int]()
     states[:] = z = np.asarray(z, dtype=float)
@@ -162,7 +157,8 @@ def _smooth_piece(
             raise ValueError(f"{type(law).__name__} could not be integrated: {result.message}")
         return result
 
-    piece = solve(*ends, z, [_event(law, s, V, n) for n in ahead] or None)
+    events = [event(lambda _, z, n=n: law.switches(z, s, V)[n], 1.0, True) for n in ahead]
+    piece = solve(*ends, z, events or None)
     if piece.status == 0:
         return ends[1], piece.y[:, -1], piece.sol
     met = {n: float(t[0]) for n, t in zip(ahead, piece.t_events) if len(t)}
@@ -173,12 +169,16 @@ def _smooth_piece(
     return at, solve(before, at, state).y[:, -1] if before < at else state, piece.sol
 
 
-def _event(law: Any, s: int, V: float, n: int) -> Callable[[float, NDArray], float]:
-    def passed(_: float, z: NDArray) -> float:
-        return float(law.switches(z, s, V)[n])
+def event(function: Callable[..., Any], direction: float, terminal: bool) -> Callable[..., Any]:
+    """Event of SciPy's integrators where a function of time and state is zero.
 
-    passed.terminal, passed.direction = True, 1.0  # type: ignore[attr-defined]
-    return passed
+    Args:
+        function: of time and state.
+        direction: 1 where it grows, -1 where it falls, 0 for both.
+        terminal: True where the integration ends there.
+    """
+    function.direction, function.terminal = direction, terminal  # type: ignore[attr-defined]
+    return function
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,7 @@ def work(law: FrictionLaw, z: NDArray, s: int, V: float, slip: float) -> NDArray
         return np.zeros(())
     if law.exact(z, s, V, np.zeros(1)) is None:
         whole, start = _WithWork(law, slip), np.append(z, 0.0)
-        return slip * _integrated(whole, start, s, V, slip, np.array([slip]), True)[0, -1]
+        return slip * adaptively(whole, start, s, V, slip, np.array([slip]))[0, -1]
     from scipy.integrate import quad_vec  # a slow import
 
     def power(d: float) -> Any:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from galinx.registry import Registry
 
-from ..parameters import parameter, parameters
+from ..parameters import check, parameter, parameters
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,8 @@ class FrictionLaw(Protocol):
 
     A law is a dataclass whose fields are made by :func:`galinx.solvers.parameters.parameter`; scenes set
     them by their keys. Its inner state z, (n,), dimensionless, changes with the slip. Those that inherit
-    from this class need :meth:`friction`, and :meth:`rate` or :meth:`exact`.
+    from this class need :meth:`friction`, and :meth:`rate` or :meth:`exact`; their parameters' ranges are
+    checked.
 
     Attributes:
         about: name of the law, with its source.
@@ -62,6 +63,9 @@ class FrictionLaw(Protocol):
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         """Parameters by key with which a fit may begin; others begin with their defaults."""
         return {}
+
+    def __post_init__(self) -> None:
+        check(self)
 
     def rest(self) -> NDArray[np.float64]:
         """State before the first stroke, (n,)."""

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, rows
+from ..parameters import rows
 from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
@@ -55,7 +55,7 @@ class MaxwellSlip(FrictionLaw):
     elements: tuple[tuple[float, float], ...] = elements()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         check_elements(self.elements)
 
     @classmethod

@@ -79,15 +79,14 @@ def legs(strokes: Sequence[str | Partial], rest: float = 0.0) -> tuple[Leg, ...]
     Raises:
         ValueError: a stroke has no length.
     """
-    result: list[Leg] = []
-    at = 0.0
+    result, at = list[_Ends](), 0.0
     for n, stroke in enumerate(strokes):
         if isinstance(stroke, str):
             stroke, at = Partial(float(stroke == "forward")), float(stroke == "backward")
         if stroke.to == at:
             raise ValueError(f"stroke {n + 1} goes to {at:g} L, where it begins: expected another end")
         before = (rest if n else 0.0) if stroke.rest is None else stroke.rest
-        result.append(Leg("", 1 if stroke.to > at else -1, at, stroke.to, stroke.speed, before))
+        result.append((at, stroke.to, stroke.speed, before))
         at = stroke.to
     return _named(result)
 
@@ -109,9 +108,7 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
         raise ValueError(
             f"found the position {outside[0]:g} m, expected 0 to pre_sliding = {length:g} m in all rows"
         )
-    result: list[Leg] = []
-    speeds: dict[str, float] = {}
-    rest = 0.0
+    result, speeds, rest = list[_Ends](), dict[str, float](), 0.0
     for (t, X), (t_next, X_next) in pairwise(path):
         if X_next == X:
             rest += t_next - t
@@ -119,19 +116,21 @@ def legs_of_path(path: Sequence[tuple[float, float]], length: float) -> tuple[Le
         speed = abs(X_next - X) / (t_next - t)
         # Speeds that differ by rounding are one speed, at which a contact is solved once.
         speed = speeds.setdefault(f"{speed:.11e}", speed)
-        result.append(Leg("", 1 if X_next > X else -1, X / length, X_next / length, speed, rest))
+        result.append((X / length, X_next / length, speed, rest))
         rest = 0.0
     if not result:
         raise ValueError("found one position in all rows, expected a motion")
     return _named(result)
 
 
-def _named(unnamed: Sequence[Leg]) -> tuple[Leg, ...]:
-    stroke_names = names([leg.s for leg in unnamed])
-    return tuple(
-        Leg(name, leg.s, leg.start, leg.end, leg.speed, leg.rest)
-        for name, leg in zip(stroke_names, unnamed)
-    )
+#: Ends over L, speed and rest of a stroke.
+_Ends = tuple[float, float, float | None, float]
+
+
+def _named(strokes: Sequence[_Ends]) -> tuple[Leg, ...]:
+    """Legs with names and directions."""
+    directions = [1 if end > start else -1 for start, end, *_ in strokes]
+    return tuple(Leg(name, s, *ends) for name, s, ends in zip(names(directions), directions, strokes))
 
 
 def last_cycle(all_legs: Sequence[Leg]) -> int | None:

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, choice, parameter
+from ..parameters import choice, parameter
 from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
@@ -45,9 +45,6 @@ class RateAndState(FrictionLaw):
         "state0", "state V₀θ/D_c before the first stroke", symbol=r"\vartheta_0", above=0.0, default=1.0,
         note="1: as after steady sliding at the reference speed",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:

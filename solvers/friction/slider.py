@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import parameter
+from .integrate import event
 from .law import FrictionLaw
 
 #: Rise of friction with speed, over the damper that is critical, from which on a motion is stiff, and
@@ -325,10 +326,13 @@ class _Motion:
         s, drive = self.s, self.slider.drive_speed
         ahead = np.flatnonzero(self.law.switches(self.z, s, abs(self.v)) < 0.0) if self._stops else ()
         events = [
-            _event(lambda _, y: s * y[1] - 0.5 * self._slow, -1.0, True),
-            _event(lambda _, y: y[1] - drive, 1.0, False),
-            _event(lambda _, y: self._acceleration(y), 0.0, False),
-            *(_event(lambda _, y, n=n: self._switch(y, int(n)), 1.0, True) for n in ahead),
+            event(lambda _, y: s * y[1] - 0.5 * self._slow, -1.0, True),
+            event(lambda _, y: y[1] - drive, 1.0, False),
+            event(lambda _, y: self._acceleration(y), 0.0, False),
+            *(
+                event(lambda _, y, n=n: self.law.switches(y[2:], s, max(s * y[1], 0.0))[n], 1.0, True)
+                for n in ahead
+            ),
         ]
         last, reason = min(self.slider.duration - self.t, self._longest), ""
         start = np.array([self.e, self.v, *self.z])
@@ -360,15 +364,7 @@ class _Motion:
     def _acceleration(self, y: NDArray) -> float:
         return (self._pull(y[0], y[1]) - self.load * self._friction(y, self.s)) / self.slider.mass
 
-    def _switch(self, y: NDArray, n: int) -> float:
-        return float(self.law.switches(y[2:], self.s, max(self.s * y[1], 0.0))[n])
-
     def _rates(self, _: float, y: NDArray) -> list[float]:
         V = max(self.s * y[1], 0.0)
         turned = self.law.flow(y[2:], self.s, V)
         return [self.slider.drive_speed - y[1], self._acceleration(y), *turned]
-
-
-def _event(of: Callable[..., float], direction: float, terminal: bool) -> Callable[..., float]:
-    of.direction, of.terminal = direction, terminal  # type: ignore[attr-defined]
-    return of

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, parameter
+from ..parameters import parameter
 from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 
@@ -54,9 +54,6 @@ class Coulomb(Memoryless):
 
     μ_C: float = coulomb_coefficient("at_least")
 
-    def __post_init__(self) -> None:
-        check(self)
-
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         return {"mu_c": seen.level}
@@ -82,9 +79,6 @@ class StribeckCurve(FrictionLaw):
         "stribeck_exponent", "exponent of Stribeck's curve", symbol="j", above=0.0, default=2.0,
         note="1: Tustin's form, 2: Gauss's",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import check, rows
+from ..parameters import rows
 from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
@@ -37,7 +37,7 @@ class Table(FrictionLaw):
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         for key, table in (("shape", self.shape), ("shape_backward", self.shape_backward)):
             slips = [row[0] for row in table]
             if table and (slips[0] != 0.0 or slips != sorted(set(slips)) or len(slips) < 2):

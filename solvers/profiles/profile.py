@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from galinx.registry import Registry
 
 from ..errors import SolveError
+from ..parameters import check
 
 
 class Profile(Protocol):
     """A rigid punch: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
 
-    A profile with a free end of the contact says so by ``sharp``; it has no half-width then and is
-    convex. All attributes but ``about`` are optional, and read by the functions of this module.
+    The ranges of these are checked. A profile with a free end of the contact says so by ``sharp``; it has
+    no half-width then and is convex. All attributes but ``about`` are optional, and read by the functions
+    of this module.
 
     Attributes:
         about: kind of punch.
@@ -30,6 +32,9 @@ class Profile(Protocol):
     """
 
     about: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        check(self)
 
     def height(self, X: NDArray) -> NDArray:
         """Gap [m] at X [m] from the middle when the lowest point touches, 0 where it is lowest."""

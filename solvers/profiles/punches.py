@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from galinx.texts import with_prefix
 
-from ..parameters import check, parameter, rows
-from .profile import PROFILES
+from ..parameters import parameter, rows
+from .profile import PROFILES, Profile
 
 
 @dataclass(frozen=True)
-class Flat:
+class Flat(Profile):
     """A flat punch with two sharp edges, the base of which may be tilted.
 
     Raises:
@@ -34,9 +34,6 @@ class Flat:
         above=-45.0, below=45.0, usual=(-5.0, 5.0),
         note="positive: the right edge is the higher one, and lifts off first",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def sharp(self) -> tuple[bool, bool]:
@@ -61,7 +58,7 @@ class Flat:
 
 
 @dataclass(frozen=True)
-class Parabolic:
+class Parabolic(Profile):
     """A parabola X²/(2R): a cylinder of radius R near its lowest point, as contact mechanics has it.
 
     Raises:
@@ -74,9 +71,6 @@ class Parabolic:
 
     radius: float = parameter("radius", "radius R", "m", symbol="R", above=0.0, usual=(1e-9, 1e3))
 
-    def __post_init__(self) -> None:
-        check(self)
-
     def height(self, X: NDArray) -> NDArray[np.float64]:
         return np.asarray(X) ** 2 / (2.0 * self.radius)
 
@@ -88,7 +82,7 @@ class Parabolic:
 
 
 @dataclass(frozen=True)
-class Power:
+class Power(Profile):
     """The height ``coefficient``·|X|^``exponent``, X in m.
 
     Raises:
@@ -103,9 +97,6 @@ class Power:
         "coefficient", "height at X = 1 m, as a number", "", symbol="c", above=0.0,
         note="for a height of 1 µm at 1 mm with the exponent 3: 1e-6/(1e-3)^3 = 1000",
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -123,7 +114,7 @@ class Power:
 
 
 @dataclass(frozen=True)
-class Wedge:
+class Wedge(Profile):
     """A wedge of the height ``slope_of_flanks``·|X|; the pressure at its tip is infinite.
 
     Raises:
@@ -142,9 +133,6 @@ class Wedge:
         "slope; it has to be small",
     )  # fmt: skip
 
-    def __post_init__(self) -> None:
-        check(self)
-
     def height(self, X: NDArray) -> NDArray[np.float64]:
         return self.slope_of_flanks * np.abs(X)
 
@@ -156,7 +144,7 @@ class Wedge:
 
 
 @dataclass(frozen=True)
-class RoundedFlat:
+class RoundedFlat(Profile):
     """Flat up to ``flat_half_width``, parabolas of ``radius`` beyond.
 
     Raises:
@@ -172,9 +160,6 @@ class RoundedFlat:
     radius: float = parameter(
         "radius", "radius R, of the rounded shoulders", "m", symbol="R", above=0.0, usual=(1e-9, 1e3)
     )
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def kinks(self) -> tuple[float, float]:
@@ -200,7 +185,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Profile):
     """A profile through given points, with a continuous slope.
 
     Between two points the height is one parabola, or two that meet (Schumaker, SIAM Journal on Numerical
@@ -221,7 +206,7 @@ class Table:
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         X, P = self._points
         if len(X) < 3:
             raise ValueError(f"shape: found {len(X)} points, expected at least 3")

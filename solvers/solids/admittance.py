@@ -166,11 +166,6 @@ class Admittance:
         wave = np.linalg.eigh(self._acoustic(p))[1][:, :, sheet]
         return np.einsum("ni,nij,nj->n", wave, mixed + 2.0 * np.multiply.outer(p, across), wave)
 
-    @property
-    def least(self) -> float:
-        """Least speed of :attr:`meeting`; 𝐘 is analytic below it."""
-        return float(self.meeting[0])
-
     @cached_property
     def fastest(self) -> float:
         """Largest speed of a wave inside, over all directions in the plane."""
@@ -180,7 +175,7 @@ class Admittance:
 
     def residue(self, speed: float) -> NDArray[np.complex128]:
         """Residue of 𝐘 at the speed of the wave along the surface, (2, 2)."""
-        radius = (self.least - speed) / 2.0
+        radius = (self.meeting[0] - speed) / 2.0  # 𝐘 is analytic below the least of these speeds
         turn = np.exp(2j * pi * (np.arange(_CIRCLE) + 0.5) / _CIRCLE)
         around = self(speed + radius * turn)
         return np.asarray((radius * turn[:, None, None] * around).mean(axis=0))
@@ -296,10 +291,3 @@ class AnisotropicFrame(UniformHalfPlane):
     @cached_property
     def C(self) -> NDArray[np.float64]:
         return self.solid.stiffness
-
-    def is_stiff_at(self, c: float) -> bool:
-        """Return True if the stiffness of the surface is positive at another speed."""
-        try:
-            return AnisotropicFrame(self.solid, c).least_stiffness > 0.0
-        except ValueError:
-            return False

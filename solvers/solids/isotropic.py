@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from galinx.texts import with_prefix
 
 from ..approximation import bisected
-from ..parameters import check, parameter
+from ..parameters import parameter
 from .admittance import Admittance
 from .half_plane import Roots, UniformHalfPlane, Waves
 from .solid import Solid, density, in_plane, modulus
@@ -38,9 +38,6 @@ class Isotropic(Solid):
     ν: float = parameter("nu", "Poisson's ratio", symbol=r"\nu", above=-1.0, at_most=0.5)
     ρ: float = density()
     plane: str = in_plane()
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def μ(self) -> float:

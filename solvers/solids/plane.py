@@ -1,6 +1,7 @@
 """Orthotropic, cubic and anisotropic solids: stiffness in the plane of the scene."""
 
 from abc import abstractmethod
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi, sin
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from galinx.texts import with_prefix
 
 from ..approximation import bisected
-from ..parameters import check, numbers, parameter
+from ..parameters import numbers, parameter
 from .admittance import Admittance, AnisotropicFrame
 from .flutter import Side, thresholds
 from .solid import USUAL_STIFFNESS, Solid, angle, density, in_plane, modulus
@@ -45,7 +46,12 @@ class PlaneSolid(Solid):
 
     @cached_property
     def _limit(self) -> float:
-        return bisected(self._at_rest.is_stiff_at, 1.0)
+        def stiff(c: float) -> bool:
+            with suppress(ValueError):
+                return self.response(c).least_stiffness > 0.0
+            return False
+
+        return bisected(stiff, 1.0)
 
     def limit(self) -> float:
         """Speed of the wave along the surface over ``c_s``: there the surface's stiffness, which falls
@@ -148,7 +154,7 @@ class Orthotropic(PlaneSolid):
     plane: str = in_plane()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         meaning = {
             (0, 1): "1 - nu12² E2/E1",
             (0, 2): "1 - nu13² E3/E1",
@@ -204,7 +210,7 @@ class Cubic(PlaneSolid):
     plane: str = in_plane()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         normal = np.full((3, 3), self.c12) + (self.c11 - self.c12) * np.eye(3)
         check_minors(normal, {(0, 1): "1 - (c12/c11)²", (0, 1, 2): "(1 - c12/c11)² (1 + 2 c12/c11)"})
 
@@ -251,7 +257,7 @@ class Anisotropic(PlaneSolid):
     plane: str = in_plane()
 
     def __post_init__(self) -> None:
-        check(self)
+        super().__post_init__()
         for name, value in zip(("c11", "c22", "c66"), np.diag(self.stiffness).tolist()):
             if value <= 0.0:
                 raise ValueError(f"stiffness: found {name} = {value:g} Pa, expected a number > 0")

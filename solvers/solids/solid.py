@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from galinx.registry import Registry
 
-from ..parameters import choice, parameter
+from ..parameters import check, choice, parameter
 from .half_plane import HalfPlane
 
 
 class Solid(Protocol):
     """An elastic solid: a dataclass whose fields are :func:`galinx.solvers.parameters.parameter`.
+
+    The ranges of these are checked.
 
     Attributes:
         about: kind of solid.
@@ -39,6 +41,9 @@ class Solid(Protocol):
     layers: Sequence[Any] = ()
     above: "Solid | None" = None
     punch_strength: float | None = None
+
+    def __post_init__(self) -> None:
+        check(self)
 
     @property
     def depths(self) -> NDArray[np.float64]:

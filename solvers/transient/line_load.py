@@ -38,6 +38,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
+from ..approximation import legendre_panel
 from ..layers.layered import LayeredHalfPlane, LayersAtSpeed
 from ..layers.stiffness import Medium, Uniform
 from ..solids.admittance import Admittance
@@ -65,7 +66,7 @@ _RATIO = 4.0
 
 @dataclass(frozen=True)
 class Kernel:
-    """HalfPlane at a distance x > 0 ahead of a line load in a frame that moves at c.
+    """Response at a distance x > 0 ahead of a line load in a frame that moves at c.
 
     Behind it the response is that ahead, in the mirror image of the solid and a frame that moves at -c,
     with the signs of σ_XY's and u changed.
@@ -211,8 +212,8 @@ class Kernel:
 
 def interpolation(points: int, at: NDArray) -> NDArray[np.float64]:
     """Matrix from values at Gauss's points to values at other places from -1 to 1, (places, points)."""
-    t, _ = leggauss(points)
-    return np.asarray(np.linalg.solve(legvander(t, points - 1).T, legvander(at, points - 1).T).T)
+    _, _, to_legendre = legendre_panel(points)
+    return np.asarray(legvander(at, points - 1) @ to_legendre)
 
 
 def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:
@@ -364,7 +365,7 @@ class Echoes:
         return float(_WAVENUMBERS[min(not_decayed[-1] + 1, len(k) - 1)]) if len(not_decayed) else 0.0
 
 
-#: Response on one side of a line load; behind it that of the mirror image, see :class:`Kernel`.
+#: Response on one side of a line load: v̂ of σ_YY and of σ_XY, then û of them, at distances, or slopes.
 Side = Callable[[NDArray, complex, bool], NDArray[np.complex128]]
 
 
@@ -385,15 +386,20 @@ def both_sides(half_plane: HalfPlane, rayleigh: float, way: int) -> tuple[Side, 
     Raises:
         ValueError: a layer is graded.
     """
-    V = way * half_plane.c
-    if not len(half_plane.depths):
-        surface = Admittance.of(half_plane)
-        return Kernel(surface, V, rayleigh), Kernel(surface.mirrored, -V, rayleigh)
-    layers: Any = half_plane
-    ahead, behind = both_sides(layers.surface, layers.solid.surface.limit(), way)
-    sheets = UniformLayers.of(layers)
-    echo, echo_behind = Echoes(sheets, V), Echoes(sheets.mirrored, -V)
-    return (
-        lambda x, s, slopes: ahead(x, s, slopes) + echo(x, s, slopes),
-        lambda x, s, slopes: behind(x, s, slopes) + echo_behind(x, s, slopes),
-    )
+    surface, V, layers = Admittance.of(half_plane), way * half_plane.c, list[UniformLayers]()
+    if len(half_plane.depths):
+        layered: Any = half_plane
+        rayleigh, layers = layered.solid.surface.limit(), [UniformLayers.of(layered)]
+    ahead: list[Side] = [Kernel(surface, V, rayleigh), *(Echoes(sheets, V) for sheets in layers)]
+    behind: list[Side] = [Kernel(surface.mirrored, -V, rayleigh)]
+    behind += [Echoes(sheets.mirrored, -V) for sheets in layers]
+
+    def mirrored(x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
+        values = sum(part(x, s, slopes) for part in behind)
+        return np.asarray(_MIRRORED * (-values if slopes else values))
+
+    return lambda x, s, slopes: np.asarray(sum(part(x, s, slopes) for part in ahead)), mirrored
+
+
+#: Signs in the mirror image: of v̂ of σ_YY and of σ_XY, then of û of them.
+_MIRRORED = np.array([1.0, -1.0, -1.0, 1.0])[:, None]

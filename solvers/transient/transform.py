@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from ..approximation import gauss_in_panels
 from ..contact.edges import EdgeExponents
 from ..contact.equation import gauss, jacobi
 from ..solids.half_plane import HalfPlane
@@ -176,9 +177,15 @@ class Transformed:
         self, response: HalfPlane, rayleigh: float, s: NDArray, terms: int, panel: float = _EVEN,
         way: int = 1,
     ) -> None:  # fmt: skip
-        self._response, self.s, self._terms, self._panel = response, s, terms, min(panel, _EVEN)
+        self._response, self.s, self._terms = response, s, terms
         self._kernels = both_sides(response, rayleigh, way)
-        self._slowest = 1.0 / (rayleigh - response.c)
+        near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
+        even = np.linspace(_EVEN, 2.0, ceil((2.0 - _EVEN) / min(panel, _EVEN)), endpoint=False)
+        towards = [near[near < _EVEN], even, 2.0 - near[near < _EVEN][:_FAR:-1]]
+        slowest = 1.0 / (rayleigh - response.c)
+        edges = divided(np.concatenate([[0.0], *towards, [2.0]]), s, slowest)
+        # Distances of the response, (distances,), and their weights.
+        self._x, self._weights = gauss_in_panels(edges, _POINTS)
 
     def basis(self, g: float) -> Basis:
         """Polynomials of the pressure where σ_XY = g σ_YY."""
@@ -203,47 +210,24 @@ class Transformed:
 
     def sinking(self, basis: Basis, tests: Weighted) -> NDArray[np.complex128]:
         """Tested v̂ of each polynomial of the pressure for every s, (s, tests, terms)."""
-        ahead, behind = self._values
-        g = basis.g
-        return self._summed(basis, tests, ahead[:, 0] + g * ahead[:, 1], behind[:, 0] - g * behind[:, 1])
+        return self._tested(basis, tests, 0)
 
     def dragging(self, basis: Basis, tests: Weighted) -> NDArray[np.complex128]:
         """Tested û of each polynomial of the pressure for every s, (s, tests, terms)."""
-        ahead, behind = self._values
-        g = basis.g
-        return self._summed(basis, tests, ahead[:, 2] + g * ahead[:, 3], g * behind[:, 3] - behind[:, 2])
+        return self._tested(basis, tests, 2)
 
-    def _summed(
-        self, basis: Basis, tests: Weighted, ahead: NDArray, behind: NDArray
-    ) -> NDArray[np.complex128]:
-        """Tested response of each polynomial, (s, tests, terms).
+    def _tested(self, basis: Basis, tests: Weighted, first: int) -> NDArray[np.complex128]:
+        """Tested displacement of each polynomial of the pressure for every s, (s, tests, terms).
 
         Args:
             basis: of the pressure.
             tests: weighted polynomials.
-            ahead, behind: response at each distance, (s, distances).
+            first: row of the responses to σ_YY; the next one is that to σ_XY.
         """
         both = shared(self._x, tests, basis.pressure)
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
+        ahead, behind = (values[:, first] + basis.g * values[:, first + 1] for values in self._values)
         return (ahead @ flat[0] + behind @ flat[1]).reshape(-1, tests.terms, self._terms)
-
-    @cached_property
-    def _grid(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
-        even = np.linspace(_EVEN, 2.0, ceil((2.0 - _EVEN) / self._panel), endpoint=False)
-        towards = [near[near < _EVEN], even, 2.0 - near[near < _EVEN][:_FAR:-1]]
-        edges = divided(np.concatenate([[0.0], *towards, [2.0]]), self.s, self._slowest)
-        t, w = leggauss(_POINTS)
-        half = np.diff(edges)[:, None] / 2.0
-        return (edges[:-1, None] + half * (1.0 + t)).ravel(), (half * w).ravel()
-
-    @property
-    def _x(self) -> NDArray[np.float64]:
-        return self._grid[0]
-
-    @property
-    def _weights(self) -> NDArray[np.float64]:
-        return self._grid[1]
 
     @cached_property
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:

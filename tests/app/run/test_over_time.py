@@ -12,7 +12,7 @@ from galinx.app.plan import over_time
 from galinx.app.results.check import faults
 from galinx.postprocess.compare import RULES, checked
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.march import Radau
+from galinx.solvers.transient.punch import Radau
 
 #: What verdicts say of both methods, and of finite elements.
 OF_BOTH, ESTIMATE, WORKS = (

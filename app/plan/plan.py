@@ -50,6 +50,7 @@ from galinx.solvers.contact.solution import (
     Places,
     Task,
 )
+from galinx.solvers.errors import SolveError
 from galinx.texts import bytes_in_words, counted
 
 from .. import ranks
@@ -253,8 +254,14 @@ def _faults(
             f"the scene's lists multiply to {sliders} friction laws and loads, expected at most "
             f"{_SLIDERS} with a slider each: shorten them, or make several scenes"
         )
-    for load in {min(states.loads), max(states.loads)} if methods else ():
+    for load in sorted({body.load, min(states.loads), max(states.loads)}) if methods else ():
         at_load = body.loaded(load)
+        try:
+            at_load.half_width  # noqa: B018 - cached
+        except SolveError as error:
+            if load == body.load:  # results are in units of this contact; methods report others
+                yield f"punch.load: found {load:g} N/m: {error}"
+            continue
         magnitudes = {"Pa": at_load.stress, "of the modulus": at_load.strain, "m": at_load.displacement}
         if wrong := [f"{x:g} {unit}" for unit, x in magnitudes.items() if not _LEAST <= x <= _MOST]:
             yield (

@@ -340,7 +340,7 @@ def _unusual_numbers(scene: Scene) -> Iterator[str]:
 def _unusual_contact(scene: Scene) -> Iterator[str]:
     """Warnings about loads and shapes for which no linear theory of a continuum is meant."""
     loads, μ = scene.punch.loads, scene.solid.μ
-    mean = scene.body.loaded(max(loads)).stress
+    mean = float(scene.body.loaded(np.array([max(loads)])).stress[0])  # NaN without a contact
     if mean > _PRESSED * μ:
         of_load = f" at N = {max(loads):g} N/m" * (len(loads) > 1)
         yield (

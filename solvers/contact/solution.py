@@ -484,19 +484,31 @@ class FreeEndContact(Contact):
 
     @cached_property
     def half_width(self) -> Any:
-        if np.ndim(self.load):
-            first = self.loaded(float(self.load[0]))
-            growth = first.growth(self.load)
-            if growth is not None:
-                return first.half_width * growth
+        if not np.ndim(self.load):
+            return self._at_rest
+        first = self.loaded(float(self.load[0]))
+        growth = first.growth(self.load)
+        if growth is not None:
+            return first.half_width * growth
+        if not self.solid.layers:
+            with suppress(SolveError):
+                rest = self.contacts(self.solid.response(0.0), np.zeros(len(self.load)))
+                return rest.of("half_width")
+        rest = np.full(np.shape(self.load), np.nan)
+        for i, N in enumerate(self.load.tolist()):
+            with suppress(SolveError):  # the method that solves reports a contact that fails
+                rest[i] = self.loaded(N).half_width
+        return rest
+
+    @property
+    def _at_rest(self) -> float:
+        """Half-width [m] under one load, at rest and without friction."""
         if self.solid.layers:
             from .equation import half_width_at_rest
 
-            solid, compressions = self.solid, np.ravel(self.compression).tolist()
-            rest = np.array([half_width_at_rest(solid, self.profile, N) for N in compressions])  # type: ignore[arg-type]
-        else:
-            rest = self.contacts(self.solid.response(0.0), np.zeros(np.size(self.load))).of("half_width")
-        return rest if np.ndim(self.load) else float(rest[0])
+            return half_width_at_rest(self.solid, self.profile, self.compression)  # type: ignore[arg-type]
+        (rest,) = self.contacts(self.solid.response(0.0), np.zeros(1)).of("half_width")
+        return float(rest)
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .closed_form import contacts

@@ -331,6 +331,8 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
     speeds = []
     for text in texts:
         try:
+            with suppress(TypeError, ValueError):  # else a text with a unit
+                text = float(text)
             speeds.append(Number("m/s")(text))
         except ValueError as error:
             raise BadInput(f"--speed: {error}") from None
@@ -410,6 +412,6 @@ def _section(one: Fit) -> str:
             for name, error in one.deviations.items()
             if name.partition("[")[0] == key
         ]
-        comment = ", ".join(filter(None, [unit, *(said or ["given"])]))
+        comment = ", ".join(filter(None, [unit, *(said or ["not fitted"])]))
         lines.append(f"{key} = {json.dumps(text)}  # {comment}")
     return "\n".join(lines) + "\n"

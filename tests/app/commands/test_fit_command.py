@@ -27,7 +27,7 @@ def here(tmp_path, monkeypatch):
 def test_a_fitted_section_is_one_of_a_scene_and_is_drawn(here, capsys):
     assert called("fit", "dahl", "slip.csv", "--fix", "delta=1") == 0
     section = (here / "fit" / "friction.toml").read_text(encoding="utf-8")
-    assert section in capsys.readouterr().out and "delta = 1.0  # dimensionless, given" in section
+    assert section in capsys.readouterr().out and "delta = 1.0  # dimensionless, not fitted" in section
     given = parse(section + REST).friction.parameters
     assert given["mu_c"][0] == pytest.approx(0.4, abs=2e-3)
     assert given["sigma0_over_load"][0] == pytest.approx(2.2e4, rel=1e-2)
@@ -82,7 +82,7 @@ def test_a_law_goes_into_a_scene_that_stays_as_it_was_written(here, capsys):
     assert new.partition("[solid]")[2] == SCENE.partition("[solid]")[2]
     assert "# my scene" in new and 'pre_sliding = "0.2 mm"  # measured' in new
     assert "from a book" not in new and "yield_displacement" not in new and "guessed" not in new
-    assert "delta = 1.0  # dimensionless, given" in new
+    assert "delta = 1.0  # dimensionless, not fitted" in new
     friction = parse(new).friction
     assert friction.pre_sliding == 2e-4 and friction.parameters["mu_c"][0] == pytest.approx(0.4, abs=2e-3)
 

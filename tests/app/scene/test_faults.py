@@ -142,7 +142,6 @@ FAULTS = {
         (_ALONG | {"friction": {"along": [[-1, 0], [1, 0]]}}, "not all 0"),
         (_ALONG | {"friction": {"along": [[-1, 0.2], [0, 0.3], [0.0005, 0.3], [1, 0.5]]}},
          "0.001 of another"),
-        (_ALONG | {"punch.tilt": 1e-6}, "varies along the contact of a tilted punch; sie takes it"),
         (_ALONG | {"time": {"end": 3}, "output.quantities": ["time"]}, "in time"),
         (_ALONG | {"friction": _DAHL, "motion.strokes": ["forward", "backward"]}, "strokes"),
         (_ALONG | {"friction": _DAHL, "solve.mesh": "box"}, 'mesh = "box"'),

@@ -68,16 +68,6 @@ def test_what_functions_leave_out_of_a_steeper_solid_is_in_what_they_say_of_them
     assert np.median(unresolved) <= 30.0 * np.median(off)
 
 
-def test_functions_are_orthonormal_and_the_same_wherever_they_are_asked_for(pressure):
-    stretch = Stretch(0.36, graded=True)
-    rule = Panels(-0.5, -0.5, 0.3 * 0.36)
-    f = stretch.values(rule.t, 28 + stretch.of_ends)
-    assert np.abs((f * rule.weights[:, None]).T @ f - np.eye(f.shape[1])).max() <= 1e-9
-    finer = Panels(-0.5, -0.5, 0.02)
-    f = stretch.values(finer.t, 28 + stretch.of_ends)
-    assert np.abs((f * finer.weights[:, None]).T @ f - np.eye(f.shape[1])).max() <= 1e-6
-
-
 HALF = np.array([-0.5])
 
 
@@ -99,25 +89,3 @@ def test_moved_edges_are_those_of_a_contact_that_ends_elsewhere(graded, polynomi
     moved = whole.moved_edges(r, length)[0]
     assert moved == pytest.approx(right + right[::-1], rel=1e-2, abs=1e-3 * moved.max())
     assert moved[0] > 0.3 * polynomials**2 * length / np.pi
-
-
-@pytest.mark.parametrize("graded", [False, True])
-def test_a_node_that_rounding_moves_beyond_an_edge_counts_as_at_the_edge(graded):
-    """Logarithms of the distance from the edge were no numbers there, nor was any intensity."""
-    stretch = Stretch(4.0, graded)
-    functions = lambda r, count: stretch.values(r, count + stretch.of_ends)  # noqa: E731
-    beyond = np.nextafter(ENDS, 2.0 * ENDS)
-    np.testing.assert_array_equal(functions(beyond, 20), functions(ENDS, 20))
-    assert np.isfinite(functions(ENDS, 20)).all()
-
-
-def test_transforms_are_as_good_where_panels_meet():
-    """What coarse panels leave between them is not multiplied by a logarithm of nothing."""
-    coarse, fine = (Panels(-0.4, -0.6, finest) for finest in (1.0, 0.1))
-    meeting = coarse.ends[np.abs(coarse.ends) < 4.0]
-    beside = meeting + 1e-3
-    off_there, off_beside = (
-        np.abs(coarse.cauchy(np.exp(4.0 * coarse.t), y) - fine.cauchy(np.exp(4.0 * fine.t), y)).max()
-        for y in (meeting, beside)
-    )
-    assert 0.0 < off_there < 20.0 * off_beside

@@ -21,16 +21,6 @@ def advected(model, **parameters):
     return {"state": "advected", "model": model} | parameters
 
 
-def test_one_friction_along_a_coated_cylinder_is_a_number():
-    layer = {"thickness": "0.5 mm", "E": "120 GPa", "nu": 0.3, "rho": 2400}
-    punch = {"profile": "parabolic", "radius": "50 mm", "load": "100 N/mm"}
-    sections = {"layer": [layer], "punch": punch, "solve": {"methods": ["fem"], "tolerance": 1e-4}}
-    along, number = (slid(f, **sections).data for f in ({"along": [[-1, 0.4], [1, 0.4]]}, {"mu": 0.4}))
-    for name in ("half_width", "centre", "largest_pressure"):
-        of_along, of_number = (of[f"states/fem/{name}"] for of in (along, number))
-        np.testing.assert_allclose(of_along, of_number, rtol=1e-5)
-
-
 @pytest.mark.parametrize("tilt", ["0.001 deg", "0.02 deg"])
 def test_one_friction_along_a_tilted_punch_is_a_number(tilt):
     """Between both edges, and where one lifts off; the mirror image has the opposite tilt and shear."""

@@ -8,7 +8,7 @@ import pytest
 from agreement import check
 from layers_cases import SUBSTRATE
 from scipy.integrate import trapezoid
-from support import THOROUGH, computed, scene_of
+from support import THOROUGH, areas, computed, scene_of
 
 import galinx
 from galinx.meshes.kind import Requirements, check_cells
@@ -198,10 +198,8 @@ def test_meshes_follow_interfaces(depths):
         Y = -mesh.points[mesh.cells][..., 1]
         for depth in depths:
             assert not np.any((Y.min(axis=1) < depth - 1e-9) & (Y.max(axis=1) > depth + 1e-9))
-        x, y = np.moveaxis(mesh.points[mesh.cells], 2, 0)
-        area = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()
         R = kind.radius(wanted)
-        assert area == pytest.approx(2.0 * (1.0 + R) * R, rel=1e-12)
+        assert areas(mesh.points, mesh.cells).sum() == pytest.approx(2.0 * (1.0 + R) * R, rel=1e-12)
         assert all(len(mesh.edges[tag]) for tag in (CONTACT, FREE, FAR))
         contact = mesh.points[mesh.edges[CONTACT]]
         assert np.abs(contact[:, 1, 0] - contact[:, 0, 0]).sum() == pytest.approx(2.0)

@@ -8,6 +8,7 @@ import pytest
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
 from galinx.solvers.contact.fem_plan import PressureMoments
+from galinx.solvers.fem.contact import PunchLevel
 from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
 
 G = np.array([-0.5])
@@ -192,3 +193,17 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
     assert found.error.excessive and not finer.solved and floor > 1e-7
     (text,) = work.said
     assert text.endswith(f"of which {floor:.1e} would remain on any cells")
+
+
+def test_rounding_of_intensities_is_their_difference_from_those_of_the_mirror_image():
+    """At -g the ends change places; what is left of 3 : 2 is 2e-6 of the first."""
+    K_I = {-0.5: [[3.0, 2.0]], 0.5: [[2.0, 3.0 + 6e-6]]}
+    level = SimpleNamespace(
+        mirrored=True, twins=True, states=lambda g, load: None, fields_of=lambda states: None,
+        measured_task=SimpleNamespace(places=SimpleNamespace(X=None)), moments=None,
+        plan=SimpleNamespace(tests=PressureMoments()), work=SimpleNamespace(stresses=frozenset()),
+        punch=SimpleNamespace(states=lambda g, flat: SimpleNamespace(tested=lambda moments: g)),
+        over_flat=lambda moments, g: SimpleNamespace(K_I=np.array(K_I[float(g[0])])),
+        rounding_of_stresses=lambda own, noise: [],
+    )  # fmt: skip
+    assert PunchLevel.rounding(level, G) == pytest.approx([2e-6])

@@ -48,3 +48,9 @@ def test_a_state_whose_first_difference_happens_to_vanish_is_not_taken_for_one_t
     np.testing.assert_allclose(remaining(1e-9, 0.1, sample=sample), 2.0 * 0.1 * 0.4 / 0.6)
     # One that is as large as others and hardly fell stalls indeed.
     np.testing.assert_allclose(remaining(0.3, 0.24, sample=sample), 2.0 * 0.24 * 0.8 / 0.2)
+
+
+def test_a_level_is_off_by_what_the_better_one_changed_and_what_is_left_of_that():
+    """With errors that fall by the usual ratio, twice the error itself."""
+    error = np.array([0.3, 0.1])
+    np.testing.assert_allclose(estimate.before(0.84 * error, estimate.of_degrees(2)), 2.0 * error)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact import stresses
-from galinx.solvers.contact.extremes import FINER, between, highest, largest
+from galinx.solvers.contact.extremes import FINER, between, highest, largest, tops
 from galinx.solvers.contact.stresses import at_and_between
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -92,3 +92,11 @@ def test_stress_measures_follow_from_principal_stresses():
         np.testing.assert_allclose(held, 0.0, atol=1e-15)
         low, high = np.linalg.eigvalsh(tensor[:, :2, :2]).T
         np.testing.assert_allclose(stresses.maximum_shear(XX, YY, XY), (high - low) / 2.0, rtol=1e-12)
+
+
+def test_no_polynomial_goes_through_samples_of_two_pieces():
+    u = np.linspace(-1.0, 1.0, 41)
+    curve = np.where(u < 0.0, 1.0 - (u + 0.12) ** 2, -5.0 + u)[None]
+    heights, places = tops(u, curve, (u >= 0.0)[None].astype(int))
+    height, place = highest(heights, places)
+    assert height[0] == pytest.approx(1.0, abs=1e-12) and place[0] == pytest.approx(-0.12, abs=1e-9)

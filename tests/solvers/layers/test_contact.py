@@ -300,12 +300,13 @@ def test_a_contact_wider_than_what_is_known_of_the_punch_is_refused(side):
         speed.contact(0.0)
 
 
-def test_free_ends_over_a_graded_top_settle_with_few_unknowns():
+@pytest.mark.parametrize("tolerance", [1e-4, *(1e-6,) * THOROUGH])
+def test_free_ends_over_a_graded_top_settle_with_few_unknowns(tolerance):
     """Next to them the pressure varies over the length of the grading; |X|⁴ has no kink to resolve."""
     soft, hard = Isotropic(32e9, 0.3, 4000.0), Isotropic(155e9, 0.25, 5000.0)
     solid = Layered((Layer(3e-4, soft, hard),), Isotropic(1e11, 0.3, 4000.0))
     body = make_contact(solid, Power(4.0, 1e6), 2.4e4)
     response = body.response(0.3 * solid.limit())
-    contact = under_punch(body, response, 1e-6).contact(-0.7)
-    assert contact.change <= 2.5e-7
+    contact = under_punch(body, response, tolerance).contact(-0.7)
+    assert contact.change <= 0.25 * tolerance
     assert contact.pressure.functions.finest > 0.3 and contact.pressure.kinks == ()

@@ -1,12 +1,12 @@
-"""Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
+"""Figures of layered half-planes: stresses along interfaces, thresholds of flutter over the angle."""
 
 import numpy as np
 import pytest
+from legible import drawn
 from support import computed
 
 from galinx.app.figures import waves
-from galinx.app.figures.archive import of_archive
-from galinx.app.figures.choice import Choice, size
+from galinx.app.figures.choice import size
 
 MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
 QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
@@ -16,11 +16,6 @@ QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
 def coated():
     """Three frictions on one coating."""
     return computed("coating", MAP | QUANTITIES)
-
-
-def drawn(run, name, **options):
-    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
-    return drawing
 
 
 def curves(axis):

@@ -6,11 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from legible import drawn
 from support import CLOSED_FORM, computed, here, kept
 
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
-from galinx.app.figures.archive import of_archive, write
+from galinx.app.figures.archive import write
 from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
 from galinx.postprocess.errors import Occupied
@@ -37,11 +38,6 @@ def strokes():
     motion["motion.X_over_L"] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
     places = {"output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]}, "output.points": None}
     return computed("inside", motion | places | CLOSED_FORM)
-
-
-def drawn(run, name, **options):
-    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
-    return drawing
 
 
 def curves(axis):

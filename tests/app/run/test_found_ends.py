@@ -1,4 +1,4 @@
-"""Contacts whose ends are found, end to end: finite elements against the integral equation, archives."""
+"""Contacts whose ends are found, end to end: Hertz, rounding at free ends, kinks, names of a parabola."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Random and mutated scenes: each runs, or ends with one readable message; and random legal ones agree.
+"""Mutated scenes: each runs, or ends with one readable message.
 
 GALINX_THOROUGH=1 tries as many as a release does.
 """

@@ -1,4 +1,4 @@
-"""Any uniform solid by finite elements: against the closed form, against isotropic, mirrored."""
+"""Any uniform solid in scenes: the block says what it costs, and solids ask for what σ_ZZ needs."""
 
 import json
 

@@ -94,3 +94,11 @@ def test_rays_continue_what_is_known_of_knots():
 def test_a_point_beyond_the_mesh_is_told(loads):
     with pytest.raises(MeshError, match="lies outside the mesh"):
         loads.gradients(np.array([[1e16, 0.0]]))
+
+
+def test_next_to_an_end_a_field_has_its_digits(loads):
+    """1e-8 of the half-width from the end, where displacements alone would leave five digits."""
+    x = 1e-8 * 2.0 ** np.arange(8)
+    u_X = loads.gradients(np.column_stack([1.0 - x, np.zeros(8)]))[:, 0, 0, 3]
+    single = LinearPressure(np.array([-1.0, 1.0]), np.array([0.0, 1.0])).hilbert(1.0 - x)
+    np.testing.assert_allclose(u_X, FRAME.m * single, atol=2e-7)

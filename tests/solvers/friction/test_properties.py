@@ -1,4 +1,4 @@
-"""What laws promise on random motions: independence of the rate, memory, drift, work, mirror images."""
+"""What laws promise on random motions: independence of the rate, dissipation, mirror images, slopes."""
 
 import numpy as np
 import pytest

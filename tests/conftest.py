@@ -39,7 +39,8 @@ FEM = (
 #: The longest files come first, so that no worker has one left when the others are done.
 FIRST = (
     "docs/test_pages.py", "app/test_matrix.py", "solvers/transient/test_started.py",
-    "app/run/test_layers.py", "app/run/test_over_time.py", "app/run/test_interruptions.py",
+    "app/run/test_agreement.py", "app/run/test_random_stacks.py", "app/run/test_over_time.py",
+    "app/run/test_interruptions.py",
     "app/run/test_motions_mirrored.py", "app/figures/test_figures.py", "app/results/test_report.py",
 )  # fmt: skip
 

@@ -1,12 +1,21 @@
-"""What makes a figure legible, measured on the figure as it is printed."""
+"""Figures of results, and what makes one legible, measured on the figure as it is printed."""
 
 from itertools import combinations
 
 import numpy as np
 from matplotlib.text import Text
 
+from galinx.app.figures.archive import of_archive
+from galinx.app.figures.choice import Choice
+
 #: Least size of type [pt].
 LEAST = 7.0
+
+
+def drawn(run, name, **options):
+    """The figure of a result by that name."""
+    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
+    return drawing
 
 
 def faults(figure):

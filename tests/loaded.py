@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.yielding import InSolid
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,12 @@ class LoadedHalfPlane:
         on, σ_YY = Y == 0.0, self.pressure.σ_YY(X)
         surface = np.broadcast_arrays(self.σ_XX(X), σ_YY, self.g * σ_YY)
         return np.where(on, surface, self.inside(X, np.where(on, -1.0, Y)))
+
+
+def punch_of(entry, g):
+    """A flat punch on the solid and at the speed of an entry of the references."""
+    solid = Isotropic(193e9, float(entry["nu"]), 7860.0, entry["plane"])
+    return FlatPunch(MovingFrame(solid.κ, float(entry["c"])), float(g))
 
 
 def under(punch):

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from support import areas
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.charts import Confocal
@@ -10,6 +11,14 @@ from galinx.solvers.fem.cells import Contracted
 TOLERANCES = [1e-2, 1e-6, 1e-9]
 
 
+def assert_whole(cells):
+    """Every inner edge is shared by two cells, and the others are those of the boundary."""
+    edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
+    _, count = np.unique(edges[:, 0] * len(cells.points) + edges[:, 1], return_counts=True)
+    assert count.max() == 2
+    assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
+
+
 @pytest.mark.parametrize("mesh", MESHES)
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("nearest, exponent", [(None, -0.5), (None, -0.95), (1e-6, -0.6), (1e-12, -0.9)])
@@ -17,29 +26,21 @@ def test_cells_tile_the_body_without_degenerate_ones(mesh, tolerance, nearest, e
     kind = MESHES[mesh]
     cells = kind.build(MESHES[mesh].refinement(Requirements(tolerance, nearest, 5.0, exponent)))
     check_cells(cells)
-    x, y = np.moveaxis(cells.points[cells.cells], -1, 0)
-    area = 0.5 * np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1))
+    area = areas(cells.points, cells.cells).sum()
     if mesh == "confocal":
         assert area == pytest.approx(np.pi * cells.points[:, 0].max(), rel=1e-13)
     elif mesh == "box":
         assert area == pytest.approx(BOX_WIDTH * BOX_DEPTH, rel=1e-12)
-    # Euler: one component without a hole, so every inner edge is shared by two cells.
-    edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
-    _, count = np.unique(edges, axis=0, return_counts=True)
-    assert count.max() == 2
-    assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
+    assert_whole(cells)
 
 
 @pytest.mark.parametrize("times", [2, 9, 18, 36])
 @pytest.mark.parametrize("mesh", MESHES)
 def test_cut_meshes_have_no_cracks(mesh, times):
-    """Every inner edge is shared by two cells: no vertex is there twice but for its last digit."""
+    """No vertex is there twice but for its last digit."""
     cells = MESHES[mesh].build(MESHES[mesh].refinement(Requirements(1e-5)), times)
     check_cells(cells)
-    edges = np.sort(np.stack([cells.cells, np.roll(cells.cells, -1, 1)], -1).reshape(-1, 2), 1)
-    _, count = np.unique(edges[:, 0] * len(cells.points) + edges[:, 1], return_counts=True)
-    assert count.max() == 2
-    assert (count == 1).sum() == sum(len(part) for part in cells.edges.values())
+    assert_whole(cells)
 
 
 @pytest.mark.parametrize("mesh", MESHES)

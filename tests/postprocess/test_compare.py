@@ -77,12 +77,6 @@ def test_where_the_pressure_is_small_a_tenth_of_the_mean_is_its_size():
     assert found["sigma_YY"] == pytest.approx(0.2)
 
 
-def test_tension_is_flagged_and_nothing_else_is():
-    pulled = np.array([[np.nan, -1.0, 0.25, -1.0, np.nan]])
-    assert "tension" not in archive()
-    assert archive(**{"surface/fem/sigma_YY": pulled})["tension"] == 0.25
-
-
 def of_found_ends(**changes):
     """A wedge's state: its pressure is infinite at the tip, 0."""
     return archive(
@@ -203,17 +197,6 @@ def test_failures_are_told_by_how_much_they_exceed_their_limits():
     assert compare.failed({}, attributes | {"verdict": "PASS"}) == []
     told = compare.checked({}, attributes)
     assert "agree to 4e-06, estimated error 3e-05, residual 2e-06, wanted 1e-06" in told
-
-
-def test_it_is_said_up_to_when_two_methods_compute_a_motion_in_time():
-    """The integral equation ends where the punch turns round."""
-    text = compare.RULES["K_I"].text
-    attributes = {"comparisons": json.dumps({text: 1e-8})}
-    attributes["verdict_reasons"] = json.dumps([f"{text}: 1.0e-08, at most 1e-06"])
-    data = {"time/t": np.array([0.25, 0.5, 0.75]), "time/fem/v0": np.ones((1, 3))}
-    for sie, said in (([1.0, 1.0, np.nan], True), ([1.0, 1.0, 1.0], False)):
-        told = compare.checked(data | {"time/sie/v0": np.array([sie])}, attributes)
-        assert ("only to t = 0.5 a/c_s, where the punch turns round" in told) == said
 
 
 def test_the_worst_state_is_measured_under_its_own_load():

@@ -5,7 +5,7 @@ import csv
 from support import computed, here
 
 from galinx.app.results.csv import pieces
-from galinx.postprocess.tables import Column, sliders_sheet, states_sheet
+from galinx.postprocess.tables import sliders_sheet, states_sheet
 
 SCENE = """
 solid.material = "steel"
@@ -70,8 +70,3 @@ def test_sliders_have_their_loads_and_laws_in_tables(tmp_path):
     rows = [*csv.DictReader("".join(pieces(tmp_path / "sliders.h5", "slider")).splitlines())]
     of_laws = {(row["law"], row["load [N/m]"], row["mu_c [1]"]) for row in rows}
     assert of_laws == {("0", "1", "0.5"), ("1", "1", "1"), ("2", "5", "0.5"), ("3", "5", "1")}
-
-
-def test_rounding_is_zero_and_all_else_keeps_its_digits():
-    column = Column("centre", [-0.04594211, 3e-6], "mm", least=1.43e-5)
-    assert column.texts() == ["-0.04594", "0"]

@@ -134,15 +134,6 @@ def test_a_stroke_that_outlasts_the_start_is_not_said_to_miss_steady_motion(cros
     assert f"a limit that such a stroke {said}from rest it takes 6 a/c_s" in text
 
 
-def test_what_several_parts_say_is_one_sentence():
-    validity = Validity()
-    thresholds = {"states/flutter_positive": np.ones(2), "states/flutter_negative": np.full(2, 2.0)}
-    for g in ([1.0, 0.2], [-3.0, 1.5], [-1.5, 0.0]):
-        validity.see({"states/g": np.array(g)} | thresholds)
-    (text,) = validity.words()
-    assert "up to 3, and at least 1 or 2 in 3 states" in text
-
-
 #: Solid, its angle, thresholds of the positive and the negative direction (None: above 2), and whether
 #: waves grow under a friction of either sign.
 FLUTTER = [
@@ -207,15 +198,6 @@ def test_what_does_not_fall_like_1_over_t_yet_is_not_told():
     load = np.clip(t / 3.0, 0.0, 1.0)
     off = np.array([0.6 - 0.02 * t, 0.3 + 0.0 * t, 0.5 - t / 25.0])
     assert np.isnan(times_near_steady(t, load, off)).all()
-
-
-def test_the_largest_difference_is_taken():
-    data = {
-        "time/steady_K_I": np.array([0.3]), "time/steady_centre": np.array([-0.1]),
-        "time/sie/K_I_left": np.array([[0.3, 0.33]]), "time/sie/K_I_right": np.array([[0.3, 0.24]]),
-        "time/sie/centre_of_pressure": np.array([[0.05, -0.1]]), "time/load": np.array([0.5, 1.0]),
-    }  # fmt: skip
-    assert from_steady(data, "sie") == pytest.approx(np.array([[0.15, 0.2]]))
 
 
 def test_steady_motion_is_that_under_the_last_load():

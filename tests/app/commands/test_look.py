@@ -1,6 +1,5 @@
 """Commands that look at archives."""
 
-import io
 import json
 import re
 import shutil
@@ -12,11 +11,9 @@ from tampering import opened
 
 from galinx.app.commands import options
 from galinx.app.commands.look import plot
-from galinx.app.console import new_console, print_sheet
 from galinx.app.errors import BadInput
 from galinx.app.figures.archive import FIGURES
 from galinx.postprocess.hdf5 import archive as seal
-from galinx.postprocess.tables import Sheet
 
 
 def test_show_as_json(archive):
@@ -43,15 +40,6 @@ def test_a_narrow_terminal_has_the_table_in_parts(archive, columns):
         assert words.count(f" {head}") >= 1, head
     assert len(re.findall(r"^ 11 ", table, re.M)) == parts
     assert "μ_C = 0.7" in re.sub(r"\s+", " ", shown)
-
-
-def test_columns_of_a_wide_table_are_shared_out_evenly(monkeypatch):
-    """Five columns of which four fit stand as three and two: none is alone."""
-    monkeypatch.setenv("COLUMNS", "80")
-    text = io.StringIO()
-    print_sheet(new_console(text), Sheet("", ["state", *"abcde"], [["f", *["1" * 15] * 5]]))
-    heads = [line.split()[1:] for line in text.getvalue().splitlines() if "state" in line]
-    assert heads == [["a", "b", "c"], ["d", "e"]]
 
 
 def test_help_names_every_figure():

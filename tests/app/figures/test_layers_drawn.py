@@ -1,12 +1,12 @@
-"""Figures of layered half-planes: stresses along interfaces, and interfaces in maps."""
+"""Figures of layered half-planes: stresses along interfaces, thresholds of flutter over the angle."""
 
 import numpy as np
 import pytest
+from legible import drawn
 from support import computed
 
 from galinx.app.figures import waves
-from galinx.app.figures.archive import of_archive
-from galinx.app.figures.choice import Choice, size
+from galinx.app.figures.choice import size
 
 MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
 QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
@@ -16,11 +16,6 @@ QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
 def coated():
     """Three frictions on one coating."""
     return computed("coating", MAP | QUANTITIES)
-
-
-def drawn(run, name, **options):
-    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
-    return drawing
 
 
 def curves(axis):
@@ -49,15 +44,6 @@ def test_curves_are_what_the_archive_holds_on_both_sides(coated):
     assert "jumps" in drawing.caption and not drawing.left_out
 
 
-def test_interfaces_are_lines_in_maps(coated):
-    drawing = drawn(coated, "inside", quantities=("von_mises",))
-    maps = [axis for axis in drawing.figure.axes if axis.images]
-    for axis in maps:
-        heights = {tuple(line.get_ydata()) for line in axis.lines}
-        assert (-1.0, -1.0) in heights
-    assert "interfaces" in drawing.caption
-
-
 def test_finite_elements_are_markers_and_only_some_of_many_interfaces_are_shown():
     layer = {"thickness": "0.3 mm", "nu": 0.3, "rho": 1200}
     run = computed("coating", {
@@ -77,27 +63,6 @@ def test_finite_elements_are_markers_and_only_some_of_many_interfaces_are_shown(
     assert inside.any() and off[inside].max() < 1e-2
     wide = drawn(run, "interfaces", size=size("10in"))
     assert np.reshape(wide.figure.axes, (3, -1)).shape[1] == 4
-
-
-def test_in_si_stresses_along_interfaces_are_over_millimetres_from_the_axis():
-    """Under two loads a cylinder's contact has two widths: over X/a curves could not be compared."""
-    changes = {
-        "punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "50 mm",
-        "punch.load": [2e4, 8e4], "motion.X_over_L": [0.5], "motion.strokes": ["forward"],
-        "friction.mu_c": 0.3, "output.quantities": ["sif", "interfaces"], "output.map": None,
-    }  # fmt: skip
-    result = computed("coating", {"solve.methods": ["sie"]} | changes)
-    data, load = result.data, np.array([2e4, 8e4])
-    h, m = (data[f"states/sie/{name}"] for name in ("half_width", "centre"))
-    axes = next(result.drawings(figures=("interfaces",))).figure.axes
-    axis = axes[0]
-    X = data["interfaces/X_over_a"]
-    assert "(mm)" in axes[-1].get_xlabel()
-    for state, line in enumerate(curves(axis)):
-        stress = 1e-6 * data["interfaces/sie/sigma_YY"][state, 0] * load[state] / (2.0 * h[state])
-        found = np.interp(line.get_xdata(), 1e3 * (m[state] + h[state] * X), stress)
-        np.testing.assert_allclose(line.get_ydata(), found, rtol=1e-9)
-        assert len(line.get_xdata()) > 50
 
 
 def test_flutter_is_drawn_over_the_angle_of_a_solid_with_axes(monkeypatch):

@@ -6,17 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from legible import drawn
 from support import CLOSED_FORM, computed, here, kept
 
 from galinx.app.errors import BadInput
 from galinx.app.figures import files as written
-from galinx.app.figures import waves
-from galinx.app.figures.archive import of_archive, write
+from galinx.app.figures.archive import write
 from galinx.app.figures.choice import Choice, size
 from galinx.app.figures.files import Files
-from galinx.app.figures.render import Curve, Film, Panel, Size
-from galinx.app.figures.style import Look
 from galinx.postprocess.errors import Occupied
 from galinx.postprocess.target import GIF, MP4
 
@@ -41,11 +38,6 @@ def strokes():
     motion["motion.X_over_L"] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
     places = {"output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]}, "output.points": None}
     return computed("inside", motion | places | CLOSED_FORM)
-
-
-def drawn(run, name, **options):
-    (drawing,) = of_archive(run.data, run.scene, Choice(figures=(name,), **options))
-    return drawing
 
 
 def curves(axis):
@@ -79,22 +71,6 @@ def test_numbers_are_drawn_over_what_is_swept_most(sweep):
     assert first.get_xdata().tolist() == data["states/mu_c"][some].tolist() == [0.2, 0.4, 0.6, 0.8]
     assert first.get_ydata().tolist() == data["states/closed_form/K_I"][some].tolist()
     assert "σ₀ l/N = 20\u202f000 m⁻¹, FM1, X/L = 0.8" in drawing.caption.replace("\u202fm", " m")
-
-
-def test_small_numbers_of_a_film_are_over_the_power_of_its_axis():
-    look = Look("black", "-", "")
-
-    def panels(frame):
-        y = 1e-3 * np.array([1.0, 2.0, 3.0]) * (1.0 + 0.1 * frame)
-        return [Panel("x", "length", "m", curves=[Curve(np.arange(3.0), y, look)], ylim=(0.0, 4e-3))]
-
-    film, drawn = Film(panels, 2), []
-    for n in range(2):
-        film.show(n)
-        (line,) = [line for line in film.figure.axes[0].lines if line.get_gid() == "curve"]
-        drawn.append(line.get_ydata())
-    np.testing.assert_allclose(drawn, [[1.0, 2.0, 3.0], [1.1, 2.2, 3.3]])
-    assert film.figure.axes[0].get_ylim() == (0.0, 4.0)
 
 
 def test_films_are_made_of_strokes(strokes, tmp_path):
@@ -186,41 +162,7 @@ def test_the_command_draws_what_it_is_told(archive, tmp_path):
     assert refused.returncode == 2 and "expected pdf, png, svg or a folder" in refused.stderr
 
 
-def test_in_si_stresses_are_drawn_in_megapascals(fast, strokes):
-    """27.65 MPa is N/(2a) of these scenes."""
-    for run, name, quantity in ((fast, "surface", "sigma_XX"), (strokes, "inside", "von_mises")):
-        plain, si = (
-            drawn(run, name, states=(1,), quantities=(quantity,), units=run.units(plain)).figure
-            for plain in (True, False)
-        )
-        one, other = (figure.axes[0] for figure in (plain, si))
-        if name == "surface":
-            y, Y = (curves(axis)[0].get_ydata() for axis in (one, other))
-            assert "(N/2a)" in one.get_ylabel() and "(MPa)" in other.get_ylabel()
-        else:
-            y, Y = (np.asarray(axis.images[0].get_array()) for axis in (one, other))
-            labels = [" ".join(text.get_text() for text in f.findobj(Text)) for f in (plain, si)]
-            assert "(N/2a)" in labels[0] and "(MPa)" in labels[1] and "(N/2a)" not in labels[1]
-        np.testing.assert_allclose(Y, 27.65 * y, rtol=1e-6)
-
-
 ROUND = {"solve.methods": ["closed_form"], "output.map": None, "output.quantities": ["sif"]}
-
-
-def test_the_flutter_figure_has_the_size_that_is_asked_for(monkeypatch):
-    monkeypatch.setattr(waves, "_ANGLES", np.array([0.0, 30.0]))
-    changes = {"output.quantities": ["friction"], "output.map": None}
-    of, wide = computed("fibres", changes), Size(6.0)
-    (drawing,) = of_archive(of.data, of.scene, Choice(figures=("flutter",), size=wide))
-    assert drawing.figure.get_figwidth() == wide.width
-    assert "this archive: at most 0.3" in [text.get_text() for text in drawing.figure.legends[0].texts]
-
-
-def test_errors_of_intensities_that_vanish_are_not_drawn():
-    of = computed("cylinder_on_steel", {"output.quantities": ["sif"], "solve.tolerance": 1e-3})
-    (drawing,) = of_archive(of.data, of.scene, Choice(figures=("degrees",)))
-    legend = [text.get_text() for text in drawing.figure.legends[0].texts]
-    assert legend == ["estimated error"] and "crosses" not in drawing.caption
 
 
 def test_contacts_of_several_widths_are_compared_in_units():

@@ -11,7 +11,6 @@ from galinx.app.errors import BadInput
 from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import Order, enumerate_states
-from galinx.postprocess.quantities import stresses
 from galinx.solvers.contact.fem_plan import LEAST, swept, variable
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
@@ -143,12 +142,6 @@ def test_every_state_has_its_speed_and_its_load(seed):
     assert sorted(seen) == list(range(len(order)))
 
 
-def test_many_speeds_are_one_run_each():
-    order = Order(tuple(np.linspace(0.0, 0.9, 10**5).tolist()), (1.0,), 1, np.full(2, np.nan))
-    runs = order.runs()
-    assert next(runs) == (slice(0, 2),) and next(runs) == (slice(2, 4),) and len(order) == 2 * 10**5
-
-
 ISOTROPIC = Isotropic(E=1.0, ν=0.25, ρ=1.0)
 
 
@@ -165,11 +158,6 @@ def test_few_speeds_are_solved_each_and_many_on_demand():
     assert len(sweep.z) == LEAST and sweep.g.tolist() == [-0.5, 0.3] and not sweep.few
 
 
-def test_few_frictions_are_sampled_themselves():
-    sweep = swept("auto", responses(ISOTROPIC, LEAST), np.array([0.2, -0.3, 0.2, 0.0]))
-    assert sweep.few and sweep.g.tolist() == [-0.3, 0.0, 0.2]
-
-
 @pytest.mark.parametrize("seed", range(12))
 def test_the_variable_tells_speeds_of_any_solid_apart(seed):
     solid = random_solid(seed)
@@ -184,14 +172,3 @@ def test_over_layers_it_is_the_logarithm_of_the_distance_to_the_limit(top):
     share = np.linspace(0.0, 0.99, 50)
     z = variable([solid.response(c) for c in share * solid.limit()])
     np.testing.assert_allclose(z, -np.log1p(-(share**2)), rtol=1e-9)
-
-
-def test_interfaces_are_seen_as_far_as_the_surface_finely_and_farther_coarsely(monkeypatch):
-    scene = template("coating")
-    for farthest in (5.0, 8.0):
-        monkeypatch.setattr(stresses, "FARTHEST", farthest)
-        _, X = planning.interface_grid(scene.body)
-        apart = np.diff(X)
-        near = np.abs(X[:-1] + apart / 2.0) < farthest
-        assert apart[near].max() <= 2.0 * farthest / 160.0 + 1e-9 < apart[~near].max()
-        assert X.min() == -X.max() <= -40.0

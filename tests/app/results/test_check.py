@@ -47,12 +47,6 @@ def in_attribute(name, old, new):
     return apply
 
 
-def test_archives_with_former_words_are_accepted(whole):
-    with opened(whole) as file:
-        in_attribute("comparisons", "relative to themselves or", "over themselves or")(file)
-    assert check.faults(whole) == []
-
-
 def other_scene(file):
     text = file["scene/text"].asstr()[()].replace("mu_c", "delta = 0.9\nmu_c")
     file["scene/text"][()] = text
@@ -143,16 +137,6 @@ SMALL = {
         },
     ),
 }  # fmt: skip
-
-
-@pytest.mark.parametrize("name", ["both methods", "finite elements alone"])
-def test_tension_follows_from_the_archived_pressure(name, tmp_path):
-    path = tmp_path / "small.h5"
-    computed(*SMALL[name]).save(path)
-    with opened(path) as file:
-        assert not file["states/fem/tension"][0]
-        file["states/fem/tension"][0] = 0.1
-    assert "states/fem/tension is not what the components give" in check.faults(path)
 
 
 #: What nobody can tell again of the work; the pressure that assumes no exponent, which is rough;

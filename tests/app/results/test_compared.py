@@ -57,13 +57,6 @@ def by_name(columns):
     return {column.name: column for column in columns}
 
 
-def test_what_one_result_alone_has_is_in_its_own_units(light):
-    """Only finite elements give an indentation, whose size nothing else has."""
-    fem = computed("tables4_5", PLAIN | {"solve.methods": ["fem"]})
-    columns = by_name(Comparison([light, fem]).columns())
-    assert columns["fem_v0_2"].unit == "µm" and "fem_v0_1" not in columns
-
-
 def test_states_are_paired_by_their_parameters(light, heavy):
     columns = by_name(galinx.compare(light, heavy))
     for name in ("motion", "X_over_L"):
@@ -142,17 +135,6 @@ def test_compare_prints_and_draws(two, tmp_path):
     ):
         done = here("compare", *words)
         assert done.returncode == 2 and said in done.stderr, done.stderr
-
-
-@pytest.mark.filterwarnings("error:Glyph")
-def test_a_figure_has_type_for_all_of_its_titles(tmp_path):
-    two = [
-        computed("tables4_5", PLAIN | {"friction.sigma0_over_load": [1e4, 2e4], "title": title})
-        for title in ("first", "second")
-    ]
-    comparison = Comparison(two)
-    assert any("σ₀" in title for title in comparison.titles)
-    comparison.drawing().figure.savefig(tmp_path / "both.png")
 
 
 def test_measured_points_lie_at_their_places(light, heavy, table):

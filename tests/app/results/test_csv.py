@@ -83,61 +83,6 @@ def test_in_si(path, result):
     assert numbers(found[of_law]).tolist() == numbers(read(path, "inside", True)[of_law]).tolist()
 
 
-@pytest.mark.parametrize("loads", [1e4, [1e4, 4e4]])
-def test_in_si_every_contact_has_its_own_half_width_and_middle(loads, tmp_path):
-    """Stresses in MPa, places from the punch's axis: a differs from row to row."""
-    changes = {
-        "solve.methods": ["closed_form"], "output.map": None, "punch.load": loads, "motion.c": [0.0, 0.8],
-        "output.quantities": ["sif", "surface", "interior", "yield"], "output.points": [[0.5, -0.7]],
-    }  # fmt: skip
-    path, result = tmp_path / "a.h5", computed("cylinder", changes)
-    result.save(path)
-    data, load = result.data, np.resize(loads, 2 * np.size(loads))
-    h, m = (data[f"states/closed_form/{name}"] for name in ("half_width", "centre"))
-    load = data.get("states/load", np.full(len(h), 1e4))
-    found = {which: read(path, which) for which in ("states", "surface", "inside")}
-    for table in found.values():
-        assert not [head for head in table if "N/(2a)" in head or "over_a" in head]
-    of_states = found["states"]
-    np.testing.assert_allclose(numbers(of_states["load [N/mm]"]), 1e-3 * load, rtol=1e-15)
-    micro = 1e3 if "closed_form_half_width [mm]" in of_states else 1e6  # of the largest contact
-    unit, h, m = load / (2e6 * h), micro * h, micro * m
-    found = {
-        which: {head.replace("[µm]", "[mm]"): column for head, column in table.items()}
-        for which, table in found.items()
-    }
-    of_states = found["states"]
-    for head, expected in {
-        "closed_form_largest_pressure [MPa]": unit * data["states/closed_form/largest_pressure"],
-        "closed_form_von_mises [MPa]": unit * data["states/closed_form/von_mises"],
-        "closed_form_von_mises_X [mm]": m + h * data["states/closed_form/von_mises_X_over_a"],
-        "closed_form_von_mises_Y [mm]": h * data["states/closed_form/von_mises_Y_over_a"],
-        "closed_form_largest_pressure_position [mm]":
-            m + h * data["states/closed_form/largest_pressure_position"],
-    }.items():  # fmt: skip
-        np.testing.assert_allclose(numbers(of_states[head]), expected, rtol=1e-14, err_msg=head)
-    X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"]
-    np.testing.assert_allclose(
-        numbers(found["surface"]["X [mm]"]), np.ravel(m[:, None] + h[:, None] * X), rtol=1e-13
-    )
-    np.testing.assert_allclose(
-        numbers(found["surface"]["closed_form_sigma_XX [MPa]"]), np.ravel(unit[:, None] * σ), rtol=1e-14
-    )
-    np.testing.assert_allclose(numbers(found["inside"]["Y [mm]"]), -0.7 * h, rtol=1e-14)
-    # Hertz at rest without friction is p₀ = 2N/(πh); friction changes it little.
-    np.testing.assert_allclose(
-        numbers(of_states["closed_form_largest_pressure [MPa]"]),
-        2e-6 * micro * load / (np.pi * h),
-        rtol=0.1,
-    )
-    for text in (here("show", path).stdout, here("show", path, "--json").stdout):
-        assert "N/(2a)" not in text
-    here("report", path, "-o", tmp_path / "a.html")
-    assert (
-        "N/(2a)" not in (tmp_path / "a.html").read_text(encoding="utf-8").partition('<h2 id="figures')[0]
-    )
-
-
 @pytest.mark.parametrize("which", ["states", "surface", "inside"])
 @pytest.mark.parametrize("together", [7, 10**6])
 def test_few_rows_are_read_and_written_at_once(path, which, together, monkeypatch):
@@ -171,23 +116,6 @@ def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
     assert refused.returncode == 2 and "is not a table of galinx" in refused.stderr
     both = here("csv", path, "--surface", "--inside")
     assert both.returncode == 2 and "--surface and --inside exclude each other" in both.stderr
-
-
-def test_dimensionless_lengths_of_contacts_are_over_the_half_width(tmp_path):
-    changes = {"solve.methods": ["sie"], "output.map": None, "output.quantities": ["friction", "sif"]}
-    path, result = tmp_path / "a.h5", computed("cylinder", changes)
-    result.save(path)
-    table, a = read(path, "states", True), result.scene.body.half_width
-    for name in ("half_width", "centre"):
-        expected = result.data[f"states/sie/{name}"] / a
-        np.testing.assert_allclose(numbers(table[f"sie_{name} [a]"]), expected, rtol=1e-15)
-
-
-def test_dimensionless_work_is_over_load_and_half_width(path, result):
-    table, unit = read(path, "histories", True), result.scene.punch.load * result.scene.body.half_width
-    expected = result.data["loops/cycle_dissipated"][0] / unit
-    np.testing.assert_allclose(numbers(table["cycle_dissipated [N*a]"])[0], expected, rtol=1e-15)
-    assert not [head for head in (*table, *read(path, "states", True)) if "J/m" in head or "[m]" in head]
 
 
 def test_friction_along_the_contact_is_the_force_over_the_load(tmp_path):

@@ -13,7 +13,7 @@ import pytest
 from support import THOROUGH, kept
 
 from galinx import compute, template
-from galinx.app.results.report import markup, states_table
+from galinx.app.results.report import markup
 from galinx.postprocess.tables import BESIDE, sheets_of_archive, state_columns
 
 CHROMIUM = shutil.which("chromium")
@@ -113,27 +113,6 @@ def test_a_report_has_every_state_and_its_curves(page, map_run):
                 at = [int(np.abs(half * X - place).argmin()) for place in x[np.isfinite(x)]]
                 np.testing.assert_allclose(y[np.isfinite(x)], held[at], rtol=1e-4)
                 assert len(at) > 50
-
-
-def test_a_line_has_the_name_of_its_method(tmp_path):
-    """Over layers that of the integral equation, which archives hold after finite elements."""
-    changes = {"solve.methods": ["sie", "fem"], "solve.tolerance": 1e-2}
-    compute(template("coating", changes | {"output.quantities": ["surface"]})).report(
-        tmp_path / "coating.html"
-    )
-    for charts in data_of(tmp_path / "coating.html", "explorer")["surface"]:
-        names = {trace["mode"]: trace["name"] for trace in charts[0]["data"]}
-        assert names == {"lines": "integral equation", "markers": "finite elements"}
-
-
-def test_what_is_rounding_alone_is_0_on_a_page(map_run):
-    data = dict(map_run.data)
-    largest = data["states/fem/sigma_XX_max"] = data["states/fem/sigma_XX_max"].copy()
-    largest[1] = 4e-9
-    shown = states_table(data, map_run.units())["data"]
-    (column,) = (n for n, head in enumerate(shown["columns"]) if head["name"] == "fem_sigma_XX_max")
-    values = [row[column] for row in shown["rows"]]
-    assert values[1] == 0.0 and min(values[:1] + values[2:]) > 0.0
 
 
 @pytest.mark.parametrize(

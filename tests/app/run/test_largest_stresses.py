@@ -216,38 +216,6 @@ def test_in_plane_stresses_of_a_pressure_are_largest_at_its_knots_and_beside_the
             np.testing.assert_allclose(found, largest, rtol=0.0, atol=2e-6 * np.abs(largest).max())
 
 
-#: With much friction at high speed von Mises is largest at the end.
-SURFACE = {"friction.mu_c": 0.9, "motion.c": 0.8, "solid.nu": 0.1}
-
-
-def test_the_largest_stress_at_a_free_end_is_the_limit_and_the_load_follows():
-    changes = {
-        "punch.profile": "parabolic", "punch.half_width": None, "punch.radius": "20 mm",
-        "solid.yield_strength": "300 MPa", "output.quantities": ["sif", "surface", "yield"],
-        "motion.strokes": ["forward"], "friction.model": "coulomb", "friction.sigma0_over_load": None,
-        "friction.pre_sliding": None,
-    }  # fmt: skip
-    result = computed("tables4_5", changes | SURFACE)
-    data = result.data
-    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
-    g, a = float(data["states/g"][0]), data["states/fem/half_width"][0]
-    response = result.scene.solid.response(0.8)
-    # Under the end there is σ_XX alone: μ u,X = m g H, v,X = n H = the parabola's slope there.
-    m = data["states/fem/centre"][0]
-    load = result.scene.body.load
-    slope = (m - a) / 20e-3 * 2.0 * a * result.scene.solid.μ / load
-    H = slope / response.n
-    σ_XX = float(response.σ_XX(response.m * g * H, 0.0, 0.0))
-    ν = result.scene.solid.ν
-    mises = abs(σ_XX) * (1.0 - ν + ν**2) ** 0.5
-    for method in BOTH:
-        assert data[f"states/{method}/sigma_XX_max"][0] == pytest.approx(σ_XX, rel=1e-6)
-        assert data[f"states/{method}/von_mises"][0] == pytest.approx(mises, rel=1e-6)
-        assert data[f"states/{method}/von_mises_X_over_a"][0] == -1.0
-        first = load * (300e6 / (mises * load / (2.0 * a))) ** 2
-        assert data[f"states/{method}/first_yield_load"][0] == pytest.approx(first, rel=1e-5)
-
-
 @pytest.mark.parametrize("seed", range(12) if THOROUGH else (0, 1))
 @pytest.mark.parametrize("layered", [True, False], ids=["layered", "uniform"])
 def test_stresses_by_the_integral_equation_are_largest_where_samples_are(seed, layered, monkeypatch):

@@ -1,22 +1,16 @@
 """A sweep of loads: every state as under its load alone, and what is alike solved once."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from support import THOROUGH, computed
-from test_own_models import Crowned
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.methods import METHODS
 from galinx.app.plan.plan import make_plan
 from galinx.app.plan.states import enumerate_states
 from galinx.app.results.check import faults
-from galinx.app.results.fields import displacement
-from galinx.solvers.contact.exact import ClosedForm, ExactSolution
-from galinx.solvers.profiles import PROFILES
 
 LOADS = (2e4, 5.53e4, 3e5)
 _SHAPE = [[-2e-3, 1.6e-4], [-1e-3, 4e-5], [0, 0], [5e-4, 5e-6], [2e-3, 8e-5]]
@@ -135,26 +129,6 @@ def test_yield_follows_the_load():
     assert (reach[1] > 10.0 * reach[0]).all()
 
 
-def test_a_thousand_loads_of_a_cylinder_at_rest_are_hertz():
-    loads = {"from": "1 N/mm", "to": "1000 N/mm", "number": 1000}
-    changes = punch("parabolic") | {
-        "punch.load": loads, "motion.c": 0.0, "friction.mu_c": 1e-13, "motion.strokes": ["forward"],
-        "motion.X_over_L": [1.0], "output.quantities": ["sif"],
-    }  # fmt: skip
-    result = computed("tables4_5", changes)
-    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
-    N, solid = result.data["states/load"], result.scene.solid
-    np.testing.assert_allclose(N, np.linspace(1e3, 1e6, 1000), rtol=1e-12)
-    hertz = np.sqrt(4.0 * N * 0.02 * (1.0 - solid.ν**2) / (np.pi * solid.E))
-    np.testing.assert_allclose(result.data["states/closed_form/half_width"], hertz, rtol=1e-12)
-    np.testing.assert_allclose(result.data["states/fem/half_width"], hertz, rtol=1e-6)
-    for path in ("states/fem/normal_force", "states/fem/v0"):
-        values = result.data[path]
-        np.testing.assert_allclose(values / N, values[0] / N[0], rtol=1e-12)
-    one = computed("tables4_5", changes | {"punch.load": "1 N/mm"})
-    assert one.data["run/fem/back_substitutions"] == result.data["run/fem/back_substitutions"]
-
-
 def test_loads_are_one_list_of_the_product():
     """Slower than the laws, faster than the speeds; each once."""
     lists = {"punch.load": ["2 N/mm", "1 N/mm", 2e3], "friction.mu_c": [0.3, 0.7], "motion.c": [0.1, 0.2]}
@@ -173,38 +147,6 @@ def test_loads_are_one_list_of_the_product():
     assert grid.f.dims[:3] == ("c", "load", "mu_c") and not np.isnan(grid.f).any()
 
 
-def test_a_method_that_knows_one_load_is_asked_for_each(monkeypatch):
-    """As those of users are; a punch with a base of its own shape depends on the load."""
-    known = ExactSolution
-    asked = []
-
-    def given(task, g, load):
-        asked.append(task.body.load)
-        return known(task, g, load)
-
-    monkeypatch.setitem(PROFILES, "crowned", Crowned)
-    changes = ALL | CLOSED | {"output.quantities": ["sif", "surface"], "output.points": None}
-    changes |= {"punch.profile": "crowned", "punch.rise": 2.5e-8, "punch.half_width": 1e-3}
-    expected, _ = same_as_alone(changes)
-    method = METHODS["closed_form"]
-    alone = replace(method, made=lambda plan, progress, clock: ClosedForm(given), loads=False)
-    monkeypatch.setitem(METHODS, "closed_form", alone)
-    found = computed("tables4_5", changes | {"punch.load": list(LOADS)})
-    assert asked == list(LOADS)
-    for path, values in of_states(expected.data).items():
-        np.testing.assert_array_equal(found.data[path], values, err_msg=path)
-
-
-def test_finite_elements_press_a_profile_of_ones_own_under_every_load(monkeypatch):
-    """Two sharp edges and a base that is not flat: its share of the pressure falls with the load."""
-    monkeypatch.setitem(PROFILES, "crowned", Crowned)
-    changes = {"punch.profile": "crowned", "punch.rise": 2.5e-8, "punch.half_width": 1e-3}
-    quantities = {"output.quantities": ["sif", "surface"], "output.points": None}
-    many, _ = same_as_alone(ALL | ROUGH | quantities | changes)
-    K = many.data["states/fem/K_I_right"].reshape(3, 2)
-    assert (np.diff(K, axis=0) > 1e-3).all()
-
-
 def test_archives_of_loads_are_whole_and_a_load_that_was_changed_is_found(tmp_path):
     changes = ALL | punch("flat") | CLOSED | {"punch.load": list(LOADS)}
     result = computed("tables4_5", changes)
@@ -213,59 +155,6 @@ def test_archives_of_loads_are_whole_and_a_load_that_was_changed_is_found(tmp_pa
     result.data["states/load"][0] *= 2.0
     result.save(tmp_path / "b.h5")
     assert any("states/load" in fault for fault in faults(tmp_path / "b.h5"))
-
-
-def breaks(line):
-    """Numbers of the points at which a line is broken, its last point left out."""
-    return np.flatnonzero(np.isnan(line.get_xdata()[:-1]))
-
-
-def test_in_si_every_load_has_its_own_unit_and_place():
-    """MPa of each state, and positions in mm or µm from the punch's axis."""
-    changes = ALL | CLOSED | {"motion.X_over_L": [1.0], "punch.load": list(LOADS)}
-    changes |= {"output.points": None, "output.map": {"X": [-2, 2, 9], "Y": [-2, -0.5, 5]}}
-    for name in ("rounded", "parabolic", "flat"):
-        result = computed("tables4_5", changes | punch(name))
-        data = result.data
-        a = data.get("states/closed_form/half_width", np.full(3, 1e-3))
-        m = data.get("states/closed_form/centre", np.zeros(3))
-        (surface,) = result.drawings(figures=("surface",), quantities=("sigma_XX",))
-        axis = surface.figure.axes[0]
-        drawn = [line for line in axis.get_lines() if len(line.get_xdata()) > 20]
-        assert len(drawn) == 3 and "(MPa)" in axis.get_ylabel()
-        assert f"({result.units().position.unit})" in axis.get_xlabel()
-        per_m = {"mm": 1e3, "µm": 1e6}[result.units().position.unit]
-        for i in range(3):
-            _, under, *_ = np.split(np.column_stack(drawn[i].get_data()), breaks(drawn[i]))
-            X, σ = data["surface/X_over_a"], data["surface/closed_form/sigma_XX"][i]
-            some = np.abs(X) < 1.0
-            places = per_m * (m[i] + a[i] * X)
-            np.testing.assert_allclose(under[1:, 0], places[some], rtol=1e-12)
-            in_MPa = 1e-6 * σ[some] * LOADS[i] / (2.0 * a[i])
-            np.testing.assert_allclose(under[1:, 1], in_MPa, rtol=1e-12)
-        (inside,) = result.drawings(figures=("inside",), quantities=("von_mises",), states=(0, 2))
-        first, last = (axis for axis in inside.figure.axes if axis.get_xlabel())
-        width = [np.ptp(axis.get_xlim()) for axis in (first, last)]
-        # Both on one scale, which shows the map of either.
-        ends = per_m * np.array([m[[0, 2]] - 2.0 * a[[0, 2]], m[[0, 2]] + 2.0 * a[[0, 2]]])
-        np.testing.assert_allclose(width, [ends[1].max() - ends[0].min()] * 2, rtol=1e-12)
-
-
-def test_fields_of_a_state_are_those_of_its_load():
-    """Under a flat punch displacements grow like the load."""
-    changes = {"motion.c": 0.3, "motion.strokes": ["forward"], "motion.X_over_L": [1.0], **ROUGH}
-    scene = galinx.template("tables4_5", changes | {"punch.load": [1e4, 3e4]})
-    one, other = (displacement(scene, number).x.array for number in (0, 1))
-    assert np.abs(one).max() > 0.0
-    np.testing.assert_allclose(other, 3.0 * one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
-
-
-def test_a_contact_of_a_few_atoms_is_told_of():
-    changes = punch("parabolic") | {"output.quantities": ["sif"], **CLOSED}
-    small = make_plan(galinx.template("tables4_5", changes | {"punch.load": [1e-9, 1e4]}))
-    assert any("1e-09 N/m" in text and "atoms" in text for text in small.warnings)
-    usual = make_plan(galinx.template("tables4_5", changes | {"punch.load": 1e4}))
-    assert not any("atoms" in text for text in usual.warnings)
 
 
 def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):

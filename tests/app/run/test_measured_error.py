@@ -1,7 +1,5 @@
 """What an estimate is made of, and when a ladder of degrees ends: errors of levels are prescribed."""
 
-from contextlib import nullcontext
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,14 +7,9 @@ import pytest
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
-from galinx.solvers.contact import stresses
 from galinx.solvers.contact.fem_plan import PressureMoments
-from galinx.solvers.contact.pressure import Expansion
-from galinx.solvers.contact.recovery import MOMENTS, Polynomials, Stretch
-from galinx.solvers.fem import ladder as error
 from galinx.solvers.fem.contact import PunchLevel
-from galinx.solvers.fem.ladder import Estimate, Gauge, MeasuredError, climb, to_tolerance
-from galinx.solvers.fem.sweep import Fit
+from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
 
 G = np.array([-0.5])
 FIRST = 6
@@ -202,84 +195,6 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
     assert text.endswith(f"of which {floor:.1e} would remain on any cells")
 
 
-def test_the_pressure_and_its_moments_are_gauged():
-    smooth = np.array([[-0.3, 0.1, *[0.0] * (MOMENTS - 2)]])
-    pressure = Expansion(np.array([[-0.4]]), np.array([[-0.6]]), smooth, Polynomials())
-    one = error.of_pressure(pressure, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]))
-    for i in range(1, 6):
-        moments = np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])
-        moments[0, i] += 2e-3
-        assert error.of_pressure(pressure, moments).change(one)[0] == pytest.approx(1e-3)
-    steeper = replace(pressure, c=smooth + 1e-3 * (np.arange(MOMENTS) == 2))
-    assert error.of_pressure(steeper, np.array([[-2.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]])).change(one) > 2e-3
-
-
-def test_what_misplaced_edges_leave_is_relative_to_the_pressure():
-    pressure = Expansion(
-        np.array([[-0.4]]), np.array([[-0.6]]), np.array([[-0.3, 0.1, 0.05]]), Stretch(0.5)
-    )
-    one, tenfold = (
-        error.of_pressure(replace(pressure, c=size * pressure.c), np.ones((1, 6)), 1e-4).unresolved
-        for size in (1.0, 10.0)
-    )
-    assert one == pytest.approx(tenfold) and one > pressure.unresolved
-
-
-@pytest.mark.parametrize("component", range(3))
-def test_every_stress_inside_is_gauged(component):
-    points = np.array([[0.0, -1.0], [2.0, -0.5]])
-    σ = np.array([[[-1.0, 0.2]], [[-0.5, 0.1]], [[0.3, 0.0]]])
-    other = σ.copy()
-    other[component, 0, 0] += 0.01
-    size = stresses.of_inside(σ, *points.T)
-    gauges = [error.of_components("interior", values, size) for values in (other, σ)]
-    change = gauges[0].change(gauges[1])
-    assert change[0] == pytest.approx(0.01, rel=0.02)
-
-
-def measured(words, task, displacement):
-    """A level with a displacement."""
-    made = error.Level(SimpleNamespace(stresses=words), task, None, G)
-    made.displacement_at = lambda task: displacement
-    return made
-
-
-def test_stresses_are_no_better_than_the_last_digits_of_displacements():
-    """All that is known of their rounding without mirror images: 100 over the root of the margin."""
-    displacement = SimpleNamespace(
-        surface=lambda g, weights, σ_YY: SimpleNamespace(σ_XX=np.array([[2.0, -4.0]])),
-        rounding=lambda weights: np.array([[4e-13, 8e-13]]),
-    )
-    places = SimpleNamespace(X=np.array([-2.0, 2.0]), points=np.empty((0, 2)), around=np.empty((0, 2)))
-    task = SimpleNamespace(places=places, response=SimpleNamespace(margin=0.04))
-    gauges = measured({"surface"}, task, displacement)
-    (found,) = gauges.rounding_of_stresses((G, np.ones((1, 1)), np.zeros((1, 2))))
-    assert found == pytest.approx(100.0 / 0.2 * 2e-13)
-
-
-def test_rounding_inside_is_that_of_no_place_on_the_surface_nearer_to_an_edge():
-    """Next to an edge cells are small, and derivatives lose digits that those farther away keep."""
-    X = np.array([-2.0, -1.001, 1.001, 2.0])
-    noise = np.array([1e-12, 1e-9, 1e-9, 2e-12])
-
-    def surface(g, weights, σ_YY):
-        return SimpleNamespace(σ_XX=4.0 + np.sign(g) * noise[None])
-
-    displacement = SimpleNamespace(surface=surface, rounding=lambda weights: noise[None])
-    places = SimpleNamespace(X=X, points=np.array([[1.0, -0.5], [0.0, -3.0]]), around=np.empty((0, 2)))
-    task = SimpleNamespace(places=places, response=SimpleNamespace(margin=1.0))
-    gauges = measured({"interior", "surface"}, task, displacement)
-    states = G, np.ones((1, 1)), np.zeros((1, 4))
-    assert gauges.rounding_of_stresses(states) == pytest.approx([100.0 * 1e-9 / 4.0, 100.0 * 2e-12 / 4.0])
-    of_mirrors = gauges.rounding_of_stresses(states, 2.0 * noise[None])
-    assert of_mirrors == pytest.approx([2e-9 / 4.0, 4e-12 / 4.0], rel=1e-3)
-
-
-def test_errors_of_stresses_count_on_slower_convergence_than_those_of_moments():
-    error = measured_error(level(0.0), level(0.0), level(0.0))
-    assert (error._rate("sif").usual, error._rate("surface").usual) == (0.16, 0.5)
-
-
 def test_rounding_of_intensities_is_their_difference_from_those_of_the_mirror_image():
     """At -g the ends change places; what is left of 3 : 2 is 2e-6 of the first."""
     K_I = {-0.5: [[3.0, 2.0]], 0.5: [[2.0, 3.0 + 6e-6]]}
@@ -292,14 +207,3 @@ def test_rounding_of_intensities_is_their_difference_from_those_of_the_mirror_im
         rounding_of_stresses=lambda own, noise: [],
     )  # fmt: skip
     assert PunchLevel.rounding(level, G) == pytest.approx([2e-6])
-
-
-def test_the_error_of_a_speed_between_is_the_larger_one_beside_it_and_that_of_the_fit():
-    beside = [Estimate(G, np.zeros(1), {"sif": np.array([[error]])}) for error in (1e-4, 3e-4)]
-    fit = SimpleNamespace(
-        speeds={}, _sweep=SimpleNamespace(z=np.array([0.0, 0.5, 1.0])), error={"sif": 5e-4},
-        estimates=dict(zip((0.0, 1.0), beside)), _work=Work(1.0, None), space=level(0.0).space,
-        level=nullcontext,
-    )  # fmt: skip
-    with Fit.solved_at(fit, SimpleNamespace(number=1), G) as solved:
-        assert solved.error.of(G)["sif"] == pytest.approx(8e-4) and solved.fitted

@@ -7,6 +7,7 @@ from support import computed
 import galinx
 from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import make_plan
+from galinx.app.run import flow
 from galinx.app.run.flow import Memory, compute
 from galinx.postprocess.journal import Journal
 
@@ -92,3 +93,32 @@ def test_a_path_has_the_speed_of_each_piece():
     )
     f = expected.data["states/f"]
     assert (np.sign(data["states/f"][:3]) == 1).all() and np.isfinite(f).all()
+
+
+class Counting(Memory):
+    """Counts what is written."""
+
+    writes = 0
+
+    def write(self, name, rows, values):
+        self.writes += name == "states/alpha"
+        super().write(name, rows, values)
+
+
+def test_parts_of_many_speeds_are_written_and_kept_together(tmp_path, monkeypatch):
+    """As many as wait for one another, and nothing of the results depends on that."""
+    many = {"motion.c": np.linspace(0.0, 0.9, 85).tolist(), "output.quantities": ["sif", "surface"]}
+    scene = galinx.template("tables4_5", CLOSED | many)
+    alone, together = Counting(), Counting()
+    monkeypatch.setattr(flow, "_PATIENCE", -1.0)
+    compute(scene, alone)
+    monkeypatch.setattr(flow, "_PATIENCE", 1e9)
+    with Journal(tmp_path / "a.h5", "key") as journal:
+        compute(scene, together, None, journal)
+        assert journal.states == 6 * 85
+    assert (alone.writes, together.writes) == (85, 1)  # 1 000 states at once
+    for path, values in alone.items():
+        if path.endswith("residual"):  # what rounding leaves, which depends on what is summed together
+            np.testing.assert_allclose(together[path], values, atol=1e-11, err_msg=path)
+        elif path != "run/seconds":
+            np.testing.assert_array_equal(together[path], values, err_msg=path)

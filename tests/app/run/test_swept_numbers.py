@@ -2,21 +2,14 @@
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
-from support import computed, scene_of
+from support import computed
 
 from galinx.app.errors import BadInput
-from galinx.app.figures.choice import Archive, Choice
-from galinx.app.figures.numerics import degrees
-from galinx.app.figures.stresses import Fields
-from galinx.app.figures.waves import answers, curve
 from galinx.app.results import check
-from galinx.app.results.report import summary
 from galinx.app.results.result import load
 from galinx.app.scene.changes import from_words
 from galinx.postprocess.quantities import states, stresses, swept
 from galinx.postprocess.quantities.layers import INTERFACE_EXTREMES
-from galinx.postprocess.quantities.runs import states_of_speeds
 from galinx.postprocess.tables import parameters
 from galinx.solvers.parameters import parameters as model_parameters
 from galinx.solvers.profiles import PROFILES
@@ -150,19 +143,6 @@ def test_a_swept_strength_is_that_of_each_state(scene, words):
     assert any(texts[0] != texts[1] for texts in each)
 
 
-def test_interfaces_of_swept_depths_have_numbers_for_names():
-    """No depth is that of all states, in tables and above curves."""
-    below = {"thickness": "5 um", "E": "300 GPa", "nu": 0.25, "rho": 5220}
-    scene = COATED | {"layer": [*COATED["layer"], below], "output.quantities": ["interfaces"]}
-    result = swept_by(scene, "layer[0].thickness=[10, 20] um")
-    heads = {column.head for column in result.table()}
-    assert {"shear at interface 1", "shear at interface 2"} <= heads
-    texts = {text.get_text() for text in result.figure("interfaces").findobj(Text)}
-    assert {"(a)  interface 1", "(b)  interface 2"} <= texts
-    heads = {column.head for column in computed("tables4_5", scene).table()}
-    assert {"shear 20 µm deep", "shear 25 µm deep"} <= heads
-
-
 def test_one_friction_beside_that_along_the_contact_is_over_each_solid():
     """Friction that is the same all along has the pressure of one friction, whatever the swept ν is."""
     along = FLAT | {"friction": {"along": [[-1, 0.8], [0, 0.8], [1, 0.8]]}, "motion": {"speed": "1 m/s"}}
@@ -172,52 +152,6 @@ def test_one_friction_beside_that_along_the_contact_is_over_each_solid():
     assert len(curves) == 2
     for ratio in curves:
         np.testing.assert_allclose(ratio[np.isfinite(ratio)], 1.0, rtol=1e-6)
-
-
-def test_a_map_has_the_yield_strength_of_its_state():
-    """In the unit of its stresses."""
-    mapped = ROUND | {
-        "output": {
-            "quantities": ["interior"],
-            "map": {"X": [-1, 1, 5], "Y": [-1, -0.2, 4]},
-        }
-    }  # fmt: skip
-    result = swept_by(mapped, "solid.yield_strength=[200, 300] MPa")
-    archive = Archive(result.data, result.scene, Choice(units=result.units()))
-    fields = Fields(archive)
-    levels = [fields.panel("von_mises", np.zeros((4, 5)), state, 1.0).map.level for state in (0, 1)]
-    assert levels == pytest.approx([200.0, 300.0])
-
-
-@pytest.mark.parametrize("dimensionless", [False, True])
-def test_speeds_over_several_wave_speeds_are_told_in_metres_per_second(dimensionless):
-    result = swept_by(FLAT, "solid.E=[50, 200] GPa", "motion.speed=[100, 200, 300] m/s")
-    of = Archive(result.data, result.scene, Choice(units=result.units(dimensionless)))
-    said = [of.text(state, ["c"]) for state in (0, len(of.all) - 1)]
-    assert [text.replace("\u202f", " ") for text in said] == ["V = 100 m/s", "V = 300 m/s"]
-    text = summary(result.data, result.scene)
-    assert "slides at 100 to 300 m/s, c = 0.03184 to 0.1911" in text
-    assert "wave speed 1570 to 3140 m/s" in text and "others differ in solid.E." in text
-    axes = result.figure("parameters", x="c", dimensionless=dimensionless).axes
-    assert {axis.get_xlabel() for axis in axes} <= {"", "speed $V$ (m/s)"}
-
-
-def test_answers_on_one_solid_are_refused_for_several():
-    for answer, scene, words in (
-        (curve, COATED, "layer[0].thickness=[10, 20] um"),
-        (lambda scene: answers(scene, 0.1, 1.0, 2), FLAT, "solid.nu=[0.2, 0.3]"),
-    ):
-        with pytest.raises(
-            BadInput, match=r"found several values of (layer\[0\].thickness|solid.nu), exp"
-        ):
-            answer(scene_of("tables4_5", scene | from_words([words])))
-
-
-def test_the_threshold_of_flutter_says_of_which_state_it_is(monkeypatch):
-    monkeypatch.setattr("galinx.app.figures.waves._LENGTHS", np.array([3.0, 30.0]))
-    result = swept_by(COATED, "layer[0].E=[300, 450] GPa")
-    (drawing,) = result.drawings(figures=["flutter"])
-    assert drawing.caption.endswith("those of the first state; others differ in layer[0].E.")
 
 
 @pytest.mark.parametrize("kinds", [PROFILES, SOLIDS], ids=["profiles", "solids"])
@@ -230,15 +164,3 @@ def test_a_key_of_several_kinds_has_one_name_for_all(kinds):
     assert {key: of for key, of in names.items() if len(of) > 1} == {}
     columns = swept.columns(tuple(SOLIDS.values()), tuple(PROFILES.values()))
     assert columns["states/punch.radius"].about == "radius R, punch.radius of the scene"
-
-
-def test_solutions_of_a_sweep_are_told_apart_where_their_degrees_are_drawn():
-    one = {"friction": {"mu": 0.3}, "motion": {"c": [0.2, 0.4]}, "solve": {"tolerance": 1e-3}}
-    result = swept_by(FLAT | one, "solid.nu=[0.2, 0.3]")
-    solved = states_of_speeds(result.data, 2)
-    assert sorted(np.concatenate(solved).tolist()) == [*range(len(result.data[states.SPEED.path]))]
-    for numbers in solved:
-        assert all(np.ptp(result.data[f"states/{name}"][numbers]) == 0.0 for name in ("solid.nu", "c"))
-    drawn = degrees(Archive(result.data, result.scene, Choice()))
-    legend = {text.get_text() for text in drawn.figure.findobj(Text)}
-    assert len({text for text in legend if r"\nu = 0.2" in text}) == 2

@@ -62,18 +62,6 @@ def test_finite_elements_find_the_largest_stresses_below_a_pressure(of_pressure)
     assert not any("yield_reach" in name for name in data)
 
 
-def test_the_zone_begins_at_the_load_of_first_yield(of_pressure):
-    first = of_pressure.data["states/closed_form/first_yield_load"]
-    depths = [
-        computed(
-            "tables4_5",
-            CHANGES | OWN | {"solve.methods": ["closed_form"], "punch.load": float(share * first[0])},
-        ).data["states/closed_form/yield_depth"][0]
-        for share in (0.999, 1.001)
-    ]
-    assert depths[0] == 0.0 < depths[1]
-
-
 @pytest.mark.parametrize(
     "punch",
     [{"profile": "parabolic", "radius": 0.02}, {"profile": "power", "exponent": 3.0, "coefficient": 1e3}],
@@ -100,12 +88,6 @@ def test_invariants_inside_are_those_of_the_stresses(inside_run):
         np.testing.assert_allclose(one * two, σ[0] * σ[1] - σ[2] ** 2, atol=1e-12)
         mises = von_mises(*σ, solid.ν * (σ[0] + σ[1]))
         np.testing.assert_allclose(data[f"interior/{method}/von_mises"], mises, rtol=1e-14)
-
-
-def test_incompressible_solids_have_it_in_closed_form_only():
-    data = computed("tables4_5", CHANGES | {"solid.nu": 0.5, "motion.c": 0.0}).data
-    assert "states/closed_form/yield_depth" in data
-    assert "states/fem/yield_depth" not in data
 
 
 @pytest.mark.filterwarnings("error")

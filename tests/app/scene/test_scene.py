@@ -9,8 +9,6 @@ from support import HOME, SCENE, computed
 
 from galinx import template
 from galinx.app.errors import BadInput
-from galinx.app.plan.plan import make_plan
-from galinx.app.plan.states import enumerate_states
 from galinx.app.scene.changes import changed, from_words
 from galinx.app.scene.library import LIBRARY
 from galinx.app.scene.read import parse, read
@@ -53,12 +51,6 @@ def test_what_stands_twice_is_named(text, message):
     with pytest.raises(BadInput) as caught:
         parse(text)
     assert f"scene is not TOML: {message}" in str(caught.value)
-
-
-@pytest.mark.parametrize("changes", [{"solid.nu": 0.5}, {"friction.integrator": "rk4"}])
-def test_what_looks_like_a_fault_and_is_none(changes):
-    scene = template("tables4_5", changes)
-    assert make_plan(scene).states == len(enumerate_states(scene)) == 12
 
 
 @pytest.mark.parametrize(

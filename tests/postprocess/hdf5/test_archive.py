@@ -1,5 +1,4 @@
 import hashlib
-import json
 import os
 
 import h5py
@@ -24,18 +23,6 @@ def write(path, data, attributes=ATTRIBUTES):
         for name, value in data.items():
             writer.put(name, value)
         writer.finish(attributes)
-
-
-def test_what_is_put_in_is_there(tmp_path):
-    path = tmp_path / "a.h5"
-    write(path, DATA)
-    with h5py.File(path) as file:
-        for name, value in DATA.items():
-            text = h5py.check_string_dtype(file[name].dtype)
-            np.testing.assert_array_equal((file[name].asstr() if text else file[name])[()], value)
-        assert file.attrs["complete"] and file.attrs["program"] == "galinx"
-        assert json.loads(file.attrs["datasets"]) == list(DATA)
-    assert os.listdir(tmp_path) == ["a.h5"]
 
 
 def test_anyone_can_verify_the_seal(tmp_path):

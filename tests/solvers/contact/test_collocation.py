@@ -19,16 +19,6 @@ def test_a_flat_punch_has_one_coefficient(c, g):
     np.testing.assert_allclose(pressure.K_I, punch.K_I, rtol=1e-12)
 
 
-def test_a_tilted_punch_has_the_second_coefficient_of_the_formula():
-    # c = 0, g = 0, μ v,X = t: σ_YY √(1-r²) = -2/π + t r/n, from H[r/√(1-r²)] = 1.
-    frame, tilt = MovingFrame(2.0, 0.0), 0.1
-    pressure = Equation(frame, UNIFORM, 0.0, lambda r: np.full_like(r, tilt)).pressure(8)
-    r = np.linspace(-0.9, 0.9, 7)
-    np.testing.assert_allclose(
-        pressure.σ_YY(r) * np.sqrt(1.0 - r**2), -2.0 / np.pi + tilt * r / frame.n, atol=1e-12
-    )
-
-
 def test_the_transform_of_a_pressure_is_that_of_the_pressure():
     """Under the punch it solves the equation; beside it, it is the integral itself."""
     frame, g = MovingFrame(2.2, 0.6), -0.5

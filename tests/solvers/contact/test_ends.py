@@ -47,46 +47,6 @@ def test_a_parabola_from_any_half_width_and_with_any_axis(h, offset):
     assert middle == pytest.approx(offset, abs=digits * half)
 
 
-def test_a_similar_contact_saves_half_widths():
-    shape = Shape(lambda X: np.sinh(X / 1e-3) * 0.01)
-    m, h, far = ends(shape)
-    again, half, near = ends(shape, 1.01 * h, m)
-    assert (again, half) == (pytest.approx(m, abs=1e-12 * h), pytest.approx(h, rel=1e-12))
-    assert len(near) < len(far)
-
-
-@pytest.mark.parametrize("s", [1e-4, 0.02])
-def test_a_wedge(s):
-    """h = N n/(2 s μ) (Johnson, Contact Mechanics, 5.7)."""
-    _, half, _ = ends(Shape(lambda X: s * np.sign(X), (0.0,), True))
-    assert half == pytest.approx(LOAD * n / (2.0 * s), rel=1e-12)
-
-
-@pytest.mark.parametrize("offset", [0.0, 0.3])
-@pytest.mark.parametrize("wider", [1e-3, 1e-6])
-def test_a_contact_hardly_wider_than_a_flat_part(offset, wider):
-    """The balance is an interval where the flat part holds all of the contact."""
-    b, R, φ = 1e-3, 0.2, np.arcsin(1.0 / (1.0 + wider))
-    h = b * (1.0 + wider)
-    load = h**2 / (n * R) * (np.pi / 2.0 - φ - np.sin(φ) * np.cos(φ))
-
-    def slope(X):
-        return (X - offset - np.clip(X - offset, -b, b)) / R
-
-    middle, half, _ = ends(Shape(slope, (offset - b, offset + b)), 1e-6, load=load)
-    assert half == pytest.approx(h, rel=1e-9)
-    assert middle == pytest.approx(offset, abs=1e-9 * h)
-
-
-def test_one_side_much_steeper_than_the_other():
-    """The contact hangs over the flat side: both conditions by arcs of the circle s = cos φ."""
-    left, right = 1e-4, 0.1
-    m, h, _ = ends(Shape(lambda X: np.where(X < 0.0, -left, right), (0.0,), True))
-    φ = np.arccos(-m / h)
-    assert right * φ == pytest.approx(left * (np.pi - φ), rel=1e-9)
-    assert h * (left + right) * np.sin(φ) == pytest.approx(LOAD * n, rel=1e-9)
-
-
 @pytest.mark.parametrize("slope", [lambda X: -X, np.zeros_like, lambda X: np.ones_like(X)])
 def test_a_punch_that_no_contact_carries_says_so(slope):
     with pytest.raises(SolveError, match="shape carries the load"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact import stresses
-from galinx.solvers.contact.extremes import FINER, between, extreme, highest, largest, tops
+from galinx.solvers.contact.extremes import FINER, between, highest, largest, tops
 from galinx.solvers.contact.stresses import at_and_between
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -29,63 +29,12 @@ def test_the_largest_beside_a_kink_where_the_slope_is_infinite(slope):
     assert value == pytest.approx(d, rel=1e-9) and at == pytest.approx(kink + d, abs=1e-8)
 
 
-def test_pieces_that_jump_have_their_own_tops():
-    pieces = [np.linspace(-1.0, 0.0, 9), np.linspace(0.0, 1.0, 9)]
-    value, at = largest(lambda x: np.sin(3.0 * x) + 0.5 * (x > 0.0), pieces)
-    assert value == pytest.approx(1.5, rel=1e-8) and at == pytest.approx(np.pi / 6.0, abs=1e-5)
-
-
-def test_a_sampled_curve_is_highest_between_its_samples():
-    X = np.linspace(-2.0, 2.0, 81)
-    places = np.array([[-0.513], [0.004], [1.2345]])
-    curves = np.exp(-((X - places) ** 2))
-    for sign in (1.0, -1.0):
-        value, at = extreme(sign * curves[None], X, sign)
-        np.testing.assert_allclose(value, [sign * np.ones(3)], rtol=1e-9)
-        np.testing.assert_allclose(at, places.T, atol=1e-6)
-
-
 @pytest.mark.parametrize("place", [-2.2, -0.6, 0.37, 1.7])
 def test_curves_along_the_surface_are_highest_under_the_punch_or_beside_it(place):
     X, none = np.linspace(-3.0, 3.0, 241), np.empty((1, 0))
     turns = stresses.Turns(none, np.empty((3, 1, 0)), None)
     value, at = highest(*stresses.on_surface(X, np.exp(-((X - place) ** 2))[None], turns))
     assert value[0] == pytest.approx(1.0, abs=1e-6) and at[0] == pytest.approx(place, abs=1e-3)
-
-
-def test_turns_of_several_solutions_are_padded_to_as_many_places():
-    one, other = (stresses.Turns(np.ones((1, n)), np.ones((3, 1, n)), None) for n in (1, 3))
-    both = stresses.together([one, other])
-    np.testing.assert_array_equal(both.X, [[1.0, np.nan, np.nan], [1.0, 1.0, 1.0]])
-    np.testing.assert_array_equal(np.isnan(both.σ), np.isnan([both.X] * 3))
-
-
-def test_noise_of_samples_that_all_but_coincide_is_not_magnified():
-    X = np.unique([*np.linspace(-2.0, 2.0, 41), *(np.linspace(-2.0, 2.0, 41)[1:-1] + 1e-9)])
-    noise = 1e-8 * np.random.default_rng(0).uniform(-1.0, 1.0, X.shape)
-    value, at = extreme(np.exp(-((X - 0.07) ** 2)) + noise, X, 1.0)
-    assert value == pytest.approx(1.0, abs=1e-7) and at == pytest.approx(0.07, abs=1e-5)
-
-
-def test_no_polynomial_goes_through_samples_of_two_pieces():
-    u = np.linspace(-1.0, 1.0, 41)
-    curve = np.where(u < 0.0, 1.0 - (u + 0.12) ** 2, -5.0 + u)[None]
-    heights, places = tops(u, curve, (u >= 0.0)[None].astype(int))
-    height, place = highest(heights, places)
-    assert height[0] == pytest.approx(1.0, abs=1e-12) and place[0] == pytest.approx(-0.12, abs=1e-9)
-
-
-def test_of_equal_heights_the_left_one_is_taken():
-    height, place = highest(np.array([[1.0, 1.0 + 1e-13, 0.9]]), np.array([[-0.5, 0.5, -0.9]]))
-    assert (height[0], place[0]) == (1.0, -0.5)
-
-
-def test_places_that_coincide_by_rounding_have_no_polynomial_between_them():
-    """Next to a turn a piece of a billionth is sampled more closely than numbers are apart."""
-    piece = 0.5 + 1e-9 / (1.0 + np.exp(-np.linspace(-18.0, 18.0, 109)))
-    value, place = largest(lambda X: -((X - 0.5) ** 2), [np.linspace(-1.0, 0.5, 9), piece])
-    # Rounding of a polynomial through values of 0.04 is the machine's.
-    assert value == pytest.approx(0.0, abs=1e-17) and place == pytest.approx(0.5, abs=1e-9)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -143,3 +92,11 @@ def test_stress_measures_follow_from_principal_stresses():
         np.testing.assert_allclose(held, 0.0, atol=1e-15)
         low, high = np.linalg.eigvalsh(tensor[:, :2, :2]).T
         np.testing.assert_allclose(stresses.maximum_shear(XX, YY, XY), (high - low) / 2.0, rtol=1e-12)
+
+
+def test_no_polynomial_goes_through_samples_of_two_pieces():
+    u = np.linspace(-1.0, 1.0, 41)
+    curve = np.where(u < 0.0, 1.0 - (u + 0.12) ** 2, -5.0 + u)[None]
+    heights, places = tops(u, curve, (u >= 0.0)[None].astype(int))
+    height, place = highest(heights, places)
+    assert height[0] == pytest.approx(1.0, abs=1e-12) and place[0] == pytest.approx(-0.12, abs=1e-9)

@@ -11,10 +11,9 @@ from scipy.integrate import quad
 from stroh import Stroh
 from support import THOROUGH
 
-from galinx.solvers.contact.closed_form import FlatPunch, Weighted, contacts
+from galinx.solvers.contact.closed_form import FlatPunch, contacts
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import PROFILES
-from galinx.solvers.solids.half_plane import mean_and_difference
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 flat, parabolic, wedge, power, rounded, table = (
@@ -45,18 +44,6 @@ def test_a_parabola_is_that_of_the_formulas(seed):
     w = [float((1 - mp.mpf(x)) ** a * (1 + mp.mpf(x)) ** b) for x in r]
     peak = float(top / ((1 - place) ** a * (1 + place) ** b))
     np.testing.assert_allclose(found.on_surface(r)[1][0], -peak * np.array(w), rtol=1e-11)
-
-
-def test_without_friction_at_rest_it_is_hertz():
-    """h² = 4 N R (1 - ν²)/(π E) and p₀ = 2N/(π h) (Johnson, Contact Mechanics, 4.43, 4.45)."""
-    E, ν, R, N = 193e9, 0.25, 0.02, 5e4
-    solid = Isotropic(E, ν, 7860.0)
-    found = contacts(solid.response(0.0), np.zeros(1), parabolic(R), N / solid.μ)
-    h = np.sqrt(4.0 * N * R * (1.0 - ν**2) / (np.pi * E))
-    r = np.linspace(-0.999, 0.999, 41)
-    assert found.of("half_width")[0] == pytest.approx(h, rel=1e-14)
-    assert found.of("centre")[0] == pytest.approx(0.0, abs=1e-15 * h)
-    np.testing.assert_allclose(found.on_surface(r)[1][0], -4.0 / np.pi * np.sqrt(1.0 - r**2), rtol=1e-12)
 
 
 @dataclass(frozen=True)
@@ -135,34 +122,6 @@ def test_a_wedge_at_rest_is_that_of_the_textbook():
     r = np.array([-0.99, -0.5, -1e-3, 1e-5, 0.2, 0.9])
     p = 2.0 * 0.02 / (np.pi * n) * np.arccosh(1.0 / np.abs(r)) * 2.0 * h / LOAD
     np.testing.assert_allclose(found.on_surface(r)[1][0], -p, rtol=1e-12)
-
-
-def test_quadrature_gives_the_parabola_and_its_field():
-    """Two ways to one contact: by the elementary potential, and by quadrature."""
-
-    @dataclass(frozen=True)
-    class Other:
-        sharp = (False, False)
-        kinks = (1e-5,)  # a panel ends there, and nothing may be seen of it
-        slope = staticmethod(lambda X: X / 0.3)
-        words = staticmethod(lambda: "the same")
-
-    X, Y = np.array([0.0, 0.7, -2.0, 1.0, 30.0]), np.array([-0.5, -1e-3, -0.3, -1e-4, -20.0])
-    for response in (MovingFrame(1.8, 0.0), MovingFrame(1.8, 0.7), random_solid(2).response(0.1)):
-        g = np.array([-0.7, 0.4])
-        one, two = (contacts(response, g, profile, LOAD) for profile in (parabolic(0.3), Other()))
-        for key in ("half_width", "centre", "α", "β"):
-            np.testing.assert_allclose(two.of(key), one.of(key), rtol=1e-12, atol=1e-18)
-        r = np.concatenate([np.linspace(-0.99, 0.99, 9), [1.0 - 1e-6, -1.0 + 1e-6]])
-        np.testing.assert_allclose(two.on_surface(r)[1], one.on_surface(r)[1], rtol=1e-10, atol=1e-12)
-        beside = np.array([-5.0, -1.0 - 1e-6, 0.2, 1.0 + 1e-6, 1.7, 2.9, 3.1])
-        np.testing.assert_allclose(
-            two.on_surface(beside)[0], one.on_surface(beside)[0], rtol=1e-10, atol=1e-11
-        )
-        np.testing.assert_allclose(two.stresses(X, Y), one.stresses(X, Y), atol=1e-11)
-        np.testing.assert_allclose(
-            np.concatenate(two.largest()), np.concatenate(one.largest()), atol=1e-8
-        )
 
 
 @pytest.mark.parametrize("g", [-0.8, 0.0, 0.5])
@@ -252,22 +211,3 @@ def test_a_contact_little_wider_than_the_flat_part_is_found(b, share):
         assert abs(lifted) <= 1e-9 * carried
         n = response.n + g * response.n12
         assert h**2 / R * np.sin(np.pi * a) / n * carried == pytest.approx(load, rel=1e-9)
-
-
-@pytest.mark.parametrize("order", (-1, 0, 1))
-def test_the_mean_and_the_difference_of_potentials_are_those_of_two_values(order):
-    """Of a punch with both edges in contact, with one, and of a parabola; near and far."""
-    rng = np.random.default_rng(order + 5)
-    α = float(rng.uniform(-0.9, -0.1)) + (order == 1)
-    A, B = rng.normal(size=2) * [1.0, order == -1]
-    pressure = Weighted(α, order - α, A, B, order)
-    z = rng.uniform(-6.0, 6.0, 40) - 1j * rng.uniform(0.05, 6.0, 40)
-    for size, within in ((1e-2, 1e-12), (0.3, 1e-13)):
-        δ = size * z.imag * np.exp(1j * rng.uniform(0.0, 2.0 * np.pi, 40))
-        mean, difference = mean_and_difference(pressure, z, δ**2)
-        one, other = pressure.at(z + δ), pressure.at(z - δ)
-        np.testing.assert_allclose(mean, (one + other) / 2.0, rtol=0.0, atol=within)
-        np.testing.assert_allclose(difference, (one - other) / (2.0 * δ), rtol=0.0, atol=within)
-    ε = 1e-6
-    slope = (pressure.at(z + ε) - pressure.at(z - ε)) / (2.0 * ε)
-    np.testing.assert_allclose(mean_and_difference(pressure, z, 0.0 * z)[1], slope, rtol=0.0, atol=1e-9)

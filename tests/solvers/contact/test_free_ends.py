@@ -36,15 +36,6 @@ def conditions(mixed=((1.0, 0.4), (-0.7, 0.9))):
     return EndConditions(A - 1.0, -A, mixed @ moments, mixed @ [0.0, SIZE])
 
 
-def test_factors_are_those_of_a_half_plane():
-    known = conditions()
-    lean, load = known.factors
-    np.testing.assert_allclose(lean, [1.0, *[0.0] * (SHAPES - 1)], atol=1e-11)
-    # Of the load any share of the other condition may be among it.
-    np.testing.assert_allclose(load[1:], [1.0 / SIZE, *[0.0] * (SHAPES - 2)], atol=1e-11)
-    assert known.unseen < 1e-11
-
-
 @pytest.mark.parametrize(
     "profile",
     [

@@ -129,30 +129,6 @@ def test_constant_friction_over_layers_is_one_number(profile, thickness):
     np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), one.pressure.σ_YY(PLACES), atol=2e-8)
 
 
-def test_mirrored_friction_mirrors_the_contact():
-    rows = [(-1, 0.1), (0.3, 0.6), (1, 0.2)]
-    one, *_ = solved(ISOTROPIC, tabulated(rows, -1.0), tolerance=1e-5)
-    mirrored = tabulated([(-X, f) for X, f in rows[::-1]], 1.0)
-    other, *_ = solved(ISOTROPIC, mirrored, tolerance=1e-5)
-    assert other.half_width == pytest.approx(one.half_width, rel=1e-10)
-    assert other.centre == pytest.approx(-one.centre, rel=1e-8)
-    np.testing.assert_allclose(other.pressure.σ_YY(-PLACES), one.pressure.σ_YY(PLACES), atol=5e-9)
-
-
-def test_scaled_bristles_scale_the_contact():
-    """Punch, bristles and load four times as large: the same over the half-width."""
-    contacts_of = []
-    for k in (1.0, 4.0):
-        body = make_contact(ISOTROPIC, Parabolic(0.1 * k), LOAD * k)
-        friction = advected(Dahl(0.6, 1000.0 / k, 1.0), 1, 1.0, body.half_width, -1.0)
-        body = make_contact(ISOTROPIC, Parabolic(0.1 * k), LOAD * k, along={friction.mean: friction})
-        response = body.response(0.4 * ISOTROPIC.limit())
-        contacts_of.append(under_punch(body, response, 1e-8).contact(friction.mean))
-    one, other = contacts_of
-    assert other.half_width == pytest.approx(one.half_width, rel=1e-11)
-    assert other.centre == pytest.approx(one.centre, rel=1e-9)
-
-
 @pytest.mark.parametrize("stiffness, f", [(1e-3, 0.0), (1e9, 0.6)])
 def test_cylinder_between_no_friction_and_full_friction(stiffness, f):
     """Long pre-sliding leaves Hertz's contact, a short one is full friction but next to the end."""

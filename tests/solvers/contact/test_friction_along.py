@@ -17,7 +17,6 @@ from galinx.solvers.friction.along import advected, tabulated
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.elasto_plastic import ElastoPlastic
 from galinx.solvers.friction.maxwell_slip import MaxwellSlip
-from galinx.solvers.friction.stribeck import Coulomb
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -124,21 +123,6 @@ def test_constant_friction_is_one_number(f, seed):
     pressure = contacts.groups[0].pressure
     assert pressure.resultant_ratio == pytest.approx(-f, abs=1e-12)
     assert pressure.pressure_centre == pytest.approx(one.β - one.α, abs=1e-12)
-
-
-def test_stiff_bristles_come_to_one_friction_as_their_length_predicts():
-    response, off = ISOTROPIC.response(0.3), []
-    for stiffness in (1e4, 1e5, 1e6, 1e7):
-        pressure = FlatAlong(response, advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, 1e-3, -1.0))
-        off.append(abs(float(pressure.σ_YY(np.zeros(1))[0] / FlatPunch(response, -0.6).σ_YY(0.0) - 1.0)))
-    # The pressure changes where friction does, in proportion to the length over which it grows.
-    np.testing.assert_allclose(np.divide(off[1:], off[:-1]), 0.1, rtol=0.1)
-
-
-def test_an_advected_law_without_memory_is_one_number():
-    along = advected(Coulomb(0.4), 1, 1.0, 1e-3, -1.0)
-    assert along.mean == pytest.approx(-0.4, rel=1e-15) and not along.kinks
-    np.testing.assert_array_equal(along(PLACES), -0.4)
 
 
 def test_kinks_of_a_law_are_found_where_its_elements_slip():

@@ -82,20 +82,3 @@ def test_under_the_pressure_the_field_meets_the_surface(name):
     np.testing.assert_allclose(-below.imag, pressure(X), atol=1e-9)
     uneven = pressure.hilbert(np.array([-0.7])) - pressure.hilbert(np.array([-0.7 + 1e-9]))
     assert np.abs(uneven) < 1e-6
-
-
-def test_a_known_transform():
-    """Of a uniform pressure; it is infinite at its ends."""
-    r = np.array([-1.0, -0.5, 0.0, 0.25, 1.0, 3.0])
-    found = LinearPressure(np.array([-1.0, 1.0]), np.array([-1.0, -1.0])).hilbert(r)
-    with np.errstate(divide="ignore"):
-        wanted = -np.log(np.abs((1.0 - r) / (1.0 + r))) / np.pi
-    np.testing.assert_allclose(found[1:4], wanted[1:4], rtol=1e-15, atol=1e-16)
-    assert np.isnan(found[[0, 4]]).all()
-    triangle = pressure_of("triangle").hilbert(np.array([-1.0, 1.0]))
-    assert np.isfinite(triangle).all()
-
-
-def test_the_resultant_is_that_of_trapezoids():
-    assert pressure_of("triangle").resultant == pytest.approx(-2.0, rel=1e-15)
-    assert pressure_of("spike").resultant == pytest.approx(-2.049, rel=1e-15)

@@ -5,18 +5,13 @@ import numpy as np
 import pytest
 import sympy as sp
 from isotropic_field import field
-from loaded import under
+from loaded import punch_of, under
 
 from galinx.solvers.contact.closed_form import FlatPunch, contacts
 from galinx.solvers.contact.recovery import on_panels
 from galinx.solvers.profiles.punches import Flat, Parabolic
 from galinx.solvers.solids.half_plane import mean_and_difference
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
-
-
-def punch_of(entry, g):
-    solid = Isotropic(193e9, float(entry["nu"]), 7860.0, entry["plane"])
-    return FlatPunch(MovingFrame(solid.κ, float(entry["c"])), float(g))
 
 
 def test_interior_stresses_of_the_references(references):

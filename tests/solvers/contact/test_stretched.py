@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from layers_cases import converged_pressure
-from support import THOROUGH
 
 from galinx.solvers.contact.equation import Equation
 from galinx.solvers.contact.panels import Panels
@@ -42,42 +41,6 @@ def test_moments_give_the_intensities_of_a_steeply_graded_solid(pressure, count,
     assert off <= again.unresolved[0]
 
 
-@pytest.mark.parametrize(
-    ("thickness", "growth", "g", "share", "length", "first"),
-    [
-        (0.1, 100.0, -0.74, 0.45, 0.19, 31),
-        *((0.4, 100.0, -0.74, 0.85, 0.5, 24),) * THOROUGH,
-        (0.3, 30.0, 0.2, 0.0, 0.6, 23),
-    ],
-)
-def test_what_functions_leave_out_of_a_steeper_solid_is_in_what_they_say_of_themselves(
-    thickness, growth, g, share, length, first
-):
-    """More functions hardly make it less there."""
-    hard = Isotropic(growth * SOFT.E, 0.3, 6.0)
-    solid = Layered((Layer(thickness, SOFT, hard),), hard)
-    response = solid.response(share * solid.limit())
-    kernel = Kernel(response.stack(1.0), 1e-8)
-    exact = converged_pressure(Equation(response, kernel, g, np.zeros_like), 1e-7).pressure
-    off, unresolved = [], []
-    for count in range(first, first + 13, 3):
-        again = read(exact, Stretch(length, graded=True, stiffens=True), count)
-        off.append(np.abs(again.K_I[0] / (-0.5 * exact.series(ENDS)) - 1.0).max())
-        unresolved.append(again.unresolved[0])
-    assert np.all(np.array(off) <= unresolved)
-    assert np.median(unresolved) <= 30.0 * np.median(off)
-
-
-def test_functions_are_orthonormal_and_the_same_wherever_they_are_asked_for(pressure):
-    stretch = Stretch(0.36, graded=True)
-    rule = Panels(-0.5, -0.5, 0.3 * 0.36)
-    f = stretch.values(rule.t, 28 + stretch.of_ends)
-    assert np.abs((f * rule.weights[:, None]).T @ f - np.eye(f.shape[1])).max() <= 1e-9
-    finer = Panels(-0.5, -0.5, 0.02)
-    f = stretch.values(finer.t, 28 + stretch.of_ends)
-    assert np.abs((f * finer.weights[:, None]).T @ f - np.eye(f.shape[1])).max() <= 1e-6
-
-
 HALF = np.array([-0.5])
 
 
@@ -99,25 +62,3 @@ def test_moved_edges_are_those_of_a_contact_that_ends_elsewhere(graded, polynomi
     moved = whole.moved_edges(r, length)[0]
     assert moved == pytest.approx(right + right[::-1], rel=1e-2, abs=1e-3 * moved.max())
     assert moved[0] > 0.3 * polynomials**2 * length / np.pi
-
-
-@pytest.mark.parametrize("graded", [False, True])
-def test_a_node_that_rounding_moves_beyond_an_edge_counts_as_at_the_edge(graded):
-    """Logarithms of the distance from the edge were no numbers there, nor was any intensity."""
-    stretch = Stretch(4.0, graded)
-    functions = lambda r, count: stretch.values(r, count + stretch.of_ends)  # noqa: E731
-    beyond = np.nextafter(ENDS, 2.0 * ENDS)
-    np.testing.assert_array_equal(functions(beyond, 20), functions(ENDS, 20))
-    assert np.isfinite(functions(ENDS, 20)).all()
-
-
-def test_transforms_are_as_good_where_panels_meet():
-    """What coarse panels leave between them is not multiplied by a logarithm of nothing."""
-    coarse, fine = (Panels(-0.4, -0.6, finest) for finest in (1.0, 0.1))
-    meeting = coarse.ends[np.abs(coarse.ends) < 4.0]
-    beside = meeting + 1e-3
-    off_there, off_beside = (
-        np.abs(coarse.cauchy(np.exp(4.0 * coarse.t), y) - fine.cauchy(np.exp(4.0 * fine.t), y)).max()
-        for y in (meeting, beside)
-    )
-    assert 0.0 < off_there < 20.0 * off_beside

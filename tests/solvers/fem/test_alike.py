@@ -21,13 +21,6 @@ def cells(*moved):
     return np.array([size * SQUARE + [x, y] for size, x, y in moved])
 
 
-def test_cells_that_are_moved_and_scaled_are_alike():
-    corners = cells((0.5, 0.0, 0.0), (2.0, 3.0, -1.0), (1e-9, 1.0, 0.0), (1.0, -1e4, 7.0))
-    models, like = congruent_cells(corners, np.zeros(4, dtype=int))
-    np.testing.assert_array_equal(models, corners[[1]])  # the largest
-    np.testing.assert_array_equal(like, [0, 0, 0, 0])
-
-
 def test_what_differs_stands_alone():
     corners = cells(*[(1.0, 0.0, 0.0)] * 5)
     corners[1, 3, 0] += 1e-9  # less than digits by which they are looked for
@@ -43,24 +36,6 @@ def test_digits_that_a_small_cell_cannot_have_are_not_asked_of_it():
         corners = cells((1.0, 5.0, 0.0), (1e-10, 1.0, 0.0))
         corners[1, 2, 0] += off
         assert len(congruent_cells(corners, np.zeros(2, dtype=int))[0]) == count
-
-
-def test_models_are_the_same_however_cells_are_shared_out():
-    """A rank that has small cells beside an edge alone takes the shape that another's largest has."""
-    corners = cells((2.0, 3.0, -1.0), (2.0, 0.0, 0.0), (1e-10, 1.0, 0.0), (1e-8, 1.0, 0.0))
-    other = cells((1.0, 0.0, 0.0))[:, [1, 0, 3, 2]]  # of no shape that the first rank has
-    corners, kinds = np.concatenate([corners, other]), np.zeros(5, dtype=int)
-    alone, like = congruent_cells(corners, kinds)
-    for parts in ([0, 1], [2, 3, 4]), ([3, 1, 4], [0, 2]), ([2], [4, 3, 1, 0]), ([], [4, 2, 0, 1, 3]):
-        # Ranks collect their largest cells, then the kinds of these.
-        rounds: list[list] = [[], []]
-        for part in parts:
-            to = iter(rounds)
-            congruent_cells(corners[part], kinds[part], lambda own, to=to: [next(to).append(own) or own])
-        for part in parts:
-            each = iter(rounds)
-            models, which = congruent_cells(corners[part], kinds[part], lambda _, each=each: next(each))
-            np.testing.assert_array_equal(models[which], alone[like[part]])
 
 
 STEEL, SOFT = (Isotropic(E, ν, 1.0) for E, ν in ((2.5, 0.25), (1.0, 0.4)))

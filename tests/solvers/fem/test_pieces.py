@@ -8,7 +8,6 @@ from galinx.meshes import MESHES, Requirements
 from galinx.solvers import rays
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem import traction
 from galinx.solvers.fem.traction import LinearLoads, Pieces
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -50,14 +49,6 @@ def test_one_linear_load_is_that_of_its_exact_solution(loads):
     np.testing.assert_allclose(loads.resultants, 1.0, rtol=1e-14)
 
 
-def test_next_to_an_end_a_field_has_its_digits(loads):
-    """1e-8 of the half-width from the end, where displacements alone would leave five digits."""
-    x = 1e-8 * 2.0 ** np.arange(8)
-    u_X = loads.gradients(np.column_stack([1.0 - x, np.zeros(8)]))[:, 0, 0, 3]
-    single = LinearPressure(np.array([-1.0, 1.0]), np.array([0.0, 1.0])).hilbert(1.0 - x)
-    np.testing.assert_allclose(u_X, FRAME.m * single, atol=2e-7)
-
-
 def test_the_pieces_are_the_pressure(loads, pressure):
     X = np.concatenate([np.linspace(-0.99, 0.99, 67), 1.0 + np.geomspace(1e-6, 4.0, 12)])
     found, exact = strain(loads, X), exact_strain(pressure, X)
@@ -79,37 +70,6 @@ def test_below_knots_and_ends_too(loads, pressure, depth):
     found = FRAME.stresses(basis[..., 0] - 0.66 * basis[..., 1])
     exact = FRAME.inside(pressure, -0.66, *points.T)
     np.testing.assert_allclose(found, exact, atol=5e-6)
-
-
-def test_many_pieces_are_looked_at_some_at_a_time(loads, pressure, monkeypatch):
-    X = np.linspace(-0.9, 1.9, 7)
-    whole = strain(loads, X)
-    monkeypatch.setattr(traction, "_AT_ONCE", 10)
-    np.testing.assert_allclose(strain(loads, X), whole, atol=1e-13)
-
-
-def test_pieces_without_load_are_no_work(loads):
-    looked = []
-
-    class Counted:
-        def gradients(self, points):
-            looked.append(len(points))
-            return loads.gradients(points)
-
-    half = Pieces(np.array([-1.0, 0.0, 1.0]), np.array([-1.0, 0.0, 0.0]))
-    half.gradients(Counted(), np.array([[0.4, 0.0]]))
-    assert looked == [1]
-
-
-@pytest.mark.parametrize(
-    "knots", [[-1, 0, 1e-6, 1], [-1, -1 + 1e-6, 1], [-1, 0.2, 1 - 1e-9, 1], [-1, 0, 1e-4, 2e-4, 0.3, 1]]
-)
-def test_widths_of_neighbours_are_alike(knots):
-    found = Pieces(np.array(knots, dtype=float), np.arange(len(knots), dtype=float))
-    widths = np.diff(found.knots)
-    assert (widths > 0.0).all() and set(map(float, knots)) <= set(found.knots.tolist())
-    assert np.max(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])) <= 8.0 + 1e-6
-    np.testing.assert_allclose(found.values, np.interp(found.knots, knots, np.arange(len(knots))))
 
 
 def test_rays_continue_what_is_known_of_knots():
@@ -134,3 +94,11 @@ def test_rays_continue_what_is_known_of_knots():
 def test_a_point_beyond_the_mesh_is_told(loads):
     with pytest.raises(MeshError, match="lies outside the mesh"):
         loads.gradients(np.array([[1e16, 0.0]]))
+
+
+def test_next_to_an_end_a_field_has_its_digits(loads):
+    """1e-8 of the half-width from the end, where displacements alone would leave five digits."""
+    x = 1e-8 * 2.0 ** np.arange(8)
+    u_X = loads.gradients(np.column_stack([1.0 - x, np.zeros(8)]))[:, 0, 0, 3]
+    single = LinearPressure(np.array([-1.0, 1.0]), np.array([0.0, 1.0])).hilbert(1.0 - x)
+    np.testing.assert_allclose(u_X, FRAME.m * single, atol=2e-7)

@@ -7,7 +7,6 @@ from support import small_punch, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.fem.contact import left_out
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -90,10 +89,3 @@ def test_friction_along_the_contact_that_does_not_vary_is_a_number(c):
         for state, punch in ((expected, number), (states, matrix))
     ]
     assert np.linalg.norm(fields[1] - fields[0]) <= 1e-9 * np.linalg.norm(fields[0])
-
-
-def test_where_all_shapes_vanish_none_is_left_out():
-    """As where the contact's ends meet."""
-    slopes = np.array([[0.0, 0.0, 0.0], [2.0, 1.0, -1.0]])
-    with np.errstate(all="raise"):
-        np.testing.assert_array_equal(left_out(slopes, 2), [0.0, 0.5])

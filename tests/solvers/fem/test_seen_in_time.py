@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.special import roots_jacobi
 from starts import SOLID, motion
 
 from galinx.meshes.waves import Reached
-from galinx.solvers.approximation import lagrange
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import BOX, Energies, of_both
 from galinx.solvers.fem.in_time import SlidingInTime, SurfaceInTime
@@ -39,17 +37,6 @@ def test_products_by_quadrature_are_those_of_the_matrices(solid, sharp):
         (of.dissipation(u), u @ of_both(of.D, u)),
     ):
         np.testing.assert_allclose(product, expected, atol=1e-13 * np.abs(expected).max())
-
-
-def test_cells_are_small_where_fields_are_output():
-    """Beside and below the punch as far as asked, and beyond they are as large as without outputs."""
-    mesh = Reached(12.0, 9.0, 2.0, 0.0, 1e-2, seen=0.5, around=(4.0, 2.0)).drawn()
-    corners = mesh.points[mesh.cells]
-    sides, near = np.ptp(corners, axis=1), np.abs(corners).min(axis=1)
-    assert sides[(near[:, 0] < 3.4)][:, 0].max() < 0.51
-    assert sides[(near[:, 1] < 1.4)][:, 1].max() < 0.51
-    assert (sides[near[:, 0] > 4.1][:, 0] > 1.5).all()
-    assert (sides[near[:, 1] > 2.1][:, 1] > 1.5).all()
 
 
 @pytest.mark.parametrize("way", [1, -1])
@@ -111,37 +98,6 @@ def test_energy_is_kept_where_the_punch_turns_round():
     left = np.abs(done - watched[1:, 2] - watched[1:, 3] - run.absorbed)
     assert left[:8].max() < 1e-4 * done[7]
     assert left.max() < 5e-3 * np.abs(done).max()
-
-
-def test_strains_along_the_surface_are_those_of_polynomials(moving):
-    X, Y = moving.space.coordinates.T
-    along = SurfaceInTime(moving, ON_SURFACE)
-    found = along.strain(np.column_stack([X**3 + Y, X**4]).ravel())
-    np.testing.assert_allclose(found, 3.0 * ON_SURFACE**2, atol=1e-9)
-
-
-def test_pressure_of_forces_is_the_one_they_are_of(moving):
-    """The weight of a punch times what bends between two facets, integrated with all shapes."""
-    α, β, p = -0.37, -0.63, 4
-    X, forces = moving.X, np.zeros(len(moving.X))
-    bend = X[p * (len(X) // p // 2)]
-    nodes = (X[p * 2 : p * 3 + 1] - X[p * 2]) / (X[p * 3] - X[p * 2])
-    for k in range(len(X) // p):
-        left, right = X[k * p], X[k * p + p]
-        at_left, at_right = β * (k == 0), α * (right == X[-1])
-        x, w = roots_jacobi(40, at_right, at_left)
-        r, half = (left + right) / 2.0 + (right - left) / 2.0 * x, (right - left) / 2.0
-        w = w * half ** (1.0 + at_left + at_right)
-        w = w * (1.0 if k == 0 else (1.0 + r) ** β) * (1.0 if right == X[-1] else (1.0 - r) ** α)
-        forces[k * p : k * p + p + 1] += (w * (2.0 - np.abs(r - bend))) @ lagrange(
-            nodes, (1.0 + x) / 2.0
-        )[0]
-    found = SurfaceInTime(moving, ON_SURFACE).pressure(forces, α, β)
-    under = np.abs(ON_SURFACE) < 1.0
-    r = ON_SURFACE[under]
-    expected = (1.0 - r) ** α * (1.0 + r) ** β * (2.0 - np.abs(r - bend))
-    np.testing.assert_allclose(found[under], expected, rtol=1e-6, atol=1e-8)
-    assert not found[~under].any()
 
 
 def test_surface_of_steady_motion():

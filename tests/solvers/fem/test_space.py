@@ -11,9 +11,9 @@ from galinx.meshes import MESHES, Requirements
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.contact import stresses
-from galinx.solvers.contact.fem_plan import levels, requirements, size_of, unknowns
+from galinx.solvers.contact.fem_plan import requirements, unknowns
 from galinx.solvers.errors import MeshError
-from galinx.solvers.fem.fields import SurfaceTrace, surface_slopes
+from galinx.solvers.fem.fields import surface_slopes
 from galinx.solvers.fem.space import Space, consistent_forces, distribute
 
 
@@ -29,14 +29,6 @@ def test_planned_sizes_are_those_of_the_run(mesh):
     pattern = MESHES[mesh].refinement(Requirements(1e-3))
     cells, space = MESHES[mesh].build(pattern), space_on(mesh, pattern, 3)
     assert (space.cells, space.size) == (len(cells.cells), unknowns(cells, 3))
-
-
-def test_between_facets_the_right_one_counts_whatever_rounding_does():
-    s = np.array([[-1.0, 0.0], [1e-16, 2.0]])
-    trace = SurfaceTrace(s, np.abs(s)[..., None, None] * np.ones((2, 1)))
-    for at in (-1e-16, 0.0, 2e-16):
-        np.testing.assert_allclose(trace.derivative([at]), 1.0)
-    np.testing.assert_allclose(trace.derivative([-1e-6]), -1.0)
 
 
 def test_rounding_of_slopes_is_that_of_the_displacements():
@@ -98,21 +90,7 @@ def test_forces_of_a_load_know_the_distances_from_both_edges(sign):
     assert (forces * s).sum() == pytest.approx(sign * 2.0 / 3.0, rel=1e-13)
 
 
-@pytest.mark.parametrize("mesh", ["confocal", "graded"])
-def test_sizes_by_the_refinement_alone_count_its_cells(mesh):
-    for tolerance in (1e-2, 1e-6):
-        refinement = MESHES[mesh].refinement(Requirements(tolerance))
-        cells = len(MESHES[mesh].build(refinement).cells)
-        # Of the graded mesh four more are counted than drawn.
-        assert size_of(refinement, 3) == 2 * 9 * (cells + (4 if mesh == "graded" else 0))
-
-
 def test_a_mesh_reaches_the_farthest_place_in_every_plane_of_the_solid():
     places = stresses.Places(np.array([0.5]), np.array([[-2.0, -1.0]]))
     for planes, farthest in (((), 5.0**0.5), ((1.0 + 1.0j,), 10.0**0.5), ((-1.0 + 1.0j,), 5.0**0.5)):
         assert requirements(1e-6, places, -0.5, 1.0, planes).farthest == pytest.approx(farthest)
-
-
-def test_a_fixed_degree_is_measured_by_a_higher_one_and_any_other_by_lower_ones():
-    assert levels(5, 1, True) == [(6, 1), (5, 1)]
-    assert levels(5, 2, False) == [(3, 2), (4, 2), (5, 2)]

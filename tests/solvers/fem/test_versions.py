@@ -1,8 +1,5 @@
 """The same numbers on one stored mesh whatever version of dolfinx and PETSc is installed."""
 
-import inspect
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -12,7 +9,6 @@ from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, QuadMesh
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.recovery import contact_recovery, from_moments
-from galinx.solvers.fem import versions
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -40,12 +36,3 @@ def test_the_stored_mesh_has_the_same_intensities(c):
     found = from_moments(punch.states(-0.66).normal @ recovery.moments, local.α, local.β).K_I[0]
     punch.destroy()
     np.testing.assert_allclose(found, K_I[c], rtol=1e-9)
-
-
-def test_what_differs_between_versions_is_in_one_module():
-    """No code branches on a version number, which only the cache's key contains."""
-    source, key = (inspect.getsource(part) for part in (versions, versions._place))
-    assert "__version__" in key and "__version__" not in source.replace(key, "")
-    for path in Path(versions.__file__).parent.glob("*.py"):
-        if path.name != "versions.py":
-            assert "dolfinx.cpp" not in path.read_text(encoding="utf-8"), path.name

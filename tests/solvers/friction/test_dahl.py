@@ -34,13 +34,6 @@ def test_the_rate_is_that_of_the_studys_equation():
         assert law.rate(np.array([f]), s)[0] == pytest.approx(s * 25000.0 * y**1.5, rel=1e-14)
 
 
-def test_full_slip_is_reached_after_a_finite_distance_for_δ_below_one():
-    law = Dahl(0.7, 25000.0, 0.5)
-    distance = 2.0 * law.μ_C / law.λ
-    assert exact(law, 0.0, 1, 0.99 * distance) < law.μ_C
-    assert exact(law, 0.0, 1, 1.01 * distance) == law.μ_C
-
-
 def test_runge_kutta_converges_with_order_four():
     law, length = Dahl(0.7, 25000.0, 1.5), 1e-4
     end = exact(law, 0.0, 1, length)

@@ -98,15 +98,6 @@ def test_laws_of_many_numbers_leave_little_more_than_noise(name, seed):
     assert found.rms <= 1.1 * NOISE
 
 
-def test_without_noise_the_parameters_are_found_to_the_last_digits():
-    t, X = motion(ONE)
-    true = {"mu_c": 0.4, "sigma0_over_load": 2.2e4, "delta": 0.7}
-    way = moves(t, X, False)
-    f = friction(build_model(LAWS["dahl"], true), way, len(t))
-    found = fit(LAWS["dahl"], [Measured(t, X, f)], {}, {})
-    np.testing.assert_allclose(found.best, [*true.values()], rtol=1e-7)
-
-
 def test_deviations_are_those_of_repeated_measurements():
     t, X = motion(ONE, 150)
     way, kind = moves(t, X, False), LAWS["dahl"]

@@ -129,16 +129,6 @@ def test_laws_that_are_limits_of_others(name, own, limit, those, changed):
     assert off({}) <= 1e-12 and off(changed) > 1e-3
 
 
-def test_generalised_maxwell_slip_at_vanishing_speed_is_maxwell_slip():
-    law = of("gms", elements=ELEMENTS, attraction_rate=10.0, **CURVE | {"mu_s": 0.5})
-    larger = of("maxwell_slip", elements=tuple((k, 1.25 * μ) for k, μ in ELEMENTS))
-    z, w, d = law.rest(), larger.rest(), np.linspace(0.0, 1e-4, 9)
-    for s in (1, -1, 1):
-        z, w = (one.exact(state[-1] if state.ndim > 1 else state, s, 0.0, d)
-                for one, state in ((law, z), (larger, w)))  # fmt: skip
-        np.testing.assert_allclose(law.friction(z, s, 0.0), larger.friction(w, s), atol=1e-14)
-
-
 @pytest.mark.parametrize("evolution", ["ageing", "slip"])
 @pytest.mark.parametrize("factor", [10.0, 0.1])
 def test_steps_of_the_speed_show_both_effects_of_rate_and_state(evolution, factor):
@@ -162,21 +152,6 @@ def test_rate_and_state_ages_at_rest_and_has_no_steady_state_there():
     assert healed == pytest.approx(0.015 * np.log(10.0), rel=1e-12)
     with pytest.raises(ValueError, match="found the speed 0 m/s"):
         law.exact(law.rest(), 1, 0.0, np.array([1.0]))
-
-
-def test_loads_below_breakaway_do_not_let_the_elasto_plastic_law_drift():
-    """Where Dahl's law creeps under a load that never slips it, the elasto-plastic law does not."""
-    curve = CURVE | {"sigma0_over_load": 4e4}
-    creeps, stays = of("lugre", **curve), of("elasto_plastic", breakaway_ratio=0.8, **curve)
-    drift = []
-    for law in (creeps, stays):
-        z = exactly(law, law.rest(), 1, 1e-4, 6e-6, np.array([6e-6]))[-1]
-        first = z
-        for _ in range(20):
-            for s in (-1, 1):
-                z = exactly(law, z, s, 1e-4, 3e-6, np.array([3e-6]))[-1]
-        drift.append(abs(float(z[0] - first[0])))
-    assert drift[0] > 1e-2 and drift[1] <= 1e-13
 
 
 @pytest.mark.parametrize(

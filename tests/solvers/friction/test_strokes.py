@@ -41,13 +41,6 @@ def test_the_last_closed_cycle_is_the_shortest_one_that_ends_the_motion(strokes,
     assert last_cycle(legs(strokes)) == first
 
 
-def test_both_integrators_agree_on_all_strokes():
-    law, X = Dahl(0.7, 25000.0), [0.0, 0.2, 0.33, 0.8, 1.0]
-    by_steps = friction_along(law, STROKES, 1e-4, X, integrator="rk4")
-    for found, wanted in zip(by_steps, friction_along(law, STROKES, 1e-4, X)):
-        np.testing.assert_allclose(found.f, wanted.f, atol=2e-5)
-
-
 @dataclass(frozen=True)
 class Spring(FrictionLaw):
     """Two springs in a row with sliders, f = z₀ + z₁, that give as the speed rises: the rate alone."""

@@ -11,7 +11,7 @@ from layers_reference import admittance, plane_strain, punch
 from scipy.special import eval_jacobi
 from support import THOROUGH
 
-from galinx.solvers.contact.closed_form import FlatPunch, contacts
+from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import weights_hilbert
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import (
@@ -70,38 +70,6 @@ def test_panels_find_the_example_too(V2):
     assert np.abs(read(one) - EXAMPLE[V2]).max() <= 1e-10
 
 
-def test_a_thick_layer_is_the_coating_alone():
-    """What the substrate does falls like a/H."""
-    off = []
-    for H in (10.0, 100.0):
-        one = converged_pressure(
-            equation(Layered((Layer(H, COAT),), SUBSTRATE), 0.2, -0.4), 1e-11
-        ).pressure
-        exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
-        off.append(np.abs(-0.5 * one.series(ENDS) / exact.K_I - 1.0).max())
-    assert off[0] <= 0.05 and 9.0 < off[0] / off[1] < 12.0
-
-
-def test_graded_solid_that_does_not_change_is_uniform():
-    almost = Isotropic(7.5 * (1.0 + 1e-9), 0.3, 1.2)
-    one = converged_pressure(
-        equation(Layered((Layer(1.0, COAT, almost),), COAT), 0.2, -0.4, tolerance=1e-10), 1e-8
-    )
-    exact = FlatPunch(COAT.response(0.2**0.5 / COAT.c_s), -0.4)
-    assert np.abs(-0.5 * one.pressure.series(ENDS) - exact.K_I).max() <= 1e-8
-
-
-@pytest.mark.parametrize("H", [0.1, *(0.01,) * THOROUGH])
-def test_thin_coatings_tend_to_the_substrate(H):
-    """The middle of the contact sees the substrate the more the thinner the coating."""
-    solid = Layered((Layer(H, COAT),), SUBSTRATE)
-    one = converged_pressure(equation(solid, 0.2, 0.0, tolerance=1e-8), 1e-5).pressure
-    exact = FlatPunch(SUBSTRATE.response(0.2**0.5), 0.0)
-    r = np.linspace(-0.5, 0.5, 5)
-    σ = (1.0 - r) ** one.α * (1.0 + r) ** one.β * one.series(r)
-    assert np.abs(σ / exact.σ_YY(r) - 1.0).max() <= 2.0 * H
-
-
 def test_frictions_between_are_interpolated_within_the_tolerance():
     solid = Layered((Layer(1.0, COAT),), SUBSTRATE)
     response = solid.response(0.3)
@@ -127,16 +95,6 @@ def test_panels_have_the_hilbert_transform_of_polynomials():
     by_panels, expected = Expansion(α, β, p, panels), Expansion(α, β, c, polynomials)
     np.testing.assert_allclose(by_panels.σ_YY(X), expected.σ_YY(X), rtol=1e-11)
     np.testing.assert_allclose(by_panels.hilbert(X), expected.hilbert(X), rtol=1e-10)
-
-
-def test_next_to_free_ends_a_pressure_goes_on_as_it_does_farther_away():
-    panels, rng = Panels(-0.45, -0.55, 0.3), np.random.default_rng(0)
-    left, right = (2.0 / (1.0 + np.exp(side * panels.x)) for side in (-1.0, 1.0))
-    exact = (
-        left * right * np.exp(panels.t) * (1.0 + 0.2 * left * np.log(left) - 0.3 * right * np.log(right))
-    )
-    continued = panels.continued(exact + 1e-14 * rng.uniform(-1.0, 1.0, len(exact)), (True, True))
-    np.testing.assert_allclose(continued, exact, rtol=1e-6)
 
 
 @pytest.mark.parametrize("terms, limit", [(20, 1e-10), (60, 1e-10), (150, 1e-10), (300, 1e-9)])
@@ -342,12 +300,13 @@ def test_a_contact_wider_than_what_is_known_of_the_punch_is_refused(side):
         speed.contact(0.0)
 
 
-def test_free_ends_over_a_graded_top_settle_with_few_unknowns():
+@pytest.mark.parametrize("tolerance", [1e-4, *(1e-6,) * THOROUGH])
+def test_free_ends_over_a_graded_top_settle_with_few_unknowns(tolerance):
     """Next to them the pressure varies over the length of the grading; |X|⁴ has no kink to resolve."""
     soft, hard = Isotropic(32e9, 0.3, 4000.0), Isotropic(155e9, 0.25, 5000.0)
     solid = Layered((Layer(3e-4, soft, hard),), Isotropic(1e11, 0.3, 4000.0))
     body = make_contact(solid, Power(4.0, 1e6), 2.4e4)
     response = body.response(0.3 * solid.limit())
-    contact = under_punch(body, response, 1e-6).contact(-0.7)
-    assert contact.change <= 2.5e-7
+    contact = under_punch(body, response, tolerance).contact(-0.7)
+    assert contact.change <= 0.25 * tolerance
     assert contact.pressure.functions.finest > 0.3 and contact.pressure.kinks == ()

@@ -12,7 +12,7 @@ from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.kernel import Level, spherical_bessel, transform
+from galinx.solvers.layers.kernel import Level, transform
 from galinx.solvers.layers.layered import Layer, Layered, dispersion, weakest
 from galinx.solvers.layers.stiffness import inverse, least
 from galinx.solvers.solids.isotropic import Isotropic
@@ -181,14 +181,6 @@ def test_fourier_integrals_are_exact():
         transform(lambda k: np.ones((len(k), 1), dtype=complex), 0.2, 1e-13)
 
 
-def test_spherical_bessel_functions():
-    from scipy.special import spherical_jn
-
-    z = np.concatenate([[0.0, 1e-10, 1e-4], np.linspace(0.05, 60.0, 400)])
-    exact = np.stack([spherical_jn(n, z) for n in range(16)], axis=-1)
-    assert np.abs(spherical_bessel(16, z) - exact).max() <= 1e-14
-
-
 @pytest.mark.parametrize("E", [*[1.2] * THOROUGH, 6.0])
 def test_a_graded_layer_is_no_faster_than_its_slowest_face(E):
     """Waves much shorter than the layer run along its softer face, here inside, with its shear speed."""
@@ -197,17 +189,6 @@ def test_a_graded_layer_is_no_faster_than_its_slowest_face(E):
     limit = solid.limit() * solid.c_s / soft.c_s
     assert 1.0 - 2e-3 < limit < 1.0
     assert weakest(solid.response(0.9999 * solid.limit()).stack(1.0))[0] > 0.0
-
-
-def test_what_gives_way_below_is_not_followed_further():
-    """The stiffness is that of all waves that stand, and says which do not."""
-    solid = heavy()
-    k = np.geomspace(0.01, 30.0, 60)
-    stack = solid.response(1.02 * solid.limit()).stack(1.0)
-    found = stack.min_stiffness(k)
-    alone = np.array([stack.min_stiffness(one)[0] for one in k[:, None]])
-    assert np.array_equal(found, alone)
-    assert (found > 0.0).any() and (found < 0.0).any()
 
 
 X = np.linspace(-3.0, 3.0, 25)
@@ -276,18 +257,6 @@ def carried(solid, V2, k, slices):
 
 def curve(solid, k):
     return dispersion(lambda c: solid.response(c).stack(1.0), 1.0, k, 1e-8)
-
-
-def test_waves_along_one_solid_have_one_speed():
-    solid = Layered((Layer(0.7, COAT),), COAT)
-    assert curve(solid, np.array([0.1, 1.0, 10.0])) == pytest.approx(COAT.limit(), rel=1e-7)
-
-
-def test_long_waves_see_the_substrate_and_short_ones_the_coating():
-    solid = Layered((Layer(1.0, SUBSTRATE),), Isotropic(2.6, 0.25, 1.0))
-    found = curve(solid, np.array([1e-4, 50.0]))
-    ends = [(2.6 / 2.5) ** 0.5 * SUBSTRATE.limit(), SUBSTRATE.limit()]
-    assert found == pytest.approx(ends, rel=1e-3)
 
 
 def test_stiff_coatings_make_waves_faster_until_none_is_left():

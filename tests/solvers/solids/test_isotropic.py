@@ -14,10 +14,6 @@ def test_rayleigh_speed_of_the_references(references):
         assert rayleigh_speed(solid.κ) == pytest.approx(float(entry["c_R_over_c_s"]), rel=1e-12)
 
 
-def test_rayleigh_speed_of_ν_one_quarter_is_exact():
-    assert rayleigh_speed(2.0) == pytest.approx(np.sqrt(2.0 - 2.0 / np.sqrt(3.0)), rel=1e-15)
-
-
 @pytest.mark.parametrize("c", [0.1, 0.3, 0.6, 0.9])
 @pytest.mark.parametrize("κ", [1.2, 2.0, 2.9])
 def test_constants_agree_with_the_fourier_solution(κ, c):
@@ -47,12 +43,6 @@ def test_ω_of_the_study_are_those_of_the_fourier_solution():
     κ = 2.2
     n, q, m = (4.0 / (κ + 1.0) * value for value in surface_response(κ, 0.6))
     assert MovingFrame(κ, 0.6).ω == pytest.approx((n / np.pi, q, m / np.pi, q), rel=1e-11)
-
-
-def test_constants_at_rest():
-    frame = MovingFrame(2.0, 0.0)
-    assert (frame.n, frame.q, frame.m) == pytest.approx((0.75, 0.25, 0.75), rel=1e-15)
-    assert np.pi * frame.ω[0] == pytest.approx(1.0) and frame.ω[1] == pytest.approx(1.0 / 3.0)
 
 
 def test_material_of_the_study():

@@ -5,7 +5,6 @@ from itertools import product
 import numpy as np
 import pytest
 from random_solids import random_solid
-from scipy.interpolate import make_interp_spline
 from starts import SOLID, by_integral_equation
 from support import THOROUGH
 
@@ -71,54 +70,6 @@ def test_steady_motion_goes_on(marching):
     np.testing.assert_allclose(found.centre, steady.β - steady.α, rtol=1e-10)
     np.testing.assert_allclose([found.K_left, found.K_right], steady.K_I, rtol=1e-10)
     np.testing.assert_allclose(found.work_of_friction, 0.0, atol=1e-12)
-
-
-def transformed_by_a_ladder(solid, c, g0, g1, s, λ, ramp, rungs, terms):
-    """Of v₀ and the pressure's first moment where g = g0 + g1 e^(-λt), without any steps in time.
-
-    Laplace's transform of e^(-λt) σ is that of σ at s + λ, so that each s asks for the next; far away the
-    load has hardly any. All pressures have the exponents of the middle.
-    """
-    response = solid.response(c)
-    at = s + λ * np.arange(rungs)
-    t, w = np.polynomial.legendre.leggauss(60)
-    t, w = (t + 1.0) * ramp / 2.0, w * ramp / 2.0
-    loads = np.exp(-np.multiply.outer(at, t)) @ (w * smooth(t, ramp)) + np.exp(-at * ramp) / at
-    whole = Transformed(response, solid.limit(), at.astype(complex), terms)
-    basis = Basis(response, g0 + g1 / 2.0, terms)
-    by_g = [Basis(response, g, terms) for g in (0.0, 1.0)]
-    for one in by_g:
-        one.pressure = basis.pressure  # the same pressures under another friction
-    A, both = (whole.sinking(one, basis.tests).real for one in by_g)
-    B, known = both - A, np.zeros(terms)
-    for n in range(rungs - 1, -1, -1):
-        matrix, right = np.zeros((terms + 1, terms + 1)), np.zeros(terms + 1)
-        matrix[:-1, :-1] = A[n] + g0 * B[n]
-        matrix[0, -1], matrix[-1, 0] = basis.tests.integral, basis.pressure.integral
-        right[:-1], right[-1] = -g1 * B[n] @ known, -2.0 * loads[n]
-        x = np.linalg.solve(matrix, right)
-        known = x[:-1]
-    return x[-1], known @ basis.moments[:, 1]
-
-
-def transformed(t, s, values):
-    """∫ e^(-st) values dt from rest at t = 0."""
-    curve = make_interp_spline(np.append(0.0, t), np.append(0.0, values), 5)
-    x, w = np.polynomial.legendre.leggauss(200)
-    x, w = (x + 1.0) * t[-1] / 2.0, w * t[-1] / 2.0
-    return (w * np.exp(-s * x)) @ curve(x)
-
-
-def test_a_ladder_of_transforms_says_the_same():
-    """Friction 0.1 + 0.5 (1 - e^(-1.3t)) leaves at s = 3 what is over by t = 5."""
-    g0, g1, λ, s = -0.6, 0.5, 1.3, 3.0
-    found = by_integral_equation(SOLID, 0.6, lambda t: g0 + g1 * np.exp(-λ * t), 5.0, 30)
-    moment = -2.0 * found.load * found.centre
-    v0, first = transformed_by_a_ladder(SOLID, 0.6, g0, g1, s, λ, 3.0, 16, 14)
-    _, other = transformed_by_a_ladder(SOLID, 0.6, g0, 0.0, s, λ, 3.0, 1, 14)
-    assert abs(transformed(found.t, s, found.v0) / v0 - 1.0) < 1e-4
-    assert abs(transformed(found.t, s, moment) / first - 1.0) < 1e-4
-    assert abs(other / first - 1.0) > 0.05
 
 
 def test_the_residual_falls_with_the_steps():

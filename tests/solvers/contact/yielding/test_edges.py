@@ -7,7 +7,6 @@ from loaded import under, yield_of
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import von_mises
-from galinx.solvers.contact.yielding import circles
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
@@ -60,16 +59,3 @@ def test_no_place_of_a_fine_grid_yields_farther(g, c, strength):
 def test_what_no_solid_carries_has_no_reach():
     found = flat([0.3, 0.1], 0.0, 1e-3)
     assert np.isnan(found.reach).all() and np.isnan(found.depth).all()
-
-
-def test_faint_edges_reach_nowhere_and_are_no_error():
-    found = flat([0.9], 0.0, 1e200)
-    assert (found.reach >= 0.0).all() and (found.reach < 1e-99).all()
-
-
-def test_places_around_a_centre_are_on_circles_below_the_surface():
-    at, apart = circles(np.array([[0.5]]), 1e-3)
-    X, Y = at[0].T
-    radii = np.hypot(X - 0.5, Y)
-    assert Y.max() == 0.0 and radii.max() == pytest.approx(1.0) and 3e-4 < radii.min() <= 1e-3
-    np.testing.assert_allclose(apart / radii, apart[0])

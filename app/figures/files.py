@@ -32,10 +32,8 @@ _KINDS = ("figure", FORMATS), ("film", OF_FILMS)
 USUAL = ("pdf", "png")
 #: The picture that moves.
 FILM = "film"
-#: Frames a second, and dots per inch, which screens show.
-RATE, FILM_DPI = 8, 160
-#: Dots per inch of notebooks, and those that a file may have.
-_DPI, _RESOLUTIONS = 110, range(30, 2401)
+#: Frames a second, and dots per inch, which screens show; and dots per inch that a file may have.
+RATE, FILM_DPI, _RESOLUTIONS = 8, 160, range(30, 2401)
 #: Formats that other programs make of PDF, and of PNG.
 _CONVERTED = {
     **dict.fromkeys(("eps", "ps", "emf"), "pdf"),
@@ -99,26 +97,6 @@ def can_write(ending: str) -> bool:
     return ending == "gif" or shutil.which("ffmpeg") is not None
 
 
-def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, bytes]:
-    """Write figures by name into a folder in the usual formats; none where one may not be written.
-
-    Returns:
-        The pixels of each by name, as PNG, for pages.
-
-    Raises:
-        Occupied: something is there that may not be replaced.
-        UnwritableArchive: the file system refused.
-    """
-    made = {
-        folder.target(f"{name}.{ending}", FORMATS[ending]): content(figure, ending)
-        for name, figure in figures
-        for ending in USUAL
-    }
-    for target, data in made.items():
-        target.write(data)
-    return {t.path.stem: data for t, data in made.items() if t.path.suffix == ".png"}
-
-
 def embedded(data: bytes, kind: str = "png") -> str:
     """Data URI of the bytes of a picture's file, for a page."""
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
@@ -126,7 +104,7 @@ def embedded(data: bytes, kind: str = "png") -> str:
 
 def for_notebook(figure: Figure) -> Figure:
     """Figure that notebooks can show, which otherwise know only figures of pyplot."""
-    figure._repr_png_ = lambda: content(figure, "png", _DPI)  # type: ignore[attr-defined]
+    figure._repr_png_ = lambda: content(figure, "png", 110)  # type: ignore[attr-defined]
     return figure
 
 
@@ -137,11 +115,13 @@ class Written(NamedTuple):
         path: its name.
         noun: what it is.
         left_out: which states it does not show and how to draw them.
+        data: its bytes.
     """
 
     path: Path
     noun: str
     left_out: str
+    data: bytes
 
 
 @dataclass(frozen=True)
@@ -201,11 +181,6 @@ class Files:
                 f"{', '.join(names)}; or name a folder"
             )
 
-    def endings(self, name: str) -> tuple[str, ...]:
-        """Formats of a figure."""
-        usual = ("mp4" if can_write("mp4") else "gif",) if name == FILM else USUAL
-        return (self.ending,) if self.ending else self.formats or usual
-
     def write(self, drawings: Iterable[Drawing]) -> list[Written]:
         """Write figures and films; none where one cannot be written.
 
@@ -213,14 +188,16 @@ class Files:
             Occupied: something is there that may not be replaced.
             UnwritableArchive: the file system refused.
         """
-        folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
-        made: list[tuple[Target, bytes, Written]] = []
+        one = self.ending
+        folder = None if one else Folder(self.to, self.overwrite, self.inputs)
+        made: list[tuple[Target, Written]] = []
         for drawing in drawings:
             noun, kinds = _KINDS[drawing.film is not None]
-            for ending in self.endings(drawing.name):
-                called = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
+            usual = ("mp4" if can_write("mp4") else "gif",) if drawing.film else USUAL
+            for ending in (one,) if one else self.formats or usual:
+                name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
                 target = (
-                    folder.target(called, kinds[ending])
+                    folder.target(name, kinds[ending])
                     if folder
                     else Target(self.to, kinds[ending], self.overwrite, self.inputs)
                 )
@@ -229,7 +206,7 @@ class Files:
                     if drawing.film
                     else content(drawing.figure, ending, self.dpi or DPI)
                 )
-                made.append((target, data, Written(target.path, noun, drawing.left_out)))
-        for target, data, _ in made:
-            target.write(data)
-        return [written for *_, written in made]
+                made.append((target, Written(target.path, noun, drawing.left_out, data)))
+        for target, written in made:
+            target.write(written.data)
+        return [written for _, written in made]

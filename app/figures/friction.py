@@ -12,6 +12,7 @@ from galinx.postprocess.quantities import column, preferred, runs
 from galinx.postprocess.quantities.states import RESULTANT_RATIO
 from galinx.postprocess.tables import states_of_sliders
 from galinx.postprocess.units import prefixed
+from galinx.solvers.friction.fit import Measured
 from galinx.solvers.friction.motion import names
 
 from .choice import Archive, C, Drawing, N, fewer, named, spread
@@ -227,28 +228,27 @@ def slider(of: Archive) -> Drawing:
     return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
 
 
-def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool) -> Any:
+def fitted_figure(measured: Measured, law: NDArray, timed: bool) -> Any:
     """Figure of friction over position, and the residuals over time or slip.
 
     Args:
-        t: time [s], (samples,).
-        X: position [m], (samples,).
-        f: measured friction coefficient, (samples,).
+        measured: time, position and friction coefficient, (samples,) each.
         law: friction coefficient of the law, NaN where it has none, (samples,).
         timed: time was measured.
     """
+    t, X, f = measured.t, measured.X, measured.f
     unit, of_si = prefixed("m", float(np.ptp(X)))
-    measured, fitted = Look(COLOURS[0], "none", "."), Look(COLOURS[1], "-", "")
+    dots, line = Look(COLOURS[0], "none", "."), Look(COLOURS[1], "-", "")
     over, label = (t, "time (s)") if timed else (X / of_si, f"slip ({unit})")
     return render([
         Panel(
             f"position ({unit})" if timed else f"slip ({unit})", "friction coefficient $f$",
             curves=[
-                Curve(X / of_si, f, measured, "measured", DOTS), Curve(X / of_si, law, fitted, "fitted"),
+                Curve(X / of_si, f, dots, "measured", DOTS), Curve(X / of_si, law, line, "fitted"),
             ],
         ),
         Panel(
             label, "measured less fitted $f$", at_y=(0.0,),
-            curves=[Curve(over, f - law, measured, "", DOTS)],
+            curves=[Curve(over, f - law, dots, "", DOTS)],
         ),
     ], high=0.66)  # fmt: skip

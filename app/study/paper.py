@@ -185,7 +185,7 @@ def _draw(
 ) -> str:
     """Write the figures; the report, with all of them and all tables."""
     from ..figures.choice import Archive, Choice
-    from ..figures.files import save
+    from ..figures.files import Files
     from ..figures.numerics import mesh
     from ..figures.stresses import inside as draw_inside
     from ..results.report import page, picture
@@ -197,7 +197,8 @@ def _draw(
         drawings.append(drawing)
     drawings.append(draw_inside(Archive(inside.data, inside.scene, plain)))
     drawings.append(mesh(Archive(study.data, study.scene, plain)))
-    pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
+    written = Files(folder.path, overwrite=folder.overwrite, inputs=folder.inputs).write(drawings)
+    pixels = {file.path.stem: file.data for file in written if file.path.suffix == ".png"}
     pictures = [picture(drawing, pixels[drawing.name]) for drawing in drawings]
     return page(study.data, study.attributes, study.scene, pictures, sheets, dimensionless=True)
 

@@ -19,10 +19,10 @@ from .choice import Archive, C, Drawing, N, fewer, named, spread
 from .render import DOTS, Curve, Panel, Size, across, note, render
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 
-#: Axes of a loop.
-X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
+#: Axis of friction.
+F_LABEL = "friction coefficient $f = F/N$"
 #: Loops that can be told apart in a panel, and sliders in a figure.
-_LOOPS, _SLIDERS = 6, 6
+_LOOPS = 6
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Loops:
     @property
     def few(self) -> list[Loop]:
         """The first loops, as many as a panel tells apart."""
-        return [loop for loop in (self.of(int(i)) for i in self.first[:_LOOPS]) if loop]
+        return [loop for loop in map(self.of, self.first[:_LOOPS].tolist()) if loop]
 
     def panel(self, states: Sequence[int], called: Sequence[str], title: str = "") -> Panel:
         """A panel with the loops of some states, each once."""
@@ -126,7 +126,7 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
             x, y, width = loop.X_over_L[part], loop.f[part], 1.0 + 1.2 * again
             curves.append(Curve(x, y, own, label, width=width, arrows=arrows))
     return Panel(
-        X_LABEL, F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
+        "position on the stroke $X/L$", F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
         ylim=(low - margin, high + margin), at_y=(0.0,),
     )  # fmt: skip
 
@@ -192,7 +192,7 @@ def slider(of: Archive) -> Drawing:
     """Figure of an archive's sliders, one for each load and law, of some of them where they are many."""
     data, scene, choice = of.data, of.scene, of.choice
     loops, count = Loops(of), len(data[runs.PERIOD.path])
-    laws = spread(list(range(count)), _SLIDERS)
+    laws = spread(list(range(count)), _LOOPS)
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
     states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)

@@ -17,9 +17,6 @@ from ..errors import BadInput, listed, short
 from ..scene.changes import differences
 from .result import Result
 
-#: Characters of a narrow column, and decimals of parameters that pair states.
-_NARROW, _DIGITS = 18, 9
-
 
 class Comparison:
     """States of results, paired by the parameters that vary in them, or else by their order.
@@ -55,7 +52,11 @@ class Comparison:
                     f"have a partner: {listed([str(i) for i in self.pairs[:, 0]])}"
                 )
             self.pairs = self.pairs[np.isin(self.pairs[:, 0], chosen)]
-        tables = [_by_head(state_columns(r.data, u)) for r, u in zip(results, self.units)]
+        # By their heads, places by what they are places of as well: methods do not matter.
+        tables = [
+            {(c.owner.head, c.head) if c.owner else (c.head,): c for c in state_columns(r.data, u)}
+            for r, u in zip(results, self.units)
+        ]
         #: Columns of each result by head, in the rows of the pairs; None where a result has none.
         self._rows: dict[tuple[str, ...], list[Column | None]] = {
             key: [
@@ -131,15 +132,14 @@ class Comparison:
 
     def sheets(self) -> Iterator[Sheet]:
         """A table for each pair of states, results side by side; of many the first."""
-        heads = [textwrap.fill(self.labels[0], _NARROW)]
-        for label in self.labels[1:]:
-            heads += [textwrap.fill(label, _NARROW), "difference\n[%]"]
+        first, *others = (textwrap.fill(label, 18) for label in self.labels)
+        heads = [first, *(head for label in others for head in (label, "difference\n[%]"))]
         shown = []
         for key, columns in self._rows.items():
             if not self._pairs(columns):
                 texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
-                first = next(column for column in columns if column)
-                shown.append((first, [*zip(*texts)], self._off[key]))
+                column = next(column for column in columns if column)
+                shown.append((column, [*zip(*texts)], self._off[key]))
         for p, title in enumerate(self.titles[:LIMIT]):
             rows = []
             for column, texts_of_pairs, percents in shown:
@@ -219,16 +219,6 @@ def _is_number(column: Column) -> bool:
     return column.unit != "none" and not isinstance(column.values[0], str)
 
 
-def _by_head(columns: Sequence[Column]) -> dict[tuple[str, ...], Column]:
-    """Columns by their heads, places by what they are places of as well: methods do not matter."""
-    table: dict[tuple[str, ...], Column] = {}
-    of = ""
-    for column in columns:
-        of = of if column.place else column.head
-        table[(of, column.head) if column.place else (of,)] = column
-    return table
-
-
 def _labels(results: Sequence[Result]) -> list[str]:
     """Titles of results, or names of their files, or numbers: the first of these that differ."""
     titles = [str(result.attributes["title"]) for result in results]
@@ -267,4 +257,4 @@ def _paired(results: Sequence[dict[str, Any]], over_c_s: bool) -> tuple[list[str
 
 def _values(data: dict[str, Any], path: str) -> list[Any]:
     values = np.asarray(data[path]).tolist()
-    return [float(f"{v:.{_DIGITS}g}") if isinstance(v, float) else v for v in values]
+    return [float(f"{v:.9g}") if isinstance(v, float) else v for v in values]

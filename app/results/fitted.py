@@ -27,7 +27,7 @@ from galinx.texts import with_prefix
 from ..console import Progress
 from ..errors import BadInput, excerpt, listed, nearest, short
 from ..scene import read as scenes
-from ..scene.values import Choice, Number, Rows
+from ..scene.values import Number, kind_of
 from ..text_table import read_table
 
 #: Names of columns by what they are; a friction with a unit of force is a force.
@@ -366,17 +366,14 @@ def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in given.items():
         if key not in declared:
             raise BadInput(f"found {short(key)!r}, expected KEY=VALUE with {', '.join(declared)}")
-        parameter = declared[key]
         try:
-            if parameter.options:
-                values[key] = Choice(parameter.options)(value)
-            elif parameter.columns:
+            if declared[key].columns:
                 table = json.loads(value) if isinstance(value, str) else value
-                values[key] = Rows(parameter.columns)([list(row) for row in table])
-            else:
+                value = [list(row) for row in table]
+            elif not declared[key].options:
                 with suppress(TypeError, ValueError):  # else a text with a unit
                     value = float(value)
-                values[key] = Number(parameter.unit, parameter.range)(value)
+            values[key] = kind_of(declared[key])(value)
         except ValueError as error:
             raise BadInput(f"{key}: {error}") from None
     return values

@@ -40,13 +40,7 @@ from ..console import program
 from ..figures.choice import Archive, Choice, Drawing, spread
 from ..figures.files import content, embedded
 from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_along
-from ..figures.stresses import (
-    SHOWN,
-    Fields,
-    map_names,
-    stresses_along,
-    surface_panels,
-)
+from ..figures.stresses import SHOWN, Fields, map_names, stresses_along, surface_panels
 from ..figures.style import as_hex
 from ..plan.plan import by_reason
 from ..scene.scene import Scene

@@ -113,11 +113,11 @@ def cli(extensions: tuple[Path, ...]) -> None:
         extend(path)
 
 
-for _command in (
-    *begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS
-):  # fmt: skip
-    _command.help = as_called(_command.help)
-    cli.add_command(_command)
+for _room in (begin, compute, look):
+    for _command in vars(_room).values():
+        if isinstance(_command, click.Command):
+            _command.help = as_called(_command.help or "")
+            cli.add_command(_command)
 
 
 def run_from_shell() -> None:

@@ -3,7 +3,6 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -161,6 +160,3 @@ def fit(
         hint = f"{program()} run {scene_name}"
         print(f"next: {hint if new else f'put the section into a scene, with --into, then {hint}'}")
     return errors.GOOD
-
-
-COMMANDS: tuple[Any, ...] = (init, materials, schema, fit)

@@ -392,8 +392,3 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
     target.write(piece.encode() for piece in pieces(archive, chosen[0], dimensionless))
     print(f"table: {output}")
     return errors.GOOD
-
-
-COMMANDS: tuple[Any, ...] = (
-    show, compare, check, report, fields, plot, dispersion, response, csv,
-)  # fmt: skip

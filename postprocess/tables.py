@@ -460,10 +460,9 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
     ]
     shown = [column for column in columns if column not in same]
     notes = [f"and {count - LIMIT} more states; csv and show --json list all"] if count > LIMIT else []
-    told = [c for c in same if not (c.name in ("motion", "X_over_L") and count == 1)]
-    told = [c for c in told if c.name != "motion" or not c.values[0].startswith("FM")]
-    if told:
-        notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in told)}")
+    named = [c for c in same if c.name != "motion" or not c.values[0].startswith("FM")]
+    if count > 1 and named:
+        notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in named)}")
     notes += _notes(data, units, shown)
     return replace(layout(title or "States", count, shown, width), notes=notes)
 

@@ -102,12 +102,6 @@ def embedded(data: bytes, kind: str = "png") -> str:
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
 
 
-def for_notebook(figure: Figure) -> Figure:
-    """Figure that notebooks can show, which otherwise know only figures of pyplot."""
-    figure._repr_png_ = lambda: content(figure, "png", 110)  # type: ignore[attr-defined]
-    return figure
-
-
 class Written(NamedTuple):
     """A file that was written.
 

@@ -1,5 +1,5 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
-inside; friction along the contact; and stresses of several archives, one over the other."""
+inside; and friction along the contact."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -29,7 +29,6 @@ from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, m
 from galinx.solvers.contact.stresses import maximum_shear
 from galinx.texts import number, plain
 
-from ..errors import BadInput
 from ..plan.variants import of_state
 from .choice import (
     Archive,
@@ -38,14 +37,13 @@ from .choice import (
     N,
     both,
     explained,
-    fewer,
     named,
     require_one_of,
     short_name,
     spread,
     states_for_panel,
 )
-from .render import JOINED, LINE, MARKERS, Map, Panel, Size, TooSmall, across, note, render, spaced
+from .render import JOINED, LINE, MARKERS, Map, Panel, Size, across, note, render, spaced
 from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 
 #: Curves that can be told apart in a panel, those that are each of several lines, columns of a page, and
@@ -262,54 +260,6 @@ def _groups(of: Archive, states: NDArray, width: float) -> list[tuple[str, list[
             names, group = states_for_panel(of, names, group, _CURVES)
         groups.append((of.label(int(group[0]), [by]), of.ordered(group).tolist(), names))
     return groups
-
-
-def compared(
-    archives: Sequence[Archive], labels: Sequence[str], pairs: Sequence[Sequence[int]],
-    titles: Sequence[str],
-) -> Drawing:  # fmt: skip
-    """Contact pressure and in-plane stress of states, colours by archive and lines by state.
-
-    Args:
-        archives: what to draw, in the same units.
-        labels: of the archives.
-        pairs: a state of each archive, (pairs, archives); of many some are drawn.
-        titles: of the pairs.
-
-    Raises:
-        BadInput: an archive has no stresses along the surface, or measured points lie elsewhere.
-    """
-    for of, label in zip(archives, labels):
-        if not of.by_method(STATE, POINT):
-            raise BadInput(
-                f'{label} holds no stresses along the surface; add "surface" to output.quantities'
-            )
-    chosen, styles = spread(range(len(pairs)), 3), looks(len(archives))  # states that can be told apart
-    indices = {0x2080 + n: f"$_{n}$" for n in range(10)}  # which the type of figures lacks
-    of_all, several = [stresses_along(of) for of in archives], len(chosen) > 1
-    panels = []
-    for name in dict.fromkeys(name for stressed in of_all for name in stressed):
-        shown = [
-            Shown(
-                stressed[name], pairs[k][n],
-                look._replace(line=LINES[order % len(LINES)]) if several else look,
-                f"{label}, {titles[k].translate(indices)}" if several else label,
-                1.0 if n else 2.0,  # the first shows below others that are the same
-            )
-            for n, (stressed, look, label) in enumerate(zip(of_all, styles, labels))
-            if name in stressed
-            for order, k in enumerate(chosen)
-        ]  # fmt: skip
-        panel, measured = surface_panel(shown), archives[0].choice.measured
-        panels.append(measured.over_stress(panel, name, archives[0].units) if measured else panel)
-    notes = explained(*(along.values for stressed in of_all for along in stressed.values()))
-    try:
-        figure = render(panels, None, min(2, len(panels)), notes)
-    except TooSmall as error:
-        raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
-    left_out = fewer(len(chosen), len(pairs), "pairs of states", "; choose by --states")
-    caption = f"Stresses along the surface: {', '.join(labels)}."
-    return Drawing("compare", caption, figure, left_out=left_out)
 
 
 def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[np.float64]:

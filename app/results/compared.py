@@ -179,25 +179,59 @@ class Comparison:
     def drawing(self, measured: Any = None) -> Any:
         """Figure of contact pressure and in-plane stress, a :class:`galinx.app.figures.choice.Drawing`.
 
+        Colours are by result, and lines by pair of states, of many of the first, middle and last one.
+
         Args:
             measured: points over it, of :func:`galinx.app.figures.measured.read`; None for none.
 
         Raises:
             BadInput: a result has no stresses along the surface, or no measured point lies in the figure.
         """
-        from ..figures.choice import Archive, Choice
-        from ..figures.stresses import compared
+        from ..figures.choice import Archive, Choice, Drawing, explained, fewer, spread
+        from ..figures.render import TooSmall, render
+        from ..figures.stresses import Shown, stresses_along, surface_panel
+        from ..figures.style import LINES, looks
 
         if measured and not measured.lies_in("surface"):
             raise BadInput(
                 f"--measured {measured.name}: found {', '.join(measured.points)}, expected pressure or "
                 "sigma_XX, which compare draws"
             )
-        archives = [
-            Archive(result.data, result.scene, Choice(units=units, measured=measured))
+        stressed = [
+            stresses_along(Archive(result.data, result.scene, Choice(units=units)))
             for result, units in zip(self.results, self.units)
         ]
-        return compared(archives, self.labels, self.pairs.tolist(), self.titles)
+        if not all(stressed):
+            raise BadInput(
+                f"{self.labels[stressed.index({})]} holds no stresses along the surface; add "
+                '"surface" to output.quantities'
+            )
+        pairs, titles = self.pairs.tolist(), self.titles
+        chosen, styles = spread(range(len(pairs)), 3), looks(len(self.labels))
+        indices = {0x2080 + n: f"$_{n}$" for n in range(10)}  # which the type of figures lacks
+        panels = []
+        for name in dict.fromkeys(name for of_result in stressed for name in of_result):
+            shown = [
+                Shown(
+                    of_result[name], pairs[k][n],
+                    look._replace(line=LINES[order % len(LINES)]) if len(chosen) > 1 else look,
+                    f"{label}, {titles[k].translate(indices)}" if len(chosen) > 1 else label,
+                    1.0 if n else 2.0,  # the first shows below others that are the same
+                )
+                for n, (of_result, look, label) in enumerate(zip(stressed, styles, self.labels))
+                if name in of_result
+                for order, k in enumerate(chosen)
+            ]  # fmt: skip
+            panel = surface_panel(shown)
+            panels.append(measured.over_stress(panel, name, self.units[0]) if measured else panel)
+        notes = explained(*(along.values for of_result in stressed for along in of_result.values()))
+        try:
+            figure = render(panels, None, min(2, len(panels)), notes)
+        except TooSmall as error:
+            raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
+        left_out = fewer(len(chosen), len(pairs), "pairs of states", "; choose by --states")
+        caption = f"Stresses along the surface: {', '.join(self.labels)}."
+        return Drawing("compare", caption, figure, left_out=left_out)
 
 
 def compare(first: Result, *others: Result, dimensionless: bool = False) -> list[Column]:

@@ -30,13 +30,10 @@ SLOW, FAST = 4.786e-7, 0.6
 INTENSITIES = {"table4": "Table 4. Slow speed", "table5": "Table 5. High speed"}
 
 
-#: Kolosov's constant of the study's solid, on which alone dimensionless results depend.
-_KOLOSOV = 2.0
-
-
 def has_study_digits(solid: Solid) -> bool:
-    """Return True if dimensionless results in this solid have the study's digits."""
-    return getattr(solid, "κ", None) == _KOLOSOV
+    """Return True if dimensionless results in this solid have the study's digits: they depend on
+    Kolosov's constant alone."""
+    return getattr(solid, "κ", None) == 2.0
 
 
 def published() -> dict[str, Any]:

@@ -140,8 +140,9 @@ def table1() -> Sheet:
     )
 
 
-def table2(solid: Isotropic) -> Sheet:
+def table2(solid: Solid) -> Sheet:
     """Table 2: the solid, and what follows from it."""
+    assert isinstance(solid, Isotropic)
     printed = published()["table2"]
     rayleigh = solid.limit() * solid.c_s
     return Sheet(
@@ -272,8 +273,9 @@ def friction_sheet(laws: Iterable[Dahl], pre_sliding: float) -> Sheet:
     )
 
 
-def frame_sheet(solid: Isotropic) -> Sheet:
+def frame_sheet(solid: Solid) -> Sheet:
     """Table of the constants of the moving frame at both speeds."""
+    assert isinstance(solid, Isotropic)
     rows = []
     for name, c in (("SS", SLOW), ("HS", FAST)):
         at = solid.response(c)

@@ -215,12 +215,11 @@ class Result:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from .report import page, picture
+        from .report import page
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
-        pictures = map(picture, self.drawings(dimensionless, figures=("all",)))
-        text = page(self.data, self.attributes, self.scene, pictures, dimensionless=dimensionless)
-        target.write(text.encode())
+        drawings = self.drawings(dimensionless, figures=("all",))
+        target.write(page(self, drawings, dimensionless=dimensionless).encode())
 
     def fields(
         self,

@@ -170,7 +170,7 @@ def _draw(
     from ..figures.files import Files
     from ..figures.numerics import mesh
     from ..figures.stresses import inside as draw_inside
-    from ..results.report import page, picture
+    from ..results.report import page
     from .drawings import of_study
 
     drawings, plain = [], Choice()
@@ -181,8 +181,7 @@ def _draw(
     drawings.append(mesh(Archive(study.data, study.scene, plain)))
     written = Files(folder.path, overwrite=folder.overwrite, inputs=folder.inputs).write(drawings)
     pixels = {file.path.stem: file.data for file in written if file.path.suffix == ".png"}
-    pictures = [picture(drawing, pixels[drawing.name]) for drawing in drawings]
-    return page(study.data, study.attributes, study.scene, pictures, sheets, dimensionless=True)
+    return page(study, drawings, sheets, True, pixels)
 
 
 def _beside() -> list[Scene]:

@@ -68,8 +68,7 @@ class Choice:
 
 def short_name(row: Quantity) -> str:
     """Name of a quantity, from the beginning of its description."""
-    name = re.split(r"[,;:]| \(", row.about)[0]
-    return f"{name} over $a$" if "over the half-width" in row.about else name
+    return re.split(r"[,;:]| \(", row.about)[0]
 
 
 def words(text: str) -> tuple[str, ...]:

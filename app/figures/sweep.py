@@ -1,5 +1,6 @@
 """Numbers of an archive's states over what is swept; over two swept numbers they are maps."""
 
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -262,9 +263,7 @@ def columns_of(of: Archive, method: str | None = None) -> dict[str, Column]:
 
 def _label(row: Quantity) -> str:
     """Name of a quantity for an axis, with formulas in TeX."""
-    from re import sub
-
-    text = sub(r"\bX = (-?a)\b", r"$X = \1$", short_name(row))
+    text = re.sub(r"\bX = (-?a)\b", r"$X = \1$", short_name(row))
     text = text.replace("sigma_XX", r"$\sigma_{XX}$")
     if row.symbol:
         text = f"{text.removesuffix(plain(f'${row.symbol}$')).strip()} ${row.symbol}$"

@@ -182,13 +182,13 @@ class Files:
             Occupied: something is there that may not be replaced.
             UnwritableArchive: the file system refused.
         """
-        one = self.ending
-        folder = None if one else Folder(self.to, self.overwrite, self.inputs)
+        single = self.ending
+        folder = None if single else Folder(self.to, self.overwrite, self.inputs)
         made: list[tuple[Target, Written]] = []
         for drawing in drawings:
             noun, kinds = _KINDS[drawing.film is not None]
             usual = ("mp4" if can_write("mp4") else "gif",) if drawing.film else USUAL
-            for ending in (one,) if one else self.formats or usual:
+            for ending in (single,) if single else self.formats or usual:
                 name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
                 target = (
                     folder.target(name, kinds[ending])

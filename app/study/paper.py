@@ -191,12 +191,12 @@ def _beside() -> list[Scene]:
     tables by either assembler on one mesh.
     """
     fast = {"motion.c": FAST, "output.quantities": ["sif"]}
-    one = fast | {"motion.strokes": ["forward"], "motion.X_over_L": _PLACE}
+    state = fast | {"motion.strokes": ["forward"], "motion.X_over_L": _PLACE}
     # Only the difference of both assemblers is read off.
     fem = {"solve.methods": [FEM], "solve.degree": 6, "solve.tolerance": 1e-3}
     return [
-        scenes.read(SCENES / "box.toml", one),
-        scenes.read(SCENES / "traction.toml", one | {"output.quantities": ["sif", "surface"]}),
+        scenes.read(SCENES / "box.toml", state),
+        scenes.read(SCENES / "traction.toml", state | {"output.quantities": ["sif", "surface"]}),
         *(
             scenes.read(SCENES / "tables4_5.toml", fast | fem | {"solve.assembler": name})
             for name in ASSEMBLERS

@@ -213,7 +213,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
     resultant = columns(_Spec("resultant of the pressure", forces, 4, lambda N, _: -N, "resultant"))
     load = units.scale(of.LOAD.unit).of(np.full(count, units.load))
     results[1:1] = [c for c in resultant if not np.allclose(c.values, load, rtol=1e-6)]
-    # No punch pulls.
+    # No punch can pull: where one would, the answer does not hold.
     results += _occurring(
         columns(_Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X))
     )

@@ -175,6 +175,11 @@ class Files:
                 f"{', '.join(names)}; or name a folder"
             )
 
+    def endings(self, name: str) -> tuple[str, ...]:
+        """Formats of a figure."""
+        usual = ("mp4" if can_write("mp4") else "gif",) if name == FILM else USUAL
+        return (self.ending,) if self.ending else self.formats or usual
+
     def write(self, drawings: Iterable[Drawing]) -> list[Written]:
         """Write figures and films; none where one cannot be written.
 
@@ -182,13 +187,11 @@ class Files:
             Occupied: something is there that may not be replaced.
             UnwritableArchive: the file system refused.
         """
-        single = self.ending
-        folder = None if single else Folder(self.to, self.overwrite, self.inputs)
+        folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
         made: list[tuple[Target, Written]] = []
         for drawing in drawings:
             noun, kinds = _KINDS[drawing.film is not None]
-            usual = ("mp4" if can_write("mp4") else "gif",) if drawing.film else USUAL
-            for ending in (single,) if single else self.formats or usual:
+            for ending in self.endings(drawing.name):
                 name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
                 target = (
                     folder.target(name, kinds[ending])

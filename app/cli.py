@@ -54,13 +54,6 @@ _FAILURES = (
 )  # fmt: skip
 
 
-#: What shells say of a program whose reader went away: 128 + SIGPIPE.
-_CUT_OFF = 141
-
-#: The script in the tree, and words that it knows besides the commands.
-_SCRIPT, _OF_SCRIPT = "./run.sh", ["test", "bench", "stress", "docs"]
-
-
 #: Commands by what they are for, in the order of the help.
 _GROUPS = {
     "Begin": ("init", "materials", "fit"),
@@ -92,7 +85,8 @@ class _Commands(click.Group):
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args[0] not in self.commands:
-            commands = [*self.commands, *_OF_SCRIPT * (program() == _SCRIPT)]
+            of_script = ["test", "bench", "stress", "docs"] * (program() == "./run.sh")
+            commands = [*self.commands, *of_script]
             hint = meant(args[0], commands) or f"; {program()} --help lists the commands"
             ctx.fail(f"No such command {short(args[0])!r}{hint}")
         return super().resolve_command(ctx, args)
@@ -113,11 +107,11 @@ def cli(extensions: tuple[Path, ...]) -> None:
         extend(path)
 
 
-for _command in (
-    *begin.COMMANDS, *compute.COMMANDS, *look.COMMANDS
-):  # fmt: skip
-    _command.help = as_called(_command.help)
-    cli.add_command(_command)
+for _room in (begin, compute, look):
+    for _command in vars(_room).values():
+        if isinstance(_command, click.Command):
+            _command.help = as_called(_command.help or "")
+            cli.add_command(_command)
 
 
 def run_from_shell() -> None:
@@ -135,7 +129,7 @@ def _run() -> None:
         _stop(message, errors.BAD_INPUT)
     except (BrokenPipeError, SystemExit):  # the second is what click makes of the first
         process.too_late()
-        os._exit(_CUT_OFF)  # whoever reads has enough, as head does
+        os._exit(141)  # whoever reads has enough, as head does; what shells say then, 128 + SIGPIPE
     except ImportError as error:
         _stop(errors.unavailable(error))
     except _FAILURES as error:

@@ -65,10 +65,6 @@ class TextTable:
         except ValueError as error:
             raise BadInput(f"{self.path}, line 1, {self.names[column]}: {error}") from None
 
-    def line(self, row: int) -> int:
-        """Number of a row's line."""
-        return self.rows[row][0]
-
     def _number(self, line: int, row: list[str], column: int) -> float:
         cell = row[column] if column < len(row) else ""
         try:

@@ -30,9 +30,9 @@ from .quantities import (
     yielding,
 )
 from .quantities import states as of
-from .quantities.quantity import CONTACT, FEM, SIE, TEXT, X_OVER_A
+from .quantities.quantity import CONTACT, FEM, SIE, TEXT
 from .quantities.states import LOAD, MOTION, POSITION, SPEED
-from .units import Scaled, Units, as_archived, engineering, number, solved
+from .units import Units, as_archived, engineering, number, solved
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -50,8 +50,6 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
 
 #: Most states in a table, and most of them side by side.
 LIMIT, BESIDE = 24, 8
-#: Characters of a narrow column.
-_NARROW = 11
 
 
 @dataclass(frozen=True)
@@ -134,20 +132,27 @@ class Column:
         return text + f" {self.unit}" * bool(text and self.unit not in ("1", "none"))
 
 
-#: Size of places over a, and of stresses over N/(2a), up to which they are rounding of the methods.
-_LEAST, _LEAST_STRESS = 5e-6, 5e-8
-_STRESS = "N/(2a)"
-
-
 class _Spec(NamedTuple):
-    """Properties of a column: its head, which begins with "at" for a place of what stands before, and a
-    quantity, or one of each method; digits that are shown; and what is taken of the quantity's values in
-    an archive's data."""
+    """Properties of a column.
+
+    Attributes:
+        head: what it is, in words; it begins with "at" for a place of what stands before.
+        rows: a quantity, or one of each method.
+        digits: that are shown.
+        taken: gives the column's numbers from the quantity's values, and from an archive's data.
+        name: in tables for programs, of a column that is no dataset's; "" for that of the quantity.
+    """
 
     head: str
     rows: Quantity | Mapping[str, Quantity]
     digits: int = 4
     taken: Callable[[Any, Mapping[str, Any]], Any] = lambda values, _: values
+    name: str = ""
+
+
+def _nth(n: int) -> Callable[[Any, Any], Any]:
+    """Function that takes the numbers of one of a state's layers, strokes or instants."""
+    return lambda values, _: values[:, n]
 
 
 def _where_tension(values: Any, data: Mapping[str, Any]) -> Any:
@@ -158,28 +163,6 @@ def _where_tension(values: Any, data: Mapping[str, Any]) -> Any:
     return np.where(none, np.nan, values)
 
 
-#: What a state's row has after its parameters.
-_OF_CONTACT = (
-    _Spec("half-width", of.HALF_WIDTH),
-    _Spec("centre", of.CENTRE),
-    _Spec("peak pressure", of.LARGEST), _Spec("at X", of.LARGEST_X),
-    _Spec("largest tension σ_XX", stresses.HIGHEST, 4, _where_tension),
-    _Spec("at X", stresses.HIGHEST_X, 4, _where_tension),
-)  # fmt: skip
-_OF_STRENGTH = (
-    _Spec("largest von Mises", yielding.VON_MISES), _Spec("at X", yielding.VON_MISES_X),
-    _Spec("at Y", yielding.VON_MISES_Y),
-)  # fmt: skip
-_K_I = _Spec("K_I, left", of.K_I_LEFT), _Spec("K_I, right", of.K_I_RIGHT)
-_EXPONENTS = _Spec("exponent β, left", of.BETA), _Spec("exponent α, right", of.ALPHA)
-_INDENTATION = _Spec("indentation v₀", of.INDENTATION)
-#: Pull under the punch, which no punch exerts.
-_PULL = _Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X)
-_OF_PUNCH = (
-    _Spec("von Mises in the punch", yielding.PUNCH_VON_MISES),
-    _Spec("at X", yielding.PUNCH_VON_MISES_X), _Spec("at Y", yielding.PUNCH_VON_MISES_Y),
-    _Spec("first yield of the punch", yielding.PUNCH_FIRST_LOAD),
-)  # fmt: skip
 #: What says where answers hold, and more of yield, in a table of its own.
 _LIMITS = (
     _Spec("largest shear in the plane", yielding.SHEAR), _Spec("at X", yielding.SHEAR_X),
@@ -194,17 +177,6 @@ _LIMITS = (
     _Spec("flutter threshold, σ_XY/σ_YY > 0", validity.FLUTTER["positive"]),
     _Spec("flutter threshold, σ_XY/σ_YY < 0", validity.FLUTTER["negative"]),
 )  # fmt: skip
-#: Friction loops, of all strokes together, and sliders.
-_OF_LOOPS = (
-    _Spec("work", runs.LOOP_WORK, 5, lambda values, _: values.sum(axis=1)),
-    _Spec("work of the closed loop", runs.LOOP_CYCLE, 5),
-    _Spec("breakaway force", runs.LOOP_BREAKAWAY, 5, lambda values, _: values.max(axis=1)),
-    _Spec("stiffness", runs.LOOP_STIFFNESS, 5, lambda values, _: values[:, 0]),
-)
-_OF_SLIDERS = (
-    _Spec("period", runs.PERIOD, 6), _Spec("slip per cycle", runs.SLIP, 6),
-    _Spec("peak velocity", runs.PEAK, 6), _Spec("least velocity", runs.LEAST, 6),
-)  # fmt: skip
 
 
 def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -218,23 +190,58 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         units: of the result.
     """
     contact, count = units.contact, len(data[of.FRICTION.path])
-    results, intensities = _columns(data, units, _OF_CONTACT), _columns(data, units, _K_I)
-    indentation, pull = _columns(data, units, [_INDENTATION]), _columns(data, units, _PULL)
+
+    def columns(*specs: _Spec) -> list[Column]:
+        return _columns(data, units, specs)
+
+    results = columns(
+        _Spec("half-width", of.HALF_WIDTH),
+        _Spec("centre", of.CENTRE),
+        _Spec("peak pressure", of.LARGEST), _Spec("at X", of.LARGEST_X),
+        _Spec("largest tension σ_XX", stresses.HIGHEST, 4, _where_tension),
+        _Spec("at X", stresses.HIGHEST_X, 4, _where_tension),
+    )  # fmt: skip
+    intensities = columns(_Spec("K_I, left", of.K_I_LEFT), _Spec("K_I, right", of.K_I_RIGHT))
+    indentation = columns(_Spec("indentation v₀", of.INDENTATION))
     given = units.half_width is contact.half_width and not units.dimensionless
     if (results or intensities or indentation) and given:
         length = units.scale(CONTACT)
         width = np.full(count, contact.half_width) * length.factor
         results.insert(0, Column("half-width", width, length.unit, "half_width"))
-    results[1:1] = _resultant(data, units)
-    results += pull if pull and np.nanmax(pull[0].values) > 0.0 else []
+    # A pressure's own resultant, where it is not the load N.
+    forces = of.RESULTANT | {FEM: of.NORMAL_FORCE}
+    resultant = columns(_Spec("resultant of the pressure", forces, 4, lambda N, _: -N, "resultant"))
+    load = units.scale(of.LOAD.unit).of(np.full(count, units.load))
+    place = int(bool(results) and results[0].name == "half_width")
+    results[place:place] = [c for c in resultant if np.any(np.abs(c.values / load - 1.0) > 1e-6)]
+    # No punch can pull: where one would, the answer does not hold.
+    results += _occurring(
+        columns(_Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X))
+    )
     results += _shear_at_interfaces(data, units)
-    results += _of_layers(data, units) or _columns(data, units, _OF_STRENGTH) + _yields(data, units)
-    depth = _columns(data, units, [_Spec("depth of yield", yielding.DEPTH)])
-    results += [column for column in depth if np.nanmax(column.values)]
-    results += _columns(data, units, _OF_PUNCH) + _yields_first(data, units)
-    if any(np.any(column.values) for column in intensities):
-        results += intensities + _columns(data, units, _EXPONENTS)
+    results += _of_layers(data, units) or [
+        *columns(
+            _Spec("largest von Mises", yielding.VON_MISES), _Spec("at X", yielding.VON_MISES_X),
+            _Spec("at Y", yielding.VON_MISES_Y),
+        ),
+        *_yields(data, units),
+    ]  # fmt: skip
+    results += _occurring(columns(_Spec("depth of yield", yielding.DEPTH)))
+    results += columns(
+        _Spec("von Mises in the punch", yielding.PUNCH_VON_MISES),
+        _Spec("at X", yielding.PUNCH_VON_MISES_X), _Spec("at Y", yielding.PUNCH_VON_MISES_Y),
+        _Spec("first yield of the punch", yielding.PUNCH_FIRST_LOAD),
+    )  # fmt: skip
+    results += _yields_first(data, units)
+    if _occurring(intensities):
+        exponents = _Spec("exponent β, left", of.BETA), _Spec("exponent α, right", of.ALPHA)
+        results += intensities + columns(*exponents)
     return [*_parameter_columns(data, units), *results, *indentation]
+
+
+def _occurring(columns: Sequence[Column]) -> list[Column]:
+    """Columns of numbers but those that are 0 in all states."""
+    return [column for column in columns if np.nan_to_num(column.values).any()]
 
 
 def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -281,74 +288,54 @@ def _columns(
         archived: quantities without a unit of their own in the result are shown as archived, too.
     """
     columns: list[Column] = []
-    least, owner = _least(units), None
-    for head, rows, digits, taken in specs:
+    owner: Column | None = None
+    # Places and lengths of the contact, and stresses over N/(2a), up to which they are rounding.
+    length, stress = (solved(scale.factor).max() for scale in (units.length, units.stress))
+    length, stress = 5e-6 * length, 5e-8 * stress
+    for head, rows, digits, taken, name in specs:
         if not (place := head.startswith("at ")):
             owner = None
         row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
         if not row or not scaled:
             continue
-        values = taken(data[row.path], data)
+        values, path = taken(data[row.path], data), "" if name else row.path
         if row.type == TEXT:
-            columns.append(Column(head, [*map(str, values)], "none", scaled.name, row.path))
+            columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():
-            of_kind = _STRESS if row.unit == _STRESS else row.scale
+            least = length if place or row.scale == CONTACT else stress * (row.unit == "N/(2a)")
             columns.append(
                 Column(
                     f"{head}/a" if place and units.dimensionless else head,
-                    scaled.of(values), scaled.unit, scaled.name, row.path, digits, owner,
-                    0.0 if archived else least.get(of_kind, 0.0),
+                    scaled.of(values), scaled.unit, name or scaled.name, path, digits, owner,
+                    0.0 if archived else float(least),
                 )
             )  # fmt: skip
             owner = owner or columns[-1]
     return columns
 
 
-def _least(units: Units) -> dict[str, float]:
-    """Sizes up to which numbers are rounding, by their unit or scale."""
-    least = dict.fromkeys((X_OVER_A, CONTACT), _LEAST * float(solved(units.length.factor).max()))
-    return least | {_STRESS: _LEAST_STRESS * float(solved(units.stress.factor).max())}
-
-
-def _resultant(data: Mapping[str, Any], units: Units) -> list[Column]:
-    """Column of the resultant of a prescribed pressure; none where it is the load N."""
-    row = preferred(data, of.RESULTANT | {FEM: of.NORMAL_FORCE})
-    if row is None or not np.any(np.abs(-data[row.path] / units.load - 1.0) > 1e-6):
-        return []
-    scale = units.scale(row.unit)
-    return [Column("resultant of the pressure", scale.of(-data[row.path]), scale.unit, "resultant")]
-
-
 def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Columns of the largest |σ_XY| at each interface, and of its place."""
-    rows = preferred(data, {method: of_all[4] for method, of_all in layers.INTERFACE_EXTREMES.items()})
-    if rows is None:
+    high = preferred(data, {method: rows[4] for method, rows in layers.INTERFACE_EXTREMES.items()})
+    if high is None:
         return []
-    shear, X = layers.largest_shear(data, rows.method)
-    shear, X = units.stress.of(shear), units.position.of(X)
-    depths, several, columns = units.contact.solid.depths, shear.shape[1] > 1, []
-    for i, depth in enumerate(depths):
+    at = layers.INTERFACE_EXTREMES[high.method][5]
+    of_all, depths = layers.largest_shear(data, high.method), units.contact.solid.depths
+    several, columns = len(depths) > 1, []
+
+    def nth(part: int, i: int) -> Callable[[Any, Any], Any]:
+        return lambda *_: of_all[part][:, i - 1]
+
+    for i, depth in enumerate(depths, 1):
         depths_differ = swept.INTERFACE_DEPTHS.path in data
-        where = f"at interface {i + 1}" if depths_differ else f"{engineering(depth, 'm')} deep"
+        where = f"at interface {i}" if depths_differ else f"{engineering(depth, 'm')} deep"
         head = f"shear {where}" if several else "interface shear"
-        name = f"interface_shear{f'_{i + 1}' * several}"
-        columns += _placed(units, head, name, shear[:, i], X=X[:, i])
+        name = f"interface_shear{f'_{i}' * several}"
+        columns += _columns(data, units, [
+            _Spec(head, high, 4, nth(0, i), name), _Spec("at X", at, 4, nth(1, i), f"{name}_X"),
+        ])  # fmt: skip
     return columns
-
-
-def _placed(units: Units, head: str, name: str, stress: Any, **places: Any) -> list[Column]:
-    """Column of a stress in the units of a result, and of its place along each axis."""
-    least = _least(units)
-    largest = Column(head, stress, units.stress.unit, name, least=least[_STRESS])
-    at = [
-        Column(
-            f"at {axis}{'/a' * units.dimensionless}", values, units.length.unit, f"{name}_{axis}",
-            owner=largest, least=least[X_OVER_A],
-        )
-        for axis, values in places.items()
-    ]  # fmt: skip
-    return [largest, *at]
 
 
 def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -357,23 +344,30 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
     row = preferred(data, yielding.OF_LAYERS)
     if row is None:
         return []
-    values, columns = units.stress.of(data[row.path]), []
-    X, Y = (data[rows[row.method].path] for rows in (yielding.OF_LAYERS_X, yielding.OF_LAYERS_Y))
-    X, Y = units.position.of(X), units.length.of(Y)
-    shares = data.get(yielding.OVER_STRENGTH[row.method].path, np.full(values.shape, np.nan))
-    for i in range(values.shape[1]):
-        below = i == values.shape[1] - 1
-        where = "below the layers" if below else f"in layer {i + 1}"
-        name = f"von_mises_{'below' if below else i + 1}"
-        columns += _placed(units, f"von Mises {where}", name, values[:, i], X=X[:, i], Y=Y[:, i])
-        if np.isfinite(shares[:, i]).any():
-            words = [_share(share) for share in shares[:, i]]
-            columns.append(Column(f"yields {where}", words, "of the yield strength", f"{name}_yields"))
+    columns, shape = list[Column](), data[row.path].shape
+    shares = data.get(yielding.OVER_STRENGTH[row.method].path, np.full(shape, np.nan))
+    for i, share in enumerate(shares.T, 1):
+        below = i == shape[1]
+        where, name = "below the layers" if below else f"in layer {i}", "below" if below else i
+        columns += _columns(data, units, [
+            _Spec(head, rows, 4, _nth(i - 1), f"von_mises_{name}{axis}")
+            for head, rows, axis in (
+                (f"von Mises {where}", yielding.OF_LAYERS, ""), ("at X", yielding.OF_LAYERS_X, "_X"),
+                ("at Y", yielding.OF_LAYERS_Y, "_Y"),
+            )
+        ])  # fmt: skip
+        if np.isfinite(share).any():
+            words = [_share(of_state) for of_state in share]
+            columns.append(
+                Column(f"yields {where}", words, "of the yield strength", f"von_mises_{name}_yields")
+            )
     return columns
 
 
 def _share(share: float) -> str:
     """Yes or no to yield under a share of the strength, with the share; "" for NaN."""
+    if share == np.inf:
+        return "yes, under any load"
     return "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
 
 
@@ -382,7 +376,8 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     count, contact = len(data[of.FRICTION.path]), units.contact
     first, stress = preferred(data, yielding.FIRST_LOAD), preferred(data, yielding.VON_MISES)
     if first is not None:
-        shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
+        with np.errstate(divide="ignore"):  # infinite stresses yield under any load
+            shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
     elif stress is not None and contact.yield_strength:
         strength = data.get(column("solid.yield_strength"), contact.yield_strength)
         strength = strength * 2.0 * units.half_width / units.load
@@ -408,17 +403,18 @@ def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 
 def layout(
-    title: str, labels: Sequence[str], columns: Sequence[Column], width: int = 0, noun: str = "state"
+    title: str, count: int, columns: Sequence[Column], width: int = 0, noun: str = "state"
 ) -> Sheet:
     """Table of columns that suits a width: lines for one row, few rows side by side, else as they are.
 
     Args:
         title: of the table.
-        labels: of the rows.
+        count: number of rows, of which the first are shown.
         columns: of the table.
         width: characters of a line; 0 for rows below each other in any case.
         noun: what a row is of.
     """
+    labels = [*map(str, range(min(count, LIMIT)))]
     if width and len(labels) == 1:
         lines: list[list[str]] = []
         for column in columns:
@@ -436,7 +432,7 @@ def layout(
         return Sheet(title, [noun, *labels], [[head, *row] for head, row in zip(heads, texts)])
     heads = [column.label for column in columns]
     for n, column in enumerate(columns if width else ()):  # in several lines over a narrow column
-        wide = max(_NARROW, *map(len, texts[n]), *map(len, column.label.split()))
+        wide = max(11, *map(len, texts[n]), *map(len, column.label.split()))
         heads[n] = textwrap.fill(column.label, wide, break_on_hyphens=False)
     return Sheet(title, [noun, *heads], [[label, *row] for label, *row in zip(labels, *texts)])
 
@@ -469,12 +465,11 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
     ]
     shown = [column for column in columns if column not in same]
     notes = [f"and {count - LIMIT} more states; csv and show --json list all"] if count > LIMIT else []
-    told = [c for c in same if not (c.name in ("motion", "X_over_L") and count == 1)]
-    told = [c for c in told if c.name != "motion" or not c.values[0].startswith("FM")]
-    if told:
-        notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in told)}")
+    named = [c for c in same if c.name != "motion" or not c.values[0].startswith("FM")]
+    if count > 1 and named:
+        notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in named)}")
     notes += _notes(data, units, shown)
-    return replace(layout(title or "States", _numbers(count), shown, width), notes=notes)
+    return replace(layout(title or "States", count, shown, width), notes=notes)
 
 
 def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> Iterator[str]:
@@ -482,11 +477,12 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
     heads = {column.head for column in columns}
     if "stroke" in heads:
         yield "FM1, BM1, FM2: first forward, first backward, second forward motion"
-    if "K_I, right" in heads:
-        if "largest tension σ_XX" in heads:
-            yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
-        if not units.dimensionless:
-            yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
+    pressure = units.contact.pressure
+    jumps = pressure is not None and pressure.values[[0, -1]].any() and data[of.RATIO.path].any()
+    if "largest tension σ_XX" in heads and ("K_I, right" in heads or jumps):
+        yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
+    if "K_I, right" in heads and not units.dimensionless:
+        yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
     if {"resultant of the pressure", "load at first yield"} <= heads:
         yield "load at first yield: N; the pressure and its resultant grow with it"
     if speeds := solved_speeds(data):
@@ -529,16 +525,15 @@ def sheets_of_archive(
 
 def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
-    columns = [c for c in _columns(data, units, _LIMITS) if np.nanmax(np.abs(c.values)) > 0.0]
-    kept = [c for c, before in zip(columns, [None, *columns]) if not c.place or before in columns]
-    title, labels, notes = "Where answers hold", _numbers(len(data[of.FRICTION.path])), list[str]()
+    kept = _occurring(_columns(data, units, _LIMITS))
+    title, count, notes = "Where answers hold", len(data[of.FRICTION.path]), list[str]()
     if same := shared(kept):
         if len(same) < len(kept):
             kept = [c for c in kept if c not in same]
             notes = [f"the same in all: {', '.join(f'{c.head}: {c.words(0)}' for c in same)}"]
         elif width:
-            title, labels = f"{title}, the same in all states", labels[:1]
-    return replace(layout(title, labels, kept, width), notes=notes) if kept else Sheet("", [], [])
+            title, count = f"{title}, the same in all states", 1
+    return replace(layout(title, count, kept, width), notes=notes) if kept else Sheet("", [], [])
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
@@ -560,9 +555,14 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     _, states = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
     states = states[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
     columns = _parameters_of(states, data, units)
-    columns += [c for c in _columns(data, units, _OF_LOOPS) if np.nan_to_num(c.values).any()]
+    columns += _occurring(_columns(data, units, (
+        _Spec("work", runs.LOOP_WORK, 5, lambda values, _: values.sum(axis=1)),
+        _Spec("work of the closed loop", runs.LOOP_CYCLE, 5),
+        _Spec("breakaway force", runs.LOOP_BREAKAWAY, 5, lambda values, _: values.max(axis=1)),
+        _Spec("stiffness", runs.LOOP_STIFFNESS, 5, _nth(0)),
+    )))  # fmt: skip
     note = "all per depth, in all strokes; stiffness: where the first stroke begins"
-    sheet = layout("Friction loops", _numbers(len(states)), columns, width, "loop")
+    sheet = layout("Friction loops", len(states), columns, width, "loop")
     return replace(sheet, notes=[f"{note}{_under_the_first_load(data, units)}"])
 
 
@@ -597,9 +597,12 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
     columns = [c for c in _parameters_of(states_of_sliders(data), data, units) if c.path != SPEED.path]
-    columns += _columns(data, units, [_Spec("motion", runs.OUTCOME), *_OF_SLIDERS])
-    labels = _numbers(len(data[runs.OUTCOME.path]))
-    return layout("Motion of the slider", labels, columns, width, "law")
+    columns += _columns(data, units, (
+        _Spec("motion", runs.OUTCOME),
+        _Spec("period", runs.PERIOD, 6), _Spec("slip per cycle", runs.SLIP, 6),
+        _Spec("peak velocity", runs.PEAK, 6), _Spec("least velocity", runs.LEAST, 6),
+    ))  # fmt: skip
+    return layout("Motion of the slider", len(data[runs.OUTCOME.path]), columns, width, "law")
 
 
 def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
@@ -611,11 +614,20 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     time = units(over_time.TIMES) or as_archived(over_time.TIMES, "")
     end, when = float(data[over_time.TIMES.path][-1]), data[over_time.WITHIN[method].path][:, 1]
     ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]]
+
+    def rounded(t: float) -> str:
+        return "" if isnan(t) else time.text(time.factor * t, 2)
+
+    def within(t: float) -> str:  # extrapolated beyond the end
+        if isnan(t):
+            return "after the end"
+        return time.text(time.factor * t, 3) if t <= end else f"~ {rounded(t)}"
+
     specs = (
         _Spec("c" if units.dimensionless else "speed", over_time.SPEED, 6),
         _Spec("σ_XY/σ_YY", over_time.RATIO, 5),
         *(
-            _Spec(head, rows[method], 5, lambda values, _: values[:, -1])
+            _Spec(head, rows[method], 5, _nth(-1))
             for head, rows in {
                 "v₀": over_time.V0, "centre": over_time.CENTRE, "K_I left": over_time.K_I_LEFT,
                 "K_I right": over_time.K_I_RIGHT,
@@ -627,11 +639,11 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         Column("direction", ways, "none"),
         *_columns(data, units, specs, archived=True),
         Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3),
-        Column("within 1 % from", [_when(t, end, time) for t in when], "none"),
+        Column("within 1 % from", [*map(within, when)], "none"),
     ]
     by_formula = data[over_time.APPROACH.path]
     if np.isfinite(by_formula).any():
-        columns.append(Column("by formula", [_rounded(t, time) for t in by_formula], "none"))
+        columns.append(Column("by formula", [*map(rounded, by_formula)], "none"))
     notes = [
         f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X"
         + _under_the_first_load(data, units),
@@ -640,21 +652,4 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
         "K_I: dimensionless, over N",
     ]
-    return replace(layout(title, _numbers(len(when)), columns, width, "start"), notes=notes)
-
-
-def _numbers(count: int) -> list[str]:
-    """Labels of the first rows of a table."""
-    return [*map(str, range(min(count, LIMIT)))]
-
-
-def _when(time: float, end: float, scaled: Scaled) -> str:
-    """Time in words; with ~ where it is extrapolated beyond the end."""
-    if isnan(time):
-        return "after the end"
-    return scaled.text(scaled.factor * time, 3) if time <= end else f"~ {_rounded(time, scaled)}"
-
-
-def _rounded(time: float, scaled: Scaled) -> str:
-    """Time in words, with two digits."""
-    return "" if isnan(time) else scaled.text(scaled.factor * time, 2)
+    return replace(layout(title, len(when), columns, width, "start"), notes=notes)

@@ -205,13 +205,16 @@ class Folder:
         overwrite: replace files of any kind.
         inputs: files that are read, and never replaced.
 
+    Attributes:
+        path, overwrite, inputs: as given.
+
     Raises:
         Occupied: a file has this name.
         UnwritableArchive: the file system refused.
     """
 
     def __init__(self, path: Path, overwrite: bool = False, inputs: Iterable[Path] = ()) -> None:
-        self.path, self._overwrite, self._inputs = path, overwrite, tuple(inputs)
+        self.path, self.overwrite, self.inputs = path, overwrite, tuple(inputs)
         try:
             path.mkdir(parents=True, exist_ok=True)
         except (FileExistsError, NotADirectoryError):
@@ -225,7 +228,7 @@ class Folder:
         Raises:
             Occupied: a file of this name may not be replaced.
         """
-        return Target(self.path / name, kind, self._overwrite, self._inputs)
+        return Target(self.path / name, kind, self.overwrite, self.inputs)
 
 
 def _same(path: Path, other: Path) -> bool:

@@ -172,8 +172,7 @@ class Units:
         a, N = (self.half_width, self.load) if of_states_ else (contact.half_width, contact.load)
         offset: Any = 0.0
         if kind == "N/(2a)":
-            size: Any = np.median(solved(self.load / (2.0 * self.half_width)))
-            unit, factor = "Pa", N / (2.0 * a)
+            unit, factor, size = "Pa", N / (2.0 * a), np.median(solved(self.load / self.half_width)) / 2.0
         elif kind in (OVER_A, X_OVER_A, CONTACT):
             unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(solved(self.half_width))
             offset = self.middle if kind == X_OVER_A and of_states_ else 0.0

@@ -3,7 +3,6 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -114,7 +113,8 @@ def fit(
 
     Example: ./run.sh fit scenes/slip.csv --model dahl -o fit
     """
-    from ..figures.files import save
+    from ..figures.choice import Drawing
+    from ..figures.files import Files
     from ..figures.friction import fitted_figure
     from ..results.fitted import ALL, split
     from ..results.fitted import fit as fit_laws
@@ -143,12 +143,11 @@ def fit(
     if scene_to:
         scene_to.write(best.scene(into).encode())
     target.write(section.encode())
-    drawn = [
-        fitted_figure(one.measured.t, one.measured.X, one.measured.f, f, one.timed)
-        for one, f in zip(best.tables, best.result.f)
-    ]
-    names = ["fit", *(f"fit_{n}" for n in range(2, len(drawn) + 1))]
-    save(list(zip(names, drawn)), to_folder)
+    names = ["fit", *(f"fit_{n}" for n in range(2, len(best.tables) + 1))]
+    Files(folder, overwrite=overwrite, inputs=inputs).write(
+        Drawing(name, "", fitted_figure(one.measured, f, one.timed))
+        for name, one, f in zip(names, best.tables, best.result.f)
+    )
     if not quiet:
         if law == ALL:
             print_sheet(new_console(colours=colours()), best.sheet())
@@ -161,6 +160,3 @@ def fit(
         hint = f"{program()} run {scene_name}"
         print(f"next: {hint if new else f'put the section into a scene, with --into, then {hint}'}")
     return errors.GOOD
-
-
-COMMANDS: tuple[Any, ...] = (init, materials, schema, fit)

@@ -143,6 +143,3 @@ def paper(folder: Path, overwrite: bool, progress: Progress, quiet: bool) -> int
     with progress:
         good = reproduce(Folder(folder, overwrite, options.inputs()), progress, quiet)
     return errors.GOOD if good else errors.FAILED_VERDICT
-
-
-COMMANDS: tuple[Any, ...] = (run, plan, paper)

@@ -45,6 +45,58 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
     return errors.GOOD
 
 
+_MEASURED = click.option(
+    "--measured", type=options.FILE, metavar="FILE",
+    help="Table of measured points that lie over the figure, as position [mm] and pressure [MPa] or "
+    "sigma_XX [MPa]; slip [mm] and f.",
+)  # fmt: skip
+
+
+def _text(name: str, metavar: str, about: str, *parameter: str) -> Any:
+    """Option that takes a text, by default none."""
+    return click.option(f"--{name}", *parameter, default="", metavar=metavar, help=about)
+
+
+@click.command()
+@click.argument("archives", type=options.FILE, nargs=-1, required=True)
+@click.option("-o", "to", type=options.PATH, help="Draw them as well: folder, or a file.")
+@_text("states", "NUMBERS", "States of the first: 0,4,7 or 0-3.")
+@_MEASURED
+@options.dimensionless
+@options.overwrite
+def compare(
+    archives: tuple[Path, ...], to: Path | None, states: str, measured: Path | None,
+    dimensionless: bool, overwrite: bool,
+) -> int:  # fmt: skip
+    """Print the numbers of ARCHIVES side by side, and the differences of all from the first.
+
+    States are paired by the parameters that vary in them where these agree, else by their order. -o draws
+    contact pressure and in-plane stress of all in one figure.
+
+    Example: ./run.sh compare tables.h5 tables.h5 -o both.pdf
+    """
+    from ..figures.files import Files
+    from ..figures.measured import read as read_measured
+    from ..results.compared import Comparison
+
+    if len(archives) < 2:
+        raise click.UsageError(f"found one archive, {archives[0]}; expected two or more")
+    if measured and not to:
+        raise click.UsageError("--measured lies over a figure; say by -o where to draw it")
+    points = read_measured(measured) if measured else None
+    results = [_loaded(archive, stresses=bool(to)) for archive in archives]
+    comparison = Comparison(results, dimensionless, options.numbers(states) if states else ())
+    if ranks.is_root():
+        if to:
+            inputs = options.inputs(*archives, measured)
+            files = Files(to, archives[0].stem, overwrite=overwrite, inputs=inputs)
+            files.check(["compare"])
+            written = files.write([comparison.drawing(points)])
+        print_sheets(comparison.sheets(), comparison.notes())
+        _print_files(written if to else ())
+    return errors.GOOD
+
+
 @click.command()
 @options.archive
 def check(archive: Path) -> int:
@@ -146,58 +198,6 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
         "units": units,
         "states": states,
     }
-
-
-_MEASURED = click.option(
-    "--measured", type=options.FILE, metavar="FILE",
-    help="Table of measured points that lie over the figure, as position [mm] and pressure [MPa] or "
-    "sigma_XX [MPa]; slip [mm] and f.",
-)  # fmt: skip
-
-
-def _text(name: str, metavar: str, about: str, *parameter: str) -> Any:
-    """Option that takes a text, by default none."""
-    return click.option(f"--{name}", *parameter, default="", metavar=metavar, help=about)
-
-
-@click.command()
-@click.argument("archives", type=options.FILE, nargs=-1, required=True)
-@click.option("-o", "to", type=options.PATH, help="Draw them as well: folder, or a file.")
-@_text("states", "NUMBERS", "States of the first: 0,4,7 or 0-3.")
-@_MEASURED
-@options.dimensionless
-@options.overwrite
-def compare(
-    archives: tuple[Path, ...], to: Path | None, states: str, measured: Path | None,
-    dimensionless: bool, overwrite: bool,
-) -> int:  # fmt: skip
-    """Print the numbers of ARCHIVES side by side, and the differences of all from the first.
-
-    States are paired by the parameters that vary in them where these agree, else by their order. -o draws
-    contact pressure and in-plane stress of all in one figure.
-
-    Example: ./run.sh compare tables.h5 tables.h5 -o both.pdf
-    """
-    from ..figures.files import Files
-    from ..figures.measured import read as read_measured
-    from ..results.compared import Comparison
-
-    if len(archives) < 2:
-        raise click.UsageError(f"found one archive, {archives[0]}; expected two or more")
-    if measured and not to:
-        raise click.UsageError("--measured lies over a figure; say by -o where to draw it")
-    points = read_measured(measured) if measured else None
-    results = [_loaded(archive, stresses=bool(to)) for archive in archives]
-    comparison = Comparison(results, dimensionless, options.numbers(states) if states else ())
-    if ranks.is_root():
-        if to:
-            inputs = options.inputs(*archives, measured)
-            files = Files(to, archives[0].stem, overwrite=overwrite, inputs=inputs)
-            files.check(["compare"])
-            written = files.write([comparison.drawing(points)])
-        print_sheets(comparison.sheets(), comparison.notes())
-        _print_files(written if to else ())
-    return errors.GOOD
 
 
 @click.command()
@@ -392,8 +392,3 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
     target.write(piece.encode() for piece in pieces(archive, chosen[0], dimensionless))
     print(f"table: {output}")
     return errors.GOOD
-
-
-COMMANDS: tuple[Any, ...] = (
-    show, compare, check, report, fields, plot, dispersion, response, csv,
-)  # fmt: skip

@@ -19,8 +19,7 @@ from . import friction, motion, numerics, stresses, sweep, waves
 from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
-from .render import MARKERS, Curve, Film, Panel, TooSmall
-from .style import Look
+from .render import Film, Panel, TooSmall, with_dot
 
 #: Name that stands for all figures, and a choice that leaves everything open.
 ALL, PLAIN = "all", Choice()
@@ -70,10 +69,8 @@ def film(of: Archive) -> Drawing:
 
     def panels(frame: int) -> list[Panel]:
         i = frames[frame]
-        dot = Curve(X[i : i + 1], f[i : i + 1], Look("black", "none", "o"), form=MARKERS)
         title = f"{of.label(i, [STROKE, PLACE])}, $f = {number(f[i], 2)}$"
-        beside = (of_name[frame] for of_name in made)
-        return [replace(base, curves=[*base.curves, dot], title=title), *beside]
+        return [replace(with_dot(base, X[i], f[i]), title=title), *(of_name[frame] for of_name in made)]
 
     moving = Film(panels, len(frames), of.choice.size)
     missing = of.not_shown(frames, "--figure film --states")

@@ -28,10 +28,7 @@ from .render import Curve, Film, Size, lines_and_markers
 from .style import LINES, MARKERS, Look, looks
 
 _INCHES = {"in": 1.0, "cm": 1.0 / 2.54, "mm": 1.0 / 25.4, "pt": 1.0 / 72.0}
-_LENGTH = r"(\d+(?:\.\d*)?|\.\d+)\s*(in|cm|mm|pt)"
-_SIZE = re.compile(rf"\s*{_LENGTH}(?:\s*[x×]\s*{_LENGTH})?\s*")
-
-#: Widths and heights that paper and films have [in].
+#: Least and largest width and height that paper and films have [in].
 _LEAST, _MOST = 1.5, 40.0
 
 
@@ -71,8 +68,7 @@ class Choice:
 
 def short_name(row: Quantity) -> str:
     """Name of a quantity, from the beginning of its description."""
-    name = re.split(r"[,;:]| \(", row.about)[0]
-    return f"{name} over $a$" if "over the half-width" in row.about else name
+    return re.split(r"[,;:]| \(", row.about)[0]
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -88,19 +84,17 @@ def size(text: str) -> Size | None:
     """
     if not text:
         return None
-    match = _SIZE.fullmatch(text)
-    if not match:
+    length = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(in|cm|mm|pt)\s*")
+    sides = [length.fullmatch(side) for side in re.split("[x×]", text)]
+    inches = [float(side[1]) * _INCHES[side[2]] for side in sides if side]
+    if len(inches) < len(sides) or len(sides) > 2:
         raise BadInput(
             f"--size: found {text!r}, expected a width or width x height in in, cm, mm or pt, as 3.5in "
             "or 89mm x 60mm"
         )
-    width, in_width, height, in_height = match.groups()
-    sides = [float(width) * _INCHES[in_width]]
-    sides += [float(height) * _INCHES[in_height]] if height else []
-    for side in sides:
-        if not _LEAST <= side <= _MOST:
-            raise BadInput(f"--size: found {text}, expected {_LEAST:g} to {_MOST:g} in")
-    return Size(*sides)
+    if not _LEAST <= min(inches) <= max(inches) <= _MOST:
+        raise BadInput(f"--size: found {text}, expected {_LEAST:g} to {_MOST:g} in")
+    return Size(*inches)
 
 
 def require_one_of(what: str, word: str, valid: Collection[str]) -> str:
@@ -139,9 +133,6 @@ class Drawing:
         """Caption, with the states that are left out."""
         return f"{self.caption} {self.left_out}".strip()
 
-
-#: States and values that a sentence names.
-_NAMED = 6
 
 #: Names of the stroke and the place on it, of the speed and the load.
 STROKE, PLACE, C, N = (row.path.rpartition("/")[2] for row in (MOTION, POSITION, SPEED, LOAD))
@@ -277,10 +268,8 @@ class Archive:
         if len(names) != 2:
             return looks(len(states), bool(names) and self.numeric(names[0]))
         count = len(self.distinct(names[0], states))
-        colours, places = (
-            looks(count, self.numeric(names[0])),
-            [self._places(name, np.asarray(states)).tolist() for name in names],
-        )
+        colours = looks(count, self.numeric(names[0]))
+        places = [self._places(name, np.asarray(states)).tolist() for name in names]
         return [
             Look(colours[n].colour, LINES[m % len(LINES)], MARKERS[(n + m * count) % len(MARKERS)])
             for n, m in zip(*places)
@@ -324,7 +313,7 @@ class Archive:
             shown: states that the figure shows.
             how: options that draw others.
         """
-        missing = sorted(set(self.choice.states or self.all.tolist()) - set(shown))
+        missing = sorted({*(self.choice.states or self.all.tolist())} - {*shown})
         if not missing:
             return ""
         absent = {
@@ -390,19 +379,19 @@ def fewer(shown: int, count: int, things: str, how: str = "") -> str:
 
 
 def _short(words: Sequence[str], comma: str = ", ") -> str:
-    """The first of some words with commas between them, and "…" where there are more."""
-    return comma.join(words[:_NAMED]) + f"{comma}…" * (len(words) > _NAMED)
-
-
-#: What axes say of numbers over these.
-_OVER = {"a": "$/a$", "N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$", "N^2/(4mu)": r" over $N^2/4\mu$"}
+    """The first six of some words with commas between them, and "…" where there are more."""
+    return comma.join(words[:6]) + f"{comma}…" * (len(words) > 6)
 
 
 def named(words: str, unit: str) -> str:
     """Name of an axis with its unit: ``load (N/mm)``, ``pressure $/(N/2a)$``."""
     if unit in ("", "1", "none"):
         return words
-    return words + _OVER.get(unit, f" ({in_tex(unit)})")
+    over = {
+        "a": "$/a$", "N/(2a)": " $/(N/2a)$", "N/(2mu)": r"$/(N/2\mu)$",
+        "N^2/(4mu)": r" over $N^2/4\mu$",
+    }  # fmt: skip
+    return words + over.get(unit, f" ({in_tex(unit)})")
 
 
 def both(

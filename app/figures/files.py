@@ -32,10 +32,8 @@ _KINDS = ("figure", FORMATS), ("film", OF_FILMS)
 USUAL = ("pdf", "png")
 #: The picture that moves.
 FILM = "film"
-#: Frames a second, and dots per inch, which screens show.
-RATE, FILM_DPI = 8, 160
-#: Dots per inch of notebooks, and those that a file may have.
-_DPI, _RESOLUTIONS = 110, range(30, 2401)
+#: Frames a second, and dots per inch, which screens show; and dots per inch that a file may have.
+RATE, FILM_DPI, _RESOLUTIONS = 8, 160, range(30, 2401)
 #: Formats that other programs make of PDF, and of PNG.
 _CONVERTED = {
     **dict.fromkeys(("eps", "ps", "emf"), "pdf"),
@@ -99,35 +97,9 @@ def can_write(ending: str) -> bool:
     return ending == "gif" or shutil.which("ffmpeg") is not None
 
 
-def save(figures: Iterable[tuple[str, Figure]], folder: Folder) -> dict[str, bytes]:
-    """Write figures by name into a folder in the usual formats; none where one may not be written.
-
-    Returns:
-        The pixels of each by name, as PNG, for pages.
-
-    Raises:
-        Occupied: something is there that may not be replaced.
-        UnwritableArchive: the file system refused.
-    """
-    made = {
-        folder.target(f"{name}.{ending}", FORMATS[ending]): content(figure, ending)
-        for name, figure in figures
-        for ending in USUAL
-    }
-    for target, data in made.items():
-        target.write(data)
-    return {t.path.stem: data for t, data in made.items() if t.path.suffix == ".png"}
-
-
 def embedded(data: bytes, kind: str = "png") -> str:
     """Data URI of the bytes of a picture's file, for a page."""
     return f"data:image/{kind};base64,{b64encode(data).decode()}"
-
-
-def for_notebook(figure: Figure) -> Figure:
-    """Figure that notebooks can show, which otherwise know only figures of pyplot."""
-    figure._repr_png_ = lambda: content(figure, "png", _DPI)  # type: ignore[attr-defined]
-    return figure
 
 
 class Written(NamedTuple):
@@ -137,11 +109,13 @@ class Written(NamedTuple):
         path: its name.
         noun: what it is.
         left_out: which states it does not show and how to draw them.
+        data: its bytes.
     """
 
     path: Path
     noun: str
     left_out: str
+    data: bytes
 
 
 @dataclass(frozen=True)
@@ -214,13 +188,13 @@ class Files:
             UnwritableArchive: the file system refused.
         """
         folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
-        made: list[tuple[Target, bytes, Written]] = []
+        made: list[tuple[Target, Written]] = []
         for drawing in drawings:
             noun, kinds = _KINDS[drawing.film is not None]
             for ending in self.endings(drawing.name):
-                called = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
+                name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
                 target = (
-                    folder.target(called, kinds[ending])
+                    folder.target(name, kinds[ending])
                     if folder
                     else Target(self.to, kinds[ending], self.overwrite, self.inputs)
                 )
@@ -229,7 +203,7 @@ class Files:
                     if drawing.film
                     else content(drawing.figure, ending, self.dpi or DPI)
                 )
-                made.append((target, data, Written(target.path, noun, drawing.left_out)))
-        for target, data, _ in made:
-            target.write(data)
-        return [written for *_, written in made]
+                made.append((target, Written(target.path, noun, drawing.left_out, data)))
+        for target, written in made:
+            target.write(written.data)
+        return [written for _, written in made]

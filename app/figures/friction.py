@@ -12,16 +12,17 @@ from galinx.postprocess.quantities import column, preferred, runs
 from galinx.postprocess.quantities.states import RESULTANT_RATIO
 from galinx.postprocess.tables import states_of_sliders
 from galinx.postprocess.units import prefixed
+from galinx.solvers.friction.fit import Measured
 from galinx.solvers.friction.motion import names
 
 from .choice import Archive, C, Drawing, N, fewer, named, spread
 from .render import DOTS, Curve, Panel, Size, across, note, render
 from .style import COLOURS, COLUMN, GREY, LINES, PAGE, Look, looks
 
-#: Axes of a loop.
-X_LABEL, F_LABEL = "position on the stroke $X/L$", "friction coefficient $f = F/N$"
-#: Loops that can be told apart in a panel, and sliders in a figure; cycles of these over time.
-_LOOPS, _SLIDERS, _CYCLES = 6, 6, 12
+#: Axis of friction.
+F_LABEL = "friction coefficient $f = F/N$"
+#: Loops that can be told apart in a panel, and sliders in a figure; cycles of a slider over time.
+_LOOPS, _CYCLES = 6, 12
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ class Loops:
     @property
     def few(self) -> list[Loop]:
         """The first loops, as many as a panel tells apart."""
-        return [loop for loop in (self.of(int(i)) for i in self.first[:_LOOPS]) if loop]
+        return [loop for loop in map(self.of, self.first[:_LOOPS].tolist()) if loop]
 
     def panel(self, states: Sequence[int], called: Sequence[str], title: str = "") -> Panel:
         """A panel with the loops of some states, each once."""
@@ -125,7 +126,7 @@ def loop_panel(loops: Sequence[Loop], ordered: bool = False, title: str = "") ->
             x, y, width = loop.X_over_L[part], loop.f[part], 1.0 + 1.2 * again
             curves.append(Curve(x, y, own, label, width=width, arrows=arrows))
     return Panel(
-        X_LABEL, F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
+        "position on the stroke $X/L$", F_LABEL, curves=curves, title=title, xlim=(-0.03, 1.03),
         ylim=(low - margin, high + margin), at_y=(0.0,),
     )  # fmt: skip
 
@@ -191,7 +192,7 @@ def slider(of: Archive) -> Drawing:
     """Figure of an archive's sliders, one for each load and law, of some of them where they are many."""
     data, scene, choice = of.data, of.scene, of.choice
     loops, count = Loops(of), len(data[runs.PERIOD.path])
-    laws = spread(list(range(count)), _SLIDERS)
+    laws = spread(list(range(count)), _LOOPS)
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
     states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)
@@ -233,28 +234,27 @@ def slider(of: Archive) -> Drawing:
     return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
 
 
-def fitted_figure(t: NDArray, X: NDArray, f: NDArray, law: NDArray, timed: bool) -> Any:
+def fitted_figure(measured: Measured, law: NDArray, timed: bool) -> Any:
     """Figure of friction over position, and the residuals over time or slip.
 
     Args:
-        t: time [s], (samples,).
-        X: position [m], (samples,).
-        f: measured friction coefficient, (samples,).
+        measured: time, position and friction coefficient, (samples,) each.
         law: friction coefficient of the law, NaN where it has none, (samples,).
         timed: time was measured.
     """
+    t, X, f = measured.t, measured.X, measured.f
     unit, of_si = prefixed("m", float(np.ptp(X)))
-    measured, fitted = Look(COLOURS[0], "none", "."), Look(COLOURS[1], "-", "")
+    dots, line = Look(COLOURS[0], "none", "."), Look(COLOURS[1], "-", "")
     over, label = (t, "time (s)") if timed else (X / of_si, f"slip ({unit})")
     return render([
         Panel(
             f"position ({unit})" if timed else f"slip ({unit})", "friction coefficient $f$",
             curves=[
-                Curve(X / of_si, f, measured, "measured", DOTS), Curve(X / of_si, law, fitted, "fitted"),
+                Curve(X / of_si, f, dots, "measured", DOTS), Curve(X / of_si, law, line, "fitted"),
             ],
         ),
         Panel(
             label, "measured less fitted $f$", at_y=(0.0,),
-            curves=[Curve(over, f - law, measured, "", DOTS)],
+            curves=[Curve(over, f - law, dots, "", DOTS)],
         ),
     ], high=0.66)  # fmt: skip

@@ -22,8 +22,8 @@ from galinx.texts import number, plain
 
 from .choice import Archive, Drawing, both, drive_label, explained, fewer, named, spread
 from .files import FILM
-from .render import MARKERS, Curve, Film, Panel, Size, note, render
-from .stresses import SHOWN, Along, Shown, limits, position_name, surface_panel
+from .render import Curve, Film, Panel, Size, note, render, with_dot
+from .stresses import SHOWN, Along, limits, position_name, surface_panel
 from .style import COLUMN, GREY, Look, looks
 
 #: Starts that can be told apart in a figure, times that are drawn of one, and frames of a film at most.
@@ -195,7 +195,7 @@ def pressures(of: Archive) -> Drawing:
     (pressure,), called = held.values(), [_at_time(of, t[i]) for i in at]
     shown = pressure.shown(looks(len(at), True), called, rows=at)
     for along in _steady(of, held, start, [-1]).values():
-        shown.append(Shown(along, 0, _STEADY, "steady", 0.8))
+        shown += along.shown([_STEADY], ["steady"], 0.8)
     panel = surface_panel(shown, ylim)
     caption = (
         f"Contact pressure under the punch at c = {c:.4g}, σ_XY/σ_YY = {g:.4g}, by the integral "
@@ -264,8 +264,8 @@ def film(of: Archive) -> Drawing:
     # All by one method, as lines.
     held = {name: replace(along, values={SIE: along.values[method]}) for name, along in held.items()}
     steady, row = _steady(of, held, start, [-1]), rows.CENTRE[method]
-    centre, now = of.values(row)[start], Look("black", "none", "o")
     end = of.scaled(rows.STEADY_CENTRE).of(of.data[rows.STEADY_CENTRE.path])[start]
+    centre = of.values(row)[start]
     way = Panel(
         label, _over_a(of, "centre of pressure", row), xlim=(0.0, float(t[-1])), at_y=(float(end),),
         curves=[Curve(t, centre, looks(1)[0])],
@@ -274,13 +274,11 @@ def film(of: Archive) -> Drawing:
     def panels(frame: int) -> list[Panel]:
         i, made = steps[frame], []
         for name, along in held.items():
-            shown = [Shown(along, frames[frame], looks(1)[0])]
-            shown += [Shown(steady[name], 0, _STEADY, "", 0.8)] if steady else []
+            shown = along.shown(looks(1), rows=[frames[frame]])
+            shown += steady[name].shown([_STEADY], width=0.8) if steady else []
             made.append(surface_panel(shown, ylims[name]))
-        first, *others = made
-        first = replace(first, title=_at_time(of, of.data[rows.TIMES.path][i]))
-        dot = Curve(t[i : i + 1], centre[i : i + 1], now, form=MARKERS)
-        return [first, *others, replace(way, curves=[*way.curves, dot])]
+        made[0] = replace(made[0], title=_at_time(of, of.data[rows.TIMES.path][i]))
+        return [*made, with_dot(way, t[i], centre[i])]
 
     moving = Film(panels, len(steps), of.choice.size)
     return Drawing(FILM, "", moving.figure, left_out=_left_out(of), film=moving)

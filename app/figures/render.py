@@ -6,7 +6,7 @@ taller than a page.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, floor, log10
 from typing import Any, NamedTuple
 
@@ -149,6 +149,12 @@ def note(look: Look, label: str, form: str = LINE, width: float = 1.0) -> Curve:
     return Curve(np.empty(0), np.empty(0), look, label, form, width)
 
 
+def with_dot(panel: Panel, x: float, y: float) -> Panel:
+    """A panel with a black dot, the place that a frame of a film shows."""
+    dot = Curve(np.array([x]), np.array([y]), Look("black", "none", "o"), form=MARKERS)
+    return replace(panel, curves=[*panel.curves, dot])
+
+
 def lines_and_markers(lines: str, markers: str) -> list[Curve]:
     """Entries of a legend that say what lines and what markers are."""
     look = Look(GREY, "-", "o")
@@ -186,8 +192,8 @@ def render(
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
         made.append(_Drawn(figure.add_axes((0.0, 0.0, 1.0, 1.0), label=str(n)), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
-    handles = [_entry(curve) for curve in (*named.values(), *notes)]
-    _arrange(figure, made, size, (rows, columns), high, _legend(figure, handles))
+    foot = _legend(figure, [*named.values(), *notes])
+    _arrange(figure, made, size, (rows, columns), high, foot)
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
 
@@ -200,23 +206,21 @@ def across(width: float, count: int, least: float = 1.55) -> int:
     return ceil(count / ceil(count / most))
 
 
-def _entry(curve: Curve) -> Line2D:
-    look, style = curve.look, dict[str, Any](linestyle=curve.look.line)
-    if curve.form != LINE:
-        style |= {"marker": look.marker, "markerfacecolor": "none"}
-    if curve.form in (MARKERS, DOTS):
-        style["linestyle"] = "none"
-    return Line2D([], [], color=look.colour, label=curve.label, linewidth=curve.width, **style)
+def _style(curve: Curve) -> dict[str, Any]:
+    """Colour, line and marker of a curve, and of its entry in a legend."""
+    style = {"color": curve.look.colour, "linewidth": curve.width, "markerfacecolor": "none"}
+    line = curve.look.line if curve.form in (LINE, JOINED) else "none"
+    return style | {"linestyle": line, "marker": "none" if curve.form == LINE else curve.look.marker}
 
 
-def spaced(x: NDArray, turn: float, most: int = _MARKERS) -> NDArray[np.int64]:
-    """Numbers of at most so many points, evenly along x, between those of curves with another turn."""
+def spaced(x: NDArray, turn: float) -> NDArray[np.int64]:
+    """Numbers of the points that have markers, evenly along x, between those of another turn."""
     finite = np.flatnonzero(np.isfinite(x))
-    if len(finite) <= most:
+    if len(finite) <= _MARKERS:
         return finite
     low, high = float(x[finite].min()), float(x[finite].max())
-    wanted = low + (high - low) * (np.arange(most) + 0.5 * turn + 0.25) / most
-    return finite[np.unique(np.abs(x[finite, None] - wanted).argmin(axis=0))]
+    places = low + (high - low) * (np.arange(_MARKERS) + 0.5 * turn + 0.25) / _MARKERS
+    return finite[np.unique(np.abs(x[finite, None] - places).argmin(axis=0))]
 
 
 def _power(panel: Panel) -> int:
@@ -278,13 +282,11 @@ class _Drawn:
             axis.tick_params(labelbottom=False)
         if panel.y is None:
             axis.tick_params(labelleft=False)
-        if panel.own_legend:
-            entries = [_entry(curve) for curve in panel.curves if curve.label]
-            if entries:
-                self.legend = axis.legend(
-                    handles=entries, loc="upper center", borderaxespad=0.0, labelspacing=0.2,
-                    columnspacing=1.2,
-                )  # fmt: skip
+        if panel.own_legend and (entries := _entries(panel.curves)):
+            self.legend = axis.legend(
+                handles=entries, loc="upper center", borderaxespad=0.0, labelspacing=0.2,
+                columnspacing=1.2,
+            )  # fmt: skip
 
     def _beside(self, axis: Axes, renderer: Any) -> Bbox:
         """Place of the colour bar."""
@@ -293,26 +295,20 @@ class _Drawn:
         return Bbox.from_bounds(x + w + 0.06 / wide, y, 0.09 / wide, h)
 
     def _curve(self, curve: Curve) -> Line2D:
-        x, y, look = np.asarray(curve.x), np.asarray(curve.y) / 10.0**self.power, curve.look
-        style: dict[str, Any] = {
-            "gid": "curve", "color": look.colour, "linewidth": curve.width, "markerfacecolor": "none",
-        }  # fmt: skip
-        if curve.form in (LINE, JOINED):
-            style["linestyle"] = look.line
-        else:
-            style |= {"linestyle": "none", "markersize": 2.8}
-        if curve.form != LINE:
-            style["marker"] = look.marker
+        x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y) / 10.0**self.power
+        style = _style(curve) | {"gid": "curve"}
         if curve.form == MARKERS:
-            at = spaced(x.astype(float), curve.turn)
+            at = spaced(x, curve.turn)
             x, y = x[at], y[at]
+            style["markersize"] = 2.8
         elif curve.form == JOINED:
-            at = spaced(x.astype(float), curve.turn)
+            at = spaced(x, curve.turn)
             style |= {"linewidth": 0.6 * curve.width, "markevery": at.tolist()}
         elif curve.form == DOTS:
             style["markersize"] = 2.0 * curve.width
-            if look.marker == ".":  # many
-                style |= {"markerfacecolor": look.colour, "markeredgewidth": 0.0, "rasterized": True}
+            if curve.look.marker == ".":  # many
+                colour = curve.look.colour
+                style |= {"markerfacecolor": colour, "markeredgewidth": 0.0, "rasterized": True}
         return self.axis.plot(x, y, **style)[0]
 
     def measure(self, wide: float, tall: float, beside: float) -> "_Room":
@@ -435,9 +431,14 @@ def _draw_map(axis: Axes, shown: Map) -> None:
     axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], top))
 
 
-def _legend(figure: Figure, handles: Sequence[Line2D]) -> float:
+def _entries(curves: Sequence[Curve]) -> list[Line2D]:
+    """Entries of a legend, of the curves that have a label."""
+    return [Line2D([], [], label=curve.label, **_style(curve)) for curve in curves if curve.label]
+
+
+def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
     """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in]."""
-    if not handles:
+    if not (handles := _entries(curves)):
         return 0.0
     width, dpi = figure.get_figwidth(), figure.dpi
     room = (width - 0.1) * dpi

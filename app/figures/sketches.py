@@ -102,15 +102,8 @@ def procedure_figure() -> Figure:
     high = 0.8
     for name, (x, width, colour, words) in _BOXES.items():
         y = places.setdefault(name, 1.05)
-        box = Rectangle(
-            (x - width / 2.0, y - high / 2.0),
-            width,
-            high,
-            facecolor="white",
-            edgecolor=colour,
-            linewidth=1.0,
-        )
-        axis.add_patch(box)
+        corner = x - width / 2.0, y - high / 2.0
+        axis.add_patch(Rectangle(corner, width, high, facecolor="white", edgecolor=colour))
         axis.text(x, y, "\n".join(words), ha="center", va="center", fontsize=TEXT, linespacing=1.15)
 
     def side(name: str, end: float) -> tuple[float, float]:

@@ -1,5 +1,5 @@
 """Stresses of an archive's states: along the surface, along the interfaces of layers, and maps of those
-inside; friction along the contact; and stresses of several archives, one over the other."""
+inside; and friction along the contact."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -26,10 +26,9 @@ from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_dept
 from galinx.solvers.contact.edges import from_edge, under_punch
 from galinx.solvers.contact.equation import under_punch as half_plane_under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact
-from galinx.solvers.contact.stresses import maximum_shear, von_mises
+from galinx.solvers.contact.stresses import maximum_shear
 from galinx.texts import number, plain
 
-from ..errors import BadInput
 from ..plan.variants import of_state
 from .choice import (
     Archive,
@@ -38,18 +37,18 @@ from .choice import (
     N,
     both,
     explained,
-    fewer,
     named,
     require_one_of,
     short_name,
     spread,
     states_for_panel,
 )
-from .render import JOINED, LINE, MARKERS, Map, Panel, Size, TooSmall, across, note, render, spaced
+from .render import JOINED, LINE, MARKERS, Map, Panel, Size, across, note, render, spaced
 from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 
-#: Curves that can be told apart in a panel, columns of a page, and the least width for one [in].
-_CURVES, _COLUMNS, _LEAST = 6, 3, 2.0
+#: Curves that can be told apart in a panel, those that are each of several lines, columns of a page, and
+#: the least width for one [in].
+_CURVES, _FEW, _COLUMNS, _LEAST = 6, 4, 3, 2.0
 #: Positions shown of a stress all along the surface, and of one under the punch alone [a].
 _BESIDE, _UNDER = 2.0, 1.04
 
@@ -263,69 +262,13 @@ def _groups(of: Archive, states: NDArray, width: float) -> list[tuple[str, list[
     return groups
 
 
-#: Indices, which the type of figures lacks, as formulas.
-_INDICES = {0x2080 + n: f"$_{n}$" for n in range(10)}
-
-
-def compared(
-    archives: Sequence[Archive], labels: Sequence[str], pairs: Sequence[Sequence[int]],
-    titles: Sequence[str],
-) -> Drawing:  # fmt: skip
-    """Contact pressure and in-plane stress of states, colours by archive and lines by state.
-
-    Args:
-        archives: what to draw, in the same units.
-        labels: of the archives.
-        pairs: a state of each archive, (pairs, archives); of many some are drawn.
-        titles: of the pairs.
-
-    Raises:
-        BadInput: an archive has no stresses along the surface, or measured points lie elsewhere.
-    """
-    for of, label in zip(archives, labels):
-        if not of.by_method(STATE, POINT):
-            raise BadInput(
-                f'{label} holds no stresses along the surface; add "surface" to output.quantities'
-            )
-    chosen, styles = spread(range(len(pairs)), 3), looks(len(archives))  # states that can be told apart
-    of_all, several = [stresses_along(of) for of in archives], len(chosen) > 1
-    panels = []
-    for name in dict.fromkeys(name for stressed in of_all for name in stressed):
-        shown = [
-            Shown(
-                stressed[name], pairs[k][n],
-                look._replace(line=LINES[order % len(LINES)]) if several else look,
-                f"{label}, {titles[k].translate(_INDICES)}" if several else label,
-                1.0 if n else 2.0,  # the first shows below others that are the same
-            )
-            for n, (stressed, look, label) in enumerate(zip(of_all, styles, labels))
-            if name in stressed
-            for order, k in enumerate(chosen)
-        ]  # fmt: skip
-        panel, measured = surface_panel(shown), archives[0].choice.measured
-        panels.append(measured.over_stress(panel, name, archives[0].units) if measured else panel)
-    notes = explained(*(along.values for stressed in of_all for along in stressed.values()))
-    try:
-        figure = render(panels, None, min(2, len(panels)), notes)
-    except TooSmall as error:
-        raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
-    left_out = fewer(len(chosen), len(pairs), "pairs of states", "; choose by --states")
-    caption = f"Stresses along the surface: {', '.join(labels)}."
-    return Drawing("compare", caption, figure, left_out=left_out)
-
-
-#: Curves of friction along the contact that can be told apart, and accuracy of pressures
-#: with one friction beside those.
-_FRICTIONS, _DRAWN = 4, 1e-4
-
-
 def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[np.float64]:
     """Pressure over N/(2a) with one friction g, at places X over a half-width a, (n,), of a state."""
     scene, data = of_state(of.scene, state)[0], of.data
     load = float(data[LOAD.path][state]) if LOAD.path in data else scene.punch.load
     body = make_contact(scene.solid, scene.punch.profile, load)
     response = body.response(float(data[SPEED.path][state]))
-    contact = half_plane_under_punch(body, response, _DRAWN).contact(g)
+    contact = half_plane_under_punch(body, response, 1e-4).contact(g)  # as accurate as a drawing
     unit = body.half_width
     half_width, centre = preferred(data, HALF_WIDTH), preferred(data, CENTRE)
     h = data[half_width.path][state] if half_width else unit
@@ -337,7 +280,7 @@ def _of_one_friction(of: Archive, state: int, g: float, X: NDArray) -> NDArray[n
 def friction_along(of: Archive) -> Drawing:
     """Figure of f over X, and of the pressure beside that of uniform friction of the same force."""
     data = of.data
-    names, chosen = states_for_panel(of, of.varied(of.selected()), of.selected(), _FRICTIONS)
+    names, chosen = states_for_panel(of, of.varied(of.selected()), of.selected(), _FEW)
     states, rows = chosen.tolist(), {method: row for method, row in PRESSURE.items() if of.has(row)}
     resultant = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
     under, scale = np.abs(data[SURFACE_X.path]) < 1.0, of.scaled(next(iter(rows.values())))
@@ -376,8 +319,6 @@ def friction_along(of: Archive) -> Drawing:
     return Drawing("along", caption, figure, left_out=missing)
 
 
-#: Curves of an interface, the least width of its column [in], and positions shown over a and its depth.
-_INTERFACE_CURVES, _LEAST_INTERFACE, _OVER_A, _OVER_DEPTH = 4, 2.2, 2.0, 2.5
 #: What axes call stresses, and which of them share one: both sides of an interface, with their lines.
 _AT_INTERFACES = {
     ("sigma_YY",): r"normal traction $\sigma_{YY}$",
@@ -393,7 +334,7 @@ def interfaces(of: Archive) -> Drawing:
     width = choice.size.width if choice.size else PAGE
     names = of.varied(states)
     if not choice.states:
-        names, states = states_for_panel(of, names, states, _INTERFACE_CURVES)
+        names, states = states_for_panel(of, names, states, _FEW)
     numbers = of.ordered(states).tolist()
     styles = looks(len(numbers), len(names) == 1 and of.numeric(names[0]))
     called = [of.label(i, names) if len(numbers) > 1 else "" for i in numbers]
@@ -408,10 +349,9 @@ def interfaces(of: Archive) -> Drawing:
         f"depth {number(depth * factor)} {length}" if same else f"interface {i}"
         for i, (depth, same) in enumerate(zip(over_a, alike), 1)
     ]
-    columns = spread(range(len(over_a)), max(1, int(width / _LEAST_INTERFACE)))
-    available, position = (
-        of.by_method(STATE, INTERFACE, ALONG), position_name(of, "position along the interface ")
-    )  # fmt: skip
+    columns = spread(range(len(over_a)), max(1, int(width / 2.2)))
+    available = of.by_method(STATE, INTERFACE, ALONG)
+    position = position_name(of, "position along the interface ")
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
     X, places = of.data[ALONG_X.path], places_of(of, of.all)
     panels: list[Panel] = []
@@ -425,14 +365,13 @@ def interfaces(of: Archive) -> Drawing:
         for i in columns if rows else ():
             drawn: list[Shown] = []
             axis = named(words, of.scaled(next(iter(rows[0].values()))).unit) if i == columns[0] else ""
-            half = max(_OVER_A, _OVER_DEPTH * float(over_a[i]))
+            half = max(2.0, 2.5 * float(over_a[i]))  # stresses spread with the depth
             for (side, line), by_method in zip(_SIDES.items(), values):
                 own = {method: y[:, i] for method, y in by_method.items()}
                 along = Along(X, axis, own, places, position, half)
                 on_side = [look._replace(line=line) for look in styles]
                 drawn += along.shown(on_side, called if side == "above" else (), rows=numbers)
-            titled = len(panels) < len(columns) and (len(over_a) > 1 or not panels)
-            title = titles[i] if titled else ""
+            title = titles[i] if len(panels) < len(columns) else ""
             panels.append(replace(surface_panel(drawn, title=title), ylim=None))
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
     caption = (
@@ -461,10 +400,10 @@ _MAPS = {
     "sigma_XY": r"shear $\sigma_{XY}$",
     "max_shear": r"largest shear $\tau_{\mathrm{max}}$",
 }
-#: Clipped ends of a colour bar, by whether the least and the largest value are clipped.
-_CLIPPED = {(True, True): "both", (False, True): "max", (True, False): "min", (False, False): "neither"}
-#: What names of quantities in an elastic punch begin with, and the components of stress.
-_PUNCH, _COMPONENTS = "punch_", ("sigma_XX", "sigma_YY", "sigma_XY")
+#: What names of quantities in an elastic punch begin with.
+_PUNCH = "punch_"
+#: The stress that no archive has, and those that it follows from.
+_SHEAR, _COMPONENTS = "max_shear", ("sigma_XX", "sigma_YY", "sigma_XY")
 
 
 class Fields:
@@ -482,24 +421,19 @@ class Fields:
     @property
     def names(self) -> list[str]:
         """Names of all stresses inside that can be mapped."""
-        every = dict.fromkeys([*self._rows, *(_MAPS if self._rows.keys() >= {*_COMPONENTS} else ())])
+        every = [*self._rows, *[_SHEAR] * (self._rows.keys() >= {*_COMPONENTS})]
         return [name for name in every if not name.startswith(_PUNCH)]
 
     def _values(self, name: str, method: str, states: Sequence[int], body: str = "") -> NDArray | None:
         """A stress of states below the punch, or in the body "punch_", in the figure's units, (states,
         rows, columns); None where there is none."""
-        of, held = self._of, method in self._rows.get(body + name, ())
-        rows = [self._rows.get(body + one, {}).get(method) for one in ((name,) if held else _COMPONENTS)]
-        if None in rows or (body and not held and name != "max_shear"):
+        of, states = self._of, list(states)
+        names = _COMPONENTS if name == _SHEAR else (name,)
+        rows = [row for one in names if (row := self._rows.get(body + one, {}).get(method))]
+        if len(rows) < len(names):
             return None
-        values = (self._on_grid(of.data[row.path][list(states)]) for row in rows if row)
-        each = [of.scaled(row).of(own, list(states)) for row, own in zip(rows, values) if row]
-        if held or name == "max_shear":
-            return each[0] if held else maximum_shear(*each)
-        solids = [of_state(of.scene, state)[0].solid for state in states]
-        XX, YY, XY = each
-        ZZ = [solid.σ_ZZ(*components) for solid, *components in zip(solids, XX, YY, XY)]
-        return von_mises(XX, YY, XY, np.array(ZZ))
+        each = [of.scaled(row).of(self._on_grid(of.data[row.path][states]), states) for row in rows]
+        return maximum_shear(*each) if name == _SHEAR else each[0]
 
     def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
         """A stress of states, (states, rows, columns), and the largest with its own colour."""
@@ -571,13 +505,14 @@ def inside(of: Archive) -> Drawing:
     dashes, panels, off = _interfaces(of), list[Panel](), 0.0
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
-        clipped = name.startswith("sigma") and bool(every.min() < -limit), bool(every.max() > limit)
+        low, high = name.startswith("sigma") and every.min() < -limit, every.max() > limit
+        extend = ("neither", "max", "min", "both")[2 * int(low) + int(high)]
         for other in others:
             beside = fields.of_states(name, other, states)[0]
             off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
         for k, state in enumerate(states):
             panel = fields.panel(
-                name, every[k], state, limit, extend=_CLIPPED[clipped], lines=alone,
+                name, every[k], state, limit, extend=extend, lines=alone,
                 above=fields.above(name, method, state),
                 label=fields.label(name) * (k == len(states) - 1),
             )  # fmt: skip

@@ -1,5 +1,6 @@
 """Numbers of an archive's states over what is swept; over two swept numbers they are maps."""
 
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,14 +28,8 @@ from .choice import (
 from .render import MARKERS, Map, Panel, Size, render
 from .style import COLUMN, looks
 
-#: Values of a parameter that make a curve, and those of two that make a map; curves that can be told
-#: apart, and panels of a page.
-_VALUES, _OF_MAP, _CURVES, _PANELS = 3, 5, 6, 12
 #: Relative change below which numbers count as constant.
 _SAME = 1e-5
-#: Axes are logarithmic where numbers span more than this, that of the parameter where it spans more than
-#: that, by steps that are equal ratios rather than differences.
-_DECADES, _RATIOS = 200.0, 30.0
 
 
 def _names(*rows: Quantity) -> list[str]:
@@ -57,8 +52,6 @@ _ANSWERS = [
     _INTERFACE_SHEAR, *_names(*states.HALF_WIDTH.values()),
 ]  # fmt: skip
 _OF_EDGES = [*_names(states.ALPHA, states.BETA), *_INTENSITIES, *_names(states.INDENTATION)]
-#: Another name of the speed, in m/s.
-_SPEED = "speed"
 
 
 @dataclass(frozen=True)
@@ -139,7 +132,7 @@ class _Sweep:
         states = of.where(every, **self.fixed)
         self.groups = [("", states)]
         if self.by:
-            values = spread(of.distinct(self.by, states), _CURVES)
+            values = spread(of.distinct(self.by, states), 6)  # curves that can be told apart
             own = [of.where(states, **{self.by: value}) for value in values]
             self.groups = [(of.label(int(numbers[0]), [self.by]), numbers) for numbers in own]
         self.drawn, self.more = [require_one_of("y", y, self.columns) for y in choice.y], list[str]()
@@ -156,7 +149,7 @@ class _Sweep:
                 left, right = (self.columns[name].best for name in _INTENSITIES)
                 if np.allclose(left, right, rtol=_SAME, atol=0.0, equal_nan=True):
                     shown.remove(_INTENSITIES[1])
-            self.drawn = shown[:_PANELS]
+            self.drawn = shown[:12]  # panels of a page
             self.more = [name for name in changing if name not in self.drawn]
 
     def _over(self, selected: NDArray) -> tuple[str, str, NDArray]:
@@ -165,15 +158,15 @@ class _Sweep:
         columns = columns_of(of, method="")
         numeric = [name for name in of.parameters if of.numeric(name)]
         if requested:
-            require_one_of("x", requested, [*numeric, _SPEED, *columns])
+            require_one_of("x", requested, [*numeric, "speed", *columns])
         swept = _swept(of, selected) or of.varied(selected)
         usual = next((name for name in swept if name in numeric), "")
-        name = C if requested == _SPEED else requested or usual
+        name = C if requested == "speed" else requested or usual
         if not name:
             raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
         if name not in of.parameters:
             return name, named(columns[name].about, columns[name].unit), columns[name].best
-        if requested == _SPEED and of.units.dimensionless:
+        if requested == "speed" and of.units.dimensionless:
             return name, "speed $V$ (m/s)", of.parameter(C) * of.c_s
         if name == C and of.axis(C)[2] == "1":
             self.beside = "speed (m/s)", of.c_s
@@ -189,8 +182,11 @@ class _Sweep:
     def curves(self) -> list[Panel]:
         """A panel for each column that is drawn, with a curve for each group."""
         styles = looks(len(self.groups), not self.by or self._of.numeric(self.by))
-        x, panels = np.concatenate([self.x[numbers] for _, numbers in self.groups]), []
-        logarithmic = "x" * (_spans(x, _RATIOS) and _by_ratios(x))
+        x, panels = np.concatenate([self.x[numbers] for _, numbers in self.groups]), list[Panel]()
+        logarithmic = ""
+        if _spans(x, 30.0):  # and the middle number lies midway by ratios rather than by differences
+            low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
+            logarithmic = "x" * bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
         for name in self.drawn:
             shown, curves = self.columns[name], []
             for k, ((label, numbers), look) in enumerate(zip(self.groups, styles)):
@@ -204,7 +200,7 @@ class _Sweep:
             crosses = np.nanmin(every) < 0.0 < np.nanmax(every)
             panels.append(Panel(
                 self.label, shown.about, shown.unit, curves, beside=self.beside,
-                log=logarithmic + "y" * _spans(every, _DECADES), at_y=(0.0,) if crosses else (),
+                log=logarithmic + "y" * _spans(every, 200.0), at_y=(0.0,) if crosses else (),
             ))  # fmt: skip
         return panels
 
@@ -217,8 +213,8 @@ class _Sweep:
         free = [name for name in of.varied(every) if name not in both_]
         every = of.where(every, **of.fixed(free, every))
         across, up = (of.distinct(name, every) for name in both_)
-        small = min(len(across), len(up)) < _OF_MAP
-        if small or len(every) != len(across) * len(up) or PLACE in both_:
+        few = min(len(across), len(up)) < 5
+        if few or len(every) != len(across) * len(up) or PLACE in both_:
             return []
         # States by the values of both parameters: the first changes along a row.
         order = np.lexsort([of.parameter(name)[every] for name in both_])
@@ -267,9 +263,7 @@ def columns_of(of: Archive, method: str | None = None) -> dict[str, Column]:
 
 def _label(row: Quantity) -> str:
     """Name of a quantity for an axis, with formulas in TeX."""
-    from re import sub
-
-    text = sub(r"\bX = (-?a)\b", r"$X = \1$", short_name(row))
+    text = re.sub(r"\bX = (-?a)\b", r"$X = \1$", short_name(row))
     text = text.replace("sigma_XX", r"$\sigma_{XX}$")
     if row.symbol:
         text = f"{text.removesuffix(plain(f'${row.symbol}$')).strip()} ${row.symbol}$"
@@ -279,7 +273,7 @@ def _label(row: Quantity) -> str:
 def _swept(of: Archive, selected: NDArray) -> list[str]:
     """Names of numeric parameters with enough values for a curve, those with most values first."""
     counts = {name: len(of.distinct(name, selected)) for name in of.parameters if of.numeric(name)}
-    return sorted((name for name in counts if counts[name] >= _VALUES), key=lambda name: -counts[name])
+    return sorted((name for name in counts if counts[name] >= 3), key=lambda name: -counts[name])
 
 
 def _varies(values: NDArray) -> bool:
@@ -290,9 +284,3 @@ def _varies(values: NDArray) -> bool:
 def _spans(values: NDArray, more_than: float) -> bool:
     finite = values[np.isfinite(values)]
     return bool(len(finite) and finite.min() > 0.0 and finite.max() > more_than * finite.min())
-
-
-def _by_ratios(x: NDArray) -> bool:
-    """True where the middle number lies midway by ratios, rather than by differences."""
-    low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
-    return bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)

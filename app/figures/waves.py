@@ -117,11 +117,6 @@ def dispersion_drawing(slowest: Dispersion) -> Drawing:
 
 #: Speeds with frictions that are solved at most, and curves that can be distinguished.
 MOST, _CURVES = 24, 6
-#: Axes of stiffness and damping.
-_LABELS = (
-    r"stiffness $\mathrm{Re}\,(\hat N/\hat v_0)/2\mu$",
-    r"damping $\mathrm{Im}\,(\hat N/\hat v_0)/2\mu\;/\;(\omega a/c_s)$",
-)
 
 
 @dataclass(frozen=True)
@@ -216,8 +211,11 @@ def table(scene: Scene, answer: Answer) -> list[str]:
 def response_drawing(computed: list[Answer]) -> Drawing:
     """Figure of stiffness and damping over frequency."""
     shown = [computed[i] for i in spread(list(range(len(computed))), _CURVES)]
-    panels = []
-    for n, label in enumerate(_LABELS):
+    panels, labels = list[Panel](), (
+        r"stiffness $\mathrm{Re}\,(\hat N/\hat v_0)/2\mu$",
+        r"damping $\mathrm{Im}\,(\hat N/\hat v_0)/2\mu\;/\;(\omega a/c_s)$",
+    )  # fmt: skip
+    for n, label in enumerate(labels):
         curves, styles = [], looks(len(shown))
         for answer, look in zip(shown, styles):
             K, ω = answer.oscillation.stiffness, answer.oscillation.ω

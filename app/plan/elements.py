@@ -34,14 +34,7 @@ from galinx.solvers.contact.fem_plan import (
     unknowns,
     with_friction_kinks,
 )
-from galinx.solvers.contact.solution import (
-    FLAT,
-    FREE,
-    ONE_FREE,
-    PRESCRIBED,
-    SHARP,
-    Places,
-)
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import radius
 from galinx.solvers.rays import NEAR

@@ -42,14 +42,7 @@ from galinx.solvers.contact.fem_plan import (
     levels,
     unknowns,
 )
-from galinx.solvers.contact.solution import (
-    FINITE,
-    GIVEN_ENDS,
-    SOLVED,
-    Contact,
-    Places,
-    Task,
-)
+from galinx.solvers.contact.solution import FINITE, GIVEN_ENDS, SOLVED, Contact, Places, Task
 from galinx.solvers.errors import SolveError
 from galinx.texts import bytes_in_words, counted
 

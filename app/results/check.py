@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from galinx import __version__
 from galinx.clock import Clock
 from galinx.postprocess import compare
-from galinx.postprocess.compare import not_finite
 from galinx.postprocess.hdf5 import archive as reader
 from galinx.postprocess.hdf5.archive import Archive
 from galinx.postprocess.over_time import IN_TIME
@@ -35,15 +34,7 @@ from galinx.postprocess.quantities import (
     validity,
     yielding,
 )
-from galinx.postprocess.quantities.quantity import (
-    ALONE,
-    CLOSED_FORM,
-    FEM,
-    LOCAL,
-    NEVER,
-    SIE,
-    STATE,
-)
+from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, LOCAL, NEVER, SIE, STATE
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
@@ -240,24 +231,20 @@ def _of_finite_elements(archive: Archive, plan: Plan, selected: NDArray[np.int64
 
 def _of_derived(archive: Archive, plan: Plan, selected: NDArray[np.int64]) -> Iterator[str]:
     """Stresses inside and tensions under the punch that do not follow from archived components."""
-    body = plan.body
-
-    def inside(components: list[NDArray]) -> Any:
-        σ = np.array(components)
-        return SimpleNamespace(inside=σ, σ_ZZ=body.σ_ZZ(σ, archive.data[stresses.INSIDE_Y.path]))
-
-    def surface(components: list[NDArray]) -> Any:
-        return SimpleNamespace(surface=SimpleNamespace(places=plan.places, σ_YY=components[0]))
-
-    for components, derived, solution in (
-        (stresses.STRESSES_INSIDE[FEM], stresses.INVARIANTS_INSIDE[FEM], inside),
-        ((stresses.PRESSURE[FEM],), (validity.TENSION[FEM], validity.TENSION_X[FEM]), surface),
+    body, given = plan.body, SimpleNamespace()  # a solution that has components alone
+    for components, derived in (
+        (stresses.STRESSES_INSIDE[FEM], stresses.INVARIANTS_INSIDE[FEM]),
+        ((stresses.PRESSURE[FEM],), (validity.TENSION[FEM], validity.TENSION_X[FEM])),
     ):
         paths = [row.path for row in (*components, *derived)]
         if not {*paths} <= {*archive.names}:
             continue
         held = archive.rows(selected, paths)
-        given = solution([held[row.path] for row in components])
+        σ = np.array([held[row.path] for row in components])
+        if len(σ) > 1:
+            given.inside, given.σ_ZZ = σ, body.σ_ZZ(σ, archive.data[stresses.INSIDE_Y.path])
+        else:
+            given.surface = SimpleNamespace(places=plan.places, σ_YY=σ[0])
         for row in derived:
             assert row.of
             if not np.allclose(
@@ -356,7 +343,7 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
         rows = _solved(archive.rows(slice(start, start + _ROWS)), failures)
         if not len(rows[SPEED.path]):
             continue
-        yield from (f"{name} is not finite in states {start} ..." for name in not_finite(rows))
+        yield from (f"{name} is not finite in states {start} ..." for name in compare.not_finite(rows))
         for name, row in table().items():
             if row.of_data is None or any(path not in rows for path in (name, *row.needs)):
                 continue
@@ -382,16 +369,11 @@ def _solved(rows: dict[str, Any], failures: Sequence[str]) -> dict[str, Any]:
     """Rows of the states that have a solution."""
     quantities, c = table(), rows[SPEED.path]
     failed = [x for x in np.unique(c) if any(text.startswith(f"c = {x:g}: ") for text in failures)]
-    bad = np.isin(c, failed) & np.any(
-        [
-            ~np.isfinite(values)
-            for name, values in rows.items()
-            if quantities[name].solved
-            and quantities[name].over == (STATE,)
-            and quantities[name].nan_allowed == NEVER
-        ],
-        axis=0,
-    )
+    given = [
+        np.isfinite(values) for name, values in rows.items()
+        if (row := quantities[name]).solved and row.over == (STATE,) and row.nan_allowed == NEVER
+    ]  # fmt: skip
+    bad = np.isin(c, failed) & ~np.all(given, axis=0)
     return {
         name: values[~bad] if quantities[name].over[:1] == (STATE,) else values
         for name, values in rows.items()

@@ -17,9 +17,6 @@ from ..errors import BadInput, listed, short
 from ..scene.changes import differences
 from .result import Result
 
-#: Characters of a narrow column, and decimals of parameters that pair states.
-_NARROW, _DIGITS = 18, 9
-
 
 class Comparison:
     """States of results, paired by the parameters that vary in them, or else by their order.
@@ -55,7 +52,11 @@ class Comparison:
                     f"have a partner: {listed([str(i) for i in self.pairs[:, 0]])}"
                 )
             self.pairs = self.pairs[np.isin(self.pairs[:, 0], chosen)]
-        tables = [_by_head(state_columns(r.data, u)) for r, u in zip(results, self.units)]
+        # By their heads, places by what they are places of as well: methods do not matter.
+        tables = [
+            {(c.owner.head, c.head) if c.owner else (c.head,): c for c in state_columns(r.data, u)}
+            for r, u in zip(results, self.units)
+        ]
         #: Columns of each result by head, in the rows of the pairs; None where a result has none.
         self._rows: dict[tuple[str, ...], list[Column | None]] = {
             key: [
@@ -131,15 +132,14 @@ class Comparison:
 
     def sheets(self) -> Iterator[Sheet]:
         """A table for each pair of states, results side by side; of many the first."""
-        heads = [textwrap.fill(self.labels[0], _NARROW)]
-        for label in self.labels[1:]:
-            heads += [textwrap.fill(label, _NARROW), "difference\n[%]"]
+        first, *others = (textwrap.fill(label, 18) for label in self.labels)
+        heads = [first, *(head for label in others for head in (label, "difference\n[%]"))]
         shown = []
         for key, columns in self._rows.items():
             if not self._pairs(columns):
                 texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
-                first = next(column for column in columns if column)
-                shown.append((first, [*zip(*texts)], self._off[key]))
+                column = next(column for column in columns if column)
+                shown.append((column, [*zip(*texts)], self._off[key]))
         for p, title in enumerate(self.titles[:LIMIT]):
             rows = []
             for column, texts_of_pairs, percents in shown:
@@ -179,25 +179,59 @@ class Comparison:
     def drawing(self, measured: Any = None) -> Any:
         """Figure of contact pressure and in-plane stress, a :class:`galinx.app.figures.choice.Drawing`.
 
+        Colours are by result, and lines by pair of states, of many of the first, middle and last one.
+
         Args:
             measured: points over it, of :func:`galinx.app.figures.measured.read`; None for none.
 
         Raises:
             BadInput: a result has no stresses along the surface, or no measured point lies in the figure.
         """
-        from ..figures.choice import Archive, Choice
-        from ..figures.stresses import compared
+        from ..figures.choice import Archive, Choice, Drawing, explained, fewer, spread
+        from ..figures.render import TooSmall, render
+        from ..figures.stresses import Shown, stresses_along, surface_panel
+        from ..figures.style import LINES, looks
 
         if measured and not measured.lies_in("surface"):
             raise BadInput(
                 f"--measured {measured.name}: found {', '.join(measured.points)}, expected pressure or "
                 "sigma_XX, which compare draws"
             )
-        archives = [
-            Archive(result.data, result.scene, Choice(units=units, measured=measured))
+        stressed = [
+            stresses_along(Archive(result.data, result.scene, Choice(units=units)))
             for result, units in zip(self.results, self.units)
         ]
-        return compared(archives, self.labels, self.pairs.tolist(), self.titles)
+        if not all(stressed):
+            raise BadInput(
+                f"{self.labels[stressed.index({})]} holds no stresses along the surface; add "
+                '"surface" to output.quantities'
+            )
+        pairs, titles = self.pairs.tolist(), self.titles
+        chosen, styles = spread(range(len(pairs)), 3), looks(len(self.labels))
+        indices = {0x2080 + n: f"$_{n}$" for n in range(10)}  # which the type of figures lacks
+        panels = []
+        for name in dict.fromkeys(name for of_result in stressed for name in of_result):
+            shown = [
+                Shown(
+                    of_result[name], pairs[k][n],
+                    look._replace(line=LINES[order % len(LINES)]) if len(chosen) > 1 else look,
+                    f"{label}, {titles[k].translate(indices)}" if len(chosen) > 1 else label,
+                    1.0 if n else 2.0,  # the first shows below others that are the same
+                )
+                for n, (of_result, look, label) in enumerate(zip(stressed, styles, self.labels))
+                if name in of_result
+                for order, k in enumerate(chosen)
+            ]  # fmt: skip
+            panel = surface_panel(shown)
+            panels.append(measured.over_stress(panel, name, self.units[0]) if measured else panel)
+        notes = explained(*(along.values for of_result in stressed for along in of_result.values()))
+        try:
+            figure = render(panels, None, min(2, len(panels)), notes)
+        except TooSmall as error:
+            raise BadInput(f"the titles of these archives leave no room for curves: {error}") from error
+        left_out = fewer(len(chosen), len(pairs), "pairs of states", "; choose by --states")
+        caption = f"Stresses along the surface: {', '.join(self.labels)}."
+        return Drawing("compare", caption, figure, left_out=left_out)
 
 
 def compare(first: Result, *others: Result, dimensionless: bool = False) -> list[Column]:
@@ -217,16 +251,6 @@ def compare(first: Result, *others: Result, dimensionless: bool = False) -> list
 
 def _is_number(column: Column) -> bool:
     return column.unit != "none" and not isinstance(column.values[0], str)
-
-
-def _by_head(columns: Sequence[Column]) -> dict[tuple[str, ...], Column]:
-    """Columns by their heads, places by what they are places of as well: methods do not matter."""
-    table: dict[tuple[str, ...], Column] = {}
-    of = ""
-    for column in columns:
-        of = of if column.place else column.head
-        table[(of, column.head) if column.place else (of,)] = column
-    return table
 
 
 def _labels(results: Sequence[Result]) -> list[str]:
@@ -267,4 +291,4 @@ def _paired(results: Sequence[dict[str, Any]], over_c_s: bool) -> tuple[list[str
 
 def _values(data: dict[str, Any], path: str) -> list[Any]:
     values = np.asarray(data[path]).tolist()
-    return [float(f"{v:.{_DIGITS}g}") if isinstance(v, float) else v for v in values]
+    return [float(f"{v:.9g}") if isinstance(v, float) else v for v in values]

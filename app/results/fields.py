@@ -97,11 +97,10 @@ def solve_states(
     if not numbers:
         raise BadInput("states: found none, expected numbers of some")
     count = len(order(scene)) * len(scene.each)
-    for number in numbers:
-        if not 0 <= number < count:
-            raise BadInput(
-                f"state {number}: no such state; expected 0 to {count - 1}, the scene has {count}"
-            )
+    if missing := [number for number in numbers if not 0 <= number < count]:
+        raise BadInput(
+            f"state {missing[0]}: no such state; expected 0 to {count - 1}, the scene has {count}"
+        )
     own = [of_state(scene, number) for number in numbers]
     if any(variant is not own[0][0] for variant, _ in own):
         raise BadInput(
@@ -133,10 +132,10 @@ def solve_states(
             task = replace(task, body=task.body.loaded(parameters.get("load")))
             degree = degrees[i] or fem.degrees[task.number] + more
             with method.one_state(task, parameters["g"], degree) as (space, fields, weights, pressure):
-                comm = method.work.comm
                 yield Solved(
-                    scene, number, parameters, task, degree, space, fields, weights, pressure, comm
-                )
+                    scene, number, parameters, task, degree, space, fields, weights, pressure,
+                    method.work.comm,
+                )  # fmt: skip
 
     return solved()
 

@@ -27,7 +27,7 @@ from galinx.texts import with_prefix
 from ..console import Progress
 from ..errors import BadInput, excerpt, listed, nearest, short
 from ..scene import read as scenes
-from ..scene.values import Choice, Number, Rows
+from ..scene.values import Number, kind_of
 from ..text_table import read_table
 
 #: Names of columns by what they are; a friction with a unit of force is a force.
@@ -111,7 +111,7 @@ def read(path: Path) -> Table:
             raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")
         force, load = (table.numbers(n, unit) for n in both)
         if not load.all():
-            line = table.line(int(np.flatnonzero(load == 0.0)[0]))
+            line, _ = table.rows[int(np.flatnonzero(load == 0.0)[0])]
             raise BadInput(f"{path}, line {line}: found no load, expected one")
         f = force / np.abs(load)
     clock = numbers("time", "s") if timed else numbers("slip", "m")
@@ -119,7 +119,7 @@ def read(path: Path) -> Table:
     back = np.flatnonzero(np.diff(clock) <= 0.0)
     if len(clock) < 3 or len(back):
         row = int(back[0]) + 1 if len(clock) >= 3 else len(clock) - 1
-        line, name = (table.line(row) if len(clock) else 1), "time" if timed else "slip"
+        line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
         raise BadInput(f"{path}, line {line}: expected three or more rows in which the {name} grows")
     if not np.ptp(X):
         raise BadInput(f"{path}: found one position in all rows, expected a motion")
@@ -128,7 +128,7 @@ def read(path: Path) -> Table:
     if not timed and X[0] > np.ptp(X):
         ends = " to ".join(with_prefix(x, "m") for x in (X[0], X[-1]))
         raise BadInput(
-            f"{path}, line {table.line(0)}: found slips from {ends}, expected slips from 0 on, since "
+            f"{path}, line {table.rows[0][0]}: found slips from {ends}, expected slips from 0 on, since "
             "rest: most of the stroke is missing; if the motion begins there, take off the first slip"
         )
     if not timed and X[0] > 0.0:  # counted from rest, of which the table has no row
@@ -368,17 +368,14 @@ def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in given.items():
         if key not in declared:
             raise BadInput(f"found {short(key)!r}, expected KEY=VALUE with {', '.join(declared)}")
-        parameter = declared[key]
         try:
-            if parameter.options:
-                values[key] = Choice(parameter.options)(value)
-            elif parameter.columns:
+            if declared[key].columns:
                 table = json.loads(value) if isinstance(value, str) else value
-                values[key] = Rows(parameter.columns)([list(row) for row in table])
-            else:
+                value = [list(row) for row in table]
+            elif not declared[key].options:
                 with suppress(TypeError, ValueError):  # else a text with a unit
                     value = float(value)
-                values[key] = Number(parameter.unit, parameter.range)(value)
+            values[key] = kind_of(declared[key])(value)
         except ValueError as error:
             raise BadInput(f"{key}: {error}") from None
     return values

@@ -9,7 +9,7 @@ import json
 import re
 from base64 import b64encode
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from gzip import compress
 from importlib.util import find_spec
@@ -40,13 +40,7 @@ from ..console import program
 from ..figures.choice import Archive, Choice, Drawing, spread
 from ..figures.files import content, embedded
 from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_along
-from ..figures.stresses import (
-    SHOWN,
-    Fields,
-    map_names,
-    stresses_along,
-    surface_panels,
-)
+from ..figures.stresses import SHOWN, Fields, map_names, stresses_along, surface_panels
 from ..figures.style import as_hex
 from ..plan.plan import by_reason
 from ..scene.scene import Scene
@@ -323,24 +317,27 @@ def picture(drawing: Drawing, png: bytes | None = None) -> dict[str, Any]:
 
 
 def page(
-    data: dict[str, Any], attributes: dict[str, Any], scene: Scene, pictures: Iterable[dict[str, Any]],
-    sheets: Sequence[Sheet] | None = None, dimensionless: bool = False,
+    result: Any, drawings: Iterable[Drawing], sheets: Sequence[Sheet] | None = None,
+    dimensionless: bool = False, pixels: Mapping[str, bytes] | None = None,
 ) -> str:  # fmt: skip
     """A report as HTML.
 
     Args:
-        data, attributes: datasets by path, and attributes of the root, of an archive.
-        scene: of the archive.
-        pictures: figures, of :func:`picture`.
+        result: a :class:`galinx.app.results.result.Result`.
+        drawings: figures.
         sheets: tables of accuracy; the published ones where the archive has their states.
         dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
+        pixels: files of figures as PNG by their name, as :func:`picture` takes them.
     """
-    units, seconds = Units(scene.body, data, dimensionless), data[runs.SECONDS.path]
+    data, attributes, scene = result.data, result.attributes, result.scene
+    units, seconds = result.units(dimensionless), data[runs.SECONDS.path]
     longest = max(float(seconds.max()), 1e-9)
     large = explorer(Archive(data, scene, Choice(units=units)))
     # Charts with the slider show these.
     covered = {"surface": large and large["surface"], "inside": large and large["maps"]}
-    shown = [each for each in pictures if not covered.get(each["name"])]
+    shown = [
+        picture(each, (pixels or {}).get(each.name)) for each in drawings if not covered.get(each.name)
+    ]
     few = len(data[states.FRICTION.path]) <= BESIDE
     title = "Every state" if few else None  # many have a table of their own, to search
     tables = sheets_of_archive(data, units, title, _WIDE * few, not scene.steady)

@@ -35,7 +35,6 @@ _POSITIONS = {
     INSIDE_X.path: "inside_X_over_a",
     INSIDE_Y.path: "inside_Y_over_a",
 }
-_COLOURS = {"PASS": "#1a7f37", "FAIL": "#c1121f"}
 
 
 def _lines(texts: Iterable[str]) -> str:
@@ -73,9 +72,10 @@ class Result:
         table_ = f"<table><thead>{head}</thead><tbody>{''.join(rows)}</tbody></table>"
         warnings = [f"warning: {text}" for text in json.loads(self.attributes["warnings"])]
         notes = [*sheet.notes, *failed(self.data, self.attributes), checked(self.data, self.attributes)]
+        colour = {"PASS": "#1a7f37", "FAIL": "#c1121f"}.get(self.verdict, "inherit")
         return (
             f"<p><b>{escape(sheet.title or 'galinx')}</b>: "
-            f'<b style="color: {_COLOURS.get(self.verdict, "inherit")}">{escape(self.verdict)}</b></p>'
+            f'<b style="color: {colour}">{escape(self.verdict)}</b></p>'
             f"{_lines(warnings)}{table_}{_lines(notes)}"
         )
 
@@ -168,11 +168,13 @@ class Result:
             BadInput: the result has no such figure.
         """
         from ..figures.archive import names
-        from ..figures.files import for_notebook
+        from ..figures.files import content
 
         usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
         (drawing,) = self.drawings(figures=(name or usual,), **options)
-        return for_notebook(drawing.figure)
+        figure: Any = drawing.figure  # notebooks know how to show figures of pyplot alone
+        figure._repr_png_ = lambda: content(figure, "png", 110)
+        return figure
 
     def plot(
         self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,
@@ -213,12 +215,11 @@ class Result:
             Occupied: another file than a report of galinx is there, and ``overwrite`` is false.
             UnwritableArchive: the file system refused.
         """
-        from .report import page, picture
+        from .report import page
 
         target = Target(Path(path), PAGE, overwrite, self.inputs)
-        pictures = map(picture, self.drawings(dimensionless, figures=("all",)))
-        text = page(self.data, self.attributes, self.scene, pictures, dimensionless=dimensionless)
-        target.write(text.encode())
+        drawings = self.drawings(dimensionless, figures=("all",))
+        target.write(page(self, drawings, dimensionless=dimensionless).encode())
 
     def fields(
         self,

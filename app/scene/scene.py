@@ -31,17 +31,7 @@ from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
 from ..errors import listed
-from .sections import (
-    ADVECTED,
-    ElasticPunch,
-    Friction,
-    GivenSolid,
-    Motion,
-    Output,
-    Punch,
-    Solve,
-    Time,
-)
+from .sections import ADVECTED, ElasticPunch, Friction, GivenSolid, Motion, Output, Punch, Solve, Time
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,7 @@ from .values import (
     Rows,
     Variations,
     Whole,
+    kind_of,
 )
 
 #: Stands for a default where a key has to be given.
@@ -696,15 +697,7 @@ class Section:
 
     def _key(self, parameter: Parameter, model: Any) -> Key:
         """Key of a parameter of a model."""
-        value: Kind
-        if parameter.options:
-            value = Choice(parameter.options)
-        elif parameter.columns:
-            value = Rows(parameter.columns)
-        elif parameter.count:
-            value = List(Number(parameter.unit), count=parameter.count)
-        else:
-            value = (Numbers if self.several else Number)(parameter.unit, parameter.range)
+        value = kind_of(parameter, self.several)
         default = self.defaults.get(parameter.key, fields(model)[parameter.key].default)
         if self.several and parameter.single:  # a tuple of what laws have
             if isinstance(value, Choice):

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any, Protocol
 
 from galinx.solvers.friction.motion import DIRECTION, Partial
-from galinx.solvers.parameters import Range
+from galinx.solvers.parameters import Parameter, Range
 
 from ..errors import excerpt, meant, nearest
 from .units import to_si
@@ -360,6 +360,22 @@ def _spread(to: float, number: int, spacing: str = "linear", **ends: float) -> I
         at = (low * (number - 1 - i) + high * i) / (number - 1)
         yield float(at.exp() if logarithmic else at)
     yield to
+
+
+def kind_of(parameter: Parameter, several: bool = False) -> Kind:
+    """Kind of the values of a model's parameter.
+
+    Args:
+        parameter: the parameter.
+        several: a number may be a list or a range of numbers.
+    """
+    if parameter.options:
+        return Choice(parameter.options)
+    if parameter.columns:
+        return Rows(parameter.columns)
+    if parameter.count:
+        return List(Number(parameter.unit), count=parameter.count)
+    return (Numbers if several else Number)(parameter.unit, parameter.range)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from io import StringIO
 from itertools import product
 from typing import Any
@@ -21,10 +21,10 @@ from galinx.solvers.contact.equation import UNIFORM, Equation
 from galinx.solvers.contact.fem_plan import ASSEMBLERS
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.motion import friction_along
-from galinx.solvers.solids.isotropic import Isotropic
 
 from .. import ranks
 from ..console import Progress, colours, new_console, print_sheet, program, say
+from ..results.result import Result
 from ..run.flow import Memory, compute
 from ..scene import read as scenes
 from ..scene.library import SCENES
@@ -60,11 +60,8 @@ _STROKE, _PLACE = "FM1", 0.8
 #: Polynomials of the expansion; one would do for a flat punch.
 _TERMS = 8
 
-#: Degree of the displacements that are printed with four digits, and of both assemblers' comparison.
-_DEGREE, _ASSEMBLED = 7, 6
-
-#: Tolerance at that degree: only the difference of both assemblers is read off.
-_TOLERANCE = 1e-3
+#: Degree of the displacements that are printed with four digits.
+_DEGREE = 7
 
 
 @dataclass(frozen=True)
@@ -99,28 +96,14 @@ class Check:
         return f"{text}: {value}, at most {limit}"
 
 
-@dataclass(frozen=True)
-class Computed:
-    """A scene with its results, which rank 0 has."""
+def _checks(result: Result) -> list[Check]:
+    """Verdict of an archive, line by line."""
+    return [Check(text, *figures) for text, figures in judged(result.attributes).items()]
 
-    scene: Scene
-    data: dict[str, Any]
-    attributes: dict[str, Any]
 
-    @property
-    def solid(self) -> Isotropic:
-        """The scene's solid, which is the study's."""
-        assert isinstance(self.scene.solid, Isotropic)
-        return self.scene.solid
-
-    def worst(self, rule: str) -> float:
-        """The largest value of a comparison; NaN where nothing was compared."""
-        return json.loads(self.attributes["comparisons"]).get(RULES[rule].text, np.nan)
-
-    @property
-    def checks(self) -> list[Check]:
-        """The archive's own verdict, line by line."""
-        return [Check(text, *figures) for text, figures in judged(self.attributes).items()]
+def _worst(result: Result, rule: str) -> float:
+    """The largest value of a comparison; NaN where nothing was compared."""
+    return result.comparisons.get(RULES[rule].text, np.nan)
 
 
 def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
@@ -140,17 +123,17 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         return True  # the verdict is rank 0's
     study, inside, *_ = results
     methods, checks = _judged(*results)
-    failed = sum(result.attributes["verdict"] != "PASS" for result in results)
+    failed = sum(result.verdict != "PASS" for result in results)
     checks.append(Check(f"runs behind these lines that are no PASS, of {len(results)}", failed, 0))
     good = all(check.good for check in checks)
-    decided = statements_sheet(statements(study.data, study.solid))
+    decided = statements_sheet(statements(study.data, study.scene.solid))
     tables, details = [*_tables(study), methods], _details(study)
     verdict = {
         "verdict": "PASS" if good else "FAIL",
         "verdict_reasons": json.dumps([check.words for check in checks], ensure_ascii=False),
     }
-    judged = replace(study, attributes=study.attributes | verdict)
-    page = _draw(judged, inside, [decided, *tables, *details], folder, progress)
+    study.attributes |= verdict
+    page = _draw(study, inside, [decided, *tables, *details], folder, progress)
     targets["report.html"].write(page.encode())
     for name, sheets in (("tables.txt", [*tables, *details]), ("statements.txt", [decided])):
         text = StringIO()
@@ -167,28 +150,27 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     return good
 
 
-def _computed(scene: Scene, progress: Progress, target: Target | None = None) -> Computed:
+def _computed(scene: Scene, progress: Progress, target: Target | None = None) -> Result:
     """Results of a scene, archived where there is a target; collective, rank 0 alone has the data."""
     if target is None or not ranks.is_root():
         memory = Memory()
-        attributes = compute(scene, memory, progress if ranks.is_root() else None)
-        return Computed(scene, memory, attributes)
+        return Result(memory, compute(scene, memory, progress if ranks.is_root() else None))
     from galinx.postprocess.hdf5 import archive
 
     with archive.Writer(target) as writer:
         writer.finish(compute(scene, writer, progress))
-    return Computed(scene, *archive.read(target.path, just_sealed=True))
+    return Result(*archive.read(target.path, just_sealed=True))
 
 
 def _draw(
-    study: Computed, inside: Computed, sheets: Sequence[Sheet], folder: Folder, progress: Progress
+    study: Result, inside: Result, sheets: Sequence[Sheet], folder: Folder, progress: Progress
 ) -> str:
     """Write the figures; the report, with all of them and all tables."""
     from ..figures.choice import Archive, Choice
-    from ..figures.files import save
+    from ..figures.files import Files
     from ..figures.numerics import mesh
     from ..figures.stresses import inside as draw_inside
-    from ..results.report import page, picture
+    from ..results.report import page
     from .drawings import of_study
 
     drawings, plain = [], Choice()
@@ -197,9 +179,9 @@ def _draw(
         drawings.append(drawing)
     drawings.append(draw_inside(Archive(inside.data, inside.scene, plain)))
     drawings.append(mesh(Archive(study.data, study.scene, plain)))
-    pixels = save(((drawing.name, drawing.figure) for drawing in drawings), folder)
-    pictures = [picture(drawing, pixels[drawing.name]) for drawing in drawings]
-    return page(study.data, study.attributes, study.scene, pictures, sheets, dimensionless=True)
+    written = Files(folder.path, overwrite=folder.overwrite, inputs=folder.inputs).write(drawings)
+    pixels = {file.path.stem: file.data for file in written if file.path.suffix == ".png"}
+    return page(study, drawings, sheets, True, pixels)
 
 
 def _beside() -> list[Scene]:
@@ -208,19 +190,18 @@ def _beside() -> list[Scene]:
     The block, and Dahl's friction with the exact pressure as tractions, in one state each; and K_I of the
     tables by either assembler on one mesh.
     """
-    beside = []
-    for name, words in (("box", ("sif",)), ("traction", ("sif", "surface"))):
-        scene = scenes.read(SCENES / f"{name}.toml")
-        motion = replace(scene.motion, c=(FAST,), strokes=("forward",), X_over_L=(_PLACE,))
-        beside.append(replace(scene, motion=motion, output=replace(scene.output, quantities=words)))
-    tables = scenes.read(SCENES / "tables4_5.toml")
-    motion, output = replace(tables.motion, c=(FAST,)), replace(tables.output, quantities=("sif",))
-    for name in ASSEMBLERS:
-        solve = replace(
-            tables.solve, methods=(FEM,), degree=_ASSEMBLED, assembler=name, tolerance=_TOLERANCE
-        )
-        beside.append(replace(tables, motion=motion, solve=solve, output=output))
-    return beside
+    fast = {"motion.c": FAST, "output.quantities": ["sif"]}
+    state = fast | {"motion.strokes": ["forward"], "motion.X_over_L": _PLACE}
+    # Only the difference of both assemblers is read off.
+    fem = {"solve.methods": [FEM], "solve.degree": 6, "solve.tolerance": 1e-3}
+    return [
+        scenes.read(SCENES / "box.toml", state),
+        scenes.read(SCENES / "traction.toml", state | {"output.quantities": ["sif", "surface"]}),
+        *(
+            scenes.read(SCENES / "tables4_5.toml", fast | fem | {"solve.assembler": name})
+            for name in ASSEMBLERS
+        ),
+    ]
 
 
 def _print(sheets: Sequence[Sheet], console: Any) -> None:
@@ -229,21 +210,21 @@ def _print(sheets: Sequence[Sheet], console: Any) -> None:
         console.print()
 
 
-def _tables(study: Computed) -> list[Sheet]:
+def _tables(study: Result) -> list[Sheet]:
     """The study's tables."""
-    data, solid, L = study.data, study.solid, study.scene.friction.pre_sliding
+    data, solid, L = study.data, study.scene.solid, study.scene.friction.pre_sliding
     notes = [limit_of_steady_motion(name, data, study.scene.body.half_width) for name in INTENSITIES]
     rows = [intensity_rows(name, data) for name in INTENSITIES]
     return [table1(), table2(solid), table3(solid, L), *map(intensities, INTENSITIES, rows, notes)]
 
 
-def _details(study: Computed) -> list[Sheet]:
+def _details(study: Result) -> list[Sheet]:
     """Tables of friction, of the moving frame, of intensities with dimensions, and of displacements."""
     scene, data = study.scene, study.data
     laws = [law for law in scene.friction.laws() if isinstance(law, Dahl)]
     sheets = [
         friction_sheet(laws, scene.friction.pre_sliding),
-        frame_sheet(study.solid),
+        frame_sheet(scene.solid),
         dimensions_sheet(data, scene.punch.load, scene.body.half_width),
     ]
     from ..results.fields import displacement_under_punch
@@ -265,7 +246,7 @@ def _details(study: Computed) -> list[Sheet]:
 
 
 def _judged(
-    study: Computed, inside: Computed, block: Computed, tractions: Computed, *assembled: Computed
+    study: Result, inside: Result, block: Result, tractions: Result, *assembled: Result
 ) -> tuple[Sheet, list[Check]]:
     """Table of the methods beside each other, and every line of the verdict."""
     scene, data = study.scene, study.data
@@ -273,20 +254,20 @@ def _judged(
     off_table = not_as_printed(scene.solid, scene.friction.pre_sliding)
     rows = [row for name in INTENSITIES for row in intensity_rows(name, data)]
     entries = sum(not row.agrees for row in rows) + 12 - len(rows)
-    below = [check for check in inside.checks if "inside" in check.text]
+    below = [check for check in _checks(inside) if "inside" in check.text]
     checks = [
         Check("Tables 1 and 3: entries not as printed, misprints aside", off_table, 0),
         Check("Tables 4 and 5: rows not as printed, of 12", entries, 0),
-        *study.checks,
+        *_checks(study),
         Check("σ_YY of the raw nodal forces, no exponent assumed, relative", _raw(data), 1e-6),
-        Check("edge exponents fitted to them, absolute", study.worst("exponents"), 1e-4),
+        Check("edge exponents fitted to them, absolute", _worst(study, "exponents"), 1e-4),
         *below,
         Check("Runge-Kutta against the exact law, f", off["rk4"], 1e-5),
         Check("expansion-collocation against the closed form, K_I, relative", off["collocation"], 1e-12),
         Check("the block of Fig 4: K_I, relative; its walls set it", off["block"], 1e-2),
         Check(
             "Dahl's friction and the pressure as tractions: v,X under the punch over that beside it",
-            tractions.worst("slope under the punch"), 1e-5,
+            _worst(tractions, "slope under the punch"), 1e-5,
         ),
         Check(
             "K_I by dolfinx's own assembler on the same mesh at the same degree, relative",
@@ -300,7 +281,7 @@ def _judged(
 _STEPS = np.linspace(0.0, 1.0, 21)
 
 
-def _methods(study: Computed, block: Computed) -> tuple[Sheet, dict[str, float]]:
+def _methods(study: Result, block: Result) -> tuple[Sheet, dict[str, float]]:
     """Table of the methods at one state, and their differences at all of Tables 4 and 5, by name."""
     scene, data, sign = study.scene, study.data, study.scene.friction.stress_ratio
     exact, by_steps = (
@@ -328,8 +309,8 @@ def _methods(study: Computed, block: Computed) -> tuple[Sheet, dict[str, float]]
             float(np.abs(expanded(c, data[of.RATIO.path][i]) / data[of.K_I_BOTH.path][i] - 1.0).max())
             for c, i in of_tables
         ),
-        "confocal": study.worst("K_I"),
-        "block": block.worst("K_I"),
+        "confocal": _worst(study, "K_I"),
+        "block": _worst(block, "K_I"),
     }
 
     def row(name: str, f: str, K_I: Sequence[float], key: str = "") -> tuple[str, ...]:
@@ -364,7 +345,7 @@ def _methods(study: Computed, block: Computed) -> tuple[Sheet, dict[str, float]]
     ), off
 
 
-def _apart(first: Computed, second: Computed) -> float:
+def _apart(first: Result, second: Result) -> float:
     """Largest relative difference of K_I of finite elements between two results, at both edges."""
     paths = (of.K_I_LEFT[FEM].path, of.K_I_RIGHT[FEM].path)
     return float(max(np.abs(second.data[path] / first.data[path] - 1.0).max() for path in paths))

@@ -30,13 +30,10 @@ SLOW, FAST = 4.786e-7, 0.6
 INTENSITIES = {"table4": "Table 4. Slow speed", "table5": "Table 5. High speed"}
 
 
-#: Kolosov's constant of the study's solid, on which alone dimensionless results depend.
-_KOLOSOV = 2.0
-
-
 def has_study_digits(solid: Solid) -> bool:
-    """Return True if dimensionless results in this solid have the study's digits."""
-    return getattr(solid, "κ", None) == _KOLOSOV
+    """Return True if dimensionless results in this solid have the study's digits: they depend on
+    Kolosov's constant alone."""
+    return getattr(solid, "κ", None) == 2.0
 
 
 def published() -> dict[str, Any]:
@@ -143,8 +140,9 @@ def table1() -> Sheet:
     )
 
 
-def table2(solid: Isotropic) -> Sheet:
+def table2(solid: Solid) -> Sheet:
     """Table 2: the solid, and what follows from it."""
+    assert isinstance(solid, Isotropic)
     printed = published()["table2"]
     rayleigh = solid.limit() * solid.c_s
     return Sheet(
@@ -275,8 +273,9 @@ def friction_sheet(laws: Iterable[Dahl], pre_sliding: float) -> Sheet:
     )
 
 
-def frame_sheet(solid: Isotropic) -> Sheet:
+def frame_sheet(solid: Solid) -> Sheet:
     """Table of the constants of the moving frame at both speeds."""
+    assert isinstance(solid, Isotropic)
     rows = []
     for name, c in (("SS", SLOW), ("HS", FAST)):
         at = solid.response(c)

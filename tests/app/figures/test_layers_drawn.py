@@ -78,3 +78,12 @@ def test_flutter_is_drawn_over_the_angle_of_a_solid_with_axes(monkeypatch):
     np.testing.assert_allclose(positive, negative[::-1], rtol=1e-6)
     np.testing.assert_allclose([positive[2], positive[0]], [2.689, 0.372], atol=1e-3)
     assert "flutter" not in [drawn.name for drawn in result.drawings(figures=("all",))]
+
+
+def test_a_solid_whose_stress_along_Z_is_not_known_has_no_map_of_von_mises():
+    stiffness = [200e9, 80e9, 10e9, 180e9, 5e9, 70e9]
+    solid = {"kind": "anisotropic", "rho": 7800, "stiffness": stiffness}
+    scene = MAP | {"output.quantities": ["interior"], "solve.methods": ["closed_form"]}
+    result = computed(changes=scene | {"solid": solid, "motion.c": [0.3]})
+    labels = [panel.map.label for panel in drawn(result, "inside").figure.panels]
+    assert sum("sigma" in label for label in labels) == 3 and not any("Mises" in text for text in labels)

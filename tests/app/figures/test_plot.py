@@ -178,3 +178,12 @@ def test_contacts_of_several_widths_are_compared_in_units():
     assert values.max() == pytest.approx(pressure.max(), rel=1e-14)
     assert all((np.diff(line.get_ydata()) < 0.0).all() for line in curves(axis))
     assert not any("N/(2a)" in axis.get_ylabel() or "over $a$" in axis.get_ylabel() for axis in axes)
+
+
+@pytest.mark.parametrize("dimensionless, name", [(False, "stress (µm)"), (True, "stress over $a$")])
+def test_places_are_over_the_half_width_where_they_have_no_unit(dimensionless, name):
+    result = computed("cylinder", ROUND | {"output.quantities": ["surface"]})
+    choice = {"y": ("sigma_XX_max_X_over_a",), "units": result.units(dimensionless)}
+    (axis, *_) = drawn(result, "parameters", **choice).figure.axes
+    label = " ".join(axis.get_ylabel().split())
+    assert label.endswith(name) and label.count("over") == dimensionless

@@ -240,8 +240,12 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 
 def _occurring(columns: Sequence[Column]) -> list[Column]:
-    """Columns of numbers but those that are 0 in all states."""
-    return [column for column in columns if np.nan_to_num(column.values).any()]
+    """Columns of numbers but those that are 0 in all states, with the places of those that are left."""
+    left: list[Column] = []
+    for one in columns:
+        if np.nan_to_num(one.values).any() or any(one.owner is other for other in left):
+            left.append(one)
+    return left
 
 
 def _parameter_columns(data: Mapping[str, Any], units: Units) -> list[Column]:

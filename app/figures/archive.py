@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
-from galinx.postprocess.quantities import Quantity, over_time, runs
+import numpy as np
+
+from galinx.postprocess.quantities import Quantity, over_time, runs, solved_states
 from galinx.postprocess.quantities.quantity import METHODS
 from galinx.postprocess.quantities.states import FRICTION
 from galinx.postprocess.quantities.stresses import RATIO_ALONG
@@ -157,18 +159,20 @@ def write(data: dict[str, Any], scene: Scene, choice: Choice, files: Files) -> l
     """Write the figures of :func:`of_archive`.
 
     Raises:
-        BadInput: the archive lacks a selected figure or quantity, or it cannot be written in this format.
+        BadInput: the archive lacks a figure or quantity, or it cannot be written in this format.
         Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
     """
     if not choice.figures and OF_FILMS.keys() & {files.ending, *files.formats}:
         choice = replace(choice, figures=(FILM,))
-    files.check(names(data, scene, choice))
+    if not (drawn := names(data, scene, choice)):
+        raise BadInput('the archive has nothing to draw; add "surface" to output.quantities')
+    files.check(drawn)
     return files.write(of_archive(data, scene, choice))
 
 
 def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[str]:
-    """Names of the figures that a choice selects: by default those that answer what is asked most.
+    """Names of the figures that a choice selects; by default those that answer what is asked most.
 
     Raises:
         BadInput: the archive lacks a selected figure or quantity; the message says what it has.
@@ -179,6 +183,8 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
             raise BadInput(
                 f"--states: found {state}, expected numbers from 0 to {count - 1}; show lists them"
             )
+        if state not in np.arange(count)[solved_states(data)]:
+            raise BadInput(f"--states: found {state}, which has no solution; show says why")
     if choice.method:
         require_one_of("method", choice.method, METHODS)
     plain, of = Archive(data, scene, Choice(units=choice.units)), Archive(data, scene, choice)
@@ -205,11 +211,10 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
                 "or quantity shows"
             )
     drawable = [name for name in selected if name == FILM or FIGURES[name].has(of)]
-    if not drawable or len(drawable) < len(named):
-        for_options = f" for {_options(choice.given)} together" if choice.given else ""
+    if len(drawable) < len(named) or (choice.given and not drawable):
         raise BadInput(
-            f"the archive has nothing to draw{for_options}; it has the figures "
-            f"{', '.join(available) or 'of no kind'}"
+            f"the archive has nothing to draw for {_options(choice.given)} together; it has the figures "
+            f"{', '.join(available)}"
         )
     return drawable
 

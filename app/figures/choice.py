@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from galinx.postprocess.quantities import Quantity, column, table
+from galinx.postprocess.quantities import Quantity, column, solved_states, table
 from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.swept import WAVE_SPEED
@@ -303,8 +303,11 @@ class Archive:
         return self.scaled(row).of(self.data[row.path])
 
     def selected(self) -> NDArray[np.int64]:
-        """Chosen states, all by default."""
-        return np.array(self.choice.states) if self.choice.states else self.all
+        """Chosen states, by default all with a solution, or all where none has one."""
+        if self.choice.states:
+            return np.array(self.choice.states)
+        solved = self.all[solved_states(self.data)]
+        return solved if len(solved) else self.all
 
     def not_shown(self, shown: Sequence[int], how: str) -> str:
         """Sentence on the states that a figure leaves out, and how to draw them; "" where it shows all.

@@ -63,6 +63,8 @@ def limits(X: NDArray, values: NDArray) -> tuple[float, float]:
     """Room for values further than 0.09 a from the edges, (curves, points); singular ends run out of the
     picture."""
     regular = values[:, from_edge(X) > 0.09]
+    if np.isnan(regular).all():
+        return 0.0, 1.0
     if np.nanmax(np.abs(values)) <= 1.05 * np.nanmax(np.abs(regular)):
         regular = values  # nothing runs out: the ends of the contact are smooth
     low, high = np.nanmin(regular), np.nanmax(regular)
@@ -79,6 +81,8 @@ def broken(X: NDArray, values: NDArray) -> tuple[NDArray, NDArray]:
     beside = ~under_punch(X)
     parts = (beside & (X < 0.0), ~beside, beside & (X > 0.0))
     pieces = [part for part in parts if not np.isnan(values[part]).all()]
+    if not pieces:
+        return X, values
     x, y = (np.concatenate([np.append(z[part], np.nan) for part in pieces]) for z in (X, values))
     return x, y
 

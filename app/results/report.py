@@ -197,7 +197,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     fields = Fields(of) if below else None
     inside = fields.X.size * fields.Y.size if fields else 1
     sizes = [inside, *(4 * len(along.X) for along in surface.values())]
-    shown = spread(of.all.tolist(), max(1, _NUMBERS // max(sizes)))
+    shown = spread(of.selected().tolist(), max(1, _NUMBERS // max(sizes)))
     varied = of.varied()
     made: dict[str, Any] = {
         "states": [f"state {i}{': ' * bool(varied)}{of.text(i, varied)}" for i in shown],

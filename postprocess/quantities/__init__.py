@@ -26,10 +26,12 @@ from .quantity import (
     FEM,
     FRICTION_ALONE,
     INSIDE,
+    LOCAL,
     POINT,
     QUANTITIES,
     SIE,
     STATE,
+    TEXT,
     Quantity,
 )
 
@@ -86,6 +88,15 @@ def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity
     if len(data.get(runs.FAILURES.path, ())):
         there.sort(key=lambda row: bool(np.isnan(data[row.path]).all()))
     return next(iter(there), None)
+
+
+def solved_states(data: Mapping[str, Any]) -> Any:
+    """True for states that a method solved, (states,); a slice of all where nothing failed."""
+    if not len(data.get(runs.FAILURES.path, ())):
+        return slice(None)
+    rows = (row for path, row in table().items() if row.of and row.over == (STATE,) and path in data)
+    numbers = [data[row.path] for row in rows if row.method not in ("", LOCAL) and row.type != TEXT]
+    return np.any([np.isfinite(values) for values in numbers], axis=0) if numbers else slice(None)
 
 
 def of_states(path: str) -> bool:

@@ -13,6 +13,7 @@ import pytest
 from support import THOROUGH, kept
 
 from galinx import compute, template
+from galinx.app.errors import BadInput
 from galinx.app.results.report import markup
 from galinx.postprocess.tables import BESIDE, sheets_of_archive, state_columns
 
@@ -86,6 +87,32 @@ def test_a_report_of_friction_over_an_elastic_pair_shows_flutter(tmp_path):
     result = compute(template("cylinder", friction | along | {"output.map": None}))
     result.report(tmp_path / "report.html")
     assert "<figcaption" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_states_without_a_solution_are_drawn_nowhere(tmp_path):
+    """Beyond the Rayleigh speed no punch has a contact; nor has a cylinder sharp edges for that."""
+    punch = {"punch.profile": "parabolic", "punch.radius": 5e-3, "punch.half_width": None}
+    grid = {"X": [-2, 2, 5], "Y": [-2, -0.1, 4]}
+    result = compute(template("tables4_5", CLOSED | punch | {
+        "motion.c": [0.5, 0.95, 0.3], "motion.strokes": ["forward"], "motion.X_over_L": [1.0],
+        "output.quantities": ["sif", "surface", "interior"], "output.map": grid,
+    }))  # fmt: skip
+    assert result.verdict == "FAIL" and np.isnan(result.data["states/closed_form/half_width"][1])
+    assert not any(column.name.startswith("K_I") for column in result.table())
+    result.report(tmp_path / "report.html")
+    assert "state 2" in (text := (tmp_path / "report.html").read_text()) and "state 1:" not in text
+    assert {path.suffix for path in result.plot(tmp_path / "figures", figures=("surface", "inside"))} == {
+        ".pdf",
+        ".png",
+    }
+    with pytest.raises(BadInput, match="1, which has no solution"):
+        result.plot(tmp_path / "figures", states=[1])
+
+
+def test_an_archive_without_figures_is_reported(tmp_path):
+    steady = {"friction": {"mu": 0.3}, "motion": {"c": 0.3}, "output.quantities": ["sif"]}
+    compute(template("tables4_5", CLOSED | steady)).report(tmp_path / "report.html")
+    assert "<figcaption" not in (tmp_path / "report.html").read_text()
 
 
 def data_of(page, name):

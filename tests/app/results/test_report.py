@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import THOROUGH, kept
+from support import THOROUGH, computed, kept
 
 from galinx import compute, template
 from galinx.app.errors import BadInput
@@ -111,7 +111,7 @@ def test_states_without_a_solution_are_drawn_nowhere(tmp_path):
 
 def test_an_archive_without_figures_is_reported(tmp_path):
     steady = {"friction": {"mu": 0.3}, "motion": {"c": 0.3}, "output.quantities": ["sif"]}
-    compute(template("tables4_5", CLOSED | steady)).report(tmp_path / "report.html")
+    computed(changes=CLOSED | steady).report(tmp_path / "report.html")
     assert "<figcaption" not in (tmp_path / "report.html").read_text()
 
 

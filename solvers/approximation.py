@@ -29,6 +29,15 @@ def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return τ, w, (np.arange(nodes) + 0.5)[:, None] * legvander(τ, nodes - 1).T * w
 
 
+def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points and weights of Gauss's rule for the weight (1 - t)^α (1 + t)^β, (points,) each."""
+    from scipy.special import roots_jacobi  # a slow import
+
+    with np.errstate(invalid="ignore", divide="ignore"):  # SciPy evaluates a branch it then discards
+        t, w = roots_jacobi(points, α, β)
+    return t, w
+
+
 def gauss_in_panels(edges: NDArray, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Gauss's points in panels between edges, panel by panel, and weights, (panels·points,) each."""
     t, w = leggauss(points)

@@ -40,9 +40,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
-from scipy.special import roots_jacobi
 
-from ..approximation import barycentric
+from ..approximation import barycentric, gauss
 from ..errors import SolveError
 from ..friction.along import Along, constant
 from ..layers.kernel import REACH, Kernel, Level, Scaled
@@ -72,13 +71,6 @@ def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
         before = 2.0 * (n + α) * (n + β) * (m + 2.0) * P[n - 1]
         P[n + 1] = (now - before) / (2.0 * (n + 1.0) * (n + s + 1.0) * m)
     return np.moveaxis(P, 0, -1)
-
-
-def gauss(points: int, α: float, β: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and weights of Gauss's rule for the weight (1 - t)^α (1 + t)^β, (points,) each."""
-    with np.errstate(invalid="ignore", divide="ignore"):  # SciPy evaluates a branch it then discards
-        t, w = roots_jacobi(points, α, β)
-    return t, w
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,7 @@ from scipy.sparse import csr_matrix, identity, kron
 
 from galinx.clock import Clock
 
-from ..approximation import lagrange
-from ..contact.equation import gauss
+from ..approximation import gauss, lagrange
 from ..transient.history import History, Way
 from .dynamic import Motion, of_both
 from .fields import SurfaceTrace, unit_facet

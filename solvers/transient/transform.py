@@ -14,9 +14,9 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from ..approximation import gauss_in_panels
+from ..approximation import gauss, gauss_in_panels
 from ..contact.edges import EdgeExponents
-from ..contact.equation import gauss, jacobi
+from ..contact.equation import jacobi
 from ..solids.half_plane import HalfPlane
 from .line_load import both_sides, interpolation
 

@@ -226,9 +226,13 @@ def test_a_speed_that_cannot_be_solved_does_not_end_the_sweep(tables_run, monkey
     np.testing.assert_array_equal(data["states/closed_form/K_I"], whole["states/closed_form/K_I"])
     monkeypatch.setattr(check, "_ROWS", 3)  # some of only those that could not be solved
     assert check.faults(tmp_path / "out.h5") == []
-    refused.add(4.786e-7)
+    refused.add(4.786e-7)  # every speed: the closed form's answers are left
+    alone = computed()
+    assert alone.verdict == "FAIL" and len(alone.data["run/failures"]) == 2
+    np.testing.assert_array_equal(alone.data["states/closed_form/K_I"], whole["states/closed_form/K_I"])
+    assert {column.path for column in alone.table()} >= {"states/closed_form/K_I_left"}
     with pytest.raises(SolveError, match=r"c = 4.786e-07: provoked"):
-        computed()
+        computed(changes={"solve.methods": ["fem"]})
 
 
 @pytest.fixture

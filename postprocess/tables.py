@@ -556,8 +556,7 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """
     if preferred(data, of.RESULTANT_RATIO):
         return Sheet("", [], [])
-    _, states = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
-    states = states[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
+    states = states_of_loops(data)
     columns = _parameters_of(states, data, units)
     columns += _occurring(_columns(data, units, (
         _Spec("work", runs.LOOP_WORK, 5, lambda values, _: values.sum(axis=1)),
@@ -577,6 +576,12 @@ def _parameters_of(states: Any, data: Mapping[str, Any], units: Units) -> list[C
         for c in _parameter_columns(data, units)
         if c.name not in ("motion", "X_over_L", "f") and not c.constant
     ]
+
+
+def states_of_loops(data: Mapping[str, Any]) -> NDArray[np.int64]:
+    """The first state of each friction loop, (loops,)."""
+    _, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
+    return first[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
 
 
 def states_of_sliders(data: dict[str, Any]) -> NDArray[np.int64]:

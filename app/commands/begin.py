@@ -3,6 +3,7 @@
 import json
 import os
 from pathlib import Path
+from shlex import quote
 
 import click
 
@@ -39,7 +40,7 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
     target = output or Path(f"{name}.toml")
     Target(target, None, overwrite, options.inputs()).write(available[name].text.encode())
     print(f"scene: {target}")
-    print(f"next: edit it, then {program()} plan {target}")
+    print(f"next: edit it, then {program()} plan {quote(str(target))}")
     return errors.GOOD
 
 

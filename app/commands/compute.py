@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import click
@@ -64,7 +65,7 @@ def run(
     if not quiet:
         print_times(clock)
         print(f"archive: {path}")
-        print(f"next: {program()} report {path}")
+        print(f"next: {program()} report {quote(str(path))}")
     return errors.FAILED_VERDICT if verdict == "FAIL" else errors.GOOD
 
 

@@ -8,6 +8,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import click
@@ -128,7 +129,7 @@ def report(archive: Path, output: Path | None, dimensionless: bool, overwrite: b
     if ranks.is_root():
         result.report(target, overwrite, dimensionless)
         print(f"report: {target}")
-        print(f"next: open it in a browser, or {program()} plot {archive} for PDF figures")
+        print(f"next: open it in a browser, or {program()} plot {quote(str(archive))} for PDF figures")
     return errors.GOOD
 
 

@@ -22,7 +22,12 @@ from galinx.postprocess.quantities.states import (
     RESULTANT_RATIO,
     SPEED,
 )
-from galinx.postprocess.tables import parameters, state_columns, states_of_sliders
+from galinx.postprocess.tables import (
+    parameters,
+    state_columns,
+    states_of_loops,
+    states_of_sliders,
+)
 from galinx.postprocess.units import Units
 from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 
@@ -91,6 +96,8 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 data = {**archive.data, **(archive.rows(block, large) if large else {})}
                 columns += _parameters(archive.data, units, block, len(over)) if large else []
                 columns += _over(data, rows, units, block, over)
+                if over[0] == runs.LOOP:
+                    columns += _of_loops(archive.data, units, block)
                 if over[0] == runs.LAW:
                     own = states_of_sliders(archive.data)[block]
                     columns += _parameters(archive.data, units, own, len(over), (SPEED, MOTION, POSITION))
@@ -116,6 +123,19 @@ def _parameters(
     load = units.scale(LOAD.unit)
     columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))
     return [(head, np.asarray(v)[block].reshape(-1, *(1,) * (axes - 1))) for head, v in columns]
+
+
+def _of_loops(data: dict[str, Any], units: Units, block: slice) -> list[_Column]:
+    """Columns of what tells friction loops apart; a loop may be that of several speeds and loads."""
+    loop, own = data[runs.LOOP_OF_STATE.path], states_of_loops(data)[block]
+
+    def differs(row: Quantity) -> bool:
+        values = data.get(row.path, np.zeros(len(loop)))
+        return len(np.unique(loop)) < len({*zip(loop.tolist(), values.tolist())})
+
+    shared = [row for row in (SPEED, LOAD) if differs(row)]
+    columns = _parameters(data, units, own, 2, (MOTION, POSITION, *shared))
+    return columns[: len(columns) - (LOAD in shared)]
 
 
 def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:

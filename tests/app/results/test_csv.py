@@ -134,3 +134,18 @@ def test_friction_along_the_contact_is_the_force_over_the_load(tmp_path):
     force = -along.data["states/sie/resultant_ratio"]
     np.testing.assert_allclose(numbers(found["f [1]"]), force, rtol=1e-12)
     assert force[1] > 1.5 * force[0]
+
+
+@pytest.mark.parametrize("load", ["100 N/mm", ["10 N/mm", "100 N/mm"]])
+def test_histories_tell_their_laws(load, tmp_path):
+    """A loop is that of all speeds, and of all loads: it names neither where there are several."""
+    alone = {"solve.methods": [], "output.quantities": ["friction"], "motion.c": [0.1, 0.3]}
+    result = computed("tables4_5", alone | {"friction.mu_c": [0.2, 0.4], "punch.load": load})
+    result.save(tmp_path / "a.h5")
+    found, loops = read(tmp_path / "a.h5", "histories"), result.data["loops/f"]
+    assert numbers(found["mu_c [1]"]).reshape(loops.shape).tolist() == [
+        [μ] * loops.shape[1] for μ in (0.2, 0.4)
+    ]
+    assert not any(head.startswith("speed") for head in found)
+    assert ("load [N/mm]" in found) == isinstance(load, str)
+    np.testing.assert_allclose(numbers(found["f [1]"]), loops.ravel(), rtol=1e-14)

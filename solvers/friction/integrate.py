@@ -215,7 +215,9 @@ def work(law: FrictionLaw, z: NDArray, s: int, V: float, slip: float) -> NDArray
         return s * law.friction(law.exact(z, s, V, np.array([d])), s, V)[..., 0]  # type: ignore[arg-type]
 
     halves = slip * 0.5 ** np.arange(1.0, _PIECES)  # friction changes at first
-    return np.asarray(quad_vec(power, 0.0, slip, epsabs=0.0, epsrel=_OF_WORK, points=halves)[0])
+    # Friction coefficients have no digits below the 14th.
+    least = 1e-14 * slip
+    return np.asarray(quad_vec(power, 0.0, slip, epsabs=least, epsrel=_OF_WORK, points=halves)[0])
 
 
 def by_runge_kutta(

@@ -500,6 +500,9 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         computed = any(word in head for head in heads for word in ("yields", "von Mises"))
         if not computed and YIELD not in units.contact.lacks:
             lacking.append('"yield" (von Mises, yields or not)')
+    # What a scene asks for, and no method of it gives, is in its plan.
+    scene = str(data.get(runs.SCENE.path, ""))
+    lacking = [words for words in lacking if words.partition(" ")[0] not in scene]
     if lacking:
         yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"
 

@@ -83,8 +83,8 @@ class Work:
             solvers = self._solvers(task, task.of(self.g), stack, reasons)
             for runs in self.batches(task):
                 rows = np.concatenate([np.arange(run.start, run.stop) for run in runs])
-                data, solved, some = self._solve(task, rows, solvers, reasons)
-                any_solved |= bool(some)
+                data, solved, partly = self._solve(task, rows, solvers, reasons)
+                any_solved |= partly
                 with self.clock("comparison"):
                     for quantity in self.plan.quantities:
                         if quantity.of_data:
@@ -145,14 +145,14 @@ class Work:
         g, load = self.g[rows], None if self.load is None else self.load[rows]
         solved = np.ones(len(g), dtype=bool)
         data: dict[str, NDArray] = {}
-        some = not self.methods
+        partly = not self.methods
         for name in self.methods:
             if name not in solvers:
                 data, solved = data | self._unknown(name, len(g)), np.zeros_like(solved)
                 continue
             with self.clock(_step(name, evaluated=True)):
                 values, own, why = self._by(name, solvers[name], task, g, load)
-            data, solved, some = data | values, solved & own, some or bool(own.any())
+            data, solved, partly = data | values, solved & own, partly or bool(own.any())
             if why:
                 reasons.setdefault(name, why)
         with self.clock(_step(CLOSED_FORM)):
@@ -163,7 +163,7 @@ class Work:
                 half_width=task.body.half_widths(task.response, g, load),
             )  # fmt: skip
             data |= self._of(LOCAL, known, task.body.loaded(load))
-        return data, solved, some
+        return data, solved, partly
 
     def _by(
         self, name: str, solver: Solver | None, task: Task, g: NDArray, load: Any

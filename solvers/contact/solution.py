@@ -246,7 +246,9 @@ class Contact:
         if not self.along:
             return g[:, None]
         each = zip(g.tolist(), np.broadcast_to(self.half_width if a is None else a, g.shape).tolist())
-        return np.stack([self.friction(g, a)(X) if a == a else np.full(X.shape, a) for g, a in each])
+        return np.stack([
+            np.full(X.shape, np.nan) if np.isnan(a) else self.friction(g, a)(X) for g, a in each
+        ])  # fmt: skip
 
     @property
     def friction_kinks(self) -> tuple[float, ...]:

@@ -213,7 +213,10 @@ def with_kinks(refinement: Refinement, places: NDArray, more: int = 0) -> QuadMe
     widths = np.minimum(_SLENDER * _WIDE * np.array(of_widths)[order], widest)
     for block in blocks:
         block[..., 0] *= np.interp(block[..., 1], ends, widths)
-    rows = np.unique([low + (high - low) * legs for low, high in pairwise(np.unique(ends))])
+    each = np.unique(ends)
+    # Each end once: as the sum of the one before and the distance it may differ in its last digit.
+    inner = [low + (high - low) * legs[:-1] for low, high in pairwise(each)]
+    rows = np.append(np.concatenate(inner), each[-1])
     ξ = np.array(_columns(widest, np.pi / 2.0 + sum(refinement.columns), max(refinement.columns)))
     count = 1 + round(log2(widest / widths.min()))
     beside = grid(np.arange(count + 1) / count, rows)

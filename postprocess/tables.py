@@ -20,6 +20,7 @@ from .quantities import (
     Quantity,
     column,
     layers,
+    of_any_method,
     over_time,
     preferred,
     runs,
@@ -299,11 +300,13 @@ def _columns(
     for head, rows, digits, taken, name in specs:
         if not (place := head.startswith("at ")):
             owner = None
-        row = preferred(data, {"": rows} if isinstance(rows, Quantity) else rows)
+        by_method = {"": rows} if isinstance(rows, Quantity) else rows
+        row = preferred(data, by_method)
         scaled = row and (units(row) or (as_archived(row, "") if archived else None))
         if not row or not scaled:
             continue
-        values, path = taken(data[row.path], data), "" if name else row.path
+        values = taken(of_any_method(data, by_method, row), data)
+        path = "" if name else row.path
         if row.type == TEXT:
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():

@@ -15,7 +15,16 @@ from galinx.solvers.contact.solution import Contact
 from galinx.texts import significant as number
 from galinx.texts import with_prefix
 
-from .quantities import Quantity, of_states, over_time, preferred, states, swept, table
+from .quantities import (
+    Quantity,
+    of_any_method,
+    of_states,
+    over_time,
+    preferred,
+    states,
+    swept,
+    table,
+)
 from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
 
 
@@ -123,7 +132,8 @@ class Units:
         self.middle: Any = 0.0
         width, middle = preferred(data, states.HALF_WIDTH), preferred(data, states.CENTRE)
         if width and middle:
-            self.half_width, self.middle = data[width.path], data[middle.path]
+            self.half_width = of_any_method(data, states.HALF_WIDTH, width)
+            self.middle = of_any_method(data, states.CENTRE, middle)
         self.c_s: Any = data.get(swept.WAVE_SPEED.path, contact.solid.c_s)
         self.load: Any = data.get(states.LOAD.path, contact.load)
 

@@ -90,6 +90,22 @@ def preferred(data: Mapping[str, Any], rows: Mapping[str, Quantity]) -> Quantity
     return next(iter(there), None)
 
 
+def of_any_method(data: Mapping[str, Any], rows: Mapping[str, Quantity], row: Quantity) -> Any:
+    """Values of a quantity by the preferred method, where it has no solution by another one that has.
+
+    Args:
+        data: datasets by path.
+        rows: the quantity by method.
+        row: that of the preferred one.
+    """
+    values = data[row.path]
+    if not len(data.get(runs.FAILURES.path, ())) or row.type == TEXT:
+        return values
+    for other in (data[one.path] for one in rows.values() if one.path in data):
+        values = np.where(np.isnan(values), other, values)
+    return values
+
+
 def solved_states(data: Mapping[str, Any]) -> Any:
     """True for states that a method solved, (states,); a slice of all where nothing failed."""
     if not len(data.get(runs.FAILURES.path, ())):

@@ -171,7 +171,10 @@ def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):
     assert failure.startswith("c = 0: N = 1 N/m: ") and found.verdict == "FAIL"
     h = found.data["states/fem/half_width"]
     np.testing.assert_allclose(h[[0, 2]], a[[2, 1]], rtol=1e-3)
-    assert np.isnan(h[1]) and not np.isnan(found.data["states/closed_form/half_width"][[0, 2]]).any()
+    assert np.isnan(h[1]) and not np.isnan(found.data["states/closed_form/half_width"]).any()
+    shown = {column.head: column for column in found.table()}
+    np.testing.assert_allclose(shown["half-width"].values, 1e6 * a[[2, 0, 1]], rtol=1e-3)
+    assert shown["half-width"].unit == "µm" and np.isfinite(shown["peak pressure"].values).all()
     found.save(tmp_path / "a.h5")
     assert not faults(tmp_path / "a.h5")
     alone = computed("tables4_5", changes | {"punch.load": 1.0})

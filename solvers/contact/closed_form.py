@@ -153,6 +153,9 @@ class FlatPunch(EdgeExponents, Pressure):
         return np.exp(t)
 
 
+#: Places whose pressure is evaluated at once, over those whose integrals are.
+_BLOCKS = 8
+
 #: |z| from which powers of 1/z serve, and their number: 3^-36 is below rounding.
 _FAR, _POWERS = 3.0, 36
 
@@ -279,7 +282,9 @@ class FreeEnds(Pressure):
         at = r[inside]
         f = self.slope(at)
         # Without f(r) nothing cancels towards the ends.
-        C = self.panels.cauchy(self.f - f[:, None], stretched(at))
+        C, y = np.empty(len(at)), stretched(at)
+        for rows in self.panels.blocks(len(at), _BLOCKS):
+            C[rows] = self.panels.cauchy(self.f - f[rows, None], y[rows])
         stress = -self._factor * np.sin(np.pi * self.α) * C
         for kink in self.kinks if self.cusp else ():
             at_cusp = np.abs(at - kink) < _AT_CUSP

@@ -257,6 +257,11 @@ class Panels(Functions):
                 s, ds = _graded(min(max(ceil(apart), 0), _STEPS))
                 yield (at - x) + (end - at) * s, length * ds
 
+    def blocks(self, count: int, larger: int = 1) -> Iterator[slice]:
+        """Blocks of so many places, of which values at all points take little memory."""
+        step = max(larger * _AT_ONCE // len(self.x), 1)
+        return (slice(start, start + step) for start in range(0, count, step))
+
     def cauchy(self, f: NDArray, y: NDArray) -> NDArray[Any]:
         """Cauchy's integral of w f over w, C(y), (points,); a principal value where y is real.
 
@@ -269,10 +274,9 @@ class Panels(Functions):
         x, rule = self.x, np.broadcast_to(f * (np.exp(k * self.x) * self.dx), (len(y), len(self.x)))
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
-        near, step = np.abs(ζ + root) < _ELLIPSE, max(_AT_ONCE // len(x), 1)
+        near = np.abs(ζ + root) < _ELLIPSE
         integral = np.zeros(len(y), dtype=np.result_type(y, float))
-        for start in range(0, len(y), step):
-            rows = slice(start, start + step)
+        for rows in self.blocks(len(y)):
             left_out = np.repeat(near[rows], self.nodes, axis=1)
             kernel = np.where(left_out, 0.0, _kernel(x, y[rows], left_out))
             integral[rows] = np.einsum("ij,ij->i", kernel, rule[rows])

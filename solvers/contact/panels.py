@@ -44,8 +44,9 @@ _MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
 
 #: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel; |1 - e^ξ| below
-#: which it is formed without cancellation; kernels at once, which stay in a core's cache.
-_ELLIPSE, _CLOSE, _AT_ONCE = 2.4, 0.1, 20_000
+#: which it is formed without cancellation; kernels at once, which stay in a core's cache, and those of
+#: layers over that.
+_ELLIPSE, _CLOSE, _AT_ONCE, _ROWS = 2.4, 0.1, 20_000, 8
 
 _legendre_panel = lru_cache(legendre_panel)
 
@@ -216,8 +217,10 @@ class Panels(Functions):
         """Weights of :meth:`row` for places x, (len(x), n, functions)."""
         if self.rough:
             return np.array([self.row(kernel, place) for place in x.tolist()])
-        away = -self.apart(x[:, None], self.x - x[:, None])
-        return np.asarray(kernel(away) * self.weights[:, None])
+        parts = [x[rows, None] for rows in self.blocks(len(x), _ROWS)]
+        return np.concatenate([
+            kernel(-self.apart(part, self.x - part)) * self.weights[:, None] for part in parts
+        ])  # fmt: skip
 
     def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:
         """Weights of values at the points in ∫ kernel(t(x) - t) w(t) … dt, (n, functions).

@@ -389,3 +389,23 @@ class Messages(Protocol):
 
     def warn(self, text: str) -> None:
         """Warn the user."""
+
+
+#: Tolerance over the scene's of the finer cells, tried where no degree reaches the scene's tolerance.
+_FINER = 0.03
+
+
+def on_finer_cells(plan: FemPlan) -> FemPlan:
+    """Plan with cells for a tighter tolerance, and twice as many of them in angle and in distance."""
+    kind, target = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
+    if drawn := kind.drawn(target):
+        return replace(plan, wanted=target, drawn=drawn)
+    rings = kind.refinement(target)
+    columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
+    refinement = replace(
+        rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
+    )
+    plan = replace(plan, wanted=target, refinement=refinement)
+    if not plan.kinks:
+        return plan
+    return replace(plan, drawn=with_friction_kinks(refinement, plan.kinks, target.tolerance))

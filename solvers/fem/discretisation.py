@@ -14,7 +14,7 @@ from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS
 from galinx.meshes.store import obtain
 
-from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, with_friction_kinks
+from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, on_finer_cells
 from .dolfinx_space import DolfinxSpace
 from .space import Space, distribute
 
@@ -24,25 +24,6 @@ SPACES: dict[str, type[Space]] = {TENSOR: Space, DOLFINX: DolfinxSpace}
 #: Accuracy of ends over the scene's tolerance, as an error ε of an end changes stresses at a distance d
 #: from it by about ε/√d; and the least accuracy, above rounding.
 _OF_ENDS, _LEAST = 1e-3, 1e-11
-
-#: Tolerance over the scene's of the finer cells, tried where no degree reaches the scene's tolerance.
-_FINER = 0.03
-
-
-def on_finer_cells(plan: FemPlan) -> FemPlan:
-    """Plan with cells for a tighter tolerance, and twice as many of them in angle and in distance."""
-    kind, target = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
-    if drawn := kind.drawn(target):
-        return replace(plan, wanted=target, drawn=drawn)
-    rings = kind.refinement(target)
-    columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
-    refinement = replace(
-        rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
-    )
-    plan = replace(plan, wanted=target, refinement=refinement)
-    if not plan.kinks:
-        return plan
-    return replace(plan, drawn=with_friction_kinks(refinement, plan.kinks, target.tolerance))
 
 
 @dataclass(eq=False)

@@ -40,6 +40,7 @@ from ..contact.fem_plan import (
     crowded_kinks,
     kind_of,
     no_nearer,
+    on_finer_cells,
     pressure_moments,
     requirements,
 )
@@ -51,7 +52,7 @@ from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks_between, leaving
 from ..profiles.punches import Flat
 from .contact import ACROSS, AlongLevel, FreeLevel, PunchLevel, without_intensity
-from .discretisation import Discretisation, on_finer_cells
+from .discretisation import Discretisation
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
 from .solution import Solution, SolvedStates, solution_of

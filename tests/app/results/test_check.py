@@ -243,3 +243,26 @@ def test_exponents_that_cannot_be_fitted_are_no_fault(tmp_path):
     assert not any(np.isnan(value) for value in result.comparisons.values())
     result.save(tmp_path / "a.h5")
     assert here("check", tmp_path / "a.h5").returncode == 0
+
+
+@pytest.mark.parametrize("changes", [
+    {  # no degree reaches the tolerance but on finer cells
+        "solid": {"kind": "anisotropic", "rho": 3000, "stiffness": [5e10, 2e10, 5e9, 4e10, -3e9, 1.5e10]},
+        "punch": {"profile": "parabolic", "radius": 4e-3, "load": 6e3},
+        "friction": {"mu": 0.7}, "motion": {"c": 0.82}, "solve": {"tolerance": 1e-4},
+        "output": {"quantities": ["sif", "surface"]},
+    },
+    {  # middles that are rounding, where there is no friction
+        "punch": {"profile": "power", "exponent": 1.5, "coefficient": 0.03, "load": 190},
+        "friction": {"mu": [0.0, 0.3]}, "motion": {"c": [0.0, 0.3]},
+        "solve": {"methods": ["closed_form"]}, "output": {"quantities": ["sif"]},
+    },
+    {  # estimates of more frictions than are computed again, and under other loads
+        "punch": {"half_width": 2e-4, "load": [1e3, 1e4]}, "motion": {"c": 0.01},
+        "friction": {"mu": [0.1, 0.3, 0.05, 0.2, 0.25, 0.07]},
+        "solve": {"methods": ["sie"], "tolerance": 1e-3}, "output": {"quantities": ["sif", "surface"]},
+    },
+])  # fmt: skip
+def test_what_was_just_computed_has_no_faults(changes, tmp_path):
+    computed(changes={"solve": None, "output": None} | changes).save(tmp_path / "a.h5")
+    assert check.faults(tmp_path / "a.h5") == []

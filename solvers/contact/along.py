@@ -251,4 +251,12 @@ class Splines(Polynomials):
         for i, w in enumerate(rule.weights(α, β)):
             size = np.sqrt(w @ f**2)
             c[i] = np.linalg.solve((f_test / size).T @ (w[:, None] * f / size), moments[i] / size) / size
-        return Expansion(α[:, None], β[:, None], c, self)
+        return OfSplines(α[:, None], β[:, None], c, self)
+
+
+class OfSplines(Expansion):
+    """Pressure that is a sum of splines, and not smooth at their kinks."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
+        return self.functions.kinks  # type: ignore[no-any-return]

@@ -51,6 +51,15 @@ def test_an_edge_is_free_where_its_intensity_vanishes():
     np.testing.assert_array_equal(data["states/alpha"] > 0.0, free)
 
 
+def test_the_largest_pressure_beside_a_kink_of_friction():
+    """Its top is not that of a polynomial through places on both sides of the kink."""
+    f = {"along": [[-1, 0.035], [-0.424, 0.66], [1, 0.454]]}
+    punch = {"profile": "parabolic", "radius": 0.039, "load": 19500.0}
+    data = slid(f, ORTHOTROPIC | {"angle": 83.0}, punch=punch, solve={"tolerance": 1e-5}).data
+    fem, sie = (data[f"states/{name}/largest_pressure"] for name in ("fem", "sie"))
+    np.testing.assert_allclose(fem, sie, rtol=1e-5)
+
+
 def test_a_load_without_a_contact_leaves_the_others_theirs(monkeypatch):
     """Each contact is solved once, the one that has no solution once to its tolerance, once to 1e-6."""
     solve, tried = LayersUnderPunch.contact, []

@@ -5,7 +5,7 @@ parameters: speed, load, the law's constants, motion and position.
 """
 
 import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan, nan
 from typing import Any, NamedTuple
@@ -112,6 +112,12 @@ class Column:
         texts = map(self._text, {*self.shown()})
         first = next(texts, None)
         return first is not None and all(text == first for text in texts)
+
+    def of(self, states: Iterable[int]) -> "Column":
+        """Column of some states in any order, as is that of what is at its places."""
+        states = [*states]
+        owner = self.owner and self.owner.of(states)
+        return replace(self, values=[self.values[i] for i in states], owner=owner)
 
     def shown(self, count: int | None = None) -> list[Any]:
         """The first cells, those that are rounding as 0, and places of such as NaN."""
@@ -471,7 +477,7 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
         c for c in given if c.constant and not c.place and (count > 1 or c.name in ("motion", "X_over_L"))
     ]
     shown = [column for column in columns if column not in same]
-    notes = [f"and {count - LIMIT} more states; csv and show --json list all"] if count > LIMIT else []
+    notes = _more(count, "states")
     named = [c for c in same if c.name != "motion" or not c.values[0].startswith("FM")]
     if count > 1 and named:
         notes.append(f"the same in all: {', '.join(f'{c.head} = {c.words(0)}' for c in named)}")
@@ -543,7 +549,13 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
             notes = [f"the same in all: {', '.join(f'{c.head}: {c.words(0)}' for c in same)}"]
         elif width:
             title, count = f"{title}, the same in all states", 1
+    notes += _more(count, "states")
     return replace(layout(title, count, kept, width), notes=notes) if kept else Sheet("", [], [])
+
+
+def _more(count: int, noun: str) -> list[str]:
+    """Note on the rows that a table leaves out, if any."""
+    return [f"and {count - LIMIT} more {noun}; csv and show --json list all"] * (count > LIMIT)
 
 
 def solved_speeds(data: Mapping[str, Any]) -> str:
@@ -572,13 +584,14 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     )))  # fmt: skip
     note = "all per depth, in all strokes; stiffness: where the first stroke begins"
     sheet = layout("Friction loops", len(states), columns, width, "loop")
-    return replace(sheet, notes=[f"{note}{_under_the_first_load(data, units)}"])
+    notes = [f"{note}{_under_the_first_load(data, units)}", *_more(len(states), "loops")]
+    return replace(sheet, notes=notes)
 
 
 def _parameters_of(states: Any, data: Mapping[str, Any], units: Units) -> list[Column]:
     """Columns of the loads and laws of some states, those that differ."""
     return [
-        replace(c, values=[c.values[i] for i in states])
+        c.of(states)
         for c in _parameter_columns(data, units)
         if c.name not in ("motion", "X_over_L", "f") and not c.constant
     ]

@@ -15,8 +15,8 @@ from .. import ranks
 from ..console import Progress
 from ..errors import BadInput, short
 
-#: Bytes that file systems allow a name.
-_LONGEST = 255
+#: Bytes that file systems allow a name, less those of the ending of what is kept beside an archive.
+_LONGEST = 255 - len(".work.")
 
 #: States that a range of them may have.
 _SEVERAL = 10_000

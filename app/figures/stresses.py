@@ -216,7 +216,8 @@ def surface(of: Archive) -> Drawing:
     choice, stressed = of.choice, stresses_along(of)
     width = choice.size.width if choice.size else PAGE
     same = of.scene.body.alike and N in of.parameters and not choice.states and of.units.dimensionless
-    states = of.where(of.all, **{N: of.parameter(N)[0]}) if same else of.all
+    every = of.selected()
+    states = of.where(every, **{N: of.parameter(N)[every[0]]}) if same else every
     groups = _groups(of, states, width)
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
@@ -499,7 +500,8 @@ def inside(of: Archive) -> Drawing:
     names = names or [name for name in _MAPS if name in fields.names]
     varied, states = of.varied(), list(choice.states)
     if not states:  # first and last of the parameter that varies most slowly
-        every = of.where(of.all, **of.fixed(varied[1:], of.all))
+        every = of.selected()
+        every = of.where(every, **of.fixed(varied[1:], every))
         states = sorted({int(every[0]), int(every[-1])})
     alone, wide = len(names) == len(states) == 1, len(states) > 1
     apart = of.varied(states) or ([C] if C in varied or alone else [])

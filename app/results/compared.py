@@ -60,7 +60,7 @@ class Comparison:
         #: Columns of each result by head, in the rows of the pairs; None where a result has none.
         self._rows: dict[tuple[str, ...], list[Column | None]] = {
             key: [
-                replace(column, values=[column.values[i] for i in of_result]) if column else None
+                column.of(of_result) if column else None
                 for column, of_result in zip((table.get(key) for table in tables), self.pairs.T.tolist())
             ]
             for key in dict.fromkeys(key for table in tables for key in table)

@@ -30,7 +30,7 @@ from galinx.solvers.parameters import values as constants
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
-from ..errors import listed
+from ..errors import BadInput, listed
 from .sections import ADVECTED, ElasticPunch, Friction, GivenSolid, Motion, Output, Punch, Solve, Time
 
 
@@ -138,7 +138,12 @@ class Scene:
         each: dict[float, Along] = {}
         for speed in dict.fromkeys(V) if friction.law.depends_on_speed else V[:1]:
             for law in friction.laws():
-                along = advected(law, self.legs[0].s, speed, a, friction.stress_ratio)
+                try:
+                    along = advected(law, self.legs[0].s, speed, a, friction.stress_ratio)
+                except ValueError as error:
+                    raise BadInput(
+                        f'friction.state = "advected": {error}; take other parameters'
+                    ) from None
                 g = along.mean
                 while g in each:  # another law with the same mean
                     g = float(np.nextafter(g, np.inf))

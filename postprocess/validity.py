@@ -128,7 +128,7 @@ class Validity:
             yield f"the steady state is reported, but {fast}"
         if "ratio" in worst:
             up_to, steep = f"|σ_XY/σ_YY| is up to {worst['ratio']}", sorted(self._steep)
-            if steep[0] > 0.0:
+            if steep != [0.0]:
                 least = " or ".join(f"{threshold:.3g}" for threshold in steep)
                 yield (
                     f"{up_to}, and at least {least} in {states['ratio']}: from there on such an "

@@ -12,7 +12,7 @@ from galinx.postprocess.units import Units, number
 from ..errors import BadInput, listed, nearest, short
 from ..scene.units import to_si
 from ..text_table import read_table
-from .render import DOTS, Curve, Panel
+from .render import DOTS, Curve, Panel, as_text
 from .style import Look
 
 POSITION, SLIP, PRESSURE, TENSION, FRICTION = "position", "slip", "sigma_YY", "sigma_XX", "f"
@@ -104,7 +104,7 @@ class Measured:
         margin, bottom, top = 0.05 * (high - low), float(y[inside].min()), float(y[inside].max())
         if bottom < low or top > high:
             low, high = min(low, bottom - margin), max(high, top + margin)
-        points = Curve(x, y, Look("black", "none", "o"), f"measured, {self.name}", DOTS)
+        points = Curve(x, y, Look("black", "none", "o"), f"measured, {as_text(self.name)}", DOTS)
         return replace(panel, curves=[*panel.curves, points], ylim=(low, high))
 
 

@@ -144,6 +144,11 @@ class Panel:
     whole: bool = False
 
 
+def as_text(label: str) -> str:
+    """Label from a user, in which dollars begin no formula."""
+    return label.replace("$", r"\$")
+
+
 def note(look: Look, label: str, form: str = LINE, width: float = 1.0) -> Curve:
     """Entry of a legend that is of no curve in particular."""
     return Curve(np.empty(0), np.empty(0), look, label, form, width)

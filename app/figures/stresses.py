@@ -237,8 +237,9 @@ def surface(of: Archive) -> Drawing:
     if columns == 1 and width > 4.5 and len(stressed) > 1:  # side by side
         columns = 2
     figure = render(panels, choice.size, columns, explained(*(each.values for each in stressed.values())))
+    grey = " (grey)" * any(panel.bands for panel in panels)
     caption = (
-        "Stresses along the surface, under the punch (grey) and beside it" + _ENDS[of.scene.body.ends]
+        f"Stresses along the surface, under the punch{grey} and beside it{_ENDS[of.scene.body.ends]}"
     )
     if same:
         caption += " Over N/(2a) they are the same under every load."

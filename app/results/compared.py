@@ -188,7 +188,7 @@ class Comparison:
             BadInput: a result has no stresses along the surface, or no measured point lies in the figure.
         """
         from ..figures.choice import Archive, Choice, Drawing, explained, fewer, spread
-        from ..figures.render import TooSmall, render
+        from ..figures.render import TooSmall, as_text, render
         from ..figures.stresses import Shown, stresses_along, surface_panel
         from ..figures.style import LINES, looks
 
@@ -218,7 +218,7 @@ class Comparison:
                     f"{label}, {titles[k].translate(indices)}" if len(chosen) > 1 else label,
                     1.0 if n else 2.0,  # the first shows below others that are the same
                 )
-                for n, (of_result, look, label) in enumerate(zip(stressed, styles, self.labels))
+                for n, (of_result, look, label) in enumerate(zip(stressed, styles, map(as_text, self.labels)))
                 if name in of_result
                 for order, k in enumerate(chosen)
             ]  # fmt: skip

@@ -21,7 +21,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from galinx.postprocess.compare import checked
+from galinx.postprocess.compare import checked, failed
 from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.quantities.quantity import FEM, METHODS
 from galinx.postprocess.quantities.swept import WAVE_SPEED
@@ -352,6 +352,7 @@ def page(
         "title": attributes["title"] or "A sliding punch",
         "verdict": attributes["verdict"],
         "checked": checked(data, attributes),
+        "failed": failed(data, attributes),
         "summary": summary(data, scene),
         "warnings": json.loads(attributes["warnings"]),
         "reasons": json.loads(attributes["verdict_reasons"]),

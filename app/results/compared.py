@@ -208,6 +208,7 @@ class Comparison:
             )
         pairs, titles = self.pairs.tolist(), self.titles
         chosen, styles = spread(range(len(pairs)), 3), looks(len(self.labels))
+        labels = [as_text(label) for label in self.labels]
         indices = {0x2080 + n: f"$_{n}$" for n in range(10)}  # which the type of figures lacks
         panels = []
         for name in dict.fromkeys(name for of_result in stressed for name in of_result):
@@ -218,7 +219,7 @@ class Comparison:
                     f"{label}, {titles[k].translate(indices)}" if len(chosen) > 1 else label,
                     1.0 if n else 2.0,  # the first shows below others that are the same
                 )
-                for n, (of_result, look, label) in enumerate(zip(stressed, styles, map(as_text, self.labels)))
+                for n, (of_result, look, label) in enumerate(zip(stressed, styles, labels))
                 if name in of_result
                 for order, k in enumerate(chosen)
             ]  # fmt: skip

@@ -240,3 +240,19 @@ def test_stresses_by_the_integral_equation_are_largest_where_samples_are(seed, l
     for name, sign in (("sigma_XX_min", -1.0), ("sigma_XX_max", 1.0)):
         missed = (sign * sampled).max(axis=1) - sign * found[f"states/sie/{name}"]
         assert missed.max() <= MISSED * size, name
+
+
+def test_the_largest_tension_at_a_free_end_is_in_the_estimate():
+    """It is a limit, which no place beside it shows; finite elements alone, at a loose tolerance."""
+    solid = {"kind": "anisotropic", "rho": 2290.2283, "stiffness": [
+        1e9, 209278208.51, 247977450.06, 880086620.03, -297495879.83, 465030864.38,
+    ]}  # fmt: skip
+    scene = {"solid": solid, "punch": {"profile": "parabolic", "radius": 0.02, "load": 1e5}}
+    scene |= {"friction": {"mu": 0.3}, "motion": {"c": 0.5327}, "output": {"quantities": ["surface"]}}
+    fem, exact = (
+        computed(changes=scene | {"solve": {"methods": [method], "tolerance": 1e-3}}).data[
+            f"states/{method}/sigma_XX_max"
+        ]
+        for method in ("fem", "closed_form")
+    )
+    np.testing.assert_allclose(fem, exact, rtol=1e-3)

@@ -26,6 +26,7 @@ from galinx.postprocess.quantities.quantity import (
     LAYER,
     LOCAL,
     POINT,
+    SIE,
     SWEPT,
 )
 from galinx.postprocess.quantities.runs import SLIDER
@@ -263,6 +264,12 @@ def _faults(
             )
     if scene.layers:
         yield from _faults_of_layers(scene, unsolved=bool(refusals) and not methods)
+        if SIE in methods and (shallow := float(-places.points[:, 1].max(initial=-1.0))) < _SHALLOWEST:
+            yield (
+                f"output.points: found a point {shallow:g} a below the surface of layers, expected at "
+                f"least {_SHALLOWEST:g} a with sie, whose quadrature is as fine; on the surface itself "
+                'output.quantities = ["surface"] has stresses'
+            )
     if GIVEN_ENDS in body.lacks:
         about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
         if solve.mode == "traction":
@@ -283,6 +290,10 @@ def _faults(
             )
     if FEM in methods:
         yield from elements.faults(scene, places, alone={*methods} == {FEM})
+
+
+#: Least depth over a of points inside layers by the integral equation: memory goes as its inverse.
+_SHALLOWEST = 1e-4
 
 
 def _faults_of_layers(scene: Scene, unsolved: bool) -> Iterator[str]:

@@ -35,6 +35,7 @@ from ..contact.recovery import (
     without_zeros,
 )
 from ..contact.solution import ONE_FREE, Contact, Task
+from ..contact.stresses import Surface, turns_at_ends
 from ..errors import SolveError
 from ..profiles import radius
 from .discretisation import Discretisation
@@ -193,6 +194,16 @@ class PunchLevel(Level):
         """Gauges of states: of pressure and ends, and of requested stresses."""
         states = self.states(g, load)
         return [self.gauge(states), *(self.stress_gauges(states) if self.work.stresses else [])]
+
+    def with_ends(self, gauge: Gauge, states: SolvedStates, σ_XX: NDArray) -> Gauge:
+        if not states.contact.free.any():
+            return gauge
+        surface = Surface(self.measured_task.places, np.full(σ_XX.shape, np.nan), σ_XX)
+        at_ends = turns_at_ends(surface, states.local).σ[0]  # NaN at sharp edges
+        largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
+        ends = np.nan_to_num(at_ends), np.broadcast_to(largest, at_ends.shape)
+        values, scale = (np.column_stack(of) for of in zip((gauge.values, gauge.scale), ends))
+        return replace(gauge, values=values, scale=scale)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.

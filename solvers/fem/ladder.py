@@ -204,15 +204,7 @@ class Level:
 
     def with_ends(self, gauge: Gauge, states: SolvedStates, σ_XX: NDArray) -> Gauge:
         """Gauge of σ_XX on the surface, (states, n), and of its limits at free ends, its extremes."""
-        places = self.measured_task.places
-        turns = self.turns(states, Surface(places, np.full(σ_XX.shape, np.nan), σ_XX))
-        if turns is None:
-            return gauge
-        at_ends = turns.σ[0][:, [0, -1]]
-        largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
-        ends = np.nan_to_num(at_ends), np.broadcast_to(largest, at_ends.shape)
-        values, scale = (np.column_stack(of) for of in zip((gauge.values, gauge.scale), ends))
-        return replace(gauge, values=values, scale=scale)
+        return gauge
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
         """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""

@@ -176,6 +176,8 @@ FAULTS = {
         ({"layer[0].to": {"E": -1}}, "1 fault:…layer 1.to.E (Young's modulus): found -1"),
         ({"layer[0].to": {"plane": "stress"}}, "1 fault:…the same plane"),
         ({"layer[0].thick": 1}, "1 fault:…layer 1.thick: no such key"),
+        ({"output.quantities": ["interior"], "output.points": [[0.3, -1e-5]], "solve.methods": ["sie"]},
+         "a point 1e-05 a below the surface of layers, expected at least 0.0001 a"),
         ({"layer[0].material": "unobtainium"}, "1 fault:…layer 1.material"),
         ({"layer": [{"thickness": 1e-3, "material": "TiN"}] * 11},
          "1 fault:…found 11 layers, expected at most 10"),

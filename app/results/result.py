@@ -20,6 +20,7 @@ from galinx.postprocess.target import FIELDS, PAGE, Target
 from galinx.postprocess.units import Units
 
 from ..console import Progress
+from ..errors import BadInput
 from ..run.flow import Memory
 from ..run.flow import compute as compute_into
 from ..scene import read as scenes
@@ -270,11 +271,15 @@ class Result:
         """Write an archive.
 
         Raises:
+            BadInput: the result was loaded without its stresses.
             Occupied: the file exists and ``overwrite`` is false, or its folder does not.
             UnwritableArchive: the file system refused.
         """
         from galinx.postprocess.hdf5.archive import Writer
 
+        missing = {*json.loads(self.attributes.get("datasets", "[]"))} - self.data.keys()
+        if missing:
+            raise BadInput("this result was loaded without stresses; load it with them to save it")
         with Writer(Target(Path(path), None, overwrite, self.inputs)) as writer:
             for name, value in self.data.items():
                 writer.put(name, value)

@@ -44,9 +44,11 @@ def stress(folder: Folder, seed: int = 1, scenes: int = 300) -> bool:
             progress.done(i + 1, len(makers))
     good = all(verdict.holds for row in rows for verdict in row.verdicts)
     if ranks.is_root():
-        from galinx.app.figures.files import save
+        from galinx.app.figures.choice import Drawing
+        from galinx.app.figures.files import Files
 
-        save([(row.name, _figure(row)) for row in rows], folder)
+        drawings = (Drawing(row.name, row.title, _figure(row)) for row in rows)
+        Files(folder.path, overwrite=folder.overwrite, inputs=folder.inputs).write(drawings)
         _write(target, rows, good)
     return good
 

@@ -6,6 +6,7 @@ from support import computed, here
 
 from galinx import load
 from galinx.app.errors import BadInput
+from galinx.app.results.check import faults
 from galinx.postprocess.errors import Occupied
 
 
@@ -52,3 +53,12 @@ def test_plot_gives_a_figure_that_notebooks_show(exact_run, tmp_path, monkeypatc
     assert len(friction.axes) < len(figure.axes)
     with pytest.raises(BadInput, match=r"figure 'surfcae': .*did you mean surface"):
         exact_run.figure("surfcae")
+
+
+def test_a_result_without_its_stresses_is_not_saved(exact_run, tmp_path):
+    """It would lack what its scene asks for."""
+    exact_run.save(tmp_path / "a.h5")
+    with pytest.raises(BadInput, match="without stresses"):
+        load(tmp_path / "a.h5", stresses=False).save(tmp_path / "b.h5")
+    load(tmp_path / "a.h5").save(tmp_path / "b.h5")
+    assert not faults(tmp_path / "b.h5")

@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -122,14 +123,16 @@ class Ride:
             return np.empty(0)
         begun, v = self.crossings, self.v[self.cycle]
         t, period = self.t[self.cycle] - begun[-2], begun[-1] - begun[-2]
-        if self._repeats:
-            begun = np.append(begun, np.arange(begun[-1], end, period)[1:])
+        more = max(int((end - begun[-1]) / period), 0) if self._repeats else 0
         fast = t[v > _SLIPS * v.max()]
         inside = np.linspace(0.0, len(fast) - 1.0, _IN_A_SLIP)
         inside = np.append(np.interp(inside, np.arange(len(fast)), fast), t[v.argmax()])
-        each = np.ceil(len(begun) * len(inside) / most).astype(int)
+        # Of slips that repeat there may be more than fit into memory.
+        slips = np.arange(0, len(begun) + more, ceil((len(begun) + more) * len(inside) / most))
+        again = np.maximum(slips - len(begun) + 1, 0)
+        starts = begun[np.minimum(slips, len(begun) - 1)] + again * period
         # The end of a cycle is the beginning of the next slip.
-        times = (begun[::each, None] + np.where(inside > period / 2.0, inside - period, inside)).ravel()
+        times = (starts[:, None] + np.where(inside > period / 2.0, inside - period, inside)).ravel()
         return np.unique(times[(times >= 0.0) & (times <= end)])
 
     @property
@@ -232,7 +235,7 @@ class _Motion:
         V = slider.drive_speed * np.geomspace(_AT_REST, 1.0 / _AT_REST, _SPEEDS)
         rises = np.diff([float(law.friction(self.z, 1, speed)) for speed in V]) / np.diff(V)
         rate = load * rises.max() / np.sqrt(slider.mass * slider.stiffness)
-        self._stiff = bool(law.flow(self.z, 1, slider.drive_speed).any() or rate > _STIFF)
+        self._stiff = bool(rate > _STIFF)
         # Rates that are smooth enough need no stop.
         self._stops = type(law).settle is not FrictionLaw.settle
 
@@ -337,7 +340,8 @@ class _Motion:
         last, reason = min(self.slider.duration - self.t, self._longest), ""
         start = np.array([self.e, self.v, *self.z])
         scales = np.array([self._length, drive, *np.ones_like(self.z)])
-        for scheme, relative, absolute in _IMPLICIT if self._stiff else (_EXPLICIT, *_IMPLICIT):
+        stiff = self._stiff or self.law.flow(self.z, s, drive).any()
+        for scheme, relative, absolute in _IMPLICIT if stiff else (_EXPLICIT, *_IMPLICIT):
             solve = partial(
                 solve_ivp, self._rates, y0=start, method=scheme, events=events, rtol=relative,
                 atol=absolute * scales, dense_output=True,

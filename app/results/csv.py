@@ -120,8 +120,9 @@ def _parameters(
         for path, row in parameters(data).items()
         if path != LOAD.path and row not in without and (scaled := units(row))
     ]
-    load = units.scale(LOAD.unit)
-    columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))
+    if LOAD not in without:
+        load = units.scale(LOAD.unit)
+        columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))
     return [(head, np.asarray(v)[block].reshape(-1, *(1,) * (axes - 1))) for head, v in columns]
 
 
@@ -134,8 +135,7 @@ def _of_loops(data: dict[str, Any], units: Units, block: slice) -> list[_Column]
         return len(np.unique(loop)) < len({*zip(loop.tolist(), values.tolist())})
 
     shared = [row for row in (SPEED, LOAD) if differs(row)]
-    columns = _parameters(data, units, own, 2, (MOTION, POSITION, *shared))
-    return columns[: len(columns) - (LOAD in shared)]
+    return _parameters(data, units, own, 2, (MOTION, POSITION, *shared))
 
 
 def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:

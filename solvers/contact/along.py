@@ -135,8 +135,16 @@ class FlatAlong(Pressure):
         return self.along(r)[None], ((τ - self.response.n12 * C) / self._compliance(r))[None], C[None]
 
 
+class BentExpansion(Expansion):
+    """Pressure that is not smooth at the kinks of its functions."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
+        return tuple(self.functions.kinks)
+
+
 @dataclass(frozen=True)
-class ExpansionAlong(Expansion):
+class ExpansionAlong(BentExpansion):
     """Pressure by its values on panels with friction that varies along the contact.
 
     Attributes:
@@ -144,10 +152,6 @@ class ExpansionAlong(Expansion):
     """
 
     friction: Along = constant(0.0)
-
-    @property
-    def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
-        return tuple(self.functions.kinks)
 
     def ending(self, free: tuple[bool, bool]) -> "ExpansionAlong":
         r = np.outer(ENDS, [1.0, 1.0 - _STEP])
@@ -251,12 +255,4 @@ class Splines(Polynomials):
         for i, w in enumerate(rule.weights(α, β)):
             size = np.sqrt(w @ f**2)
             c[i] = np.linalg.solve((f_test / size).T @ (w[:, None] * f / size), moments[i] / size) / size
-        return OfSplines(α[:, None], β[:, None], c, self)
-
-
-class OfSplines(Expansion):
-    """Pressure that is a sum of splines, and not smooth at their kinks."""
-
-    @property
-    def kinks(self) -> tuple[float, ...]:  # type: ignore[override]
-        return self.functions.kinks  # type: ignore[no-any-return]
+        return BentExpansion(α[:, None], β[:, None], c, self)

@@ -125,6 +125,7 @@ class Requirements:
             :class:`galinx.solvers.solids.half_plane.HalfPlane`.
         bends: True where the surface under the punch is not straight, nor the pressure that of a flat
             punch.
+        margin: of the solid's response, the least of all speeds, in (0, 1].
     """
 
     tolerance: float
@@ -135,6 +136,7 @@ class Requirements:
     inside: bool = False
     spread: float = 0.0
     bends: bool = False
+    margin: float = 1.0
 
 
 class _Needs(NamedTuple):
@@ -283,9 +285,11 @@ class MeshKind:
         size = float((self.innermost * tolerance) ** (1.0 / power))
         if required.nearest is not None:
             # The innermost cells cannot resolve the singularity. Beside them that shows in the stresses,
-            # like the square of their size over the distance, both in this chart.
+            # like the square of their size over the distance, both in this chart. Near the limit fields
+            # are much larger than the stresses that are left of them.
+            near = required.nearest * sqrt(required.margin)
             beside = self.beside * (_CLOSER if self._needs(required).own_rings else 1.0)
-            size = min(size, sqrt(2.0 * required.nearest) * min(0.5, beside * sqrt(tolerance)))
+            size = min(size, sqrt(2.0 * near) * min(0.5, beside * sqrt(tolerance)))
         return max(size, self.smallest)
 
     def degree(self, required: Requirements, margin: float) -> int:
@@ -299,7 +303,7 @@ class MeshKind:
         needs, more = self._needs(required), 0.0
         if required.nearest is not None:
             more = 1.0 if needs.gentler else 0.6 + 0.15 * digits
-        degree = ceil(3.4 - 0.75 * lost + (0.7 + 0.16 * lost) * digits + more)
+        degree = ceil(3.4 + 0.7 * digits + lost * max(0.16 * digits - 0.75, 0.0) + more)
         spared = 0 < needs.finer <= _SPARING
         if needs.own_rings and not required.inside:
             spared = needs.finer == 1 or needs.apart <= _HIGHER
@@ -310,7 +314,7 @@ class MeshKind:
         """Number of moments of the contact forces that the far boundary follows; 0 where it is held."""
         if self.walls:
             return 0
-        return moments(radius(required.farthest), required.tolerance)
+        return moments(radius(required.farthest), required.tolerance * required.margin)
 
     def reach(self, required: Requirements) -> float:
         """Distance of the far boundary over a, the least one where it is no circle."""

@@ -6,7 +6,6 @@ programs, csv.
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import Any
@@ -79,6 +78,7 @@ def compare(
     from ..figures.files import Files
     from ..figures.measured import read as read_measured
     from ..results.compared import Comparison
+    from ..results.result import numbers
 
     if len(archives) < 2:
         raise click.UsageError(f"found one archive, {archives[0]}; expected two or more")
@@ -86,7 +86,7 @@ def compare(
         raise click.UsageError("--measured lies over a figure; say by -o where to draw it")
     points = read_measured(measured) if measured else None
     results = [_loaded(archive, stresses=bool(to)) for archive in archives]
-    comparison = Comparison(results, dimensionless, options.numbers(states) if states else ())
+    comparison = Comparison(results, dimensionless, numbers(states) if states else ())
     if ranks.is_root():
         if to:
             inputs = options.inputs(*archives, measured)
@@ -155,12 +155,14 @@ def fields(
     """
     if state is not None and states is not None:
         raise click.UsageError("--state and --states exclude each other; keep one")
-    numbers = [state or 0] if states is None else options.numbers(states)
-    target = output or Path(f"{archive.stem}_{states or numbers[0]}.hdf")
-    _loaded(archive, stresses=False).fields(target, numbers, extent, overwrite)
+    from ..results.result import numbers
+
+    shown = [state or 0] if states is None else numbers(states)
+    target = output or Path(f"{archive.stem}_{states or shown[0]}.hdf")
+    _loaded(archive, stresses=False).fields(target, shown, extent, overwrite)
     if ranks.is_root():
         print(f"fields: {target}")
-        version = "5.12" if len(numbers) > 1 else "5.11"
+        version = "5.12" if len(shown) > 1 else "5.11"
         print(f"next: open it in ParaView ({version} or newer), and colour by von_mises_for_colours")
     return errors.GOOD
 
@@ -237,23 +239,16 @@ def plot(
 
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """
-    from ..figures import choice
     from ..figures.archive import write
+    from ..figures.choice import words
     from ..figures.files import Files
-    from ..figures.measured import read as read_measured
     from ..results.result import load
 
-    selection = choice.Choice(
-        figures=choice.words(figure), quantities=choice.words(quantity),
-        states=tuple(options.numbers(states)) if states else (),
-        method=method, x=x, y=choice.words(y), by=by, size=choice.size(size),
-        measured=read_measured(measured) if measured else None,
-    )  # fmt: skip
     inputs = options.inputs(archive, measured)
-    files = Files(to, archive.stem, choice.words(formats), dpi, overwrite, inputs)
+    files = Files(to, archive.stem, words(formats), dpi, overwrite, inputs)
     result = load(archive)
+    selection = result.choice(dimensionless, figure, states, quantity, method, x, y, by, size, measured)
     if ranks.is_root():
-        selection = replace(selection, units=result.units(dimensionless))
         _print_files(write(result.data, result.scene, selection, files))
     return errors.GOOD
 

@@ -1,7 +1,6 @@
 """Arguments and options that several commands have."""
 
 import os
-import re
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -13,13 +12,10 @@ from galinx.postprocess.target import LOG, Target
 
 from .. import ranks
 from ..console import Progress
-from ..errors import BadInput, short
+from ..errors import BadInput
 
 #: Bytes that file systems allow a name, less those of the ending of what is kept beside an archive.
 _LONGEST = 255 - len(".work.")
-
-#: States that a range of them may have.
-_SEVERAL = 10_000
 
 #: Endings of files that galinx, or other programs, make of results.
 _OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".vtkhdf", ".vtu", ".toml"}
@@ -107,26 +103,6 @@ def inputs(*files: Path | None) -> tuple[Path, ...]:
 
 def _extensions() -> tuple[Path, ...]:
     return click.get_current_context().find_root().params.get("extensions", ())
-
-
-def numbers(text: str) -> list[int]:
-    """Numbers of states, as ``0,4,7`` or ``0-5``.
-
-    Raises:
-        BadInput: these are none.
-    """
-    states: list[int] = []
-    for word in text.split(","):
-        ends = re.fullmatch(r"\s*(\d{1,9})(?:\s*-\s*(\d{1,9}))?\s*", word)
-        if not ends:
-            raise BadInput(f"--states: found {short(word)!r}, expected numbers, as in 0,4,7 or 0-5")
-        first, last = int(ends[1]), int(ends[2] or ends[1])
-        if not first <= last < first + _SEVERAL:
-            raise BadInput(
-                f"--states: found {word}, expected a range that grows, of up to {_SEVERAL} states"
-            )
-        states += range(first, last + 1)
-    return list(dict.fromkeys(states))
 
 
 def folder(default: str) -> Callable[[Any], Any]:

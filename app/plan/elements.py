@@ -177,9 +177,8 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     exponent = min(
         -0.5 - abs(EdgeExponents(response, end).α + 0.5) for response in responses for end in ends
     )
-    spread = max(response.spread for response in responses)
     planes = [response.contraction for response in responses]
-    required = requirements(solve.tolerance, places, exponent, spread, planes)
+    required = requirements(solve.tolerance, places, exponent, responses, planes)
     if required_of_kind := _REQUIRED.get((scene.body.ends, bool(scene.layers))):
         required = required_of_kind(required, scene, mode)
     refinement = kind.refinement(required)
@@ -210,15 +209,15 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
 _OF_SHAPES = (FREE_ENDS, VARYING_FREE)
 #: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
 _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
-    (SHARP, True): lambda required, scene, _: required_over_layers(required, scene.solid),
-    (PRESCRIBED, False): lambda required, scene, _: required_of_pieces(
+    (SHARP, True): lambda required, scene, *_: required_over_layers(required, scene.solid),
+    (PRESCRIBED, False): lambda required, scene, *_: required_of_pieces(
         required, np.array(scene.body.knots)
     ),
     # Next to knots stresses are continued.
     (PRESCRIBED, True): lambda required, *_: no_nearer(required, NEAR),
     # Kinks have meshes of their own; at sharp corners the singularity sets the degree.
-    (FREE, False): lambda required, _, mode: replace(
-        required_of_free_ends(required), bends=mode in _OF_SHAPES
+    (FREE, False): lambda required, scene, mode: replace(
+        required_of_free_ends(required, scene.solid.nearly_incompressible), bends=mode in _OF_SHAPES
     ),
     (FREE, True): lambda required, *_: no_nearer(required, NEAR_FREE_END),
 }

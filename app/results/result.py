@@ -4,6 +4,7 @@ In a notebook a result shows its title, verdict and states as HTML.
 """
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import nullcontext
 from functools import cached_property
@@ -20,7 +21,7 @@ from galinx.postprocess.target import FIELDS, PAGE, Target
 from galinx.postprocess.units import Units
 
 from ..console import Progress
-from ..errors import BadInput
+from ..errors import BadInput, short
 from ..run.flow import Memory
 from ..run.flow import compute as compute_into
 from ..scene import read as scenes
@@ -36,6 +37,30 @@ _POSITIONS = {
     INSIDE_X.path: "inside_X_over_a",
     INSIDE_Y.path: "inside_Y_over_a",
 }
+
+
+#: States that a range of them may have.
+_SEVERAL = 10_000
+
+
+def numbers(text: str) -> list[int]:
+    """Numbers of states, as ``0,4,7`` or ``0-5``.
+
+    Raises:
+        BadInput: these are none.
+    """
+    states: list[int] = []
+    for word in text.split(","):
+        ends = re.fullmatch(r"\s*(\d{1,9})(?:\s*-\s*(\d{1,9}))?\s*", word)
+        if not ends:
+            raise BadInput(f"--states: found {short(word)!r}, expected numbers, as in 0,4,7 or 0-5")
+        first, last = int(ends[1]), int(ends[2] or ends[1])
+        if not first <= last < first + _SEVERAL:
+            raise BadInput(
+                f"--states: found {word}, expected a range that grows, of up to {_SEVERAL} states"
+            )
+        states += range(first, last + 1)
+    return list(dict.fromkeys(states))
 
 
 def _lines(texts: Iterable[str]) -> str:
@@ -146,16 +171,48 @@ class Result:
 
         Args:
             dimensionless: stresses over N/(2a), positions over a.
-            options: attributes of :class:`galinx.app.figures.choice.Choice`.
+            options: as of :meth:`choice`.
 
         Raises:
-            BadInput: the result lacks a chosen figure or quantity.
+            BadInput: the result lacks a chosen figure or quantity, or an option is no such thing.
         """
         from ..figures.archive import of_archive
-        from ..figures.choice import Choice
 
-        choice = Choice(**options, units=self.units(dimensionless))
-        return of_archive(self.data, self.scene, choice)
+        return of_archive(self.data, self.scene, self.choice(dimensionless, **options))
+
+    def choice(
+        self, dimensionless: bool = False, figures: str | Sequence[str] = (),
+        states: str | int | Sequence[int] = (), quantities: str | Sequence[str] = (), method: str = "",
+        x: str = "", y: str | Sequence[str] = (), by: str = "", size: str = "",
+        measured: Any = None,
+    ) -> Any:  # fmt: skip
+        """Choice of what figures show, a :class:`galinx.app.figures.choice.Choice`.
+
+        Several names or numbers may be a text as on the command line, or a list.
+
+        Args:
+            dimensionless: stresses over N/(2a), positions over a.
+            figures, states, quantities, method, x, y, by, size: see ``plot`` of the command line; what is
+                left out is chosen automatically.
+            measured: points that lie over figures: a file, or what
+                :func:`galinx.app.figures.measured.read` gave.
+
+        Raises:
+            BadInput: an option is no such thing.
+        """
+        from ..figures import choice
+        from ..figures.measured import read
+
+        each = [choice.words(names) if isinstance(names, str) else tuple(names)
+                for names in (figures, quantities, y)]  # fmt: skip
+        if isinstance(states, str):
+            states = numbers(states) if states else ()
+        return choice.Choice(
+            figures=each[0], quantities=each[1], y=each[2], method=method, x=x, by=by,
+            states=(states,) if isinstance(states, int) else tuple(states), size=choice.size(size),
+            units=self.units(dimensionless),
+            measured=read(Path(measured)) if isinstance(measured, str | Path) else measured,
+        )  # fmt: skip
 
     def figure(self, name: str = "", **options: Any) -> Any:
         """One of the figures, as a matplotlib figure, which notebooks show.
@@ -202,10 +259,9 @@ class Result:
         if to is None:
             return self.figure(dimensionless=dimensionless, **options)
         from ..figures.archive import write
-        from ..figures.choice import Choice
         from ..figures.files import Files
 
-        choice = Choice(**options, units=self.units(dimensionless))
+        choice = self.choice(dimensionless, **options)
         files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
         return [file.path for file in write(self.data, self.scene, choice, files)]
 

@@ -327,8 +327,7 @@ class OnLayers(Group):
     def _at_height(self, X: NDArray, height: float) -> NDArray[np.float64]:
         h, errors = self.size, self.layers.errors
         level = self.layers.level(-height * h, h * (1.0 + float(np.abs(X).max())))
-        error = h * level.error * max(1.0, level.media[0].modulus)
-        errors[height] = max(errors.get(height, 0.0), error)
+        errors[height] = max(errors.get(height, 0.0), h * level.error)
         return self._along(X, level, 1)[[2, 0, 1]]
 
     def at_interface(self, X: NDArray, level: Level) -> NDArray[np.float64]:
@@ -500,7 +499,7 @@ class LayeredSolution(ExactSolution):
         for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
             level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
             σ.append([each.joined(lambda group: group.at_interface(X, level), 1) for each in self._both])  # noqa: B023
-            errors.append(widest * level.error * max(1.0, *(medium.modulus for medium in level.media)))
+            errors.append(widest * level.error)
         return np.stack(σ, axis=3), np.array(errors)
 
     @property

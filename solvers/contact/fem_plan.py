@@ -36,8 +36,9 @@ _APART = 0.8
 #: Least distance of the speed from that of a wave along the substrate: below it no far boundary is far
 #: enough.
 _LEAST_LEFT = 1e-6
-#: Distance over a from a free end within which stresses are continued from farther away.
-NEAR_FREE_END = 1e-2
+#: Distance over a from a free end within which stresses are continued from farther away, and where an
+#: unknown pressure, with a jump from cell to cell, oscillates in the innermost cells.
+NEAR_FREE_END, _NEAR_INCOMPRESSIBLE = 1e-2, 1e-5
 #: Additional moments over solids that are graded from the surface on: few polynomials do not make up for
 #: what functions of the ends add away from these.
 _MORE_GRADED = 6
@@ -301,40 +302,54 @@ class FemPlan:
 
 
 def requirements(
-    tolerance: float, places: Places, exponent: float, spread: float, planes: Sequence[complex] = ()
-) -> Requirements:
+    tolerance: float, places: Places, exponent: float, responses: Sequence[HalfPlane],
+    planes: Sequence[complex] = (),
+) -> Requirements:  # fmt: skip
     """Requirements on a mesh, by the points where stresses are output.
 
     Args:
         tolerance: relative accuracy.
         places: points where stresses are output.
         exponent: of the strongest singularity of the pressure.
-        spread: distance between the planes in which the solid's fields are analytic.
+        responses: of the solid, one a speed.
         planes: p of the planes X + pY in which the mesh is drawn.
     """
+    spread = max(response.spread for response in responses)
+    margin = min(response.margin for response in responses)
     on_surface = np.column_stack([places.X, 0.0 * places.X])
     X, Y = np.concatenate([on_surface, places.points, places.around]).T
     if not len(X):
-        return Requirements(tolerance, exponent=exponent, spread=spread)
+        return Requirements(tolerance, exponent=exponent, spread=spread, margin=margin)
     nearest = np.hypot(np.abs(X) - 1.0, Y).min()
     farthest = max(float(np.abs(X + p * Y).max()) for p in {1j, *planes})
     around, inside = bool(len(places.around)), bool(len(places.points))
     return Requirements(
-        tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread
-    )
+        tolerance, max(float(nearest), _NEAREST), farthest, exponent, around, inside, spread,
+        margin=margin,
+    )  # fmt: skip
 
 
-def required_of_free_ends(required: Requirements) -> Requirements:
-    """Requirements for free ends, where stresses are finite: larger cells do, with less rounding."""
+def required_of_free_ends(required: Requirements, incompressible: bool) -> Requirements:
+    """Requirements for free ends, where stresses are finite: larger cells do, with less rounding.
+
+    Stresses go with the power a of the distance, 1/2 without friction: cells of a size e miss e^a.
+
+    Args:
+        required: requirements for sharp ends.
+        incompressible: True where the solid is nearly so.
+    """
     if required.nearest is None:
         return required
-    return replace(no_nearer(required, NEAR_FREE_END), exponent=0.5)
+    a, near = 1.0 + required.exponent, _NEAR_INCOMPRESSIBLE if incompressible else NEAR_FREE_END
+    return replace(no_nearer(required, near ** (0.5 / a)), exponent=a)
 
 
 def required_of_pieces(required: Requirements, knots: NDArray) -> Requirements:
     """Requirements for every piece of a prescribed pressure, over the narrowest one's half-width."""
     farthest = (1.0 + required.farthest) / (np.diff(knots).min() / 2.0)
-    return Requirements(required.tolerance, NEAR, farthest, spread=required.spread)
+    return Requirements(
+        required.tolerance, NEAR, farthest, spread=required.spread, margin=required.margin
+    )
 
 
 def levels(degree: int, cuts: int, fixed: bool) -> list[tuple[int, int]]:

@@ -476,7 +476,7 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
         below = np.concatenate([below, np.column_stack([X.ravel(), -depth.ravel()])])
     X = places.X if ON_SURFACE in words else np.empty(0)
     requested = Places(X, below, places.around)
-    target = requirements(plan.tolerance, requested, plan.sharp, task.response.spread)
+    target = requirements(plan.tolerance, requested, plan.sharp, [task.response])
     # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
     target = no_nearer(target, NEAR_FREE_END)
     degree = kind.degree(target, task.response.margin)

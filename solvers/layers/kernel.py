@@ -372,8 +372,13 @@ class Level:
         under = stack.layers[above].top if above < len(stack.layers) else stack.substrate
         return stack.layers[above - 1].bottom, under
 
+    @property
+    def _modulus(self) -> float:
+        """Modulus that makes a stress of the strain: the larger one of both sides."""
+        return max(medium.modulus for medium in self.media)
+
     def _of(self, k: NDArray) -> NDArray:
-        """Transforms of u,X, σ_YY and σ_XY at the depth under σ_XY and σ_YY on top, (n, 6)."""
+        """Transforms of u,X times the modulus, σ_YY and σ_XY under σ_XY and σ_YY on top, (n, 6)."""
         stack, above = self._parts
         under = stack.below(k)
         carried = inverse(stack.top.down + stack.layers[0].excess(k, under[0]))
@@ -381,18 +386,19 @@ class Level:
             carried = layer.carried(k, Z) @ carried
         tractions = under[above - 1] @ carried
         return np.stack(
-            [*(1j * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1
+            [*(1j * self._modulus * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1
         )  # fmt: skip
 
     @cached_property
     def _table(self) -> Table:
         first = min(wavenumbers(self.stack), 1.0 / self.depth)
-        accuracy = max(self.tolerance / 100.0, ROUNDING)
+        # The integral of |f| grows as the depth falls; the stresses, which the error is of, do not.
+        accuracy = max(min(self.depth / self.reach, 1.0) * self.tolerance / 100.0, ROUNDING)
         return tabulated(self._of, first, self.depth / 4.0, self.reach, accuracy)
 
     @property
     def error(self) -> float:
-        """Absolute error of u,X, σ_YY and σ_XY under a pressure with the resultant of a punch, 2."""
+        """Absolute error of stresses under a pressure with the resultant of a punch, 2."""
         return 2.0 * self._table.error
 
     def read(
@@ -414,4 +420,6 @@ class Level:
             table = self._table(size * (X[rows, None] - t)).reshape(-1, len(t), 3, 2)
             fields[rows] = size * np.einsum("ts,xtfs->xfs", both, table).reshape(-1, 6)
         by_shear, by_pressure = fields[:, 0::2], fields[:, 1::2]
-        return np.moveaxis(np.multiply.outer(g, by_shear.T) + by_pressure.T, -2, 0)
+        both_loads = np.moveaxis(np.multiply.outer(g, by_shear.T) + by_pressure.T, -2, 0)
+        both_loads[0] /= self._modulus
+        return both_loads

@@ -1,6 +1,7 @@
 """Spaces on meshes: parts, sizes, ranks without cells, values along the surface."""
 
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -92,5 +93,6 @@ def test_forces_of_a_load_know_the_distances_from_both_edges(sign):
 
 def test_a_mesh_reaches_the_farthest_place_in_every_plane_of_the_solid():
     places = stresses.Places(np.array([0.5]), np.array([[-2.0, -1.0]]))
+    alike = SimpleNamespace(spread=1.0, margin=1.0)
     for planes, farthest in (((), 5.0**0.5), ((1.0 + 1.0j,), 10.0**0.5), ((-1.0 + 1.0j,), 5.0**0.5)):
-        assert requirements(1e-6, places, -0.5, 1.0, planes).farthest == pytest.approx(farthest)
+        assert requirements(1e-6, places, -0.5, [alike], planes).farthest == pytest.approx(farthest)

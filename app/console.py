@@ -332,7 +332,9 @@ def _print_folded(console: Any, text: str, **style: Any) -> None:
 
 def _fill(text: str, hang: int = 2) -> str:
     """A text in lines as wide as the terminal, 80 columns where it is none."""
-    return textwrap.fill(plain(text), width(), subsequent_indent=" " * hang, break_on_hyphens=False)
+    return textwrap.fill(
+        plain(text), width(), subsequent_indent=" " * hang, break_on_hyphens=False, break_long_words=False
+    )
 
 
 def say(text: str, hang: int = 2) -> None:
@@ -375,8 +377,14 @@ def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:
 def print_warnings(attributes: dict[str, Any]) -> None:
     """Print the warnings of an archive on the error stream."""
     for text in json.loads(attributes["warnings"]):
-        line = f"warning: {text}"
-        print(_fill(line) if sys.stderr.isatty() else line, file=sys.stderr)
+        print(for_people(f"warning: {text}"), file=sys.stderr)
+
+
+def for_people(text: str) -> str:
+    """A text for the error stream: its lines are folded where that is a terminal."""
+    if not sys.stderr.isatty():
+        return text
+    return "\n".join(_fill(line, 4 if line.startswith(" ") else 2) for line in text.split("\n"))
 
 
 def print_times(clock: Clock) -> None:

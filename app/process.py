@@ -20,7 +20,7 @@ from typing import Any, NoReturn
 from galinx import files
 
 from . import errors, ranks
-from .console import Output, on_terminal
+from .console import Output, for_people, on_terminal
 
 #: Bytes of address space that finite elements need with all libraries; with less some wait for ever.
 _ADDRESS_SPACE = 10**9
@@ -171,4 +171,4 @@ def complain(message: str) -> None:
     if ranks.from_environment()[0] > 0:
         time.sleep(_FIRST)
     with suppress(OSError):
-        print(f"error: {message}", file=sys.stderr, flush=True)
+        print(for_people(f"error: {message}"), file=sys.stderr, flush=True)

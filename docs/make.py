@@ -36,7 +36,7 @@ SIGINT (Ctrl-C), SIGTERM, SIGHUP and a killed rank end a command at once, with s
 
 A file gets its name when it is whole. Figures, pages and tables of an archive are replaced unasked.
 Scenes, archives and files that galinx did not make are replaced with `--overwrite` only. A file that the
-command reads is never replaced; `--log` only appends.
+command reads is never replaced, but for the scene of `fit --into`; `--log` only appends.
 
 `run.sh` knows more words than the commands:
 

@@ -31,7 +31,7 @@ from .quantities import (
     yielding,
 )
 from .quantities import states as of
-from .quantities.quantity import CONTACT, FEM, SIE, TEXT
+from .quantities.quantity import CONTACT, FEM, OVER_A, SIE, TEXT
 from .quantities.states import LOAD, MOTION, POSITION, SPEED
 from .units import Units, as_archived, engineering, number, solved
 
@@ -319,7 +319,7 @@ def _columns(
             least = length if place or row.scale == CONTACT else stress * (row.unit == "N/(2a)")
             columns.append(
                 Column(
-                    f"{head}/a" if place and units.dimensionless else head,
+                    f"{head}/a" if units.dimensionless and (place or row.scale == OVER_A) else head,
                     scaled.of(values), scaled.unit, name or scaled.name, path, digits, owner,
                     0.0 if archived else float(least),
                 )
@@ -496,6 +496,10 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
     if "K_I, right" in heads and not units.dimensionless:
         yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
+    if units.dimensionless and "half-width" in heads:
+        a = number(units.contact.half_width)
+        yield f"half-width, centre: a = {a} m, that of the first contact at rest without friction"
+        yield "X/a, Y/a and N/(2a): a is the half-width of each contact, and X is from its middle"
     if {"resultant of the pressure", "load at first yield"} <= heads:
         yield "load at first yield: N; the pressure and its resultant grow with it"
     if speeds := solved_speeds(data):

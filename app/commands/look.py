@@ -220,7 +220,10 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
 @_text("by", "NAME", "Parameter that distinguishes their curves.")
 @_text("size", "SIZE", "Width as 3.5in, or 89mm x 60mm; in, cm, mm, pt.")
 @click.option(
-    "--dpi", type=int, default=0, metavar="NUMBER", help="Dots per inch; default: 300, of films 160."
+    "--dpi",
+    type=click.IntRange(min=1),
+    metavar="NUMBER",
+    help="Dots per inch; default: 300, of films 160.",
 )
 @_text("format", "NAMES", "pdf, png, svg; of films mp4, gif; default: pdf,png.", "formats")
 @_MEASURED
@@ -228,7 +231,7 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
 @options.overwrite
 def plot(
     archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
-    by: str, size: str, dpi: int, formats: str, measured: Path | None, dimensionless: bool,
+    by: str, size: str, dpi: int | None, formats: str, measured: Path | None, dimensionless: bool,
     overwrite: bool,
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
@@ -245,7 +248,7 @@ def plot(
     from ..results.result import load
 
     inputs = options.inputs(archive, measured)
-    files = Files(to, archive.stem, words(formats), dpi, overwrite, inputs)
+    files = Files(to, archive.stem, words(formats), dpi or 0, overwrite, inputs)
     result = load(archive)
     selection = result.choice(dimensionless, figure, states, quantity, method, x, y, by, size, measured)
     if ranks.is_root():
@@ -380,7 +383,7 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
         )
     if not ranks.is_root():
         return errors.GOOD
-    if output is None:
+    if output is None or str(output) == "-":
         for piece in pieces(archive, chosen[0], dimensionless):
             print(piece, end="")
         return errors.GOOD

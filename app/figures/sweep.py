@@ -25,11 +25,13 @@ from .choice import (
     short_name,
     spread,
 )
-from .render import MARKERS, Map, Panel, Size, render
+from .render import DOTS, MARKERS, Map, Panel, Size, render
 from .style import COLUMN, looks
 
 #: Relative change below which numbers count as constant.
 _SAME = 1e-5
+#: Most states of a line that has a dot at each.
+_FEW = 12
 
 
 def _names(*rows: Quantity) -> list[str]:
@@ -196,6 +198,8 @@ class _Sweep:
                 curves += both(self.x[order], values, look, label, k / len(styles))
                 if len(order) == 1:  # no line: a place of its own
                     curves = [replace(curve, form=MARKERS) for curve in curves]
+                elif len(order) <= _FEW and FEM not in values:  # what is computed, between what is drawn
+                    curves.append(replace(curves[-1], label="", form=DOTS))
             every = np.concatenate([curve.y for curve in curves])
             crosses = np.nanmin(every) < 0.0 < np.nanmax(every)
             panels.append(Panel(

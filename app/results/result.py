@@ -183,7 +183,7 @@ class Result:
     def choice(
         self, dimensionless: bool = False, figures: str | Sequence[str] = (),
         states: str | int | Sequence[int] = (), quantities: str | Sequence[str] = (), method: str = "",
-        x: str = "", y: str | Sequence[str] = (), by: str = "", size: str = "",
+        x: str = "", y: str | Sequence[str] = (), by: str = "", size: Any = "",
         measured: Any = None,
     ) -> Any:  # fmt: skip
         """Choice of what figures show, a :class:`galinx.app.figures.choice.Choice`.
@@ -192,8 +192,9 @@ class Result:
 
         Args:
             dimensionless: stresses over N/(2a), positions over a.
-            figures, states, quantities, method, x, y, by, size: see ``plot`` of the command line; what is
-                left out is chosen automatically.
+            figures, states, quantities, method, x, y, by: see ``plot`` of the command line; what is left
+                out is chosen automatically.
+            size: ``"85mm"``, or a :class:`galinx.app.figures.render.Size`.
             measured: points that lie over figures: a file, or what
                 :func:`galinx.app.figures.measured.read` gave.
 
@@ -203,16 +204,19 @@ class Result:
         from ..figures import choice
         from ..figures.measured import read
 
-        each = [choice.words(names) if isinstance(names, str) else tuple(names)
-                for names in (figures, quantities, y)]  # fmt: skip
+        figures, quantities, y = (
+            choice.words(names) if isinstance(names, str) else tuple(names)
+            for names in (figures, quantities, y)
+        )
         if isinstance(states, str):
             states = numbers(states) if states else ()
-        return choice.Choice(
-            figures=each[0], quantities=each[1], y=each[2], method=method, x=x, by=by,
-            states=(states,) if isinstance(states, int) else tuple(states), size=choice.size(size),
-            units=self.units(dimensionless),
-            measured=read(Path(measured)) if isinstance(measured, str | Path) else measured,
-        )  # fmt: skip
+        states = (states,) if isinstance(states, int) else tuple(states)
+        if isinstance(size, str):
+            size = choice.size(size)
+        if isinstance(measured, str | Path):
+            measured = read(Path(measured))
+        units = self.units(dimensionless)
+        return choice.Choice(figures, states, quantities, method, x, y, by, size, units, measured)
 
     def figure(self, name: str = "", **options: Any) -> Any:
         """One of the figures, as a matplotlib figure, which notebooks show.

@@ -12,6 +12,7 @@ from galinx.solvers.solids import SOLIDS
 
 from ..errors import BadInput, excerpt, nearest, short
 from .sections import SECTIONS
+from .units import in_si
 
 #: Two names of a number: a new value is given to that name which the scene has.
 _ONE_NUMBER = {"friction.mu": "friction.mu_c", "friction.mu_c": "friction.mu"}
@@ -158,13 +159,27 @@ def _keys(tree: Mapping[str, Any]) -> dict[str, Any]:
 def differences(texts: Iterable[str]) -> dict[str, list[str]]:
     """Values of the keys in which scenes differ, as text, "–" where a scene lacks the key.
 
+    A number is the same in whatever unit it is written.
+
     Args:
         texts: of the scenes, TOML.
     """
     scenes = [_keys(tomlkit.parse(text).unwrap()) for text in texts]
     keys = dict.fromkeys(key for scene in scenes for key in scene)
-    values = {key: [str(scene.get(key, "–")) for scene in scenes] for key in keys}
-    return {key: of_scenes for key, of_scenes in values.items() if len(set(of_scenes)) > 1}
+    return {
+        key: [_text(scene[key]) if key in scene else "–" for scene in scenes]
+        for key in keys
+        if any(in_si(scene.get(key)) != in_si(scenes[0].get(key)) for scene in scenes)
+    }
+
+
+def _text(value: Any) -> str:
+    """A value as a person writes it: texts without quotes."""
+    if isinstance(value, dict):
+        table = tomlkit.inline_table()
+        table.update(value)
+        return table.as_string()
+    return value if isinstance(value, str) else tomlkit.item(value).as_string()
 
 
 def _change(tree: Any, path: str, value: Any) -> None:

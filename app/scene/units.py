@@ -7,6 +7,7 @@ loading pint takes longer than a friction loop.
 
 import re
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
@@ -109,6 +110,20 @@ def in_units(given: Quantity, target: Units) -> float | None:
     if any(dimension):
         return None
     return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
+
+
+def in_si(value: Any) -> Any:
+    """Numbers in SI of a value, or of a list's or a table's, as TOML gives them; all else unchanged."""
+    if isinstance(value, dict):
+        return {key: in_si(of) for key, of in value.items()}
+    if isinstance(value, list):
+        return [in_si(of) for of in value]
+    if isinstance(value, str):
+        with suppress(ValueError, OverflowError, KeyError):
+            given = quantity(value)
+            power = sum(_UNITS[name][0] * exponent for name, exponent in given.units)
+            return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
+    return value
 
 
 @lru_cache(maxsize=1)

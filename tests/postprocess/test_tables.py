@@ -70,3 +70,16 @@ def test_sliders_have_their_loads_and_laws_in_tables(tmp_path):
     rows = [*csv.DictReader("".join(pieces(tmp_path / "sliders.h5", "slider")).splitlines())]
     of_laws = {(row["law"], row["load [N/m]"], row["mu_c [1]"]) for row in rows}
     assert of_laws == {("0", "1", "0.5"), ("1", "1", "1"), ("2", "5", "0.5"), ("3", "5", "1")}
+
+
+def test_lengths_over_a_say_which_a_that_is():
+    """In a sweep half-widths are over that of the first contact, all else over that of each."""
+    punch = {"profile": "parabolic", "radius": [0.01, 0.02], "load": 1e5}
+    result = computed(SCENE, {"punch": punch, "output.quantities": ["sif", "yield"]})
+    plain, dimensionless = (states_sheet(result.data, result.units(of)) for of in (False, True))
+    assert not [note for note in plain.notes if "half-width" in note]
+    a = result.units().contact.half_width
+    assert f"half-width, centre: a = {a:.4g} m, that of the first contact at rest without friction" in (
+        dimensionless.notes
+    )
+    assert "depth of yield/a" in {row[0] for row in dimensionless.rows} | set(dimensionless.columns)

@@ -9,10 +9,10 @@ import pytest
 from support import here
 from tampering import opened
 
-from galinx.app.commands import options
 from galinx.app.commands.look import plot
 from galinx.app.errors import BadInput
 from galinx.app.figures.archive import FIGURES
+from galinx.app.results.result import numbers
 from galinx.postprocess.hdf5 import archive as seal
 
 
@@ -50,13 +50,13 @@ def test_help_names_every_figure():
     "text, found", [("3", [3]), ("0,4,2", [0, 4, 2]), ("0-2, 1,5 - 5", [0, 1, 2, 5]), ("7-7", [7])]
 )
 def test_states_are_named_by_numbers_and_ranges(text, found):
-    assert options.numbers(text) == found
+    assert numbers(text) == found
 
 
 @pytest.mark.parametrize("text", ["", "a", "1,,2", "-1", "3-1", "1.5", "0-99999999", "1-2-3"])
 def test_what_names_no_states_is_refused(text):
     with pytest.raises(BadInput, match=r"^--states: found "):
-        options.numbers(text)
+        numbers(text)
 
 
 def test_check_tells_damage_from_contradictions(archive, tmp_path):

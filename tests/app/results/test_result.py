@@ -62,3 +62,17 @@ def test_a_result_without_its_stresses_is_not_saved(exact_run, tmp_path):
         load(tmp_path / "a.h5", stresses=False).save(tmp_path / "b.h5")
     load(tmp_path / "a.h5").save(tmp_path / "b.h5")
     assert not faults(tmp_path / "b.h5")
+
+
+def test_options_of_figures_are_texts_as_on_the_command_line_or_lists(exact_run):
+    result = exact_run
+    words = result.choice(figures="surface, friction", states="0-2,4", quantities="sigma_XX", size="85mm")
+    assert (words.figures, words.states, words.quantities) == (
+        ("surface", "friction"), (0, 1, 2, 4), ("sigma_XX",),
+    )  # fmt: skip
+    assert words.size == result.choice(size=words.size).size and words.size.width == pytest.approx(
+        85 / 25.4
+    )
+    assert result.choice(states=3).states == (3,) and result.choice(states=[1, 2]).states == (1, 2)
+    with pytest.raises(BadInput, match=r"^--states: found "):
+        result.choice(states="all")

@@ -7,7 +7,7 @@ import pytest
 from support import SCENE, scene_of
 
 from galinx.app.errors import BadInput
-from galinx.app.scene.changes import changed, from_words
+from galinx.app.scene.changes import changed, differences, from_words
 from galinx.app.scene.read import parse, read
 from galinx.app.scene.values import Numbers
 from galinx.solvers.parameters import Range
@@ -234,3 +234,13 @@ def test_one_unit_for_a_list_or_a_range(spacing, middle):
     for word in ("{from=2, to} mm", "{1, 2} mm", "{} mm"):
         with pytest.raises(BadInput, match=r"punch\.radius"):
             scene_of("cylinder", from_words([f"punch.radius={word}"]))
+
+
+def test_scenes_differ_in_numbers_whatever_their_units_are():
+    scenes = (
+        '[solid]\nE = "200 GPa"\nnu = 0.3\n[[layer]]\nto = {E = "70 GPa"}\n[punch]\nradius = ["5 mm"]\n',
+        "[solid]\nE = 2e11\n[[layer]]\nto = {E = 7e10, nu = 0.3}\n[punch]\nradius = [0.005]\n",
+    )
+    assert differences(scenes) == {
+        "solid.nu": ["0.3", "–"], "layer[0].to": ['{E = "70 GPa"}', "{E = 70000000000.0, nu = 0.3}"],
+    }  # fmt: skip

@@ -136,8 +136,6 @@ def fem_mode(scene: Any) -> str:
 
 def _fem_along_refusal(scene: Any, body: Contact) -> str:
     """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
-    if scene.layers and body.friction_kinks:
-        return "friction varies along a contact over layers, with kinks of friction"
     if body.found and len(kinks(body.profile)):
         return "friction varies along the contact of a punch with kinks"
     moving = body.found and any(along.has_length for along in scene.along.values())

@@ -171,7 +171,10 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     mode = fem_mode(scene)
     if scene.layers:
         depths = scene.solid.depths / scene.body.half_width
-        kind, name = kind_of(depths, responses, scene.body.knots or (-1.0, 1.0)), "layered"
+        kind, name = (
+            kind_of(depths, responses, scene.body.knots or (-1.0, *scene.body.friction_kinks, 1.0)),
+            "layered",
+        )
     ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, _ACROSS))
     mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
     exponent = min(
@@ -187,7 +190,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     )
     largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
     drawn, kinks = kind.drawn(required), scene.body.friction_kinks
-    if kinks:
+    if kinks and not drawn:
         drawn = with_friction_kinks(refinement, kinks, solve.tolerance)
     size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
     shared = shares_speeds(size, len(responses))

@@ -469,7 +469,7 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
         words: words of output.quantities that request stresses.
     """
     places, interfaces = task.places, task.places.interfaces
-    kind = kind_of(interfaces, [task.response])
+    kind = kind_of(interfaces, [task.response], (-1.0, *task.body.friction_kinks, 1.0))
     below = places.points if BELOW in words else np.empty((0, 2))
     if AT_INTERFACES in words:
         X, depth = np.meshgrid(places.along, interfaces)

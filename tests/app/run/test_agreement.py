@@ -418,8 +418,9 @@ NAMED = {
             "points": [[0.2, -0.5], [-1.0, -0.3], [0.7, -3.0]],
         }}) for name, punch in OVER_A_LAYER.items()},
     "friction along layers": of_sections(
-        solid=PLATE, friction={"along": [[-1, 0.1], [1, 0.5]]}, layer=[LAYER | {"thickness": "1 mm"}],
-        motion={"c": 0.3}, solve={"methods": ["sie", "fem"], "tolerance": 1e-4}),
+        solid=PLATE, friction={"along": [[-1, 0.1], [0.4, 0.6], [1, 0.5]]},
+        layer=[LAYER | {"thickness": "1 mm"}], motion={"c": 0.3},
+        solve={"methods": ["sie", "fem"], "tolerance": 1e-4}),
     "next to an edge at a fixed degree": orthotropic(7, {"quantities": ["sif", "surface"]}, degree=12),
     "kinks of friction with cells between them": of_sections(
         solid=PLATE, friction={"along": [[-1, 0.2], [0.2, 0.7], [0.2011, 0.6989], [1, 0.5]]},

@@ -193,7 +193,8 @@ class SingleLevel(PunchLevel):
 #: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
 _CELLS, _DIGITS = 3.0, 1e-5
 
-#: Rings more around a cusp of the pressure; size of the innermost cells at a kink, over the tolerance.
+#: Rings of the usual ratio more around a cusp of the pressure; size of the innermost cells at a kink, over
+#: the tolerance.
 _AROUND_CUSP, _INNERMOST = 4, 30.0
 
 #: Size of the innermost cells at a tip, over the least distance from it at which stresses are evaluated.
@@ -260,7 +261,7 @@ class EndsBetweenKinks:
         any tolerance.
         """
         if cusp(self.body.profile):
-            return _AROUND_CUSP
+            return ceil(_AROUND_CUSP * log(plan.kind.ratio) / log(rings.ratio))
         if len(self.tips):
             size = _OF_TIP * NEAR_TIP
         else:

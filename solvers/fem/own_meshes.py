@@ -193,7 +193,7 @@ class SingleLevel(PunchLevel):
 #: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
 _CELLS, _DIGITS = 3.0, 1e-5
 
-#: Rings of the usual ratio more around a cusp of the pressure; size of the innermost cells at a kink, over
+#: Rings of the usual ratio more around a cusp of the pressure; size of innermost cells at a kink, over
 #: the tolerance.
 _AROUND_CUSP, _INNERMOST = 4, 30.0
 

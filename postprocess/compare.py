@@ -68,6 +68,22 @@ class Rule:
         return self.limit if self.tolerances is None else self.tolerances * tolerance
 
 
+#: Tension over N/(2a) up to which that of a formula is rounding.
+_ROUNDED = 1e-12
+
+
+def _pull(by: str, method: str, **limits: Any) -> Rule:
+    """Rule that the punch does not pull: it would lift off there."""
+    pressure = at.PRESSURE[method]
+
+    def measure(data: dict[str, Any], _: Any) -> float | None:
+        tension = float(np.nanmax(data[pressure.path], initial=0.0))
+        return tension if tension > _ROUNDED * (method != FEM) else None
+
+    text = f"tension under the punch{by}, over N/(2a)"
+    return Rule(text, (pressure,), measure, own_pressure=True, **limits)
+
+
 def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
     """False next to an infinite pressure of the closed form, by states and positions, (states, n).
 
@@ -378,11 +394,9 @@ RULES: Registry[Rule] = Registry(
             "fitted edge exponents, absolute",
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,
         ),
-        "tension": Rule(
-            "tension under the punch, over N/(2a)", (at.PRESSURE[FEM],),  # it would lift off there
-            lambda data, _: float(np.nanmax(data[at.PRESSURE[FEM].path], initial=0.0)) or None,
-            limit=0.0, own_pressure=True,
-        ),
+        "tension": _pull("", FEM, limit=0.0),
+        "tension, sie": _pull(" by the integral equation", SIE, tolerances=1.0),
+        "tension, closed form": _pull(" in closed form", CLOSED_FORM, tolerances=1.0),
         # Under a prescribed pressure there is no raw one, and nothing to compare.
         "sigma_YY": against(
             CLOSED_FORM, _pressure, "σ_YY pointwise, relative",

@@ -109,10 +109,15 @@ def tops(
         own = pieces == pieces[rows, i][:, None]
         first, count = own.argmax(axis=1), own.sum(axis=1)
         height, place = np.full(len(curves), -np.inf), u[i]
-        usable = top[rows, i] & (count >= through)
-        if usable.any():
-            k, start = i[usable], np.clip(i - through // 2, first, first + count - through)[usable]
-            window = start[:, None] + np.arange(through)
+        # Far from the middle of many samples a polynomial would raise their noise.
+        shifted = np.abs(np.clip(i - through // 2, first, first + count - through) - i + through // 2)
+        many = shifted <= _THROUGH // 2
+        for number, chosen in ((through, many), (_THROUGH, ~many)):
+            usable = top[rows, i] & (count >= number) & chosen
+            if not usable.any():
+                continue
+            k, start = i[usable], np.clip(i - number // 2, first, first + count - number)[usable]
+            window = start[:, None] + np.arange(number)
             nodes = u[window]
             low, high = (
                 np.clip(u[np.clip(k + s, 0, len(u) - 1)], nodes[:, 0], nodes[:, -1]) for s in (-1, 1)

@@ -525,7 +525,7 @@ class OverLayers(OwnMeshes):
         check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
         contact = state.contact.between(h, h * lean, True)
         errors = {word: value + abs(h / drawn - 1.0) for word, value in state.errors.items()}
-        return replace(state, body=task.body, contact=contact, errors=errors)
+        return replace(state, body=task.body, contact=contact, errors=errors, deeper=h / drawn)
 
     def _contact(self, h: float) -> tuple[SolvedStates, float, float]:
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""

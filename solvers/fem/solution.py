@@ -41,6 +41,8 @@ class SolvedStates:
         pressure: contact pressure, a :class:`galinx.solvers.contact.pressure.Pressure`.
         errors: estimated relative errors, (states,), by word of output.quantities.
         fitted: True where the speed was fitted through others.
+        deeper: half-width over that of the mesh, which is drawn for a contact near by: points keep their
+            depths, and so the layer that they are in.
     """
 
     level: Any
@@ -49,6 +51,7 @@ class SolvedStates:
     pressure: Any
     errors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     fitted: bool = False
+    deeper: float = 1.0
 
     @property
     def task(self) -> Task:
@@ -82,7 +85,13 @@ class SolvedStates:
     @cached_property
     def below(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
+        if self.deeper != 1.0:
+            return self.at(self.task.places.points[None])
         return self.displacement.inside(self.contact.weights)
+
+    def at(self, points: NDArray, rows: Any = slice(None)) -> NDArray[np.float64]:
+        """σ_XX, σ_YY, σ_XY of some states, (3, rows, n), at points (1, n, 2) of all or (rows, n, 2)."""
+        return self.displacement.at(points * [1.0, self.deeper], self.contact.weights[rows])
 
     @property
     def centre_of_pressure(self) -> NDArray[np.float64]:
@@ -240,15 +249,14 @@ class Solution(solution.Solution):
         row = self.rows[state]
         for states in self.solved:
             if row < len(states.contact.g):
-                return states.displacement.at(points[None], states.contact.weights[row : row + 1])[:, 0]
+                return states.at(points[None], [row])[:, 0]
             row -= len(states.contact.g)
         raise IndexError(state)
 
     def stresses(self, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY, (3, states, n), at points (1, n, 2) of all states or (states, n, 2)."""
         if len(self.solved) == 1:
-            states = self.solved[0]
-            return states.displacement.at(points, states.contact.weights[self.rows])
+            return self.solved[0].at(points, self.rows)
         each = np.broadcast_to(points, (len(self.rows), *points.shape[1:]))
         return np.stack([self.inside_of(state, own) for state, own in enumerate(each)], axis=1)
 

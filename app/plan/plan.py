@@ -263,7 +263,7 @@ def _faults(
                 f"{listed(wrong)}, expected numbers from {_LEAST:.0e} to {_MOST:.0e}"
             )
     if scene.layers:
-        yield from _faults_of_layers(scene, unsolved=bool(refusals) and not methods)
+        yield from _faults_of_layers(scene)
         if SIE in methods and (shallow := float(-places.points[:, 1].max(initial=-1.0))) < _SHALLOWEST:
             yield (
                 f"output.points: found a point {shallow:g} a below the surface of layers, expected at "
@@ -274,7 +274,7 @@ def _faults(
         about = f"found a {body.profile.words()}, {body.lacks[GIVEN_ENDS]}"
         if solve.mode == "traction":
             yield f'solve.mode = "traction": {about}; take mode = "contact", or a flat punch'
-    if refusals and not methods and not scene.layers:
+    if refusals and not methods:
         reasons = "; ".join(f"{name}: {why}" for name, why in refusals.items())
         yield f"solve.methods: none of them solves this contact: {reasons}"
     if FEM in solve.methods and solve.assembler == DOLFINX:
@@ -296,13 +296,8 @@ def _faults(
 _SHALLOWEST = 1e-4
 
 
-def _faults_of_layers(scene: Scene, unsolved: bool) -> Iterator[str]:
-    """Fault of outputs and methods that are not computed over layers, with all reasons.
-
-    Args:
-        scene: the scene.
-        unsolved: True where none of its methods solves the contact.
-    """
+def _faults_of_layers(scene: Scene) -> Iterator[str]:
+    """Fault of outputs that are not computed over layers, with all reasons."""
     solve, body = scene.solve, scene.body
     computed = {*FRICTIONS, INTENSITIES, stresses.ON_SURFACE, stresses.BELOW, layers.AT_INTERFACES, YIELD}
     reasons = [
@@ -319,9 +314,6 @@ def _faults_of_layers(scene: Scene, unsolved: bool) -> Iterator[str]:
             reasons.append(
                 f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
             )
-    if unsolved and not reasons:
-        about = f" with a {body.profile.words()}" * (GIVEN_ENDS in body.lacks)
-        reasons.append(f"solve.methods is {json.dumps(solve.methods)}{about}")
     if reasons:
         yield (
             f"layer: found layers, and {'; '.join(reasons)}. Over layers methods = "

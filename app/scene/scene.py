@@ -229,8 +229,7 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
         return
     if found := _not_varying(scene):
         yield (
-            f"friction varies along the contact, but found {found}; expected steady sliding, with a "
-            "direct solver"
+            f"friction varies along the contact, but found {found}; take that away, or give one friction"
         )
     elif FEM in scene.solve.methods:
         try:

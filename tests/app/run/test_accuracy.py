@@ -86,3 +86,14 @@ def test_incompressible_solids_have_stresses_inside_in_closed_form_only():
     for ij in ("XX", "YY", "XY"):
         name = f"interior/closed_form/sigma_{ij}"
         np.testing.assert_allclose(data[name], near[name], rtol=1e-5, atol=1e-7)
+
+
+def test_a_punch_that_pulls_fails_by_every_method():
+    """A flat punch on a stiff layer on a soft solid lifts off in its middle."""
+    scene = {
+        "solid": {"E": 1e10, "nu": 0.3, "rho": 2700.0}, "friction": {"mu": 0.3}, "motion": {"c": 0.1},
+        "layer": [{"E": 2.5e11, "nu": 0.1, "rho": 3300.0, "thickness": 6e-4}],
+        "punch": {"half_width": 1e-3, "load": 5e4}, "output": {"quantities": ["surface"]},
+    }  # fmt: skip
+    result = computed(changes=scene | {"solve": {"methods": ["sie"], "tolerance": 1e-3}})
+    assert result.data["states/sie/tension"] > 0.1 and result.verdict == "FAIL"

@@ -146,3 +146,20 @@ def test_no_sample_is_larger_and_some_come_near(thickness):
     unit = 1e5 / (2.0 * data[HALF_WIDTH["sie"].path])
     share = held * unit[:, None] / np.array([4e9, 600e6])
     assert np.allclose(data[yielding.OVER_STRENGTH["sie"].path], share, rtol=1e-12)
+
+
+def test_points_beside_an_interface_keep_their_layer_on_a_mesh_for_a_contact_near_by():
+    """The half-width of the mesh is off by less than the tolerance; a depth of that would be too much."""
+    scene = {
+        "solid": {"E": 1e10, "nu": 0.3, "rho": 2000.0}, "friction": {"mu": 0.3}, "motion": {"c": 0.1},
+        "layer": [{"E": 1e11, "nu": 0.3, "rho": 2000.0, "thickness": 2e-3}],
+        "punch": {"profile": "parabolic", "radius": 0.05, "load": 5e4},
+        "output": {"quantities": ["sif", "yield"]},
+    }  # fmt: skip
+    fem, sie = (
+        computed(changes=scene | {"solve": {"methods": [name], "tolerance": tolerance}}).data[
+            f"layers/{name}/von_mises"
+        ]
+        for name, tolerance in (("fem", 1e-2), ("sie", 1e-5))
+    )
+    np.testing.assert_allclose(fem, sie, rtol=1e-2)

@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 from ..parameters import parameter
 from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
+#: Distance y from full slip, below which its rate, a root, is followed no more.
+_FULL = 1e-9
+
 
 @dataclass(frozen=True)
 class Dahl(FrictionLaw):
@@ -44,6 +47,15 @@ class Dahl(FrictionLaw):
         """df/dd [1/m]."""
         y = 1.0 - s * np.asarray(z, dtype=float) / self.μ_C
         return s * self.λ * np.sign(y) * np.abs(y) ** self.δ
+
+    def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Zero where the slip is full, if that comes after a finite slip, (0,) or (1,)."""
+        return np.ravel(_FULL - (1.0 - s * z / self.μ_C))[: int(self.δ < 1.0)]
+
+    def settle(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """State of full slip where that has come."""
+        full = (self.δ < 1.0) & (np.abs(1.0 - s * z / self.μ_C) <= 2.0 * _FULL)
+        return np.where(full, s * self.μ_C, z)
 
     def friction(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         return z[..., 0]

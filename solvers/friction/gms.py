@@ -108,11 +108,12 @@ class GeneralisedMaxwellSlip(StribeckCurve):
         built = w * stuck + 0.5 * self.k * stuck**2 + limit * (d - stuck)
         return np.where(reached, slipped, built).sum(axis=1)
 
-    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64] | None:
-        w, slipping = s * z[..., : len(self.k)], s * z[..., len(self.k) :] > 0.0
-        if (slipping | (w >= self.α * self.g(V))).any():
-            return None
-        return np.broadcast_to(self.k.sum(), w.shape[:-1])
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Slope of elements that stick, of those that slip, and of those at their limit, which is 0."""
+        limit, w, slipping = self._limit(V), *(s * of for of in np.split(z, 2, axis=-1))
+        slips = (slipping > 0.0) | (w > limit)
+        attracted = self.C * (self.α - w / np.asarray(self.g(V))[..., None]) / V if V > 0.0 else 0.0
+        return np.where(slips, attracted, np.where(w < limit, self.k, 0.0)).sum(axis=-1)
 
     def _pieces(
         self, z: NDArray, s: int, V: float, d: NDArray

@@ -102,6 +102,10 @@ class FrictionLaw(Protocol):
         """Numbers that grow through zero where the rate is not smooth, each once a stroke, (any,)."""
         return np.zeros(0)
 
+    def kinks(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Slips [m] from z at which f has a kink in its exact solution, (any,)."""
+        return np.zeros(0)
+
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """dz/dt [1/s] in direction s = ±1 at the speed V >= 0 [m/s], (n,)."""
         return V * self.rate(z, s, V)

@@ -145,8 +145,9 @@ def last_cycle(all_legs: Sequence[Leg]) -> int | None:
 
 #: Share of a stroke over which a slope is a difference, where no formula gives it.
 _NEAR = 1e-6
-#: Refinements about the largest friction of a stroke, between its neighbours, and places of each.
-_CLOSER, _PLACES = 2, 101
+#: Tops of friction along a stroke that are refined, refinements of each between its neighbours, places of
+#: these, and least of the places that grow by ratios, over the stroke.
+_TOPS, _CLOSER, _PLACES, _NEAREST = 3, 2, 101, 1e-9
 
 
 @dataclass(frozen=True)
@@ -306,15 +307,19 @@ def _largest(
 
     The largest value is refined for one law alone: friction of many laws at once is monotonic.
     """
-    slip = np.linspace(0.0, length, _PLACES)
+    slip, one = np.linspace(0.0, length, _PLACES), z.ndim == 1
+    if one:  # most happens where a stroke begins, and at the kinks of the law
+        kinks = law.kinks(z, s, V)
+        more = length * np.geomspace(_NEAREST, 1.0, _PLACES), kinks[(kinks > 0.0) & (kinks < length)]
+        slip = np.unique(np.concatenate([slip, *more]))
     states = advance(law, z, s, V, length, slip)
     f = s * law.friction(states, s, V)
-    largest, at = f.max(axis=-1), slip
-    for _ in range(_CLOSER if z.ndim == 1 else 0):
-        n = int(np.argmax(f))
-        if not 0 < n < len(at) - 1:
-            break
-        at = np.linspace(at[n - 1], at[n + 1], _PLACES)
-        f = s * law.friction(advance(law, z, s, V, length, at), s, V)
-        largest = np.maximum(largest, f.max())
+    largest, padded = f.max(axis=-1), np.pad(f, 1, constant_values=-np.inf)
+    tops = np.flatnonzero((f >= padded[:-2]) & (f >= padded[2:])) if one else np.empty(0, dtype=int)
+    for n in tops[np.argsort(-f[tops], kind="stable")][:_TOPS]:
+        at, top = slip, int(n)
+        for _ in range(_CLOSER):
+            at = np.linspace(at[max(top - 1, 0)], at[min(top + 1, len(at) - 1)], _PLACES)
+            f = s * law.friction(advance(law, z, s, V, length, at), s, V)
+            largest, top = np.maximum(largest, f.max()), int(np.argmax(f))
     return largest, states

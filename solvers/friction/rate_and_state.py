@@ -58,9 +58,19 @@ class RateAndState(FrictionLaw):
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Friction coefficient s a asinh(e^u), by logarithms: a may be small against f₀."""
-        with np.errstate(divide="ignore"):
-            u = np.log(V / (2.0 * self.V0)) + (self.f0 + self.b * np.log(z[..., 0])) / self.a
+        u = self._exponent(z, V)
         return s * self.a * np.logaddexp(u, 0.5 * np.logaddexp(2.0 * u, 0.0))
+
+    def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Slope by the state's rate: s ∂f/∂ϑ = b/ϑ e^u/√(1 + e^2u)."""
+        u, ϑ, steady = self._exponent(z, V), z[..., 0], self._steady(V)
+        turned = np.where(self.evolution == "ageing", steady - ϑ, -ϑ * np.log(ϑ / steady)) / self.D_c
+        return self.b / ϑ * np.exp(u - 0.5 * np.logaddexp(2.0 * u, 0.0)) * turned
+
+    def _exponent(self, z: NDArray, V: float) -> NDArray[np.float64]:
+        """Exponent u."""
+        with np.errstate(divide="ignore"):
+            return np.log(V / (2.0 * self.V0)) + (self.f0 + self.b * np.log(z[..., 0])) / self.a
 
     def rate(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """dϑ/dd [1/m]."""

@@ -20,16 +20,23 @@ _STIFF, _SPEEDS = 30.0, 200
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
 #: scales of the motion; the first is for motions that are not stiff, of laws without memory.
 _EXPLICIT = ("DOP853", 1e-12, 1e-14)
-_IMPLICIT = ("BDF", 1e-10, 1e-12), ("Radau", 1e-10, 1e-12)
+_IMPLICIT = *(("BDF", of, 1e-2 * of) for of in (1e-10, 1e-8, 1e-6)), ("Radau", 1e-10, 1e-12)
+#: Evaluations in a piece after which a scheme is given up: where friction follows the slightest change
+#: of a slow creep it is at odds with rounding.
+_PATIENCE = 10_000
+#: Scheme, relative tolerance, and absolute ones.
+_Scheme = tuple[str, float, float]
 #: Stops, starts and switches of a law after which a motion is given up.
 PIECES = 20_000
-#: Least excess of an oscillation over the speed of the drive, over that speed.
-_LEAST_EXCESS = 1e-6
 #: Share of the drive's speed below which the mass is at rest; friction at rest is evaluated at this
 #: speed, for laws of the logarithm of the speed.
 _AT_REST = 1e-9
-#: Periods of the mass on its spring after which the integration begins anew, and progress is reported.
-_PERIODS = 10
+#: Periods of the mass on its spring after which the integration begins anew, and progress is reported;
+#: steps up to which a piece without stops makes the next twice as long; by how much one is shorter that
+#: takes too many.
+_PERIODS, _STEPS, _SHORTER = 10, 500, 8.0
+#: Unit of time of the integration over the length of a piece: SciPy locates events to an absolute time.
+_INSTANT = 1e-16
 #: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
 #: motion: the tolerance leaves about as much in a cycle.
 _CYCLES, _SAME = 8, 1e-8
@@ -144,6 +151,11 @@ class Ride:
         return slice(int(first), int(last) + 1)
 
 
+#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
+#: sticks; under laws of the logarithm of the speed it creeps, and never stops.
+_STEADY, _STOPPED = 1e-3, 1e-2
+
+
 @dataclass(frozen=True)
 class Cycle:
     """Last cycle of stick-slip; NaN where there is none.
@@ -163,7 +175,7 @@ class Cycle:
 def cycle(ride: Ride, drive_speed: float) -> Cycle:
     """Last cycle of a motion, from one crossing of the drive's speed [m/s] to the next."""
     steps = ride.cycle
-    if steps is None or ride.v[steps].max() < (1.0 + _LEAST_EXCESS) * drive_speed:
+    if steps is None or ride.v[steps].max() < (1.0 + _STEADY) * drive_speed:
         return Cycle(*[np.nan] * 4)
     (period,), (slip,), v = np.diff(ride.crossings[-2:]), np.diff(ride.x_crossings[-2:]), ride.v[steps]
     return Cycle(float(period), float(slip), float(v.max()), float(v.min()))
@@ -174,9 +186,6 @@ STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
     "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
     "no whole cycle yet",
 )  # fmt: skip
-#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
-#: sticks; under laws of the logarithm of the speed it creeps, and never stops.
-_STEADY, _STOPPED = 1e-3, 1e-2
 
 
 def outcome(ride: Ride, drive_speed: float) -> str:
@@ -186,9 +195,9 @@ def outcome(ride: Ride, drive_speed: float) -> str:
         return STICK_SLIP if last.least <= _STOPPED * drive_speed else SWINGS
     if len(ride.crossings) > 1 or abs(ride.v[-1] / drive_speed - 1.0) < _STEADY:
         return STEADY
-    if len(ride.crossings) == 0:
-        return STAYS
-    return ONE_SLIP if ride.v[-1] <= _STOPPED * drive_speed else SHORT
+    if ride.v[-1] > _STOPPED * drive_speed:
+        return SHORT
+    return ONE_SLIP if len(ride.crossings) else STAYS
 
 
 def pull(
@@ -218,6 +227,10 @@ def pull(
     )
 
 
+class _Tired(ValueError):
+    """A scheme takes more evaluations than it is worth."""
+
+
 class _Motion:
     """A motion as far as it has come: e, v and the law's state z at the time t."""
 
@@ -227,7 +240,7 @@ class _Motion:
         self._pieces: list[_Piece] = []
         # Times at which the drive's speed was crossed, with spring and state of the law.
         self._crossings: list[tuple[float, NDArray[np.float64]]] = []
-        self._longest = _PERIODS * 2.0 * np.pi * np.sqrt(slider.mass / slider.stiffness)
+        self._longest = self._usual = _PERIODS * 2.0 * np.pi * np.sqrt(slider.mass / slider.stiffness)
         self._slow = _AT_REST * slider.drive_speed
         # Size of the spring's extension [m].
         self._length = max(load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
@@ -236,6 +249,8 @@ class _Motion:
         rises = np.diff([float(law.friction(self.z, 1, speed)) for speed in V]) / np.diff(V)
         rate = load * rises.max() / np.sqrt(slider.mass * slider.stiffness)
         self._stiff = bool(rate > _STIFF)
+        # Schemes that are at odds with rounding.
+        self._given_up = set[_Scheme]()
         # Rates that are smooth enough need no stop.
         self._stops = type(law).settle is not FrictionLaw.settle
 
@@ -313,6 +328,8 @@ class _Motion:
         ]
         self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]
         self.z = np.array(z)
+        if piece.status == 0 and len(piece.t) <= _STEPS:  # a slow creep needs no step a period
+            self._longest *= 2.0
         if len(piece.t_events[0]):
             self.v = 0.0
         elif piece.status == 1:
@@ -324,9 +341,35 @@ class _Motion:
         Raises:
             ValueError: no scheme succeeds.
         """
+        stiff = self._stiff or self.law.flow(self.z, self.s, self.slider.drive_speed).any()
+        schemes = [scheme for scheme in _IMPLICIT if scheme not in self._given_up]
+        while True:
+            tired, reason = set[_Scheme](), ""
+            for scheme in schemes if stiff else (_EXPLICIT, *schemes):
+                try:
+                    result = self._by(scheme)
+                except _Tired as error:
+                    tired, reason = tired | {scheme}, str(error)
+                except ValueError as error:  # an event could not be located
+                    reason = str(error)
+                else:
+                    if result.success:
+                        self._given_up |= tired
+                        return result
+                    reason = result.message
+            if not tired or self._longest <= self._usual:
+                raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
+            self._longest /= _SHORTER
+
+    def _by(self, scheme: "_Scheme") -> Any:
+        """SciPy's result by a scheme, with times since the start of the piece [s].
+
+        Raises:
+            ValueError: an event could not be located; :class:`_Tired`: it takes too many steps.
+        """
         from scipy.integrate import solve_ivp  # slow to import, and friction alone does without
 
-        s, drive = self.s, self.slider.drive_speed
+        s, drive, (method, relative, absolute) = self.s, self.slider.drive_speed, scheme
         ahead = np.flatnonzero(self.law.switches(self.z, s, abs(self.v)) < 0.0) if self._stops else ()
         events = [
             event(lambda _, y: s * y[1] - 0.5 * self._slow, -1.0, True),
@@ -337,30 +380,29 @@ class _Motion:
                 for n in ahead
             ),
         ]
-        last, reason = min(self.slider.duration - self.t, self._longest), ""
+        unit, left = _INSTANT * self._longest, iter(range(_PATIENCE))
+
+        def rates(_: float, y: NDArray) -> NDArray[np.float64]:
+            if next(left, None) is None:
+                raise _Tired("it takes too many steps")
+            return unit * self._rates(y)
+
         start = np.array([self.e, self.v, *self.z])
-        scales = np.array([self._length, drive, *np.ones_like(self.z)])
-        stiff = self._stiff or self.law.flow(self.z, s, drive).any()
-        for scheme, relative, absolute in _IMPLICIT if stiff else (_EXPLICIT, *_IMPLICIT):
-            solve = partial(
-                solve_ivp, self._rates, y0=start, method=scheme, events=events, rtol=relative,
-                atol=absolute * scales, dense_output=True,
-            )  # fmt: skip
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of a scheme that gives up: the next is tried
-                try:
-                    result = solve((0.0, last))
-                    # Between two steps it may have stopped and been drawn on: a minimum of v shows that.
-                    slow = s * np.reshape(result.y_events[2], (-1, len(start)))[:, 1] < 0.5 * self._slow
-                    if slow.any():
-                        result = solve((0.0, float(result.t_events[2][np.argmax(slow)])))
-                except ValueError as error:  # an event could not be located
-                    reason = str(error)
-                    continue
-            if result.success:
-                return result
-            reason = result.message
-        raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
+        solve = partial(
+            solve_ivp, rates, y0=start, method=method, events=events, rtol=relative, dense_output=True,
+            atol=absolute * np.array([self._length, drive, *np.ones_like(self.z)]),
+        )  # fmt: skip
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a scheme that gives up: the next is tried
+            result = solve((0.0, min(self.slider.duration - self.t, self._longest) / unit))
+            # Between two steps it may have stopped and been drawn on: a minimum of v shows that.
+            slow = s * np.reshape(result.y_events[2], (-1, len(start)))[:, 1] < 0.5 * self._slow
+            if slow.any():
+                result = solve((0.0, float(result.t_events[2][np.argmax(slow)])))
+        result.t, of_units = result.t * unit, result.sol
+        result.t_events = [t * unit for t in result.t_events]
+        result.sol = lambda t: of_units(t / unit)
+        return result
 
     def _friction(self, y: NDArray, s: int) -> float:
         return float(self.law.friction(y[2:], s, max(s * y[1], 0.0)))
@@ -368,7 +410,6 @@ class _Motion:
     def _acceleration(self, y: NDArray) -> float:
         return (self._pull(y[0], y[1]) - self.load * self._friction(y, self.s)) / self.slider.mass
 
-    def _rates(self, _: float, y: NDArray) -> list[float]:
-        V = max(self.s * y[1], 0.0)
-        turned = self.law.flow(y[2:], self.s, V)
-        return [self.slider.drive_speed - y[1], self._acceleration(y), *turned]
+    def _rates(self, y: NDArray) -> NDArray[np.float64]:
+        turned = self.law.flow(y[2:], self.s, max(self.s * y[1], 0.0))
+        return np.array([self.slider.drive_speed - y[1], self._acceleration(y), *turned])

@@ -69,6 +69,9 @@ class Table(FrictionLaw):
         d = self._start(z, s) + np.asarray(slip, dtype=float)
         return np.stack([d / self._scale, np.full(np.shape(d), float(s))], axis=-1)
 
+    def kinks(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        return self._branch(s)[0] - self._start(z, s)
+
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         first = self._start(z, s)
         return s * (self._area(first + np.asarray(slip), s) - self._area(np.array(first), s))

@@ -7,6 +7,7 @@ from support import THOROUGH
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.integrate import exactly, work
+from galinx.solvers.friction.motion import Partial, legs, works
 from galinx.solvers.parameters import build_model
 
 SETS = range(20 if THOROUGH else 2)
@@ -93,6 +94,20 @@ def test_work_and_slope_are_those_of_the_friction(name, seed):
     if slope is not None:
         differences = np.diff(law.friction(after, 1, V))[0] / h
         assert float(slope) == pytest.approx(differences, rel=1e-4, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("seed", SETS)
+def test_no_sample_of_a_stroke_has_more_friction_than_its_largest(name, seed):
+    """On strokes 1 000 times as long as what friction changes over: most is at their start."""
+    law, rng = drawn(name, seed)
+    length, V = 1e3 * random.LENGTH, 10.0 ** rng.uniform(-5.0, -1.0)
+    strokes = legs([Partial(1.0), Partial(0.3), Partial(0.9)])
+    z, samples = law.rest(), np.append(0.0, np.geomspace(1e-9, 1.0, 4001))
+    for leg, done in zip(strokes, works(law, strokes, length, V, exactly)):
+        states = exactly(law, z, leg.s, V, length, samples * leg.length * length)
+        assert done.breakaway >= (leg.s * law.friction(states, leg.s, V)).max() * (1.0 - 1e-5)
+        z = states[-1]
 
 
 @pytest.mark.parametrize("name", [name for name in ALL if name != "table"])

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp, trapezoid
 
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.slider import Slider, cycle, pull
+from galinx.solvers.friction.slider import SHORT, STAYS, STEADY, Slider, cycle, outcome, pull
 from galinx.solvers.parameters import build_model
 
 CURVE = {"mu_c": 1.0, "mu_s": 1.5, "stribeck_velocity": 1e-3}
@@ -37,21 +37,43 @@ def test_with_a_larger_friction_at_rest_it_sticks():
     assert found.slip == pytest.approx(0.1 * found.period, rel=1e-9)
 
 
-def test_dahls_slider_is_the_equations_integrated_by_somebody_else():
-    """In one piece, with signed velocities and another scheme."""
+@pytest.mark.parametrize("δ", [1.0, 0.5])
+def test_dahls_slider_is_the_equations_integrated_by_somebody_else(δ):
+    """In one piece, with signed velocities and another scheme; below δ = 1 full slip is reached."""
     slider, N, μ, λ = Slider(1.0, 2.0, 0.3, 0.1, 3.0), 1.0, 0.5, 50.0
 
     def rates(t, y):
         x, v, f = y
         force = 2.0 * (0.1 * t - x) + 0.3 * (0.1 - v) - N * f
-        return [v, force, λ * v * (1.0 - np.sign(v) * f / μ)]
+        return [v, force, λ * v * max(1.0 - np.sign(v) * f / μ, 0.0) ** δ]
 
     times = np.linspace(0.0, 3.0, 7)
     wanted = solve_ivp(
         rates, (0.0, 3.0), [0.0] * 3, "DOP853", times, rtol=1e-12, atol=1e-14, max_step=1e-2
     )
-    ride = pull(slider, of("dahl", mu_c=μ, sigma0_over_load=λ), N)
+    ride = pull(slider, of("dahl", mu_c=μ, sigma0_over_load=λ, delta=δ), N)
     np.testing.assert_allclose(ride.at(times), wanted.y, atol=1e-7)
+
+
+OVERDAMPED = {"mu_c": 0.4, "mu_s": 0.4, "stribeck_velocity": 1e-3, "sigma0_over_load": 1e3}
+ROCK = {"reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01, "b": 0.012, "critical_slip": 1e-5}
+
+
+@pytest.mark.parametrize(
+    "law, load, slider, said",
+    [
+        (of("lugre", **OVERDAMPED, sigma1_over_load=30.0, sigma2_over_load=5.0), 1.0,
+         Slider(1.0, 2.0, 0.0, 0.1, 15.0), SHORT),
+        # A creep of 30 000 periods of the mass on its spring that follows every digit of the pull.
+        (of("lugre", mu_c=0.4, mu_s=0.5, stribeck_velocity=1e-3, sigma0_over_load=1e5,
+            sigma1_over_load=100.0), 1e3, Slider(0.1, 1e6, 0.0, 1e-6, 600.0), STEADY),
+        # Stiffer than (b - a) N/D_c; friction slows so light a mass down within 1e-18 s.
+        (of("rate_and_state", **ROCK), 1e5, Slider(1.0, 1e8, 0.0, 1e-6, 1000.0), STEADY),
+        (of("dahl", mu_c=0.5, sigma0_over_load=50.0), 1e3, Slider(1.0, 2.0, 0.0, 0.1, 3.0), STAYS),
+    ],
+)  # fmt: skip
+def test_creeping_sliders_are_followed_to_their_end(law, load, slider, said):
+    assert outcome(pull(slider, law, load), slider.drive_speed) == said
 
 
 ELEMENTS = ((300.0, 0.3), (100.0, 0.3))

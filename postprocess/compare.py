@@ -32,6 +32,7 @@ from .quantities.quantity import (
     BESIDE,
     CLOSED_FORM,
     FEM,
+    METHODS,
     NEVER,
     SIE,
     STATE,
@@ -495,6 +496,8 @@ def checked(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
             kinds[kind].append(value)
     limits = [limit for text, (_, limit) in figures.items() if "nodal forces" not in text]
     parts = [f"{kind} {max(values):.0e}" for kind, values in kinds.items() if values]
+    if not parts and not any(f"/{method}/" in path for method in METHODS for path in data):
+        return "numbers not checked: friction alone, by its law"
     if not parts:
         return "numbers not checked: one method alone, and nothing to compare it with"
     wanted = max(set(limits), key=limits.count)

@@ -586,7 +586,9 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         _Spec("breakaway force", runs.LOOP_BREAKAWAY, 5, lambda values, _: values.max(axis=1)),
         _Spec("stiffness", runs.LOOP_STIFFNESS, 5, _nth(0)),
     )))  # fmt: skip
-    note = "all per depth, in all strokes; stiffness: where the first stroke begins"
+    note = "all per depth, in all strokes"
+    if any(column.head == "stiffness" for column in columns):
+        note += "; stiffness: where the first stroke begins"
     sheet = layout("Friction loops", len(states), columns, width, "loop")
     notes = [f"{note}{_under_the_first_load(data, units)}", *_more(len(states), "loops")]
     return replace(sheet, notes=notes)
@@ -670,18 +672,29 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     columns = [
         Column("direction", ways, "none"),
         *_columns(data, units, specs, archived=True),
-        Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3),
+        *_occurring(
+            [Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3)]
+        ),
         Column("within 1 % from", [*map(within, when)], "none"),
     ]
     by_formula = data[over_time.APPROACH.path]
     if np.isfinite(by_formula).any():
         columns.append(Column("by formula", [*map(rounded, by_formula)], "none"))
+    heads = {
+        column.head for column in columns if column.unit == "none" or np.isfinite(column.values).any()
+    }
     notes = [
         f"at t = {time.text(time.factor * end)}; centre: of the pressure, towards +X"
-        + _under_the_first_load(data, units),
-        "off: largest relative difference of K_I, or of the centre over a, from steady motion under the "
-        "last load",
-        "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids",
-        "K_I: dimensionless, over N",
+        + _under_the_first_load(data, units)
     ]
+    if "off steady motion" in heads:
+        notes.append(
+            "off: largest relative difference of K_I, or of the centre over a, from steady motion under "
+            "the last load"
+        )
+    notes.append(
+        "within 1 %: of both; ~ by 1/t after the end; by formula: for late times, of uniform solids"
+    )
+    if "K_I left" in heads:
+        notes.append("K_I: dimensionless, over N")
     return replace(layout(title, len(when), columns, width, "start"), notes=notes)

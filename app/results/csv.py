@@ -97,6 +97,8 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 columns += _parameters(archive.data, units, block, len(over)) if large else []
                 columns += _over(data, rows, units, block, over)
                 if over[0] == runs.LOOP:
+                    strokes = np.array([leg.name for leg in scene.legs])
+                    columns.insert(1, ("stroke", np.repeat(strokes, sizes[1] // len(strokes))[None]))
                     columns += _of_loops(archive.data, units, block)
                 if over[0] == runs.LAW:
                     own = states_of_sliders(archive.data)[block]

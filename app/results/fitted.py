@@ -222,7 +222,7 @@ class Fit:
             said.append(f"every {self.result.every}th sample is fitted, and those where the motion turns")
         elif self.result.samples < samples:
             said.append(
-                f"{samples - self.result.samples} of {samples} samples are not fitted: the first of each "
+                f"not fitted: {samples - self.result.samples} of {samples} samples, the first of each "
                 "file, before the motion, and those at rest"
             )
         return tuple(said)

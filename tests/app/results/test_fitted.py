@@ -147,7 +147,7 @@ def test_speeds_are_those_of_the_tables(tmp_path):
     files = [tmp_path / "1.csv", tmp_path / "2.csv"]
     found = galinx.fit(files, "coulomb", speed=["1 mm/s", 0.002])
     np.testing.assert_allclose([table.measured.t[-1] for table in found.tables], [0.2, 0.1])
-    assert "2 of 6 samples are not fitted" in found.notes[0]
+    assert "not fitted: 2 of 6 samples" in found.notes[0]
     with pytest.raises(BadInput, match="found 3 for 2 tables of slips"):
         galinx.fit(files, "coulomb", speed=[1.0, 2.0, 3.0])
     found = galinx.fit(files, ALL)

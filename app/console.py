@@ -20,15 +20,10 @@ from pathlib import Path
 from typing import Any
 
 from galinx.clock import Clock
+from galinx.texts import UNSEEN
 
 from . import ranks
 from .errors import MachineFailure
-
-#: Control characters but for tabs and ends of lines, what turns the direction of writing or breaks lines,
-#: and what names of files have for bytes that are not UTF-8.
-_COMMANDS = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
-)
 
 #: Columns in which a table can be read.
 _NARROWEST = 40
@@ -40,8 +35,8 @@ def width() -> int:
 
 
 def plain(text: str) -> str:
-    r"""A text whose control characters are written out, ``\u001b`` for ESC as in JSON."""
-    return _COMMANDS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+    r"""A text whose control characters but tabs and ends of lines are written out, ESC as ``\u001b``."""
+    return UNSEEN.sub(lambda of: of[0] if of[0] in "\t\n" else f"\\u{ord(of[0]):04x}", text)
 
 
 class Output(io.FileIO):

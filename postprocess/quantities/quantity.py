@@ -114,20 +114,21 @@ def entry(of: Callable[[Any], NDArray], *index: Any) -> Callable[[Any, Any], NDA
 
 
 def by_method(
-    path: str, unit: str, about: str, over: tuple[str, ...], of: Callable[[Any, Any], NDArray] | None,
-    own: Mapping[str, Mapping[str, Any]] | Sequence[str], **options: Any,
+    name: str, unit: str, about: str, of: Callable[[Any, Any], NDArray] | None,
+    own: Mapping[str, Mapping[str, Any]] | Sequence[str], section: str = "states", **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
-    """Quantity that several methods give, by method.
+    """Quantity that several methods give, by method; one value a state unless ``over`` is given.
 
     Args:
-        path, unit, about, over, of: as of a quantity; ``{method}`` in the path stands for the method.
+        name, section: of its path, ``section/METHOD/name``.
+        unit, about, of: as of a quantity.
         own: the methods, or what each has of its own, other attributes by name, by method.
         options: further attributes, the same for all methods.
     """
-    common: dict[str, Any] = {"unit": unit, "about": about, "over": over, "of": of} | options
+    common: dict[str, Any] = {"unit": unit, "about": about, "over": (STATE,), "of": of} | options
     attributes = own if isinstance(own, Mapping) else {method: {} for method in own}
     return {
-        method: Quantity(**common | {"path": path.format(method=method), "method": method, **each})
+        method: Quantity(**common | {"path": f"{section}/{method}/{name}", "method": method, **each})
         for method, each in attributes.items()
     }
 

@@ -237,11 +237,16 @@ def _start_bar() -> tuple[Any, Any]:
     return bar, task
 
 
-def new_console(file: Any = None, colours: bool = False) -> Any:
+def new_console(file: Any = None, colours: bool | None = None) -> Any:
     """Rich console that highlights no numbers and wraps no line.
 
-    Its colours are its own: those of texts are shown as the characters they are.
+    Its colours are its own: those of texts are shown as the characters they are. By default the output
+    has colours, if it is a terminal and NO_COLOR is not set; mpirun hands its ranks a terminal even
+    where there is none.
     """
+    if colours is None:
+        terminal = not file and not ranks.by_mpirun() and sys.stdout.isatty()
+        colours = terminal and not os.environ.get("NO_COLOR")
     from rich.console import Console  # a slow import
     from rich.text import Text
 
@@ -337,18 +342,13 @@ def say(text: str, hang: int = 2) -> None:
     print(_fill(text, hang))
 
 
-def colours() -> bool:
-    """True for a terminal without NO_COLOR: mpirun hands its ranks one even where there is none."""
-    return not ranks.by_mpirun() and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
-
-
 def print_result(
     sheets: Iterable[Any], data: dict[str, Any], attributes: dict[str, Any], verbose: bool = False
 ) -> None:
     """Print what failed, tables of a result, how well numbers were checked, and the verdict."""
     from galinx.postprocess.compare import failed
 
-    console = new_console(colours=colours())
+    console = new_console()
     for i, line in enumerate(failed(data, attributes)):
         _print_folded(
             console, f"FAIL: {line}" if i == 0 else f"  {line}", style="bold red" if i == 0 else ""
@@ -362,7 +362,7 @@ def print_result(
 
 def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:
     """Print tables, and lines below them."""
-    console = new_console(colours=colours())
+    console = new_console()
     for sheet in sheets:
         print_sheet(console, sheet)
     for note in notes:

@@ -10,7 +10,7 @@ import click
 from galinx.postprocess.target import SECTION, Folder, Target
 
 from .. import errors, ranks
-from ..console import Progress, colours, new_console, print_sheet, program, say
+from ..console import Progress, new_console, print_sheet, program, say
 from ..errors import BadInput
 from . import options
 
@@ -151,7 +151,7 @@ def fit(
     )
     if not quiet:
         if law == ALL:
-            print_sheet(new_console(colours=colours()), best.sheet())
+            print_sheet(new_console(), best.sheet())
         print(section, end="")
         for note in best.notes:
             say(f"note: {note}")

@@ -147,7 +147,7 @@ def fit(
     names = ["fit", *(f"fit_{n}" for n in range(2, len(best.tables) + 1))]
     Files(folder, overwrite=overwrite, inputs=inputs).write(
         Drawing(name, "", fitted_figure(one.measured, f, one.timed))
-        for name, one, f in zip(names, best.tables, best.result.f)
+        for name, one, f in zip(names, best.tables, best.f)
     )
     if not quiet:
         if law == ALL:

@@ -7,7 +7,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
-from galinx.solvers.contact import CLOSED_FORM, FEM, SIE
+from galinx.solvers.contact import CLOSED_FORM, FEM, INTENSITIES, SIE
 from galinx.solvers.parameters import Range
 from galinx.texts import unseen
 
@@ -133,6 +133,10 @@ def by_method(
     }
 
 
+#: Words of a scene's output.quantities, those of users' quantities among them; values mean nothing.
+WORDS = dict.fromkeys((FRICTION_ALONE, INTENSITIES))
+
+
 class Table(Registry[Quantity]):
     """Quantities by their path."""
 
@@ -147,7 +151,10 @@ class Table(Registry[Quantity]):
         for text in (quantity.unit, quantity.about):
             if fault := unseen(text):
                 raise ValueError(f"the {self.noun} {quantity.path}, {text!r}: {fault}")
-        return self.register(quantity.path, quantity)
+        self.register(quantity.path, quantity)
+        if quantity.asked_by:
+            WORDS[quantity.asked_by] = None
+        return quantity
 
     def add_all(self, names: Mapping[str, Any]) -> None:
         """Add all quantities among a module's names, single ones and those by method."""

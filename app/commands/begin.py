@@ -32,13 +32,13 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
         return errors.GOOD
     if name is None:
         wide = max(map(len, available)) + 1
-        for template in available.values():
-            say(f"{template.name:<{wide}}{template.about}", wide)
+        for of_scene, text in available.items():
+            say(f"{of_scene:<{wide}}{text.splitlines()[0].removeprefix('# ')}", wide)
         return errors.GOOD
     if name not in available:
         raise BadInput(f"init {short(name)}: no such scene{nearest(name, available)}")
     target = output or Path(f"{name}.toml")
-    Target(target, None, overwrite, options.inputs()).write(available[name].text.encode())
+    Target(target, None, overwrite, options.inputs()).write(available[name].encode())
     print(f"scene: {target}")
     print(f"next: edit it, then {program()} plan {quote(str(target))}")
     return errors.GOOD

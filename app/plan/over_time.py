@@ -155,6 +155,10 @@ def _check(scene: Scene, methods: tuple[str, ...]) -> None:
         raise BadInput("time: " + "; ".join(fault for fault, found in faults.items() if found))
 
 
+#: Highest degree.
+_HIGHEST = 12
+
+
 @dataclass(frozen=True)
 class Level:
     """Discretisation of a solution in time.
@@ -313,8 +317,8 @@ class Starts:
         depths = tuple((self.scene.solid.depths / self.scene.body.half_width).tolist())
         # No lower degree than 7 resolves the moments from which K_I is recovered. Near the Rayleigh
         # speed waves ahead of the punch are short, and take a degree more.
-        degree = min(max(ceil(2.0 * digits + 1.75), 7), 12)
-        degree += (gap < 0.15 or bool(depths)) and degree < 12
+        degree = min(max(ceil(2.0 * digits + 1.75), 7), _HIGHEST)
+        degree += (gap < 0.15 or bool(depths)) and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), 1e-4)
         # Cells next to the punch have a side of 2 a where nothing changes within 2 a/c_s at a tolerance
         # of 1e-3, within 1.5 a/c_s more at each tenth of it, and the speed is 0.25 c_s below Rayleigh's.

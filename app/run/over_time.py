@@ -251,8 +251,8 @@ def _at_level(
             ratios, read = drive(run.t), np.empty((3, len(run.t)))  # by the exponents of each time
             for ratio in np.unique(ratios):
                 at, steady = ratios == ratio, FlatPunch(response, ratio)
-                numbers = contact_numbers(motion.X, run.forces[at], steady.α, steady.β, level.degree)
-                read[:, at] = numbers.centre, numbers.K_left, numbers.K_right
+                of_nodes = motion.X, run.forces[at]
+                read[:, at] = contact_numbers(*of_nodes, steady.α, steady.β, level.degree)
             K_I = read[1:] if starts.smooth else np.nan * read[1:]
             motions.append(((run.v0, read[0], *K_I), datasets))
     solver.destroy()

@@ -25,13 +25,10 @@ from galinx.texts import UNSEEN
 from . import ranks
 from .errors import MachineFailure
 
-#: Columns in which a table can be read.
-_NARROWEST = 40
-
 
 def width() -> int:
     """Columns of the terminal, 80 where it is none; never so few that nothing could be read."""
-    return max(shutil.get_terminal_size().columns, _NARROWEST)
+    return max(shutil.get_terminal_size().columns, 40)
 
 
 def plain(text: str) -> str:

@@ -23,11 +23,6 @@ from .quantities import over_time as rows
 from .quantities.over_time import SHARES
 from .quantities.quantity import FEM, SIE
 
-#: Moments of the pressure that elements give, over their degree: elements have to represent the
-#: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
-#: a wave that runs little faster than the punch is short under it.
-_MOMENTS, _FEWER = 2.5, 4
-
 
 def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> NDArray[np.float64]:
     """Centre of the pressure over a, and K_I at X = -a and X = a over N, dimensionless, (3, times).
@@ -40,8 +35,10 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
         α, β: exponents of the pressure at X = a and X = -a, α + β = -1.
         degree: polynomial degree of the elements.
     """
-    moments = ceil(_MOMENTS * degree)
-    polynomials = moments - _FEWER
+    # Elements have to represent the polynomials with which forces are tested, too. The smooth factor of
+    # the pressure has fewer: a wave that runs little faster than the punch is short under it.
+    moments = ceil(2.5 * degree)
+    polynomials = moments - 4
     tests = Weighted(α, β, moments)
     a, (r, w) = forces @ tests.polynomials(X), tests.rule(400)  # of r log r
     basis = np.column_stack([np.eye(moments, polynomials), tests.polynomials(r).T @ (w * _logs(r)).T])

@@ -40,8 +40,6 @@ _NAMES = {
     "load": ("load", "normal_load", "normal_force", "n"),
 }
 _FORM = '"slip [mm],f", "time [s],position [mm],f", or with "force [N],load [N]" for f'
-#: Units of forces: whole ones, and over a length.
-_FORCES = ("N", "N/m")
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ def read(path: Path) -> Table:
     """
     table, notes = read_table(path, _FORM), []
     forces: dict[int, str] = {}  # SI units of columns of forces
-    for n, unit in product(range(len(table.names)), _FORCES):
+    for n, unit in product(range(len(table.names)), ("N", "N/m")):
         with suppress(BadInput):
             if table.units[n] not in ("", "1", "-") and table.factor(n, unit):
                 forces[n] = unit

@@ -59,9 +59,6 @@ _STROKE, _PLACE = "FM1", 0.8
 #: Polynomials of the expansion; one would do for a flat punch.
 _TERMS = 8
 
-#: Degree of the displacements that are printed with four digits.
-_DEGREE = 7
-
 
 #: Lines of a verdict, as of :func:`galinx.postprocess.compare.judged`: the largest difference,
 #: dimensionless, or a number of entries, and the largest that passes, by what is compared.
@@ -206,7 +203,7 @@ def _details(study: Result) -> list[Sheet]:
     from ..results.fields import displacement_under_punch
 
     numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
-    X, displacements = displacement_under_punch(scene, numbers, _DEGREE)
+    X, displacements = displacement_under_punch(scene, numbers, 7)  # for four digits
     places = [int(np.abs(X - place).argmin()) for place in (-1.0, 0.0, 1.0)]
     rows = [
         (f"{name} ({component})", *(f"{1e6 * of_state[i][n]:+.4f}" for n in places))

@@ -171,14 +171,11 @@ PRESSURE_CENTRE = by_method(
     lambda s, _: s.pressure_centre, _METHODS, mode=VARYING, scale=X_OVER_A,
 )  # fmt: skip
 
-#: Share of the larger intensity below which an error is over this share rather than over itself.
-_VANISHING = 0.1
-
 
 def off_by(fem: NDArray, exact: NDArray) -> NDArray[np.float64]:
     """Larger relative error of the stress intensity factors at both ends, (2, states); (states,)."""
-    # At a free end it is 0, and small where a tilted punch is about to lift off.
-    size = np.maximum(np.abs(exact), _VANISHING * np.abs(exact).max(axis=0))
+    # At a free end it is 0, and small where a tilted punch is about to lift off: a tenth of the larger.
+    size = np.maximum(np.abs(exact), 0.1 * np.abs(exact).max(axis=0))
     return np.max(np.abs(fem - exact) / np.where(size > 0.0, size, 1.0), axis=0)
 
 

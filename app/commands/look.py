@@ -269,23 +269,12 @@ def dispersion(
     from ..figures import waves
 
     files = _files("dispersion", scene, to, overwrite)
-    slowest = waves.curve(options.read(scene, changes, unset))
+    lines, notes, drawing = waves.slowest_waves(options.read(scene, changes, unset))
     if ranks.is_root():
-        print("kH (1)     wavelength (m)  speed (m/s)")
-        # Short waves that all leak are one line.
-        shown = max((n for n, speed in enumerate(slowest.speed, 2) if speed == speed), default=1)
-        for kH, length, speed in zip(slowest.kH[:shown], slowest.length, slowest.speed):
-            print(f"{kH:<10.4g} {length:<15.6g} {'none' if speed != speed else f'{speed:.6g}'}")
-        if shown < len(slowest.kH):
-            print(f"{f'to {slowest.kH[-1]:.4g}':<10} {f'to {slowest.length[-1]:.6g}':<15} none")
-        say("k is the wavenumber, H the thickness of all layers")
-        if slowest.leaks:
-            say(
-                "none: no wave of that length is slower than the waves inside the solids; one that is "
-                "faster radiates into them, and is no limit of the punch"
-            )
-        print(f"highest speed of a punch: {slowest.limit:.8g} m/s")
-        _print_files(files.write([waves.dispersion_drawing(slowest)]))
+        print(*lines, sep="\n")
+        for note in notes:
+            say(note)
+        _print_files(files.write([drawing]))
     return errors.GOOD
 
 

@@ -20,28 +20,20 @@ from pathlib import Path
 from typing import Any
 
 from galinx.clock import Clock
+from galinx.texts import UNSEEN
 
 from . import ranks
 from .errors import MachineFailure
 
-#: Control characters but for tabs and ends of lines, what turns the direction of writing or breaks lines,
-#: and what names of files have for bytes that are not UTF-8.
-_COMMANDS = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
-)
-
-#: Columns in which a table can be read.
-_NARROWEST = 40
-
 
 def width() -> int:
     """Columns of the terminal, 80 where it is none; never so few that nothing could be read."""
-    return max(shutil.get_terminal_size().columns, _NARROWEST)
+    return max(shutil.get_terminal_size().columns, 40)
 
 
 def plain(text: str) -> str:
-    r"""A text whose control characters are written out, ``\u001b`` for ESC as in JSON."""
-    return _COMMANDS.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
+    r"""A text whose control characters but tabs and ends of lines are written out, ESC as ``\u001b``."""
+    return UNSEEN.sub(lambda of: of[0] if of[0] in "\t\n" else f"\\u{ord(of[0]):04x}", text)
 
 
 class Output(io.FileIO):
@@ -242,11 +234,16 @@ def _start_bar() -> tuple[Any, Any]:
     return bar, task
 
 
-def new_console(file: Any = None, colours: bool = False) -> Any:
+def new_console(file: Any = None, colours: bool | None = None) -> Any:
     """Rich console that highlights no numbers and wraps no line.
 
-    Its colours are its own: those of texts are shown as the characters they are.
+    Its colours are its own: those of texts are shown as the characters they are. By default the output
+    has colours, if it is a terminal and NO_COLOR is not set; mpirun hands its ranks a terminal even
+    where there is none.
     """
+    if colours is None:
+        terminal = not file and not ranks.by_mpirun() and sys.stdout.isatty()
+        colours = terminal and not os.environ.get("NO_COLOR")
     from rich.console import Console  # a slow import
     from rich.text import Text
 
@@ -342,18 +339,13 @@ def say(text: str, hang: int = 2) -> None:
     print(_fill(text, hang))
 
 
-def colours() -> bool:
-    """True for a terminal without NO_COLOR: mpirun hands its ranks one even where there is none."""
-    return not ranks.by_mpirun() and sys.stdout.isatty() and not os.environ.get("NO_COLOR")
-
-
 def print_result(
     sheets: Iterable[Any], data: dict[str, Any], attributes: dict[str, Any], verbose: bool = False
 ) -> None:
     """Print what failed, tables of a result, how well numbers were checked, and the verdict."""
     from galinx.postprocess.compare import failed
 
-    console = new_console(colours=colours())
+    console = new_console()
     for i, line in enumerate(failed(data, attributes)):
         _print_folded(
             console, f"FAIL: {line}" if i == 0 else f"  {line}", style="bold red" if i == 0 else ""
@@ -367,7 +359,7 @@ def print_result(
 
 def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:
     """Print tables, and lines below them."""
-    console = new_console(colours=colours())
+    console = new_console()
     for sheet in sheets:
         print_sheet(console, sheet)
     for note in notes:

@@ -44,10 +44,6 @@ def unavailable(error: ImportError) -> str:
 GOOD, FAILED_VERDICT, BAD_INPUT, FAILURE = 0, 1, 2, 3
 
 
-#: Bits of a whole number up to which its digits are shown; Python itself refuses 4300 digits.
-_BITS = 200
-
-
 class _Excerpt(reprlib.Repr):
     """Values as Python writes them, cut where they are long or deep."""
 
@@ -57,8 +53,8 @@ class _Excerpt(reprlib.Repr):
         self.maxstring = self.maxother = 80
 
     def repr_int(self, x: int, level: int) -> str:
-        bits = x.bit_length()
-        return repr(x) if bits <= _BITS else f"a whole number of about {round(bits * log10(2.0))} digits"
+        bits = x.bit_length()  # Python itself refuses to write 4300 digits
+        return repr(x) if bits <= 200 else f"a whole number of about {round(bits * log10(2.0))} digits"
 
 
 #: A value for a message.

@@ -27,10 +27,6 @@ _ADDRESS_SPACE = 10**9
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 NOTHING = "nothing was written"
-#: Seconds after which a process ends that has not ended in order: libraries drop exceptions.
-_PATIENCE = 2
-#: Seconds that other ranks leave to rank 0: if all fail alike it says so once, and mpirun ends all.
-_FIRST = 3.0
 
 _leave: Callable[[], str] | None = None
 
@@ -140,7 +136,7 @@ def _on_signal(*_: object) -> None:
     too_late()
     if _leave:
         end_stopped(_leave())
-    signal.alarm(_PATIENCE)
+    signal.alarm(2)  # seconds until it ends where it has not ended in order: libraries drop exceptions
     raise Interrupted
 
 
@@ -169,6 +165,6 @@ def complain(message: str) -> None:
     """Print why the process is about to end, once where all ranks are about to."""
     too_late()
     if ranks.from_environment()[0] > 0:
-        time.sleep(_FIRST)
+        time.sleep(3.0)  # for rank 0: if all fail alike it says so once, and mpirun ends all
     with suppress(OSError):
         print(for_people(f"error: {message}"), file=sys.stderr, flush=True)

@@ -5,20 +5,16 @@ import unicodedata
 from math import floor, log10
 from textwrap import fill
 
-#: Characters that change the direction of writing.
-_DIRECTIONS = {0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A)}
-#: Unicode's categories of control characters, separators of lines and halves of characters.
-_UNSEEN = {"Cc", "Zl", "Zp", "Cs"}
+#: Control characters, what breaks lines or changes the direction of writing, and halves of characters,
+#: as names of files have for bytes that are not UTF-8.
+UNSEEN = re.compile("[\0-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
 def unseen(text: str) -> str:
     """For a message, where a text has its first control character; "" if it has none."""
-    if text.isprintable():  # none of these is; the program checks thousands of texts when it starts
+    if not (first := UNSEEN.search(text)):
         return ""
-    for i, character in enumerate(text):
-        if unicodedata.category(character) in _UNSEEN or ord(character) in _DIRECTIONS:
-            return f"character {i + 1} is the control character U+{ord(character):04X}, expected none"
-    return ""
+    return f"character {first.start() + 1} is the control character U+{ord(first[0]):04X}, expected none"
 
 
 def counted(count: int, thing: str, things: str = "") -> str:

@@ -537,16 +537,13 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
     )
     if wanted:
         lines.append(f"what to do: --set solve.tolerance={min(wanted) / 10.0:.0e} may pass")
-        loosest, most = 10.0 ** np.ceil(np.log10(max(enough))), _LOOSEST[in_time.TIMES.path in data]
+        loosest = 10.0 ** np.ceil(np.log10(max(enough)))
+        most = 1e-2 if in_time.TIMES.path in data else 0.1  # that a scene may have
         if len(wanted) == len(over) and loosest <= most:
             lines[-1] += f"; {loosest:.0e} accepts it"
     elif over:
         lines.append("no solve.tolerance changes this: it has a limit of its own")
     return lines
-
-
-#: Largest tolerance of a scene, and of one with motions in time.
-_LOOSEST = 0.1, 1e-2
 
 
 def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:

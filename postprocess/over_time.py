@@ -7,7 +7,6 @@ stresses along the surface, by the integral equation and by a coarser motion.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import ceil
 from typing import Any
 
@@ -24,33 +23,11 @@ from .quantities import over_time as rows
 from .quantities.over_time import SHARES
 from .quantities.quantity import FEM, SIE
 
-#: Moments of the pressure that elements give, over their degree: elements have to represent the
-#: polynomials with which forces are tested, too. And by how many polynomials fewer the smooth factor has:
-#: a wave that runs little faster than the punch is short under it.
-_MOMENTS, _FEWER = 2.5, 4
 
+def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> NDArray[np.float64]:
+    """Centre of the pressure over a, and K_I at X = -a and X = a over N, dimensionless, (3, times).
 
-@dataclass(frozen=True)
-class ContactNumbers:
-    """Load, centre of the pressure and K_I from nodal forces at several times, (times,) each.
-
-    Attributes:
-        load: carried load over N.
-        centre: centre of the pressure over a.
-        K_left, K_right: normalised intensities at X = -a and X = a over N, dimensionless, by the
-            exponents of steady motion.
-    """
-
-    load: NDArray[np.float64]
-    centre: NDArray[np.float64]
-    K_left: NDArray[np.float64]
-    K_right: NDArray[np.float64]
-
-
-def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> ContactNumbers:
-    """Load, centre and K_I from consistent nodal forces of σ_YY.
-
-    Tested with smooth functions, the forces give moments of the pressure.
+    Consistent nodal forces of σ_YY, tested with smooth functions, give moments of the pressure.
 
     Args:
         X: positions of the contact nodes over a, (nodes,).
@@ -58,8 +35,10 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
         α, β: exponents of the pressure at X = a and X = -a, α + β = -1.
         degree: polynomial degree of the elements.
     """
-    moments = ceil(_MOMENTS * degree)
-    polynomials = moments - _FEWER
+    # Elements have to represent the polynomials with which forces are tested, too. The smooth factor of
+    # the pressure has fewer: a wave that runs little faster than the punch is short under it.
+    moments = ceil(2.5 * degree)
+    polynomials = moments - 4
     tests = Weighted(α, β, moments)
     a, (r, w) = forces @ tests.polynomials(X), tests.rule(400)  # of r log r
     basis = np.column_stack([np.eye(moments, polynomials), tests.polynomials(r).T @ (w * _logs(r)).T])
@@ -68,8 +47,7 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
     K_left, K_right = (
         -0.5 * np.column_stack([tests.polynomials(ends)[:, :polynomials], _logs(ends).T]) @ factors
     )
-    total = forces.sum(axis=1)
-    return ContactNumbers(-total / 2.0, (forces @ X) / total, K_left, K_right)
+    return np.array([(forces @ X) / forces.sum(axis=1), K_left, K_right])
 
 
 def _logs(X: NDArray) -> NDArray[np.float64]:

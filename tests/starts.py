@@ -1,6 +1,7 @@
 """Motions of a punch in time by both methods, of any solid."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 from mpi4py import MPI
@@ -8,7 +9,7 @@ from mpi4py import MPI
 from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
-from galinx.postprocess.over_time import ContactNumbers, contact_numbers
+from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import SlidingInTime
@@ -57,7 +58,7 @@ class ByFiniteElements:
         for n, t in enumerate(run.t):
             exact = FlatPunch(self.response, g(t) if callable(g) else g)
             at = self.motion.X, run.forces[n : n + 1], exact.α, exact.β, self.degree
-            by_time.append(vars(contact_numbers(*at)))
-        return ContactNumbers(
-            **{key: np.concatenate([one[key] for one in by_time]) for key in by_time[0]}
-        )
+            by_time.append(contact_numbers(*at))
+        centre, K_left, K_right = np.concatenate(by_time, axis=1)
+        load = -run.forces.sum(axis=1) / 2.0
+        return SimpleNamespace(load=load, centre=centre, K_left=K_left, K_right=K_right)

@@ -56,7 +56,7 @@ def scene_of(name="tables4_5", changes=None):
     from galinx.app.scene.library import templates
     from galinx.app.scene.read import parse
 
-    text = name if "\n" in name else templates()[name].text
+    text = name if "\n" in name else templates()[name]
     sections = {key: value for key, value in (changes or {}).items() if "." not in key}
     document = tomlkit.parse(text)
     for key, value in sections.items():

@@ -10,7 +10,7 @@ import click
 from galinx.postprocess.target import SECTION, Folder, Target
 
 from .. import errors, ranks
-from ..console import Progress, colours, new_console, print_sheet, program, say
+from ..console import Progress, new_console, print_sheet, program, say
 from ..errors import BadInput
 from . import options
 
@@ -32,13 +32,13 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
         return errors.GOOD
     if name is None:
         wide = max(map(len, available)) + 1
-        for template in available.values():
-            say(f"{template.name:<{wide}}{template.about}", wide)
+        for of_scene, text in available.items():
+            say(f"{of_scene:<{wide}}{text.splitlines()[0].removeprefix('# ')}", wide)
         return errors.GOOD
     if name not in available:
         raise BadInput(f"init {short(name)}: no such scene{nearest(name, available)}")
     target = output or Path(f"{name}.toml")
-    Target(target, None, overwrite, options.inputs()).write(available[name].text.encode())
+    Target(target, None, overwrite, options.inputs()).write(available[name].encode())
     print(f"scene: {target}")
     print(f"next: edit it, then {program()} plan {quote(str(target))}")
     return errors.GOOD
@@ -147,11 +147,11 @@ def fit(
     names = ["fit", *(f"fit_{n}" for n in range(2, len(best.tables) + 1))]
     Files(folder, overwrite=overwrite, inputs=inputs).write(
         Drawing(name, "", fitted_figure(one.measured, f, one.timed))
-        for name, one, f in zip(names, best.tables, best.result.f)
+        for name, one, f in zip(names, best.tables, best.f)
     )
     if not quiet:
         if law == ALL:
-            print_sheet(new_console(colours=colours()), best.sheet())
+            print_sheet(new_console(), best.sheet())
         print(section, end="")
         for note in best.notes:
             say(f"note: {note}")

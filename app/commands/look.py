@@ -207,32 +207,28 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
 @options.archive
 @options.figures_to
 @_text(
-    "figure",
-    "NAMES",
+    "figure", "NAMES",
     "surface, along, inside, parameters, friction, slider, time, interfaces, pressures, stresses, "
-    "energies, flutter, degrees, mesh, film; several as in surface,mesh; all for all.",
-)
+    "energies, flutter, degrees, mesh, film; several as in surface,mesh; all for all.", "figures",
+)  # fmt: skip
 @_text("states", "NUMBERS", "States, see show: 0,4,7 or 0-3.")
-@_text("quantity", "NAMES", "Stresses, as in sigma_XX,von_mises.")
+@_text("quantity", "NAMES", "Stresses, as in sigma_XX,von_mises.", "quantities")
 @_text("method", "NAME", "closed_form, sie or fem; default: all.")
 @_text("x", "NAME", "Parameter that numbers of states are drawn over, as mu_c.")
 @_text("y", "NAMES", "These numbers, as in K_I_left,v0.")
 @_text("by", "NAME", "Parameter that distinguishes their curves.")
 @_text("size", "SIZE", "Width as 3.5in, or 89mm x 60mm; in, cm, mm, pt.")
 @click.option(
-    "--dpi",
-    type=click.IntRange(min=1),
-    metavar="NUMBER",
+    "--dpi", type=click.IntRange(min=1), metavar="NUMBER",
     help="Dots per inch; default: 300, of films 160.",
-)
+)  # fmt: skip
 @_text("format", "NAMES", "pdf, png, svg; of films mp4, gif; default: pdf,png.", "formats")
 @_MEASURED
 @options.dimensionless
 @options.overwrite
 def plot(
-    archive: Path, to: Path, figure: str, states: str, quantity: str, method: str, x: str, y: str,
-    by: str, size: str, dpi: int | None, formats: str, measured: Path | None, dimensionless: bool,
-    overwrite: bool,
+    archive: Path, to: Path, dpi: int | None, formats: str, measured: Path | None, overwrite: bool,
+    **chosen: Any,
 ) -> int:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
@@ -250,7 +246,7 @@ def plot(
     inputs = options.inputs(archive, measured)
     files = Files(to, archive.stem, words(formats), dpi or 0, overwrite, inputs)
     result = load(archive)
-    selection = result.choice(dimensionless, figure, states, quantity, method, x, y, by, size, measured)
+    selection = result.choice(measured=measured, **chosen)
     if ranks.is_root():
         _print_files(write(result.data, result.scene, selection, files))
     return errors.GOOD
@@ -273,23 +269,12 @@ def dispersion(
     from ..figures import waves
 
     files = _files("dispersion", scene, to, overwrite)
-    slowest = waves.curve(options.read(scene, changes, unset))
+    lines, notes, drawing = waves.slowest_waves(options.read(scene, changes, unset))
     if ranks.is_root():
-        print("kH (1)     wavelength (m)  speed (m/s)")
-        # Short waves that all leak are one line.
-        shown = max((n for n, speed in enumerate(slowest.speed, 2) if speed == speed), default=1)
-        for kH, length, speed in zip(slowest.kH[:shown], slowest.length, slowest.speed):
-            print(f"{kH:<10.4g} {length:<15.6g} {'none' if speed != speed else f'{speed:.6g}'}")
-        if shown < len(slowest.kH):
-            print(f"{f'to {slowest.kH[-1]:.4g}':<10} {f'to {slowest.length[-1]:.6g}':<15} none")
-        say("k is the wavenumber, H the thickness of all layers")
-        if slowest.leaks:
-            say(
-                "none: no wave of that length is slower than the waves inside the solids; one that is "
-                "faster radiates into them, and is no limit of the punch"
-            )
-        print(f"highest speed of a punch: {slowest.limit:.8g} m/s")
-        _print_files(files.write([waves.dispersion_drawing(slowest)]))
+        print(*lines, sep="\n")
+        for note in notes:
+            say(note)
+        _print_files(files.write([drawing]))
     return errors.GOOD
 
 
@@ -317,13 +302,9 @@ _FREQUENCY = click.FloatRange(0.0, 1e6, min_open=True)
 @options.scene
 @options.changes
 @click.option(
-    "--from",
-    "first",
-    type=_FREQUENCY,
-    default=0.01,
-    show_default=True,
+    "--from", "first", type=_FREQUENCY, default=0.01, show_default=True,
     help="Lowest angular frequency, over c_s/a.",
-)
+)  # fmt: skip
 @click.option(
     "--to", "last", type=_FREQUENCY, help="Highest one; default: 10, or as far as speeds allow."
 )

@@ -30,8 +30,6 @@ from .style import COLUMN, looks
 
 #: Relative change below which numbers count as constant.
 _SAME = 1e-5
-#: Most states of a line that has a dot at each.
-_FEW = 12
 
 
 def _names(*rows: Quantity) -> list[str]:
@@ -198,7 +196,7 @@ class _Sweep:
                 curves += both(self.x[order], values, look, label, k / len(styles))
                 if len(order) == 1:  # no line: a place of its own
                     curves = [replace(curve, form=MARKERS) for curve in curves]
-                elif len(order) <= _FEW and FEM not in values:  # what is computed, between what is drawn
+                elif len(order) <= 12 and FEM not in values:  # what is computed, between what is drawn
                     curves.append(replace(curves[-1], label="", form=DOTS))
             every = np.concatenate([curve.y for curve in curves])
             crosses = np.nanmin(every) < 0.0 < np.nanmax(every)

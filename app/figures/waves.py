@@ -33,30 +33,6 @@ from .style import COLUMN, GREY, Look, looks
 _kH, _FEWER = np.geomspace(0.03, 100.0, 61), 4
 
 
-@dataclass(frozen=True)
-class Dispersion:
-    """Speed of the slowest wave along layers over its wavenumber.
-
-    Attributes:
-        kH: wavenumber times the thickness of all layers, (n,).
-        length: of the waves [m], (n,).
-        speed: [m/s], NaN where none is slower than the waves inside, (n,).
-        limit: highest speed of a punch [m/s].
-        ends: of waves along the substrate, and along the surface's solid [m/s].
-    """
-
-    kH: NDArray[np.float64]
-    length: NDArray[np.float64]
-    speed: NDArray[np.float64]
-    limit: float
-    ends: tuple[float, float]
-
-    @property
-    def leaks(self) -> bool:
-        """True where no wave of some length is slower than the waves inside the solids."""
-        return bool(np.isnan(self.speed).any())
-
-
 def _require_one(command: str, scene: Scene) -> None:
     """Raise BadInput for swept numbers, of which these answers would know the first alone."""
     if scene.variants:
@@ -66,18 +42,19 @@ def _require_one(command: str, scene: Scene) -> None:
         )
 
 
-def curve(scene: Scene) -> Dispersion:
-    """Dispersion of the slowest wave along a scene's layers.
+def slowest_waves(scene: Scene) -> tuple[list[str], list[str], Drawing]:
+    """Speed of the slowest wave along a scene's layers over its wavenumber: table, notes and figure.
 
     Raises:
         BadInput: it has none.
     """
     _require_one("dispersion", scene)
     solid: Any = scene.solid
+    c_s, limit = solid.c_s, solid.limit() * solid.c_s
     if not scene.layers:
         raise BadInput(
             "layer: found no layers; along a uniform solid waves of all lengths run alike, at "
-            f"{solid.limit() * solid.c_s:.6g} m/s"
+            f"{limit:.6g} m/s"
         )
     graded = any(layer.bottom for layer in solid.layers)
     kH, H = _kH[:: _FEWER if graded else 1], float(solid.depths[-1])
@@ -85,34 +62,43 @@ def curve(scene: Scene) -> Dispersion:
     def stack(c: float) -> Any:
         return solid.response(c).stack(H, 1e-8)
 
-    c = dispersion(stack, 1.0, kH, accuracy=1e-7)
-    ends = (solid.substrate.limit() * solid.substrate.c_s, solid.surface.limit() * solid.c_s)
-    return Dispersion(kH, 2.0 * np.pi * H / kH, c * solid.c_s, solid.limit() * solid.c_s, ends)
-
-
-def dispersion_drawing(slowest: Dispersion) -> Drawing:
-    """Figure of the speed of the slowest wave over its wavenumber."""
-    look = looks(1)[0]
-    places, ends = slowest.kH[[0, -1]], np.array(slowest.ends)
-    limit = np.full(2, slowest.limit)
+    # NaN where no wave is slower than the waves inside the solids.
+    speed, length = c_s * dispersion(stack, 1.0, kH, accuracy=1e-7), 2.0 * np.pi * H / kH
+    lines = ["kH (1)     wavelength (m)  speed (m/s)"]
+    # Short waves that all leak are one line.
+    shown = int(np.flatnonzero(np.isfinite(speed)).max(initial=-1)) + 2
+    lines += [
+        f"{x:<10.4g} {of:<15.6g} {'none' if np.isnan(v) else f'{v:.6g}'}"
+        for x, of, v in zip(kH[:shown], length, speed)
+    ]
+    if shown < len(kH):
+        lines.append(f"{f'to {kH[-1]:.4g}':<10} {f'to {length[-1]:.6g}':<15} none")
+    notes = ["k is the wavenumber, H the thickness of all layers"]
+    if np.isnan(speed).any():
+        notes.append(
+            "none: no wave of that length is slower than the waves inside the solids; one that is "
+            "faster radiates into them, and is no limit of the punch"
+        )
+    notes.append(f"highest speed of a punch: {limit:.8g} m/s")
+    # Waves along the substrate, and along the surface's solid.
+    ends = np.array([solid.substrate.limit() * solid.substrate.c_s, solid.surface.limit() * c_s])
+    look, places = looks(1)[0], kH[[0, -1]]
+    highest = look._replace(colour=GREY, line="--")
     curves = [
-        Curve(slowest.kH, slowest.speed, look, "slowest wave"),
-        Curve(
-            places, limit, look._replace(colour=GREY, line="--"), "highest speed of a punch", width=0.7
-        ),
+        Curve(kH, speed, look, "slowest wave"),
+        Curve(places, np.full(2, limit), highest, "highest speed of a punch", width=0.7),
         Curve(places, ends, look, "along either end's solid alone", MARKERS),
     ]
     panel = Panel(
         "wavenumber $kH$", "speed (m/s)", curves=curves, log="x", xlim=(places[0] / 1.1, places[1] * 1.1)
     )
-    figure = render([panel], Size(COLUMN), high=0.72)
     caption = (
         "Speed of the slowest wave along the layers over its wavenumber k times the thickness H of all "
-        f"layers. The dashed line is the highest speed of a punch, {slowest.limit:.6g} m/s; circles are "
+        f"layers. The dashed line is the highest speed of a punch, {limit:.6g} m/s; circles are "
         "the waves along the substrate alone (left) and along the solid of the surface (right). Where "
         "there is no curve no such wave is slower than the waves inside one of the solids."
     )
-    return Drawing("dispersion", caption, figure)
+    return lines, notes, Drawing("dispersion", caption, render([panel], Size(COLUMN), high=0.72))
 
 
 #: Speeds with frictions that are solved at most, and curves that can be distinguished.

@@ -44,8 +44,6 @@ from .. import ranks
 from ..methods import fem_mode
 from ..scene.scene import Scene
 
-#: Largest distance of points inside over that of walls, and over a for meshes without walls.
-_INNER, _OUTERMOST = 0.6, 1e6
 #: Most knots of a prescribed pressure over layers, and their least distance over a.
 _KNOTS, _APART = 12, 0.02
 #: Narrowest piece of a prescribed pressure, over a, within which positions have enough digits.
@@ -55,8 +53,6 @@ SMALL = 200_000
 #: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
 #: that is rounding.
 _MOST_SHAPES, _ROUNDED = 48, 1e-13
-#: Positions along the contact at which friction is sampled for its extremes.
-_ACROSS = 201
 
 
 def free_memory() -> float:
@@ -155,7 +151,7 @@ def _faults_of_pressure(scene: Scene, knots: Sequence[float]) -> Iterator[str]:
 def farthest_inside(scene: Scene) -> float:
     """Largest distance over a of fields inside from finite elements: well inside walls, if any."""
     walls = MESHES[scene.solve.mesh].walls
-    return _INNER * walls if walls else _OUTERMOST
+    return 0.6 * walls if walls else 1e6
 
 
 def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: NDArray) -> FemPlan:
@@ -175,7 +171,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
             kind_of(depths, responses, scene.body.knots or (-1.0, *scene.body.friction_kinks, 1.0)),
             "layered",
         )
-    ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, _ACROSS))
+    ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, 201))  # for its extremes
     mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
     exponent = min(
         -0.5 - abs(EdgeExponents(response, end).α + 0.5) for response in responses for end in ends

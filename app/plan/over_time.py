@@ -31,11 +31,6 @@ from ..scene.scene import Scene
 from ..scene.sections import Time
 from .states import States
 
-#: Positions on a stroke between which friction is interpolated; fewest steps of a stroke.
-_PLACES, _OF_STROKE = 801, 12
-#: Number of short steps in place of one after a turn: the pressure changes with the root of time.
-_FINELY = 8
-
 
 def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
     """Directions ±1 of strokes along X.
@@ -65,7 +60,7 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
         strokes = []
         for direction, legs in groupby(scene.legs, lambda leg: leg.s * scene.legs[0].s):
             durations = _durations(scene, legs, c)
-            strokes.append((direction, durations, min(largest, min(durations) / _OF_STROKE)))
+            strokes.append((direction, durations, min(largest, min(durations) / 12)))  # steps, at least
     ways: list[Way] = []
     for direction, durations, longest in strokes:
         # A step less than a millionth of a stroke is rounding.
@@ -75,8 +70,9 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
             longest = every / (2.0 * ceil(every / longest / 2.0 - 1e-9))
         steps, finely = 2 * ceil(duration / longest / 2.0 - 1e-9), 0.0
         if ways and steps > 2:
+            # In place of each of two steps 8 short ones: the pressure changes with the root of time.
             finely, steps = 2.0 * duration / steps, steps - 2
-            ways.append(Way(direction, finely, 2 * _FINELY))
+            ways.append(Way(direction, finely, 2 * 8))
         ways.append(Way(direction, duration - finely, steps))
         t += duration
     if end - t > 1e-6 * end:
@@ -100,7 +96,7 @@ def _drives_by_law(scene: Scene, c: float) -> tuple[Drive, ...]:
     """
     from scipy.interpolate import PchipInterpolator  # a slow import
 
-    friction, shares = scene.friction, np.linspace(0.0, 1.0, _PLACES)
+    friction, shares = scene.friction, np.linspace(0.0, 1.0, 801)  # interpolated between these
     places = [leg.start + (leg.end - leg.start) * shares for leg in scene.legs]
     durations = _durations(scene, scene.legs, c)
     starts = (0.0, *np.cumsum(durations)[:-1].tolist())
@@ -159,32 +155,8 @@ def _check(scene: Scene, methods: tuple[str, ...]) -> None:
         raise BadInput("time: " + "; ".join(fault for fault, found in faults.items() if found))
 
 
-#: Shortest time over a/c_s of changing friction for which steps and cells are made.
-_QUICK = 1.0
-#: Lowest degree that resolves the moments from which K_I is recovered, highest degree, and largest
-#: innermost cell over a.
-_LOWEST, _HIGHEST, _INNERMOST = 7, 12, 1e-4
-#: Time over a/c_s in which waves cross the contact.
-_CROSSED = 2.0
-#: Distance over a, times the tolerance, of the boundary at which steady motion is held.
-_HELD = 5.0
-#: Size of a ring of cells at the edges over that of the ring outside it; where waves are sharp.
-_RATIO, _SHARP_RATIO = 0.25, 0.5
-#: Side of cells over a where the surface is output, where waves ahead of the punch are short; they go
-#: on beside the box of outputs.
-_SEEN_SIZE, _BESIDE_BOX = 2.0 / 3.0, 1.0
-#: Largest side of cells over the uppermost layer's thickness.
-_OF_LAYER = 2.0
-#: Steps by which the mesh's end is later than the motion's, for implicit steps.
-_EARLIER = 8
-#: How much longer a cell further out may be at a tolerance of 1e-3, over its distance from the innermost
-#: ones; so much less at a tenth of the tolerance; how much more where the error is measured.
-_GROWTH, _FINER, _GROWN = 0.15, 0.4, 1.75
-#: Side of cells next to the punch over a; shortest time of changes over a/c_s for it at a tolerance of
-#: 1e-3, and by how much longer at each tenth of that; distance over c_s below the Rayleigh speed that a
-#: punch has to keep for it, since the wave ahead of a faster one is shorter. Within the last of these
-#: distances a degree more is taken.
-_SIZE, _LONG, _LONGER, _SLOW, _SHORT = 2.0, 2.0, 1.5, 0.25, 0.15
+#: Highest degree.
+_HIGHEST = 12
 
 
 @dataclass(frozen=True)
@@ -270,7 +242,8 @@ class Starts:
     @cached_property
     def shortest(self) -> float:
         """Shortest time over a/c_s within which load, direction or friction changes."""
-        frictions = [max(drive.shortest, _QUICK) for drives in self.drives.values() for drive in drives]
+        # Steps and cells are made for a friction that changes within 1 a/c_s, and for no faster one.
+        frictions = [max(drive.shortest, 1.0) for drives in self.drives.values() for drive in drives]
         return min(self.load.shortest, *(self.strokes if self.changing else ()), *frictions)
 
     @property
@@ -287,9 +260,10 @@ class Starts:
     def smooth(self) -> bool:
         """True where the pressure is smooth enough for K_I, but for its exponents at the edges.
 
-        A wave that begins at an edge of the punch, suddenly, has to cross the contact before.
+        A wave that begins at an edge of the punch, suddenly, has to cross the contact before, which
+        takes it 2 a/c_s.
         """
-        return not self.changing or self.shortest >= _CROSSED
+        return not self.changing or self.shortest >= 2.0
 
     @property
     def count(self) -> int:
@@ -340,27 +314,34 @@ class Starts:
         waves are too short for cells from little more than half the distance on.
         """
         digits, gap = -log10(self.scene.solve.tolerance), self.scene.solid.limit() - c
-        degree = min(max(ceil(2.0 * digits + 1.75), _LOWEST), _HIGHEST)
         depths = tuple((self.scene.solid.depths / self.scene.body.half_width).tolist())
-        degree += (gap < _SHORT or bool(depths)) and degree < _HIGHEST
-        innermost = min(10.0 ** -(1.2 * digits + 1.0), _INNERMOST)
-        slow = min(1.0, gap / _SLOW) ** 0.5
-        long = _LONG + _LONGER * max(digits - 3.0, 0.0)
-        size = _SIZE * slow * min(1.0, self.shortest / long)
-        seen = min(size, _SEEN_SIZE * slow) if self.time.every else size
-        growth = _GROWTH * _FINER ** (digits - 3.0)
-        beyond = _HELD / self.scene.solve.tolerance if self.time.steady else 0.0
-        ratio = _SHARP_RATIO if self.sharp else _RATIO
+        # No lower degree than 7 resolves the moments from which K_I is recovered. Near the Rayleigh
+        # speed waves ahead of the punch are short, and take a degree more.
+        degree = min(max(ceil(2.0 * digits + 1.75), 7), _HIGHEST)
+        degree += (gap < 0.15 or bool(depths)) and degree < _HIGHEST
+        innermost = min(10.0 ** -(1.2 * digits + 1.0), 1e-4)
+        # Cells next to the punch have a side of 2 a where nothing changes within 2 a/c_s at a tolerance
+        # of 1e-3, within 1.5 a/c_s more at each tenth of it, and the speed is 0.25 c_s below Rayleigh's.
+        slow = min(1.0, gap / 0.25) ** 0.5
+        long = 2.0 + 1.5 * max(digits - 3.0, 0.0)
+        size = 2.0 * slow * min(1.0, self.shortest / long)
+        seen = min(size, 2.0 / 3.0 * slow) if self.time.every else size  # short waves ahead are output
+        # A cell further out is longer by a share of its distance from the innermost ones, 1.75 times as
+        # much where the error is measured.
+        growth = 0.15 * 0.4 ** (digits - 3.0)
+        # Distance over a of the boundary at which steady motion is held.
+        beyond = 5.0 / self.scene.solve.tolerance if self.time.steady else 0.0
+        ratio = 0.5 if self.sharp else 0.25  # of a ring of cells at the edges over the one outside it
         width, depth = self._reach(fastest(self.response(c)), c)
         if depths:
             slower = min(1.0, self.scene.solid.slowest / self.scene.solid.c_s)
-            size, seen = (min(side * slower, _OF_LAYER * depths[0]) for side in (size, seen))
+            size, seen = (min(side * slower, 2.0 * depths[0]) for side in (size, seen))
         coarse, fine = (
             Reached(
                 max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths, seen,
-                (BOX[0] + _BESIDE_BOX, BOX[1]),
+                (BOX[0] + 1.0, BOX[1]),
             )
-            for of in (_GROWN * growth, growth)
+            for of in (1.75 * growth, growth)
         )  # fmt: skip
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
 
@@ -368,9 +349,9 @@ class Starts:
         """Half-width and depth over a from which the fastest wave is not back before the end.
 
         It comes back to a punch that has moved, or to the output places around it. With implicit steps
-        it arrives a little earlier.
+        it arrives a little earlier, by 8 steps at most.
         """
-        T = self.end * (1.0 + _EARLIER / self.steps)
+        T = self.end * (1.0 + 8 / self.steps)
         beside, below = (BOX[0] - 1.0, BOX[1]) if self.time.every else (0.0, 0.0)
         if len(self.strokes) > 1:
             farthest = c * max(self.strokes)
@@ -383,10 +364,6 @@ class Starts:
 
 #: Most motions in time of a scene, and most unknowns of a mesh.
 MOST, LARGEST = 24, 300_000
-#: Longest step over a/c_s at a tolerance of 1e-3, of order four; fewest steps of a load's ramp.
-_STEP, _OF_RAMP = 0.4, 8
-#: Factor by which steps are shorter over layers, whose echoes move the centre of the pressure.
-_OF_LAYERS = 3.5
 
 
 def starts(scene: Scene, states: States) -> Starts | None:
@@ -406,7 +383,9 @@ def starts(scene: Scene, states: States) -> Starts | None:
     _check(scene, methods)
     comes_on = ((0.0, 1.0),) if steady else ((0.0, 0.0), (scene.time.load_ramp, 1.0))
     load = Load(scene.time.load or comes_on)
-    largest = min(_STEP, load.shortest / _OF_RAMP) / (_OF_LAYERS if scene.layers else 1.0)
+    # At a tolerance of 1e-3 steps, of order four, are at most 0.4 a/c_s, and 8 in a load's ramp; shorter
+    # over layers, whose echoes move the centre of the pressure.
+    largest = min(0.4, load.shortest / 8) / (3.5 if scene.layers else 1.0)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     drives = _drives(scene, states)
     ways = _ways(scene, next(iter(drives)), step)

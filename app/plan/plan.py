@@ -630,10 +630,6 @@ def surface_grid() -> np.ndarray:
     return np.unique(np.concatenate([-right, right]))
 
 
-#: Least distance over a up to which stresses along interfaces are output; beyond it they only fall.
-_FARTHEST = 40.0
-
-
 def _from_edge(depth: float) -> np.ndarray:
     """Distances from an edge over a, to 1 or 4 depths, an eighth of the depth or of themselves apart."""
     steps = int(np.ceil(np.log(max(0.25 / depth, 1.0)) / np.log(9.0 / 8.0))) + 1
@@ -656,6 +652,6 @@ def interface_grid(body: Contact, several: np.ndarray | None = None) -> tuple[np
     near = np.concatenate([_from_edge(min(depth, 1.0)) for depth in depths.tolist()])
     near = np.concatenate([-near, near])
     seen = stresses.FARTHEST
-    far = np.geomspace(seen, max(_FARTHEST, seen * depths[-1]), 49)
+    far = np.geomspace(seen, max(40.0, seen * depths[-1]), 49)  # beyond these stresses only fall
     X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
     return depths, np.unique(np.round(X, 9))

@@ -51,10 +51,6 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
     return plans
 
 
-#: Ratio of depths so near to each other that one grid suits both.
-_NEAR = 1.5
-
-
 def positions_along(scene: Scene) -> NDArray[np.float64] | None:
     """Positions along interfaces that suit all variants; None for a scene that is alone."""
     if not scene.variants or not scene.layers:
@@ -64,7 +60,7 @@ def positions_along(scene: Scene) -> NDArray[np.float64] | None:
     )
     apart: list[float] = []  # depths that stand for all
     for depth in depths.tolist():
-        if not apart or depth > _NEAR * apart[-1]:
+        if not apart or depth > 1.5 * apart[-1]:  # else one grid suits both
             apart.append(depth)
     return interface_grid(scene.body, np.array([*apart[:-1], depths[-1]]))[1]
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from galinx import files
 from galinx.postprocess.tables import Sheet
-from galinx.solvers.friction import LAWS, FrictionLaw
+from galinx.solvers.friction import LAWS
 from galinx.solvers.friction import fit as solver
 from galinx.solvers.friction.fit import FittedLaw, Measured
 from galinx.solvers.parameters import parameters
@@ -40,8 +40,6 @@ _NAMES = {
     "load": ("load", "normal_load", "normal_force", "n"),
 }
 _FORM = '"slip [mm],f", "time [s],position [mm],f", or with "force [N],load [N]" for f'
-#: Units of forces: whole ones, and over a length.
-_FORCES = ("N", "N/m")
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ def read(path: Path) -> Table:
     """
     table, notes = read_table(path, _FORM), []
     forces: dict[int, str] = {}  # SI units of columns of forces
-    for n, unit in product(range(len(table.names)), _FORCES):
+    for n, unit in product(range(len(table.names)), ("N", "N/m")):
         with suppress(BadInput):
             if table.units[n] not in ("", "1", "-") and table.factor(n, unit):
                 forces[n] = unit
@@ -141,13 +139,12 @@ def read(path: Path) -> Table:
 ALL = "all"
 
 
-@dataclass(frozen=True)
-class Fit:
-    """A friction law fitted to measured friction.
+@dataclass(frozen=True, repr=False)
+class Fit(FittedLaw):
+    """A friction law fitted to measured friction, with its parameters and their deviations.
 
     Attributes:
         model: name of the law.
-        result: the law, its parameters with their covariance, and friction along the measurements.
         seconds: wall time.
         tables: the measurements.
         others: other laws fitted to the same data, best first.
@@ -155,43 +152,13 @@ class Fit:
     """
 
     model: str
-    result: FittedLaw = field(repr=False)
     seconds: float
     tables: tuple[Table, ...]
-    others: tuple["Fit", ...] = field(default=(), repr=False)
-    failed: Mapping[str, str] = field(default_factory=dict, repr=False)
+    others: tuple["Fit", ...] = ()
+    failed: Mapping[str, str] = field(default_factory=dict)
 
-    @property
-    def law(self) -> FrictionLaw:
-        """The law, for :mod:`galinx.solvers.friction`."""
-        return self.result.law
-
-    @property
-    def parameters(self) -> dict[str, Any]:
-        """Parameters by key, in SI, those that the data do not determine among them: with other values of
-        these the rest would be others, too."""
-        return self.result.values
-
-    @property
-    def deviations(self) -> dict[str, float]:
-        """Standard deviation by the name of each fitted number, as ``"mu_c"`` or ``"elements[2, 1]"``, in
-        SI; NaN or larger than the number where the data do not determine it."""
-        return dict(zip(self.result.names, self.result.deviations.tolist()))
-
-    @property
-    def not_determined(self) -> tuple[str, ...]:
-        """Names of numbers that the data do not determine."""
-        return tuple(np.array(self.result.names)[~self.result.determined].tolist())
-
-    @property
-    def rms(self) -> float:
-        """Root mean square of measured less fitted f, dimensionless."""
-        return self.result.rms
-
-    @property
-    def aic(self) -> float:
-        """Akaike's criterion; laws with a smaller one describe the same data better."""
-        return self.result.aic
+    def __repr__(self) -> str:
+        return f"<galinx fit of {self.model}: RMS of f {self.rms:.3g}, AIC {self.aic:.1f}>"
 
     def scene(self, path: str | Path | None = None) -> str:
         """Section ``[friction]`` with the law, each number with its deviation as a comment.
@@ -218,11 +185,11 @@ class Fit:
         """Sentences on assumptions and samples left out."""
         samples = sum(len(table.measured.t) for table in self.tables)
         said = [note for table in self.tables for note in table.notes]
-        if self.result.every > 1:
-            said.append(f"every {self.result.every}th sample is fitted, and those where the motion turns")
-        elif self.result.samples < samples:
+        if self.every > 1:
+            said.append(f"every {self.every}th sample is fitted, and those where the motion turns")
+        elif self.samples < samples:
             said.append(
-                f"not fitted: {samples - self.result.samples} of {samples} samples, the first of each "
+                f"not fitted: {samples - self.samples} of {samples} samples, the first of each "
                 "file, before the motion, and those at rest"
             )
         return tuple(said)
@@ -303,7 +270,8 @@ def fit(
                 for given in (fixed, started)
             )
             result = solver.fit(kind, [table.measured for table in tables], known, guess, rows, step)
-            fits.append(Fit(name, result, perf_counter() - begun, tables))
+            seconds = perf_counter() - begun
+            fits.append(Fit(**vars(result), model=name, seconds=seconds, tables=tables))
         except ValueError as error:
             failed[name] = str(error)
     if not fits:
@@ -385,7 +353,7 @@ def _section(one: Fit) -> str:
     declared = parameters(type(one.law))
     files = ", ".join(table.name for table in one.tables)
     lines = [
-        f"# Fitted by galinx: {type(one.law).about} to {one.result.samples} samples",
+        f"# Fitted by galinx: {type(one.law).about} to {one.samples} samples",
         f"# of {files}; root mean square of the residuals of f: {one.rms:.3g} (dimensionless);",
         "# ± is one standard deviation",
         "[friction]",

@@ -374,7 +374,7 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     available = templates()
     if name not in available:
         raise BadInput(f"template {excerpt(name)}: no such scene{nearest(str(name), available)}")
-    return scenes.parse(changed(available[name].text, changes or {}), name)
+    return scenes.parse(changed(available[name], changes or {}), name)
 
 
 def compute(scene: Scene, progress: bool = False) -> Result:

@@ -71,14 +71,10 @@ def scene_attributes(scene: Scene) -> dict[str, Any]:
     }
 
 
-#: Libraries that numbers depend on, by the module that holds the version.
-_LIBRARIES = ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "h5py")
-
-
 def libraries() -> dict[str, str]:
-    """Versions of Python and of the libraries imported so far; nothing is imported for this."""
+    """Versions of Python and of the libraries that numbers depend on, as far as they are imported."""
     versions = {"Python": platform.python_version()}
-    for name in _LIBRARIES:
+    for name in ("numpy", "scipy", "dolfinx", "petsc4py", "mpi4py", "h5py"):
         version = getattr(sys.modules.get(name), "__version__", None)
         if version:
             versions[name] = str(version)

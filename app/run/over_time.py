@@ -115,18 +115,16 @@ def _centre(pressure: Pressure) -> float:
     return float(forces @ t / forces.sum())
 
 
-#: Largest step of the integral equation's quadrature over a/c_s at a tolerance of 1e-3, of order five;
-#: steps within which the load comes on; polynomials there, and more at each tenth of it.
-_STEP, _OF_RAMP, _TERMS, _MORE = 0.5, 6, 24, 8
-
-
 def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
     """Motions at a speed up to the first turn, NaN after it."""
     first, response, drives = starts.ways[0], starts.response(c), starts.drives[c]
     shortest = min(starts.shortest, *(drive.shortest for drive in drives))
-    largest = min(_STEP, shortest / _OF_RAMP) * min(starts.scene.solve.tolerance / 1e-3, 1.0) ** 0.2
+    # At a tolerance of 1e-3 steps of the quadrature, of order five, are at most 0.5 a/c_s, and 6 in which
+    # the load comes on; and there are 24 polynomials, 8 more at each tenth of it.
+    tolerance = starts.scene.solve.tolerance
+    largest = min(0.5, shortest / 6) * min(tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(first.h / largest - 1e-9))
-    terms = _TERMS + round(_MORE * max(-3.0 - np.log10(starts.scene.solve.tolerance), 0.0))
+    terms = 24 + round(8 * max(-3.0 - np.log10(tolerance), 0.0))
     surface, alone = bool(starts.time.every), starts.methods == (SIE,)
 
     def at_steps(values: NDArray) -> NDArray[np.float64]:
@@ -253,8 +251,8 @@ def _at_level(
             ratios, read = drive(run.t), np.empty((3, len(run.t)))  # by the exponents of each time
             for ratio in np.unique(ratios):
                 at, steady = ratios == ratio, FlatPunch(response, ratio)
-                numbers = contact_numbers(motion.X, run.forces[at], steady.α, steady.β, level.degree)
-                read[:, at] = numbers.centre, numbers.K_left, numbers.K_right
+                of_nodes = motion.X, run.forces[at]
+                read[:, at] = contact_numbers(*of_nodes, steady.α, steady.β, level.degree)
             K_I = read[1:] if starts.smooth else np.nan * read[1:]
             motions.append(((run.v0, read[0], *K_I), datasets))
     solver.destroy()

@@ -65,20 +65,9 @@ SCENES = Path(__file__).parents[2] / "scenes"
 _SCHEMA = "#:schema scene.schema.json\n"
 
 
-@dataclass(frozen=True)
-class Template:
-    """A scene to begin with: its name, its first line as a description, and its text."""
-
-    name: str
-    about: str
-    text: str
-
-
-def templates() -> dict[str, Template]:
-    """All templates by name."""
-    by_name = {}
-    for path in sorted(SCENES.glob("*.toml")):
-        text = path.read_text(encoding="utf-8").removeprefix(_SCHEMA)
-        about = text.splitlines()[0].removeprefix("# ")
-        by_name[path.stem] = Template(path.stem, about, text)
-    return by_name
+def templates() -> dict[str, str]:
+    """Texts of scenes to begin with, by name; the first line of each is a comment that describes it."""
+    return {
+        path.stem: path.read_text(encoding="utf-8").removeprefix(_SCHEMA)
+        for path in sorted(SCENES.glob("*.toml"))
+    }

@@ -307,10 +307,6 @@ class Map:
         return tuple((first, last, int(count)) for first, last, count in (axes["X"], axes["Y"]))
 
 
-#: Most numbers of a range.
-_MOST = 10**6
-
-
 @dataclass(frozen=True)
 class Numbers:
     """One number, a list or a range of them."""
@@ -328,7 +324,7 @@ class Numbers:
     @property
     def _range(self) -> Table:
         end = Number(self.unit, self.bounds)
-        number, spacing = Whole(Range(at_least=2, at_most=_MOST)), Choice(("linear", "log"))
+        number, spacing = Whole(Range(at_least=2, at_most=10**6)), Choice(("linear", "log"))
         return Table(
             {"from": end, "to": end, "number": number, "spacing": spacing}, "a range",
             ("from", "to", "number"),

@@ -44,41 +44,38 @@ VARIED = {
 #: Speeds of Fig 6 (a).
 SPEEDS = (SLOW, 0.2, 0.4, FAST)
 
-_PROBLEM = (
-    "Fig 1. The problem: a rigid flat punch under the loads N and F per depth slides at the speed V "
-    "over an elastic half-plane; the axes move with it. Friction drags the surface along. In forward "
-    "motion X = -a trails and X = a leads."
-)
-_PROCEDURE = (
-    "Fig 3. From friction to stresses. Numbers are those of the study's equations. Finite elements are "
-    "given the friction coefficient alone, and compared with the integral equation."
-)
-_BLOCK = (
-    "Fig 4. The block that stands for the half-plane (scene box), W = 200 a wide and H = 100 a high, "
-    "so that the punch is 2a/W = 0.01 and 2a/H = 0.02 of it, as the study has it, and the finer zone "
-    "under the punch (black), whose cells are graded towards its edges. The study has 145 106 "
-    "quadrilaterals with mid-side nodes; these are {cells} of a high degree."
-)
-_SINE = (
-    "Friction in sinusoidal motion (scene sinusoidal), of which the study's section 2 speaks: Dahl's "
-    "law knows the way alone, so that over position the loop is that of Fig 2, nearly closed from the "
-    "second cycle on; over time friction jumps in slope where the motion turns."
-)
-_LAWS = (
-    "Friction laws by their contact stresses, which the study names as future work: {laws} with the "
-    "same μ_C = 0.5 and, but for Coulomb's law, the same slope of 25 000/m at f = 0, in FM2 at X/L = "
-    "{at:g}. Stresses follow f alone; laws that agree at full slip differ most behind a turn. Of these "
-    "LuGre's law alone knows the speed: it falls from μ_S = 0.6 at rest to μ_C in fast sliding."
-)
-_LOOP = (
-    "Fig 2. The friction loop: friction builds up from rest over the first stroke (FM1), and is built up "
-    "once more, the other way, after each turn (BM1, FM2)."
-)
-_PARAMETERS = (
-    "Fig 6. What speed and parameters do to the loop: (a) the speed nothing, the four loops are one, "
-    "drawn one in the other; (b) μ_C sets how high friction comes, (c) σ₀ l/N how soon, and (d) δ_D "
-    "how sharply it turns."
-)
+#: By the name of the figure, but for those of stresses.
+CAPTIONS = {
+    "fig1":
+        "Fig 1. The problem: a rigid flat punch under the loads N and F per depth slides at the speed V "
+        "over an elastic half-plane; the axes move with it. Friction drags the surface along. In "
+        "forward motion X = -a trails and X = a leads.",
+    "fig2":
+        "Fig 2. The friction loop: friction builds up from rest over the first stroke (FM1), and is "
+        "built up once more, the other way, after each turn (BM1, FM2).",
+    "fig3":
+        "Fig 3. From friction to stresses. Numbers are those of the study's equations. Finite elements "
+        "are given the friction coefficient alone, and compared with the integral equation.",
+    "fig4":
+        "Fig 4. The block that stands for the half-plane (scene box), W = 200 a wide and H = 100 a "
+        "high, so that the punch is 2a/W = 0.01 and 2a/H = 0.02 of it, as the study has it, and the "
+        "finer zone under the punch (black), whose cells are graded towards its edges. The study has "
+        "145 106 quadrilaterals with mid-side nodes; these are {cells} of a high degree.",
+    "fig6":
+        "Fig 6. What speed and parameters do to the loop: (a) the speed nothing, the four loops are "
+        "one, drawn one in the other; (b) μ_C sets how high friction comes, (c) σ₀ l/N how soon, and "
+        "(d) δ_D how sharply it turns.",
+    "sinusoidal":
+        "Friction in sinusoidal motion (scene sinusoidal), of which the study's section 2 speaks: "
+        "Dahl's law knows the way alone, so that over position the loop is that of Fig 2, nearly closed "
+        "from the second cycle on; over time friction jumps in slope where the motion turns.",
+    "laws":
+        "Friction laws by their contact stresses, which the study names as future work: {laws} with the "
+        "same μ_C = 0.5 and, but for Coulomb's law, the same slope of 25 000/m at f = 0, in FM2 at X/L "
+        "= {at:g}. Stresses follow f alone; laws that agree at full slip differ most behind a turn. Of "
+        "these LuGre's law alone knows the speed: it falls from μ_S = 0.6 at rest to μ_C in fast "
+        "sliding.",
+}  # fmt: skip
 _ENDS = (
     " X = -a is the trailing end in forward motion (FM1, FM2) and the leading one in backward motion "
     "(BM1); the study calls X = +a the leading end in all of them."
@@ -165,12 +162,12 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Figs 1 to 10 of the study from an archive of scenes/study.toml, and two that it speaks of."""
     of, fig6 = Archive(data, scene, Choice()), scenes.read(SCENES / "fig6.toml")
     reference = _state(of, REFERENCE)
-    yield Drawing("fig1", _PROBLEM, problem_figure())
-    yield Drawing("fig2", _LOOP, loops_figure([Loops(of).panel([reference], [])], []))
-    yield Drawing("fig3", _PROCEDURE, procedure_figure())
+    yield Drawing("fig1", CAPTIONS["fig1"], problem_figure())
+    yield Drawing("fig2", CAPTIONS["fig2"], loops_figure([Loops(of).panel([reference], [])], []))
+    yield Drawing("fig3", CAPTIONS["fig3"], procedure_figure())
     yield _block(scenes.read(SCENES / "box.toml"))
     yield stresses_drawing("fig5", data, of)
-    yield Drawing("fig6", _PARAMETERS, _loops(Loops(_archive(fig6))))
+    yield Drawing("fig6", CAPTIONS["fig6"], _loops(Loops(_archive(fig6))))
     for name in ("fig7", "fig8", "fig9", "fig10"):
         yield stresses_drawing(name, data, of)
     yield _sinusoidal(scenes.read(SCENES / "sinusoidal.toml"))
@@ -185,7 +182,7 @@ def _block(scene: Scene) -> Drawing:
     figure = mesh_figure(
         edges(fem.kind, cells), np.empty((0, 2)), zooms=(100.0, 4.0, 0.05), first="the whole block"
     )
-    return Drawing("fig4", _BLOCK.format(cells=len(cells.cells)), figure, pixels=True)
+    return Drawing("fig4", CAPTIONS["fig4"].format(cells=len(cells.cells)), figure, pixels=True)
 
 
 def _sinusoidal(scene: Scene) -> Drawing:
@@ -205,7 +202,7 @@ def _sinusoidal(scene: Scene) -> Drawing:
         ],
     )  # fmt: skip
     over_position = replace(loop_panel([loop]), title="over position")
-    return Drawing("sinusoidal", _SINE, render([over_time, over_position]))
+    return Drawing("sinusoidal", CAPTIONS["sinusoidal"], render([over_time, over_position]))
 
 
 def _archive(scene: Scene) -> Archive:
@@ -238,7 +235,8 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
     panels += _stress_panels([(f"FM2, $X/L = {_AT:g}$", curves)])
     notes = lines_and_markers(*_slow_and_fast(archive, at))
     names = ", ".join(plain(called) for called, _ in LAWS_SHOWN.values())
-    return Drawing("laws", _LAWS.format(laws=names, at=_AT), render(panels, None, 3, notes, high=0.95))
+    caption = CAPTIONS["laws"].format(laws=names, at=_AT)
+    return Drawing("laws", caption, render(panels, None, 3, notes, high=0.95))
 
 
 def _loops(loops: Loops) -> Any:

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from io import StringIO
 from itertools import product
 from typing import Any
@@ -23,7 +22,7 @@ from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.motion import friction_along
 
 from .. import ranks
-from ..console import Progress, colours, new_console, print_sheet, program, say
+from ..console import Progress, new_console, print_sheet, program, say
 from ..results.result import Result
 from ..run.flow import Memory, compute
 from ..scene import read as scenes
@@ -60,45 +59,15 @@ _STROKE, _PLACE = "FM1", 0.8
 #: Polynomials of the expansion; one would do for a flat punch.
 _TERMS = 8
 
-#: Degree of the displacements that are printed with four digits.
-_DEGREE = 7
+
+#: Lines of a verdict, as of :func:`galinx.postprocess.compare.judged`: the largest difference,
+#: dimensionless, or a number of entries, and the largest that passes, by what is compared.
+_Checks = dict[str, tuple[float, float]]
 
 
-@dataclass(frozen=True)
-class Check:
-    """A line of the verdict.
-
-    Attributes:
-        text: name of the comparison.
-        value: largest difference, dimensionless, or a number of entries.
-        limit: the largest value that passes.
-    """
-
-    text: str
-    value: float
-    limit: float
-
-    @property
-    def good(self) -> bool:
-        """True where the value is within its limit; NaN is not."""
-        return bool(self.value <= self.limit)
-
-    @property
-    def cells(self) -> tuple[str, str, str]:
-        """Cells of a row of the table of the verdict."""
-        shown = f"{self.value}" if isinstance(self.value, int) else f"{self.value:.1e}"
-        return self.text, shown, f"{self.limit:g}"
-
-    @property
-    def words(self) -> str:
-        """Text, value and limit as a line."""
-        text, value, limit = self.cells
-        return f"{text}: {value}, at most {limit}"
-
-
-def _checks(result: Result) -> list[Check]:
-    """Verdict of an archive, line by line."""
-    return [Check(text, *figures) for text, figures in judged(result.attributes).items()]
+def failing(checks: _Checks) -> list[str]:
+    """Comparisons that do not pass; NaN does not."""
+    return [text for text, (value, limit) in checks.items() if not value <= limit]
 
 
 def _worst(result: Result, rule: str) -> float:
@@ -124,15 +93,19 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
     study, inside, *_ = results
     methods, checks = _judged(*results)
     failed = sum(result.verdict != "PASS" for result in results)
-    checks.append(Check(f"runs behind these lines that are no PASS, of {len(results)}", failed, 0))
-    good = all(check.good for check in checks)
+    checks[f"runs behind these lines that are no PASS, of {len(results)}"] = failed, 0
+    good = not failing(checks)
+    cells = [
+        (text, f"{value}" if isinstance(value, int) else f"{value:.1e}", f"{limit:g}")
+        for text, (value, limit) in checks.items()
+    ]
     decided = statements_sheet(statements(study.data, study.scene.solid))
     tables, details = [*_tables(study), methods], _details(study)
-    verdict = {
-        "verdict": "PASS" if good else "FAIL",
-        "verdict_reasons": json.dumps([check.words for check in checks], ensure_ascii=False),
-    }
-    study.attributes |= verdict
+    reasons = [f"{text}: {value}, at most {limit}" for text, value, limit in cells]
+    verdict = "PASS" if good else "FAIL"
+    study.attributes |= {
+        "verdict": verdict, "verdict_reasons": json.dumps(reasons, ensure_ascii=False),
+    }  # fmt: skip
     page = _draw(study, inside, [decided, *tables, *details], folder, progress)
     targets["report.html"].write(page.encode())
     for name, sheets in (("tables.txt", [*tables, *details]), ("statements.txt", [decided])):
@@ -140,12 +113,12 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         _print(sheets, new_console(text))
         targets[name].write(text.getvalue().encode())
     if not quiet:
-        lines = Sheet("Verdict", ("", "largest", "at most"), [check.cells for check in checks])
-        _print([*tables, decided, lines], new_console(colours=colours()))
+        lines = Sheet("Verdict", ("", "largest", "at most"), cells)
+        _print([*tables, decided, lines], new_console())
         say(f"more in tables.txt: {', '.join(sheet.title.partition(',')[0] for sheet in details)}")
         drawn = "Figs 1-10, sinusoidal, laws, inside and mesh as PDF and PNG"
         say(f"written to {folder.path}: {', '.join(_FILES)}, {drawn}")
-        print(f"verdict: {verdict['verdict']}")
+        print(f"verdict: {verdict}")
         print(f"next: open {targets['report.html'].path} in a browser, or {program()} init")
     return good
 
@@ -230,7 +203,7 @@ def _details(study: Result) -> list[Sheet]:
     from ..results.fields import displacement_under_punch
 
     numbers = [state_of(data, c, _STROKE, _PLACE) for c in (SLOW, FAST)]
-    X, displacements = displacement_under_punch(scene, numbers, _DEGREE)
+    X, displacements = displacement_under_punch(scene, numbers, 7)  # for four digits
     places = [int(np.abs(X - place).argmin()) for place in (-1.0, 0.0, 1.0)]
     rows = [
         (f"{name} ({component})", *(f"{1e6 * of_state[i][n]:+.4f}" for n in places))
@@ -247,34 +220,28 @@ def _details(study: Result) -> list[Sheet]:
 
 def _judged(
     study: Result, inside: Result, block: Result, tractions: Result, *assembled: Result
-) -> tuple[Sheet, list[Check]]:
+) -> tuple[Sheet, _Checks]:
     """Table of the methods beside each other, and every line of the verdict."""
     scene, data = study.scene, study.data
     methods, off = _methods(study, block)
     off_table = not_as_printed(scene.solid, scene.friction.pre_sliding)
     rows = [row for name in INTENSITIES for row in intensity_rows(name, data)]
     entries = sum(not row.agrees for row in rows) + 12 - len(rows)
-    below = [check for check in _checks(inside) if "inside" in check.text]
-    checks = [
-        Check("Tables 1 and 3: entries not as printed, misprints aside", off_table, 0),
-        Check("Tables 4 and 5: rows not as printed, of 12", entries, 0),
-        *_checks(study),
-        Check("σ_YY of the raw nodal forces, no exponent assumed, relative", _raw(data), 1e-6),
-        Check("edge exponents fitted to them, absolute", _worst(study, "exponents"), 1e-4),
-        *below,
-        Check("Runge-Kutta against the exact law, f", off["rk4"], 1e-5),
-        Check("expansion-collocation against the closed form, K_I, relative", off["collocation"], 1e-12),
-        Check("the block of Fig 4: K_I, relative; its walls set it", off["block"], 1e-2),
-        Check(
-            "Dahl's friction and the pressure as tractions: v,X under the punch over that beside it",
-            _worst(tractions, "slope under the punch"), 1e-5,
-        ),
-        Check(
-            "K_I by dolfinx's own assembler on the same mesh at the same degree, relative",
-            _apart(*assembled), 1e-9,
-        ),
-    ]  # fmt: skip
-    return methods, checks
+    return methods, {
+        "Tables 1 and 3: entries not as printed, misprints aside": (off_table, 0),
+        "Tables 4 and 5: rows not as printed, of 12": (entries, 0),
+        **judged(study.attributes),
+        "σ_YY of the raw nodal forces, no exponent assumed, relative": (_raw(data), 1e-6),
+        "edge exponents fitted to them, absolute": (_worst(study, "exponents"), 1e-4),
+        **{text: figures for text, figures in judged(inside.attributes).items() if "inside" in text},
+        "Runge-Kutta against the exact law, f": (off["rk4"], 1e-5),
+        "expansion-collocation against the closed form, K_I, relative": (off["collocation"], 1e-12),
+        "the block of Fig 4: K_I, relative; its walls set it": (off["block"], 1e-2),
+        "Dahl's friction and the pressure as tractions: v,X under the punch over that beside it":
+            (_worst(tractions, "slope under the punch"), 1e-5),
+        "K_I by dolfinx's own assembler on the same mesh at the same degree, relative":
+            (_apart(*assembled), 1e-9),
+    }  # fmt: skip
 
 
 #: X/L of the steps of the study's Runge-Kutta scheme.

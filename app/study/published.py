@@ -70,7 +70,9 @@ class IntensityRow:
 _DIGITS = 4
 
 
-def state_of(data: dict[str, Any], c: float, motion: str, X: float, **law: float) -> int:
+def state_of(
+    data: dict[str, Any], c: float = SLOW, motion: str = "FM1", X: float = 0.2, **law: float
+) -> int:
     """Number of the state at a speed, on a stroke, at a place X/L, of the reference law or another.
 
     Raises:

@@ -7,6 +7,7 @@ below.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -64,6 +65,7 @@ class Results:
     def __init__(self, data: dict[str, Any], solid: Solid) -> None:
         method = FEM if stresses.IN_PLANE[FEM].path in data else CLOSED_FORM
         self.data, self.solid = data, solid
+        self.state = partial(state_of, data)
         self.X: NDArray[np.float64] = data[stresses.SURFACE_X.path]
         self.in_plane, self.pressure = (
             data[rows[method].path] for rows in (stresses.IN_PLANE, stresses.PRESSURE)
@@ -77,14 +79,6 @@ class Results:
         self.beside = f"{self.X[self.ahead]:.3g} a"
         #: X/L of the steps of a forward stroke.
         self.places: NDArray[np.float64] = data[runs.LOOP_X.path].reshape(3, -1)[0]
-
-    def state(self, c: float = SLOW, motion: str = "FM1", X: float = 0.2, **law: float) -> int:
-        """Number of a state.
-
-        Raises:
-            LookupError: the archive does not have it.
-        """
-        return state_of(self.data, c, motion, X, **law)
 
     def over(self, name: str, law: dict[str, float]) -> list[dict[str, float]]:
         """Laws in which one parameter takes all its values and the others are those of a law."""

@@ -1,6 +1,6 @@
 """Table of archived quantities: archives, checks, comparisons, plans and pages follow from it."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
@@ -14,7 +14,6 @@ from . import stresses, validity, yielding  # noqa: F401
 from . import over_time, layers, swept  # noqa: F401
 
 # isort: on
-from galinx.solvers.contact import INTENSITIES
 from galinx.solvers.friction import LAWS
 from galinx.solvers.parameters import parameters
 from galinx.solvers.profiles import PROFILES
@@ -24,7 +23,6 @@ from .quantity import (
     ALONG,
     CLOSED_FORM,
     FEM,
-    FRICTION_ALONE,
     INSIDE,
     LOCAL,
     POINT,
@@ -32,6 +30,7 @@ from .quantity import (
     SIE,
     STATE,
     TEXT,
+    WORDS,
     Quantity,
 )
 
@@ -124,20 +123,3 @@ def large(path: str) -> bool:
     """True where a dataset holds a value at every point of every state."""
     row = table().get(path)
     return row is not None and STATE in row.over and bool({POINT, INSIDE, ALONG} & set(row.over))
-
-
-class _Words(Collection[str]):
-    """Words of a scene's output.quantities, those of users' quantities among them."""
-
-    def __iter__(self) -> Iterator[str]:
-        words = (quantity.asked_by for quantity in QUANTITIES.values() if quantity.asked_by)
-        return iter(dict.fromkeys([FRICTION_ALONE, INTENSITIES, *words]))
-
-    def __len__(self) -> int:
-        return len(list(iter(self)))
-
-    def __contains__(self, word: object) -> bool:
-        return word in list(iter(self))
-
-
-WORDS = _Words()

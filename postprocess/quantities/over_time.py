@@ -40,7 +40,8 @@ def _by_method(
         SIE: {"about": f"{about}, integral equation", "nan_allowed": ANYWHERE},
     }
     own = {method: attributes | others for method, attributes in own.items()}
-    return by_method(f"time/{name}", unit, about, over, None, own, asked_by=TIME)
+    section, _, name = f"time/{name}".rpartition("/")
+    return by_method(name, unit, about, None, own, section, over=over, asked_by=TIME)
 
 
 SPEED = _row(
@@ -66,14 +67,14 @@ STEADY_K_I = _row(
     nan_allowed=ANYWHERE,
 )  # fmt: skip
 
-V0 = _by_method("{method}/v0", "N/(2mu)", "indentation since the punch touched")
+V0 = _by_method("v0", "N/(2mu)", "indentation since the punch touched")
 CENTRE = _by_method(
-    "{method}/centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X",
+    "centre_of_pressure", "1", "centre of the pressure over the half-width, towards +X",
     scale=X_OVER_A,
 )  # fmt: skip
 K_I_LEFT, K_I_RIGHT = (
     _by_method(
-        f"{{method}}/K_I_{side}", "1", f"stress intensity factor over time at {at}, over N",
+        f"K_I_{side}", "1", f"stress intensity factor over time at {at}, over N",
         nan_allowed=ANYWHERE,
     )
     for side, at in (("left", "X = -a"), ("right", "X = a"))
@@ -110,13 +111,13 @@ SHARES = (0.1, 0.01, 0.001)
 SHARE = "10, 1 and 0.1 %"
 
 OFF = _by_method(
-    "{method}/off_steady", "1",
+    "off_steady", "1",
     "distance at the end from steady motion under the load there, the largest difference of K_I, "
     "relative, and of the centre, over the half-width",
     (START,), nan_allowed=ANYWHERE, range=NOT_NEGATIVE,
 )  # fmt: skip
 WITHIN = _by_method(
-    "{method}/steady_within", "a/c_s",
+    "steady_within", "a/c_s",
     "time from which on off_steady is at most 0.1, 0.01 and 0.001; beyond /time/t by a decay like "
     "1/t, NaN where the second half of the motion does not show it",
     (START, SHARE), nan_allowed=ANYWHERE, range=NOT_NEGATIVE,
@@ -129,15 +130,15 @@ APPROACH = _row(
 )  # fmt: skip
 
 OF_LOAD = _by_method(
-    "{method}/work_of_load", "N^2/(4mu)", "work of the load", nan_allowed=ANYWHERE
+    "work_of_load", "N^2/(4mu)", "work of the load", nan_allowed=ANYWHERE
 )  # fmt: skip
 OF_FRICTION = _by_method(
-    "{method}/work_of_friction", "N^2/(4mu)",
+    "work_of_friction", "N^2/(4mu)",
     "work of friction on the surface, by velocities seen from the punch", nan_allowed=ANYWHERE,
 )  # fmt: skip
 LEFT, RIGHT = (
     _by_method(
-        f"{{method}}/sigma_XX_{side}", "N/(2a)", f"in-plane stress on the free surface at X = {X} a",
+        f"sigma_XX_{side}", "N/(2a)", f"in-plane stress on the free surface at X = {X} a",
         nan_allowed=ANYWHERE,
     )
     for side, X in (("left", "-1.05"), ("right", "1.05"))
@@ -191,7 +192,7 @@ SURFACE_PLACES = _row(
 )  # fmt: skip
 SURFACE_IN_PLANE, SURFACE_PRESSURE, SURFACE_SHEAR = (
     _by_method(
-        f"surface/{{method}}/sigma_{ij}", "N/(2a)", f"{what} over time", (START, OUTPUT, SURFACE_PLACE)
+        f"surface/sigma_{ij}", "N/(2a)", f"{what} over time", (START, OUTPUT, SURFACE_PLACE)
     )
     for ij, what in (
         ("XX", "in-plane stress on the surface"), ("YY", "contact stress"), ("XY", "friction stress"),

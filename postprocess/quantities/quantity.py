@@ -7,7 +7,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from galinx.registry import Registry
-from galinx.solvers.contact import CLOSED_FORM, FEM, SIE
+from galinx.solvers.contact import CLOSED_FORM, FEM, INTENSITIES, SIE
 from galinx.solvers.parameters import Range
 from galinx.texts import unseen
 
@@ -114,22 +114,27 @@ def entry(of: Callable[[Any], NDArray], *index: Any) -> Callable[[Any, Any], NDA
 
 
 def by_method(
-    path: str, unit: str, about: str, over: tuple[str, ...], of: Callable[[Any, Any], NDArray] | None,
-    own: Mapping[str, Mapping[str, Any]] | Sequence[str], **options: Any,
+    name: str, unit: str, about: str, of: Callable[[Any, Any], NDArray] | None,
+    own: Mapping[str, Mapping[str, Any]] | Sequence[str], section: str = "states", **options: Any,
 ) -> dict[str, Quantity]:  # fmt: skip
-    """Quantity that several methods give, by method.
+    """Quantity that several methods give, by method; one value a state unless ``over`` is given.
 
     Args:
-        path, unit, about, over, of: as of a quantity; ``{method}`` in the path stands for the method.
+        name, section: of its path, ``section/METHOD/name``.
+        unit, about, of: as of a quantity.
         own: the methods, or what each has of its own, other attributes by name, by method.
         options: further attributes, the same for all methods.
     """
-    common: dict[str, Any] = {"unit": unit, "about": about, "over": over, "of": of} | options
+    common: dict[str, Any] = {"unit": unit, "about": about, "over": (STATE,), "of": of} | options
     attributes = own if isinstance(own, Mapping) else {method: {} for method in own}
     return {
-        method: Quantity(**common | {"path": path.format(method=method), "method": method, **each})
+        method: Quantity(**common | {"path": f"{section}/{method}/{name}", "method": method, **each})
         for method, each in attributes.items()
     }
+
+
+#: Words of a scene's output.quantities, those of users' quantities among them; values mean nothing.
+WORDS = dict.fromkeys((FRICTION_ALONE, INTENSITIES))
 
 
 class Table(Registry[Quantity]):
@@ -146,7 +151,10 @@ class Table(Registry[Quantity]):
         for text in (quantity.unit, quantity.about):
             if fault := unseen(text):
                 raise ValueError(f"the {self.noun} {quantity.path}, {text!r}: {fault}")
-        return self.register(quantity.path, quantity)
+        self.register(quantity.path, quantity)
+        if quantity.asked_by:
+            WORDS[quantity.asked_by] = None
+        return quantity
 
     def add_all(self, names: Mapping[str, Any]) -> None:
         """Add all quantities among a module's names, single ones and those by method."""

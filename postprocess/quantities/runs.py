@@ -129,17 +129,15 @@ SLIDER = "slider"
 #: Dimensions: laws, times, and steps of a cycle.
 LAW, TIME, CYCLE = "laws", "times", "steps of a cycle"
 
-_ANY = Range()
 
-
-def _row(name: str, unit: str, about: str, over: tuple[str, ...], range: Range = _ANY) -> Quantity:
+def _row(name: str, unit: str, about: str, over: tuple[str, ...], **options: Any) -> Quantity:
     nan = ANYWHERE if TIME not in over else "never"
     return Quantity(
-        f"slider/{name}", unit, about, over, asked_by=SLIDER, nan_allowed=nan, range=range
+        f"slider/{name}", unit, about, over, asked_by=SLIDER, nan_allowed=nan, **options
     )  # fmt: skip
 
 
-TIMES = _row("time", "s", "times", (TIME,), NOT_NEGATIVE)
+TIMES = _row("time", "s", "times", (TIME,), range=NOT_NEGATIVE)
 POSITION = _row("position", "m", "position of the slider", (LAW, TIME))
 VELOCITY = _row("velocity", "m/s", "velocity of the slider", (LAW, TIME))
 FRICTION = _row("f", "1", "friction coefficient of the slider, the spring's pull over N where it sticks",
@@ -156,7 +154,7 @@ OUTCOME = Quantity(
     "does not break away, or no whole cycle yet",
     (LAW,), asked_by=SLIDER,
 )  # fmt: skip
-PERIOD = _row("period", "s", "period of stick-slip, the last; NaN for none", (LAW,), NOT_NEGATIVE)
+PERIOD = _row("period", "s", "period of stick-slip, the last; NaN for none", (LAW,), range=NOT_NEGATIVE)
 SLIP = _row("slip_per_cycle", "m", "slip per cycle of stick-slip; NaN for none", (LAW,))
 PEAK = _row("peak_velocity", "m/s", "peak velocity in a cycle of stick-slip; NaN for none", (LAW,))
 LEAST = _row("least_velocity", "m/s", "least velocity in a cycle of stick-slip; NaN for none", (LAW,))

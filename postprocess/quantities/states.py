@@ -89,7 +89,7 @@ K_I_BOTH = Quantity(
 def _intensity(side: str, at: str, i: int) -> dict[str, Quantity]:
     about = f"stress intensity factor at {at}, normalised"
     return by_method(
-        f"states/{{method}}/K_I_{side}", "1", about, (STATE,), lambda s, _: s.K_I[:, i], {
+        f"K_I_{side}", "1", about, lambda s, _: s.K_I[:, i], {
             CLOSED_FORM: {"requires": (SOLVED,)},
             FEM: {"mode": _CONTACT, "about": f"{about}, Jacobi moments"},
             SIE: {"requires": (SOLVED,), "about": f"{about}, layered half-plane"},
@@ -120,9 +120,8 @@ INDENTATION = Quantity(
     lambda s, body: s.v0 * body.displacement, FEM, _CONTACT,
 )  # fmt: skip
 ESTIMATE = by_method(
-    "states/{method}/estimate", "1",
-    "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
-    (STATE,), lambda s, _: s.estimates[INTENSITIES], {
+    "estimate", "1", "estimated relative error of K_I, sigma_YY and its moments, no closed form used",
+    lambda s, _: s.estimates[INTENSITIES], {
         FEM: {"mode": _CONTACT},
         SIE: {
             "about": "estimated relative error of K_I and pressure, by fewer unknowns and the kernel's "
@@ -138,52 +137,45 @@ FITTED = Quantity(
 
 
 HALF_WIDTH = by_method(
-    "states/{method}/half_width", "m", "half-width of the contact, over which the state's lengths are",
-    (STATE,), lambda s, _: s.half_width, _METHODS, mode=FREE_ENDS, range=Range(above=0.0),
-    scale=CONTACT,
+    "half_width", "m", "half-width of the contact, over which the state's lengths are",
+    lambda s, _: s.half_width, _METHODS, mode=FREE_ENDS, range=Range(above=0.0), scale=CONTACT,
 )  # fmt: skip
 CENTRE = by_method(
-    "states/{method}/centre", "m",
-    "middle of the contact, from the punch's axis; the state's positions are from there",
-    (STATE,), lambda s, _: s.centre, _METHODS, mode=FREE_ENDS, scale=CONTACT,
+    "centre", "m", "middle of the contact, from the punch's axis; the state's positions are from there",
+    lambda s, _: s.centre, _METHODS, mode=FREE_ENDS, scale=CONTACT,
 )  # fmt: skip
 LARGEST = by_method(
-    "states/{method}/largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
-    (STATE,), lambda s, _: s.largest[0], _METHODS, mode=FREE_ENDS,
-    nan_allowed=ANYWHERE, range=Range(above=0.0),
+    "largest_pressure", "N/(2a)", "largest contact pressure; NaN where it is infinite",
+    lambda s, _: s.largest[0], _METHODS, mode=FREE_ENDS, nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
 LARGEST_X = by_method(
-    "states/{method}/largest_pressure_position", "1",
+    "largest_pressure_position", "1",
     "place of the largest contact pressure, over the half-width; NaN where it is infinite",
-    (STATE,), lambda s, _: s.largest[1], _METHODS, mode=FREE_ENDS, nan_allowed=ANYWHERE,
+    lambda s, _: s.largest[1], _METHODS, mode=FREE_ENDS, nan_allowed=ANYWHERE,
     range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
 )  # fmt: skip
 
 #: Resultants of a prescribed pressure, by method.
 RESULTANT = by_method(
-    "states/{method}/normal_force", "N/m", "resultant of the prescribed pressure", (STATE,),
-    lambda s, body: s.normal_force * body.force,
-    (CLOSED_FORM, SIE), mode=OWN_PRESSURE, accuracy=True,
+    "normal_force", "N/m", "resultant of the prescribed pressure",
+    lambda s, body: s.normal_force * body.force, (CLOSED_FORM, SIE), mode=OWN_PRESSURE, accuracy=True,
 )  # fmt: skip
 
 #: Resultant and centre of the tractions where friction varies along the contact, by method.
 RESULTANT_RATIO = by_method(
-    "states/{method}/resultant_ratio", "1", "resultant of sigma_XY over that of sigma_YY", (STATE,),
+    "resultant_ratio", "1", "resultant of sigma_XY over that of sigma_YY",
     lambda s, _: s.resultant_ratio, _METHODS, mode=VARYING,
 )  # fmt: skip
 PRESSURE_CENTRE = by_method(
-    "states/{method}/pressure_centre", "1", "centre of pressure over the half-width", (STATE,),
+    "pressure_centre", "1", "centre of pressure over the half-width",
     lambda s, _: s.pressure_centre, _METHODS, mode=VARYING, scale=X_OVER_A,
 )  # fmt: skip
-
-#: Share of the larger intensity below which an error is over this share rather than over itself.
-_VANISHING = 0.1
 
 
 def off_by(fem: NDArray, exact: NDArray) -> NDArray[np.float64]:
     """Larger relative error of the stress intensity factors at both ends, (2, states); (states,)."""
-    # At a free end it is 0, and small where a tilted punch is about to lift off.
-    size = np.maximum(np.abs(exact), _VANISHING * np.abs(exact).max(axis=0))
+    # At a free end it is 0, and small where a tilted punch is about to lift off: a tenth of the larger.
+    size = np.maximum(np.abs(exact), 0.1 * np.abs(exact).max(axis=0))
     return np.max(np.abs(fem - exact) / np.where(size > 0.0, size, 1.0), axis=0)
 
 
@@ -200,11 +192,11 @@ TRUE_ERROR = Quantity(
 )  # fmt: skip
 #: Residuals of one method alone, by method.
 RESIDUAL = by_method(
-    "states/{method}/residual", "1",
+    "residual", "1",
     "residual of the integral equation at the contact pressure, by a rule of its own, over the "
     "pressure's part in it",
-    (STATE,), lambda s, _: s.residual,
-    (CLOSED_FORM, FEM), mode=ALONE, range=NOT_NEGATIVE, accuracy=True, requires=(SOLVED,),
+    lambda s, _: s.residual, (CLOSED_FORM, FEM), mode=ALONE, range=NOT_NEGATIVE, accuracy=True,
+    requires=(SOLVED,),
 )  # fmt: skip
 SLOPE = Quantity(
     "states/fem/slope_under_punch", "1",

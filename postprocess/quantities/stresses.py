@@ -44,14 +44,14 @@ RATIO_ALONG = Quantity(
     LOCAL, VARYING, ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 PRESSURE = by_method(
-    "surface/{method}/sigma_YY", "N/(2a)", "contact stress", (STATE, POINT),
+    "sigma_YY", "N/(2a)", "contact stress",
     lambda s, _: s.surface.σ_YY, {
         CLOSED_FORM: {"about": "contact stress, NaN outside the contact (Eq 55)"},
         FEM: {
             "about": "contact stress from Jacobi moments of the nodal forces, NaN outside the contact",
         },
         SIE: {"about": "contact stress, NaN outside the contact, layered half-plane"},
-    }, asked_by=ON_SURFACE, nan_allowed=BESIDE,
+    }, "surface", over=(STATE, POINT), asked_by=ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 RAW_PRESSURE = Quantity(
     "surface/fem/sigma_YY_raw", "N/(2a)",
@@ -59,12 +59,12 @@ RAW_PRESSURE = Quantity(
     (STATE, POINT), lambda s, _: s.surface.raw, FEM, "contact", ON_SURFACE, nan_allowed=BESIDE,
 )  # fmt: skip
 IN_PLANE = by_method(
-    "surface/{method}/sigma_XX", "N/(2a)", "in-plane stress on the surface", (STATE, POINT),
+    "sigma_XX", "N/(2a)", "in-plane stress on the surface",
     lambda s, _: s.surface.σ_XX, {
         CLOSED_FORM: {"about": "in-plane stress on the surface (Eq 32)"},
         FEM: {},
         SIE: {"about": "in-plane stress on the surface, layered half-plane"},
-    }, asked_by=ON_SURFACE,
+    }, "surface", over=(STATE, POINT), asked_by=ON_SURFACE,
 )  # fmt: skip
 
 #: Distance over a from the middle up to which stresses along the surface are output.
@@ -74,16 +74,14 @@ _METHODS = (CLOSED_FORM, FEM, SIE)
 
 def _extreme(end: str, what: str, i: int) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
     """Quantities of the highest or the lowest in-plane stress, and of its place."""
-    path = f"states/{{method}}/sigma_XX_{end}"
     value = by_method(
-        path, "N/(2a)",
+        f"sigma_XX_{end}", "N/(2a)",
         f"{what} in-plane stress on the surface, free ends of the contact included, further than 0.01 a "
         "from sharp edges and 0.02 a from tips, at which it is infinite",
-        (STATE,), lambda s, _: s.extremes_in_plane[i][0], _METHODS,
-        asked_by=ON_SURFACE,
+        lambda s, _: s.extremes_in_plane[i][0], _METHODS, asked_by=ON_SURFACE,
     )  # fmt: skip
     place = by_method(
-        f"{path}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width", (STATE,),
+        f"sigma_XX_{end}_X_over_a", "1", f"place of the {what} in-plane stress, over the half-width",
         lambda s, _: s.extremes_in_plane[i][1], _METHODS, asked_by=ON_SURFACE, scale=X_OVER_A,
     )  # fmt: skip
     return value, place
@@ -102,7 +100,7 @@ def estimate(word: str, name: str, **own: str) -> dict[str, Quantity]:
         own: what is estimated, in words, by method.
     """
     return by_method(
-        f"states/{{method}}/estimate_{name}", "1", "", (STATE,), lambda s, _: s.estimates[word],
+        f"estimate_{name}", "1", "", lambda s, _: s.estimates[word],
         {method: {"about": f"estimated error of {about}"} for method, about in own.items()},
         asked_by=word, range=NOT_NEGATIVE, accuracy=True,
     )  # fmt: skip

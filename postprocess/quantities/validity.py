@@ -75,14 +75,13 @@ STRAIN = _within(
 
 #: Largest tension under the punch, by method, and its place.
 TENSION = by_method(
-    "states/{method}/tension", "N/(2a)", "largest tension under the punch, 0 for none", (STATE,),
+    "tension", "N/(2a)", "largest tension under the punch, 0 for none",
     lambda s, _: tension(s.surface)[0], (CLOSED_FORM, FEM, SIE), asked_by=ON_SURFACE,
     range=NOT_NEGATIVE,
 )  # fmt: skip
 TENSION_X = by_method(
-    "states/{method}/tension_X_over_a", "1",
-    "place of the largest tension, over the half-width; NaN for none",
-    (STATE,), lambda s, _: tension(s.surface)[1], (CLOSED_FORM, FEM, SIE),
+    "tension_X_over_a", "1", "place of the largest tension, over the half-width; NaN for none",
+    lambda s, _: tension(s.surface)[1], (CLOSED_FORM, FEM, SIE),
     asked_by=ON_SURFACE, nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
 )  # fmt: skip
 

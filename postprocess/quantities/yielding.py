@@ -1,9 +1,8 @@
 """Quantities of yield by von Mises, σ_ZZ included: at which load, where, and how deep."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
-
-from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
 from galinx.solvers.contact.solution import (
@@ -40,17 +39,16 @@ _INFINITE = "NaN where infinite: with friction, at a jump of the pressure"
 _BEYOND = "NaN beyond 10 a"
 
 
-def _both(
-    name: str, unit: str, about: str, of: Callable[[Any, Any], NDArray], mode: str = "",
-    requires: tuple[str, ...] = (UNIFORM,),
-    methods: tuple[str, ...] = (CLOSED_FORM, FEM), **options: Any,
-) -> dict[str, Quantity]:  # fmt: skip
-    """Quantity of a state by several methods."""
-    options = {"range": NOT_NEGATIVE, "nan_allowed": ANYWHERE} | options
-    return by_method(
-        f"states/{{method}}/{name}", unit, about, (STATE,), of, methods, mode=mode, asked_by=YIELD,
-        requires=requires, **options,
-    )  # fmt: skip
+#: Quantity of a state by both methods of uniform solids.
+_both = partial(
+    by_method, own=(CLOSED_FORM, FEM), asked_by=YIELD, range=NOT_NEGATIVE, nan_allowed=ANYWHERE,
+    requires=(UNIFORM,),
+)  # fmt: skip
+#: Quantity of each layer and the solid below, by both methods of layered solids.
+_of_layers = partial(
+    by_method, own=(SIE, FEM), section="layers", over=(STATE, LAYER), mode=FINITE, asked_by=YIELD,
+    range=NOT_NEGATIVE, nan_allowed=ANYWHERE, requires=(LAYERED,),
+)  # fmt: skip
 
 
 def _largest(
@@ -68,27 +66,24 @@ def _largest(
     )
     return (
         _both(
-            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, FINITE,
+            name, "N/(2a)", f"{about}; {_INFINITE}", lambda s, _: of(s).value, mode=FINITE,
             **options,
         ),
         _both(
             f"{name}_X_over_a", "1", f"{place} along the surface, over the half-width",
-            lambda s, _: of(s).X, FINITE, range=Range(), scale=X_OVER_A, **options,
+            lambda s, _: of(s).X, mode=FINITE, range=Range(), scale=X_OVER_A, **options,
         ),
         _both(
             f"{name}_Y_over_a", "1", f"{place} outwards, over the half-width",
-            lambda s, _: of(s).Y, FINITE, range=heights, scale=OVER_A, **options,
+            lambda s, _: of(s).Y, mode=FINITE, range=heights, scale=OVER_A, **options,
         ),
     )  # fmt: skip
 
 
 VON_MISES, VON_MISES_X, VON_MISES_Y = _largest(
-    "von_mises",
-    "von Mises stress",
-    lambda s: s.strength.von_mises,
-    requires=(),
-    methods=(CLOSED_FORM, SIE, FEM),
-)
+    "von_mises", "von Mises stress", lambda s: s.strength.von_mises, requires=(),
+    own=(CLOSED_FORM, SIE, FEM),
+)  # fmt: skip
 SHEAR, SHEAR_X, SHEAR_Y = _largest(
     "max_shear", "shear stress", lambda s: s.strength.shear, direction=" in the plane"
 )
@@ -105,28 +100,27 @@ PUNCH_VON_MISES, PUNCH_VON_MISES_X, PUNCH_VON_MISES_Y = _largest(
 )  # fmt: skip
 PUNCH_FIRST_LOAD = _both(
     "punch_first_yield_load", "N/m", "load at first yield of the elastic punch, N per depth",
-    lambda s, _: s.strength_of_punch.first_load, FINITE, requires=(POWER, IN_PUNCH, PUNCH_STRENGTH),
+    lambda s, _: s.strength_of_punch.first_load, mode=FINITE, requires=(POWER, IN_PUNCH, PUNCH_STRENGTH),
 )  # fmt: skip
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",
     "load at first yield, N per depth at which the solid yields somewhere; 0 where its stress is "
     "infinite",
-    lambda s, _: s.strength.first_load, FINITE, requires=(POWER, STRENGTH, UNIFORM),
+    lambda s, _: s.strength.first_load, mode=FINITE, requires=(POWER, STRENGTH, UNIFORM),
 )  # fmt: skip
 REACH_LEFT, REACH_RIGHT = (
     _both(
         f"yield_reach_{side}", "1",
         f"reach of yield from {at}, the largest distance on its side of the middle, at the load, over "
         f"the half-width; {_BEYOND}",
-        entry(lambda s: s.strength.reach, ..., i), PUNCH, scale=OVER_A,
+        entry(lambda s: s.strength.reach, ..., i), mode=PUNCH, scale=OVER_A,
     )
     for i, (side, at) in enumerate((("left", "X = -a"), ("right", "X = a")))
 )  # fmt: skip
 DEPTH = _both(
     "yield_depth", "1",
     f"depth of yield, the largest at the load, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.depth, requires=(STRENGTH, UNIFORM),
-    scale=OVER_A,
+    lambda s, _: s.strength.depth, requires=(STRENGTH, UNIFORM), scale=OVER_A,
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",
@@ -137,37 +131,25 @@ ESTIMATE_YIELD = Quantity(
 )  # fmt: skip
 
 
-def _of_layers(
-    name: str, unit: str, about: str, of: Callable[[Any], NDArray], range: Range = NOT_NEGATIVE,
-    requires: tuple[str, ...] = (), scale: str = "",
-) -> dict[str, Quantity]:  # fmt: skip
-    """Quantity of each layer and the solid below, by both methods of layered solids."""
-    return by_method(
-        f"layers/{{method}}/{name}", unit, about, (STATE, LAYER), lambda s, _: of(s),
-        (SIE, FEM), mode=FINITE, asked_by=YIELD, nan_allowed=ANYWHERE,
-        range=range, requires=(LAYERED, *requires), scale=scale,
-    )  # fmt: skip
-
-
 #: Largest von Mises stress of each layer and of the solid below, its place, and the stress over strength.
 OF_LAYERS = _of_layers(
     "von_mises", "N/(2a)", "largest von Mises stress in each layer and the solid below",
-    lambda s: s.strength.peaks.value,
+    lambda s, _: s.strength.peaks.value,
 )  # fmt: skip
 OF_LAYERS_X = _of_layers(
     "von_mises_X_over_a", "1",
     "place of the largest von Mises stress along the surface, over the half-width",
-    lambda s: s.strength.peaks.X, Range(), scale=X_OVER_A,
+    lambda s, _: s.strength.peaks.X, range=Range(), scale=X_OVER_A,
 )  # fmt: skip
 OF_LAYERS_Y = _of_layers(
     "von_mises_Y_over_a", "1", "place of the largest von Mises stress outwards, over the half-width",
-    lambda s: s.strength.peaks.Y, _BELOW, scale=OVER_A,
+    lambda s, _: s.strength.peaks.Y, range=_BELOW, scale=OVER_A,
 )  # fmt: skip
 OVER_STRENGTH = _of_layers(
     "von_mises_over_strength", "1",
     "largest von Mises stress over the yield strength, 1 or more where it yields; NaN where the strength "
     "is not given",
-    lambda s: s.strength.over_strength, requires=(STRENGTH,),
+    lambda s, _: s.strength.over_strength, requires=(LAYERED, STRENGTH),
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -76,25 +76,26 @@ class Move:
     first: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FittedLaw:
     """Fitted law, with the covariance of its parameters.
 
     Attributes:
         law: the law.
-        values: its parameters by key.
+        parameters: its parameters by key, in SI, those that the data do not determine among them: with
+            other values of these the rest would be others, too.
         names: names of the fitted numbers, as ``"mu_c"`` and ``"elements[2, 1]"``, (m,).
         best: fitted numbers, (m,).
         covariance: covariance of the fitted numbers, (m, m); NaN where the data do not determine them.
         sizes: deviation of each number from which on the data do not determine it, (m,).
         f: friction of the law at the samples of each measurement, NaN before the first motion.
         samples: number of samples in motion.
-        rms: root mean square of the residuals of f at these.
+        rms: root mean square of measured less fitted f at these, dimensionless.
         every: step between the samples that it is fitted to, 1 unless there are too many.
     """
 
     law: FrictionLaw
-    values: dict[str, Any]
+    parameters: dict[str, Any]
     names: tuple[str, ...]
     best: NDArray[np.float64]
     covariance: NDArray[np.float64]
@@ -105,18 +106,21 @@ class FittedLaw:
     every: int
 
     @property
-    def deviations(self) -> NDArray[np.float64]:
-        """Standard deviations of the fitted numbers, (m,)."""
-        return np.sqrt(np.diag(self.covariance))
+    def deviations(self) -> dict[str, float]:
+        """Standard deviations in SI by the names of the fitted numbers; NaN, or larger than the number,
+        where the data do not determine it."""
+        return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist()))
 
     @property
-    def determined(self) -> NDArray[np.bool_]:
-        """True where the data determine a number: its deviation is smaller than its size, (m,)."""
-        return self.deviations < self.sizes
+    def not_determined(self) -> tuple[str, ...]:
+        """Names of numbers that the data do not determine: their deviations are not below their sizes."""
+        errors = zip(self.deviations.items(), self.sizes.tolist())
+        return tuple(name for (name, error), size in errors if not error < size)
 
     @property
     def aic(self) -> float:
-        """Akaike's criterion, up to a constant of the data: n ln(Σr²/n) + 2 (m + 1), the less the better.
+        """Akaike's criterion, up to a constant of the data: n ln(Σr²/n) + 2 (m + 1); of laws fitted to
+        the same data that with a smaller one describes them better.
 
         (H. Akaike, IEEE Transactions on Automatic Control 19 (1974) 716.) The noise is a parameter, too.
         """

@@ -94,7 +94,7 @@ def test_scenes_of_a_page_are_valid(page):
         if layers := tree.pop("layer", []):
             for keys in layers:
                 assert keys.keys() <= SECTIONS["layer"].keys(keys).keys(), f"{page.name}: {keys}"
-            solved = changed(templates()["coating"].text, {})
+            solved = changed(templates()["coating"], {})
             head, _, rest = solved.partition("[[layer]]")
             parse(f"{head}{block}\n[friction]{rest.partition('[friction]')[2]}", page.name)
             continue
@@ -107,7 +107,7 @@ def test_scenes_of_a_page_are_valid(page):
             changes["motion.c"] = None
         if changes.get("punch.profile", "flat") != "flat":
             changes["punch.half_width"] = None
-        parse(changed(templates()["tables4_5"].text, changes), page.name)
+        parse(changed(templates()["tables4_5"], changes), page.name)
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "matlab")], ids=name_of)

@@ -78,14 +78,14 @@ def test_friction_that_drives_the_motion_has_the_wrong_sign():
 def test_several_measurements_have_one_set_of_parameters():
     slow, fast = swing("lugre", LUGRE, speed=5e-4), swing("lugre", LUGRE, speed=2e-2, seed=2)
     both = galinx.fit([slow, fast], "lugre", fix={"stribeck_exponent": 2.0})
-    assert both.result.samples == 597 and len(both.result.f) == 2
+    assert both.samples == 597 and len(both.f) == 2
     for key, value in both.deviations.items():
         true = LUGRE.get(key, 0.0)
         assert abs(both.parameters[key] - true) < 4.0 * value, key
     alone = galinx.fit(slow, "lugre", fix={"stribeck_exponent": 2.0})
     assert both.deviations["mu_c"] < alone.deviations["mu_c"]
     first = friction(both.law, moves(slow.t, slow.X, True), 300)
-    np.testing.assert_array_equal(both.result.f[0], first)
+    np.testing.assert_array_equal(both.f[0], first)
 
 
 def written(measured, path, head="time [s],position [mm],f", decimal=".", separator=",", load=0.0):

@@ -80,16 +80,6 @@ def random_fit(name, seed):
     return true, fit(kind, [Measured(t, X, f)], fixed, {}, len(true.get("elements", ())) or 3)
 
 
-@pytest.mark.parametrize("seed", range(5 if THOROUGH else 2))
-@pytest.mark.parametrize("name", ["coulomb", "dahl", "bouc_wen", "stribeck", "lugre", "rate_and_state"])
-def test_random_laws_are_found_within_four_standard_deviations(name, seed):
-    true, found = random_fit(name, seed)
-    off = np.abs(found.best - numbers({"state0": 1.0, "delta": 1.0} | true, found.names))
-    sure = found.determined
-    assert (off[sure] <= 4.0 * found.deviations[sure]).all(), dict(zip(found.names, off))
-    assert found.rms == pytest.approx(NOISE, rel=0.1)
-
-
 @pytest.mark.parametrize("seed", range(3 if THOROUGH else 1))
 @pytest.mark.parametrize("name", ["elasto_plastic", "maxwell_slip", "gms"])
 def test_laws_of_many_numbers_leave_little_more_than_noise(name, seed):
@@ -121,12 +111,3 @@ def test_moves_are_split_where_a_law_wants_it():
     assert [m.samples.tolist() for m in apart] == [[1, 2], [3], [5], [6]]
     np.testing.assert_allclose([m.V for m in apart], [1e-6, 2e-6, 1e-6, 2e-6])
     np.testing.assert_allclose(alike[0].slip, [1e-6, 2e-6, 4e-6])
-
-
-def test_too_few_samples_and_unknown_parameters_are_refused():
-    t, X = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1e-6, 2e-6])
-    few = [Measured(t, X, np.array([0.0, 0.1, 0.2]))]
-    with pytest.raises(ValueError, match="2 samples in motion for 3 parameters"):
-        fit(LAWS["dahl"], few, {}, {})
-    with pytest.raises(ValueError, match="the parameter 'mu', expected mu_c, sigma0_over_load, delta"):
-        fit(LAWS["dahl"], few, {"mu": 1.0}, {})

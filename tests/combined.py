@@ -157,10 +157,10 @@ class Case:
 
     def text(self):
         """The scene in TOML."""
-        solid = self._changed(SOLID.get(self.solid, SOLID["isotropic"]))
-        layers = [self._changed(one) for one in LAYERS.get(self.solid, ())]
+        solid = self.of(SOLID.get(self.solid, SOLID["isotropic"]))
+        layers = [self.of(one) for one in LAYERS.get(self.solid, ())]
         solve = {"methods": list(self.methods), "tolerance": self.tolerance}
-        punch = self._changed(PROFILE.get(self.punch, PROFILE["flat"]))
+        punch = self.of(PROFILE.get(self.punch, PROFILE["flat"]))
         if self.punch in PRESSURE:
             solve["mode"] = "traction"
             if rows := PRESSURE[self.punch]:
@@ -180,13 +180,13 @@ class Case:
         tables = [f"[{name}]\n{_lines(values)}" for name, values in sections.items()]
         return "\n".join([*tables, *(f"[[layer]]\n{_lines(one)}" for one in layers)])
 
-    def _changed(self, given):
+    def of(self, given):
         """A sample, mirrored and scaled as this case is."""
         kind = SOLIDS[given["kind"]] if "kind" in given else PROFILES[given["profile"]]
         known, found = parameters(kind), {}
         for key, value in given.items():
             if key == "to":
-                value = self._changed({"kind": given["kind"]} | value)
+                value = self.of({"kind": given["kind"]} | value)
                 del value["kind"]
             elif key == "thickness":
                 value *= self._unit("m")

@@ -4,7 +4,6 @@ A test is ``fast``, or ``fem`` and to be run with every dolfinx, or neither. Non
 itself: its place does, and the fixtures that it asks for.
 """
 
-import fcntl
 import json
 import os
 import subprocess
@@ -12,10 +11,9 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
-from support import HOME, SCENE, command, kept
+from support import HOME, SCENE, command, kept, once
 
 #: Where tests compute no finite elements and start no process.
 FAST = (
@@ -154,32 +152,20 @@ def map_run():
     return kept("map")
 
 
-class Archived(NamedTuple):
-    """A finished command's archive and output."""
-
-    path: Path
-    said: str
-
-
 @pytest.fixture(scope="session")
 def archives():
-    """What the command makes of scenes/tables4_5.toml on one and on two ranks, and what it says."""
-    folder, made = Path(os.environ["GALINX_KEPT"]), []
-    with open(folder / "lock", "w") as lock:
-        # One worker makes them, the others wait for it.
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        for ranks in ((), ("-n", "2")):
-            path, said = folder / f"{len(ranks)}.h5", folder / f"{len(ranks)}.txt"
-            if not said.exists():
-                done = command(*ranks, "run", SCENE, "-o", path)
-                assert done.returncode == 0, done.stderr
-                assert "verdict: PASS" in done.stdout
-                said.write_text(done.stdout, encoding="utf-8")
-            made.append(Archived(path, said.read_text(encoding="utf-8")))
-    return made
+    """The archives that the command makes of scenes/tables4_5.toml on one and on two ranks."""
+
+    def make(path):
+        ranks = ("-n", "2") if path.stem == "two" else ()
+        done = command(*ranks, "run", SCENE, "-o", path)
+        assert done.returncode == 0, done.stderr
+        assert "verdict: PASS" in done.stdout
+
+    return [once(f"{count}.h5", make) for count in ("one", "two")]
 
 
 @pytest.fixture(scope="session")
 def archive(archives):
     """The path of the archive that one rank made; to be read only."""
-    return archives[0].path
+    return archives[0]

@@ -116,30 +116,35 @@ KEPT = {
 }  # fmt: skip
 
 
-@cache
-def kept(name):
-    """One of these results, computed by the first of all processes of tests that reads it."""
-    import galinx
-
-    path = Path(os.environ["GALINX_KEPT"], f"{name}.h5")
+def once(name, make):
+    """A path in the folder of results; the first of all processes of tests that asks for it makes it."""
+    path = Path(os.environ["GALINX_KEPT"], name)
     with open(path.with_suffix(".lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not path.exists():
-            computed(*KEPT[name]).save(path)
-    return galinx.load(path)
+            make(path)
+    return path
+
+
+@cache
+def kept(name):
+    """One of these results, computed once."""
+    import galinx
+
+    return galinx.load(once(f"{name}.h5", lambda path: computed(*KEPT[name]).save(path)))
 
 
 @cache
 def paper_run():
-    """Folder that ``./run.sh`` makes of the study, and what it says; whoever asks first runs it."""
-    folder = Path(os.environ["GALINX_KEPT"], "paper")
-    with open(folder.with_suffix(".lock"), "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not folder.exists():
-            folder.mkdir()
-            done = command(cwd=folder)
-            assert done.returncode == 0, done.stdout + done.stderr
-            (folder / "said").write_text(done.stdout + done.stderr, encoding="utf-8")
+    """Folder that ``./run.sh`` makes of the study, and what it says."""
+
+    def make(folder):
+        folder.mkdir()
+        done = command(cwd=folder)
+        assert done.returncode == 0, done.stdout + done.stderr
+        (folder / "said").write_text(done.stdout + done.stderr, encoding="utf-8")
+
+    folder = once("paper", make)
     return folder / "results", (folder / "said").read_text(encoding="utf-8")
 
 

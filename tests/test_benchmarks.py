@@ -18,19 +18,6 @@ def measure(monkeypatch):
     return importlib.import_module("measure")
 
 
-@pytest.fixture
-def bench(measure, tmp_path, monkeypatch):
-    """``./run.sh bench -o FOLDER``, which measures nothing."""
-    found = measure.Figures("1 state", 1, 2, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0)
-    monkeypatch.setattr(measure, "CASES", measure.CASES[:1])
-    monkeypatch.setattr(measure, "OTHERS", [])
-    monkeypatch.setattr(measure, "run", lambda *_: found)
-    monkeypatch.setattr(measure, "without_start", lambda: [])
-    monkeypatch.setattr(measure, "steps", lambda _: "steps\n")
-    monkeypatch.setattr(sys, "argv", ["measure.py", "-o", str(tmp_path / "out")])
-    return measure.main
-
-
 def test_each_case_can_be_computed(measure):
     for case in measure.CASES + measure.OTHERS:
         make_plan(template(case.scene, case.changes))

@@ -7,7 +7,7 @@ import stat
 from pathlib import Path
 
 import pytest
-from support import at_most, full_disk
+from support import at_most
 
 from galinx import files
 
@@ -44,13 +44,6 @@ def test_what_appeared_meanwhile_is_not_replaced(tmp_path, monkeypatch, links):
     assert (tmp_path / "a").read_bytes() == b"precious" and os.listdir(tmp_path) == ["a"]
     files.write(tmp_path / "b", b"new", replace=False)
     assert (tmp_path / "b").read_bytes() == b"new" and sorted(os.listdir(tmp_path)) == ["a", "b"]
-
-
-def test_a_full_disk_leaves_what_was_there(tmp_path):
-    (tmp_path / "a").write_bytes(b"precious")
-    with full_disk(1000), pytest.raises(OSError, match="large"):
-        files.write(tmp_path / "a", b"x" * 5000)
-    assert (tmp_path / "a").read_bytes() == b"precious" and os.listdir(tmp_path) == ["a"]
 
 
 def test_it_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):

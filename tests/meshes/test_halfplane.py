@@ -3,7 +3,6 @@ import pytest
 from support import areas
 
 from galinx.meshes import MESHES, Requirements
-from galinx.meshes.charts import Confocal
 from galinx.meshes.kind import BOX_DEPTH, BOX_WIDTH, check_cells
 from galinx.meshes.rings import (
     CONTACT,
@@ -86,18 +85,6 @@ def test_a_turned_cell_is_refused():
         check_cells(QuadMesh(square, np.array([[0, 3, 2, 1]]), {}))
 
 
-@pytest.mark.parametrize("mesh", MESHES)
-def test_cut_meshes_hold_the_points_of_the_uncut(mesh):
-    coarse = MESHES[mesh].refinement(Requirements(1e-3))
-    whole, fine = (MESHES[mesh].build(coarse, cuts) for cuts in (1, 3))
-    assert len(fine.cells) == 9 * len(whole.cells)
-    # The first of the nine at a cell's first vertex, the last at the one across.
-    first, last = fine.cells.reshape(-1, 9, 4)[:, [0, -1]].transpose(1, 0, 2)
-    for cells, corner in ((first, 0), (last, 2)):
-        found, expected = fine.points[cells[:, corner]], whole.points[whole.cells[:, corner]]
-        np.testing.assert_allclose(found, expected, rtol=1e-14, atol=1e-14)
-
-
 @pytest.mark.parametrize("chart", [kind.chart for kind in MESHES.values()], ids=list(MESHES))
 def test_charts_invert_themselves(chart):
     X = np.array([[-3.0, -0.5], [0.2, -1e-6], [0.999, -0.1], [50.0, -70.0], [0.3, 0.0], [-2.0, 0.0]])
@@ -114,13 +101,6 @@ def test_charts_invert_themselves(chart):
     np.testing.assert_allclose(chart.surface_stretch(s), slope, rtol=1e-8)
     points = chart.from_physical(np.column_stack([surface, np.zeros_like(surface)]))
     np.testing.assert_allclose(chart.along_surface(points), s, atol=1e-13)
-
-
-def test_confocal_rotation_is_that_of_the_map():
-    chart, x, step = Confocal(), np.array([0.7, -1.1]), np.array([1e-6, 0.0])
-    along_ξ = (chart.to_physical(x + step) - chart.to_physical(x - step)) / 2e-6
-    cos, sin = chart.rotation(x)
-    np.testing.assert_allclose([cos, sin], along_ξ / np.linalg.norm(along_ξ), rtol=1e-9)
 
 
 @pytest.mark.parametrize("chart", [kind.chart for kind in MESHES.values()], ids=list(MESHES))

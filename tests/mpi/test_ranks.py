@@ -7,7 +7,6 @@ from support import space_on
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import Refinement
-from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.fem import fields
 from galinx.solvers.fem.cells import model_cells
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
@@ -42,18 +41,6 @@ def test_a_shared_mesh_gives_what_one_rank_gives(mesh, form):
     assert shared.v0[0] == pytest.approx(alone.v0[0], rel=1e-10)
     np.testing.assert_allclose(traces[1][..., 0], traces[0][..., 0], rtol=1e-7, atol=1e-9)
     np.testing.assert_allclose(gradients[1], gradients[0], rtol=1e-8, atol=1e-10)
-
-
-def test_shared_tractions_give_what_one_rank_gives():
-    load = FlatPunch(MovingFrame(2.0, 0.6), -0.66).traction
-    slopes = []
-    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
-        solver = LoadedHalfPlane(space_on("confocal", REFINEMENT, 5, comm), MovingFrame(2.0, 0.6))
-        solver.load(load)
-        assert solver.resultants[0] == pytest.approx(-2.0, rel=1e-12)
-        slopes.append(fields.gather(solver.space, solver.fields).derivative(np.array([-2.0, 0.1, 1.7])))
-        solver.destroy()
-    np.testing.assert_allclose(slopes[1], slopes[0], rtol=1e-8, atol=1e-10)
 
 
 def test_next_to_an_edge_corrected_loads_have_the_digits_that_the_motion_of_all_takes():

@@ -71,90 +71,78 @@ def test_what_disagrees_is_measured(path, value, name, wanted):
     assert sum(found.values()) == pytest.approx(wanted)
 
 
-def test_where_the_pressure_is_small_a_tenth_of_the_mean_is_its_size():
-    exact, fem = (np.array([[np.nan, -1.0, σ, -1.0, np.nan]]) for σ in (-0.02, -0.04))
-    found = archive(**{"surface/closed_form/sigma_YY": exact, "surface/fem/sigma_YY": fem})
-    assert found["sigma_YY"] == pytest.approx(0.2)
+def both(path, value):
+    """The same dataset of both methods."""
+    return {path.format(method): value for method in METHODS}
 
 
-def of_found_ends(**changes):
-    """A wedge's state: its pressure is infinite at the tip, 0."""
-    return archive(
-        **{
-            "states/closed_form/largest_pressure": np.array([np.nan]),
-            "states/fem/largest_pressure": np.array([np.nan]),
-            **{f"states/{method}/half_width": np.array([2e-3]) for method in METHODS},
-            **{f"states/{method}/centre": np.array([1e-3]) for method in METHODS},
-        }
-        | changes
-    )
+#: A wedge's state: its pressure is infinite at the tip, 0.
+FOUND_ENDS = (
+    {"states/closed_form/largest_pressure": [np.nan], "states/fem/largest_pressure": [np.nan]}
+    | both("states/{}/half_width", [2e-3]) | both("states/{}/centre", [1e-3])
+)  # fmt: skip
+#: A larger stress at X = 0, which is the tip, and another place for that one.
+AT_TIP = FOUND_ENDS | both("surface/{}/sigma_YY", [[np.nan, -1.0, -9.0, -1.0, np.nan]]) | {
+    "surface/fem/sigma_XX": EXACT + 0.4 * (X == 0.0)
+}  # fmt: skip
+NEXT_TO_END = AT_TIP | {"surface/X_over_a": np.where(X == 0.0, 0.99, X)}
+LARGEST = both("states/{}/von_mises", [4.0]) | both("states/{}/max_shear", [2.5])
+GIVEN = {"states/closed_form/normal_force": [-8.0]}
+#: Of two interfaces, each over the largest along it.
+_SIZES = {"sigma_YY": 2.0, "sigma_XY": 1.0, "sigma_XX_above": 4.0, "sigma_XX_below": 0.5}
+_ALONG = np.array([[[0.1, -1.0, 0.3], [0.01, 0.02, -0.1]]])
+INTERFACES = {
+    f"interfaces/{by}/{name}": top * _ALONG for by in ("fem", "sie") for name, top in _SIZES.items()
+}
 
 
-def test_the_pressure_of_found_ends_is_compared_over_its_largest_off_the_tip():
-    name = "sigma_YY of found ends"
-    assert of_found_ends()[name] == 0.0
-    at_tip, beside = (np.array([[np.nan, *σ, np.nan]]) for σ in ((-1.0, -9.0, -1.0), (-1.2, -2.0, -1.0)))
-    assert of_found_ends(**{"surface/fem/sigma_YY": at_tip})[name] == 0.0
-    assert of_found_ends(**{"surface/fem/sigma_YY": beside})[name] == pytest.approx(0.2)
+def at_interface(name):
+    """One in-plane stress at the lower interface is off by 0.01."""
+    path = f"interfaces/fem/sigma_XX_{name}"
+    return INTERFACES | {path: INTERFACES[path] + [[[0.0, 0.0, 0.0], [0.0, 0.01, 0.0]]]}
 
 
-@pytest.mark.parametrize("tip, wanted", [(0.0, 0.0), (0.99, 0.1)])
-def test_in_plane_stresses_next_to_a_tip_are_compared_only_where_it_is_next_to_an_end(tip, wanted):
-    pressure = np.array([[np.nan, -1.0, -9.0, -1.0, np.nan]])
-    changes = {f"surface/{method}/sigma_YY": pressure for method in METHODS}
-    changes["surface/X_over_a"] = np.where(X == 0.0, tip, X)
-    changes["surface/fem/sigma_XX"] = EXACT + 0.4 * (X == 0.0)
-    assert of_found_ends(**changes)["sigma_XX"] == pytest.approx(wanted)
-
-
-@pytest.mark.parametrize("which, moved", [("half_width", 1.9e-3), ("centre", 1.1e-3)])
-def test_ends_are_compared_over_the_half_width(which, moved):
-    found = of_found_ends(**{f"states/fem/{which}": np.array([moved])})
-    assert found["ends"] == pytest.approx(0.05)
-
-
-@pytest.mark.parametrize("which, wanted", [("von_mises", 0.25), ("max_shear", 0.2), (None, 0.0)])
-def test_von_mises_and_shear_are_compared_each(which, wanted):
-    rows = {f"states/{method}/von_mises": np.array([4.0]) for method in METHODS}
-    rows |= {f"states/{method}/max_shear": np.array([2.5]) for method in METHODS}
-    if which:
-        rows[f"states/fem/{which}"] = np.array([3.0])
-    assert archive(**rows)["largest stresses"] == pytest.approx(wanted)
-
-
-def test_largest_stresses_over_layers_are_judged_everywhere():
-    """A stress that one method does not know is no agreement."""
-    for fem, wanted in ((4.0, 0.0), (3.0, 0.25), (np.nan, np.nan)):
-        rows = {"states/fem/von_mises": np.array([4.0, fem]), "states/sie/von_mises": np.full(2, 4.0)}
-        found = archive(**rows)["largest stresses over layers"]
-        assert found == pytest.approx(wanted, nan_ok=True)
+def largest_over_layers(fem):
+    """Of two states; a stress that one method does not know is no agreement."""
+    return {"states/fem/von_mises": [4.0, fem], "states/sie/von_mises": [4.0, 4.0]}
 
 
 @pytest.mark.parametrize(
-    "normal, tangential, wanted", [(-8.0, -4.0, 0.0), (-9.0, -4.0, 0.1), (-8.0, -3.0, 0.1)]
-)
-def test_nodal_forces_are_compared_with_the_resultant_of_a_pressure_that_is_put_in(
-    normal, tangential, wanted
-):
-    found = archive(
-        **{
-            "states/closed_form/normal_force": np.array([-8.0]),
-            "states/fem/normal_force": np.array([normal]),
-            "states/fem/tangential_force": np.array([tangential]),
-        }
-    )
-    assert found["resultant"] == pytest.approx(wanted)
-
-
-def test_stresses_at_interfaces_are_compared_over_the_largest_along_each():
-    """In-plane stress over itself or the traction there, of two interfaces."""
-    size = {"sigma_YY": 2.0, "sigma_XY": 1.0, "sigma_XX_above": 4.0, "sigma_XX_below": 0.5}
-    along = np.array([[[0.1, -1.0, 0.3], [0.01, 0.02, -0.1]]])
-    rows = {f"interfaces/{by}/{name}": top * along for by in ("fem", "sie") for name, top in size.items()}
-    for name, over in (("sigma_XX_above", 4.0), ("sigma_XX_below", 2.0)):
-        off = rows[f"interfaces/fem/{name}"] + [[[0.0, 0.0, 0.0], [0.0, 0.01, 0.0]]]
-        found = archive(**rows | {f"interfaces/fem/{name}": off})["stresses at interfaces"]
-        assert found == pytest.approx(0.01 / (0.1 * over))
+    "changes, name, wanted",
+    [
+        # Where the pressure is small a tenth of the mean is its size.
+        ({f"surface/{by}/sigma_YY": [[np.nan, -1.0, σ, -1.0, np.nan]]
+          for by, σ in zip(METHODS, (-0.02, -0.04))}, "sigma_YY", 0.2),
+        (FOUND_ENDS, "sigma_YY of found ends", 0.0),
+        (FOUND_ENDS | {"surface/fem/sigma_YY": [[np.nan, -1.0, -9.0, -1.0, np.nan]]},
+         "sigma_YY of found ends", 0.0),
+        (FOUND_ENDS | {"surface/fem/sigma_YY": [[np.nan, -1.2, -2.0, -1.0, np.nan]]},
+         "sigma_YY of found ends", 0.2),
+        (AT_TIP, "sigma_XX", 0.0),
+        (NEXT_TO_END, "sigma_XX", 0.1),
+        (FOUND_ENDS | {"states/fem/half_width": [1.9e-3]}, "ends", 0.05),
+        (FOUND_ENDS | {"states/fem/centre": [1.1e-3]}, "ends", 0.05),
+        (LARGEST, "largest stresses", 0.0),
+        (LARGEST | {"states/fem/von_mises": [3.0]}, "largest stresses", 0.25),
+        (LARGEST | {"states/fem/max_shear": [3.0]}, "largest stresses", 0.2),
+        (largest_over_layers(4.0), "largest stresses over layers", 0.0),
+        (largest_over_layers(3.0), "largest stresses over layers", 0.25),
+        (largest_over_layers(np.nan), "largest stresses over layers", np.nan),
+        # Nodal forces against the resultant of a pressure that is put in.
+        (GIVEN | {"states/fem/normal_force": [-8.0], "states/fem/tangential_force": [-4.0]},
+         "resultant", 0.0),
+        (GIVEN | {"states/fem/normal_force": [-9.0], "states/fem/tangential_force": [-4.0]},
+         "resultant", 0.1),
+        (GIVEN | {"states/fem/normal_force": [-8.0], "states/fem/tangential_force": [-3.0]},
+         "resultant", 0.1),
+        (at_interface("above"), "stresses at interfaces", 0.025),
+        # There the traction is larger than the in-plane stress.
+        (at_interface("below"), "stresses at interfaces", 0.05),
+    ],
+)  # fmt: skip
+def test_each_rule_has_its_measure(changes, name, wanted):
+    found = archive(**{path: np.array(value) for path, value in changes.items()})
+    assert found[name] == pytest.approx(wanted, nan_ok=True)
 
 
 #: Rules whose limit is another than the tolerance, with it at tolerances of 1e-6 and 1e-3.

@@ -37,14 +37,6 @@ def test_within_the_zones_the_surface_is_pressed_together_more(c, g, strain):
     assert left > 0.0 and right > 0.0
 
 
-def test_without_friction_the_zones_are_those_of_a_root():
-    """σ_YY = -(2/π)/√(1 - X²) over N/(2a), u,X = q σ_YY."""
-    strain, q = 3.0, SOLID.response(0.0).q
-    width = 1.0 - np.sqrt(1.0 - (2.0 * q / (np.pi * strain)) ** 2)
-    for found in FlatPunch(SOLID.response(0.0), 0.0).compressed_within(strain):
-        np.testing.assert_allclose(found, width, rtol=1e-13)
-
-
 @pytest.mark.parametrize(
     "ν, c, g", [(0.5, 0.0, 0.7), (0.25, 0.9, -0.4), (0.3, 0.93, 0.4), (0.45, 0.3, 0.0)]
 )

@@ -67,12 +67,6 @@ def test_noise_makes_no_poles(seed):
     assert off <= 1e-7 and largest < 1e3
 
 
-def test_samples_themselves_are_met():
-    rng = np.random.default_rng(3)
-    z, values = rng.uniform(size=7), rng.normal(size=(7, 5))
-    np.testing.assert_allclose(fit_rational(z, values).shares(z) @ values, values, rtol=1e-13)
-
-
 def test_leja_begins_at_the_ends_and_takes_no_point_twice():
     z = np.array([0.3, 0.0, 1.0, 0.3, 0.5, 1.0 - 1e-13, 0.9])
     numbers = chosen(z, 5, first=2)

@@ -82,14 +82,6 @@ def test_nothing_is_lost(place, name):
         (place / target).unlink()
 
 
-@pytest.mark.parametrize("name", ["init", "run", "csv"])
-def test_on_a_full_disk_nothing_is_half_written(place, name):
-    words, _ = words_of(name)
-    before = content(place)
-    assert ended(words, place, full=True).returncode == 3
-    assert content(place) == before
-
-
 @contextmanager
 def patch_input(file):
     """A file as this process's standard input in the block."""

@@ -109,19 +109,6 @@ def test_strokes_are_told_apart_and_have_a_direction(drawings):
     assert [ahead[to_rgba(line.get_color())] for line in strokes] == [True, False, True]
 
 
-def test_clipped_colours_have_arrows_on_their_bar(drawings):
-    axes = [axis for axis in drawings["inside"].figure.axes if axis.child_axes]
-    assert len(axes) == 5
-    for axis in axes:
-        (bar,) = [child._colorbar for child in axis.child_axes]
-        (image,) = axis.images
-        low, high = image.get_clim()
-        shown = image.get_array()
-        assert (shown.max() <= high or bar.extend in ("max", "both")) and high < np.inf
-        assert shown.min() >= low or bar.extend in ("min", "both")
-    assert {axis.child_axes[0]._colorbar.extend for axis in axes} >= {"min", "max"}
-
-
 def test_what_somebody_has_set_for_other_figures_is_not_for_these(monkeypatch):
     """Texts by LaTeX, which may not be there, among it."""
     import matplotlib

@@ -8,11 +8,9 @@ from random_solids import random_solid
 
 from galinx import template
 from galinx.app.errors import BadInput
-from galinx.app.plan import plan as planning
 from galinx.app.plan.plan import lines, make_plan
 from galinx.app.plan.states import Order, enumerate_states
 from galinx.solvers.contact.fem_plan import LEAST, swept, variable
-from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids import Isotropic
 
 CLOSED = {"solve.methods": ["closed_form"], "output.quantities": ["friction", "sif"]}
@@ -75,17 +73,6 @@ def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
     f = states.columns["f"]
     assert (f > 0.0).any() and (f < 0.0).any()
     assert list(states.g) == list(ratio * f)
-
-
-@pytest.mark.parametrize("numbers, count", [(1, 6), (4000, 2), (10**9, 1)])
-def test_states_are_taken_in_chunks_of_one_speed(numbers, count, monkeypatch):
-    """Two speeds with six states each; a state has 5 x 217 numbers on the surface and 13 besides."""
-    monkeypatch.setattr(planning, "CHUNK_NUMBERS", numbers)
-    plan = make_plan(template("tables4_5"))
-    found = [rows for one in plan.tasks for rows in plan.chunks(one)]
-    assert len(found) == 2 * count
-    assert [i for rows in found for i in range(12)[rows]] == list(range(12))
-    assert [one.response.c for one in plan.tasks] == [4.786e-7, 0.6]
 
 
 def test_every_state_lies_on_its_archived_loop():
@@ -164,11 +151,3 @@ def test_the_variable_tells_speeds_of_any_solid_apart(seed):
     for most in (0.99, 0.3, 1e-3, 1e-7):
         z = variable(responses(solid, 50, most))
         assert np.all(np.diff(z) > 0.0)
-
-
-@pytest.mark.parametrize("top", [ISOTROPIC, Isotropic(E=4.0, ν=0.3, ρ=1.5)])
-def test_over_layers_it_is_the_logarithm_of_the_distance_to_the_limit(top):
-    solid = Layered((Layer(0.5, top),), Isotropic(E=2.0, ν=0.2, ρ=1.0))
-    share = np.linspace(0.0, 0.99, 50)
-    z = variable([solid.response(c) for c in share * solid.limit()])
-    np.testing.assert_allclose(z, -np.log1p(-(share**2)), rtol=1e-9)

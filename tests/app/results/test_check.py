@@ -7,12 +7,11 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from support import computed, here
+from support import computed
 from tampering import attribute, opened, value
 
 import galinx
 from galinx.app.methods import METHODS
-from galinx.app.plan.plan import make_plan
 from galinx.app.results import check
 from galinx.postprocess.errors import UnreadableArchive
 from galinx.postprocess.hdf5 import archive
@@ -68,9 +67,7 @@ def lost(file):
 @pytest.mark.parametrize(
     "changed, message",
     [
-        (times("states/f", 0.0), "states/f holds something else than its scene gives"),
         (times("states/g", -1.0), "states/g holds something else"),
-        (times("states/mu_c", 1.001), "states/mu_c holds something else"),
         (value("states/motion", "BM7"), "states/motion holds something else"),
         (times("loops/f", 1.001), "loops/f holds something else"),
         (value("interior/X_over_a", 0.123), "interior/X_over_a holds other positions"),
@@ -78,17 +75,12 @@ def lost(file):
         (more_states, "it holds 2 states, its scene has 4"),
         (lost, "states/fem/v0 is missing, its scene asks for it"),
         (value("states/fem/normal_force", -1.0), "nodal forces against the load"),
-        (value("states/fem/K_I_left", 0.1), "its comparisons say"),
         (times("states/fem/K_I_right", 1.0 + 1e-3), "states/fem/true_error is not what"),
-        (times("states/fem/true_error", 0.5), "states/fem/true_error is not what"),
         (value("interior/fem/sigma_XX", 1e3), "its comparisons say"),
+        (value("interior/fem/sigma_XX", np.nan), "interior/fem/sigma_XX is not finite in states 0 ..."),
         (attribute("verdict", "FAIL"), "verdict says FAIL, its comparisons give PASS"),
-        (attribute("verdict", "not judged"), "verdict says not judged"),
         (in_attribute("verdict_reasons", "at most 0.001", "at most 0.003"), "verdict_reasons says"),
-        (attribute("comparisons", "{}"), "its comparisons say {}"),
         (attribute("rules", "[]"), "rules says '[]', its scene gives"),
-        (attribute("title", "another"), "title says 'another', its scene gives"),
-        (attribute("load", 1.0), "load says 1.0, its scene gives"),
     ],
 )
 def test_what_does_not_fit_is_said(whole, changed, message):
@@ -98,12 +90,6 @@ def test_what_does_not_fit_is_said(whole, changed, message):
         check.faults(whole)
     archive.put(whole)
     assert any(message in fault for fault in check.faults(whole))
-
-
-def test_a_number_that_is_not_finite_is_said(whole):
-    with opened(whole) as file:
-        file["interior/fem/sigma_XX"][0] = np.inf
-    assert "interior/fem/sigma_XX is not finite in states 0 ..." in check.faults(whole)
 
 
 #: Small archives of each way to a number.
@@ -199,22 +185,6 @@ def refused(path):
         return True
 
 
-def test_v0_is_that_of_the_closed_form_of_any_punch(tmp_path):
-    """Indentations of finite elements against the pressure of the integral equation."""
-    for name, changes in {
-        "tables4_5": {"punch.tilt": "0.01 deg", "solve.methods": ["fem"]},
-        "cylinder": {"output.map": None, "solve.methods": ["fem"], "motion.c": [0.0, 0.8]},
-    }.items():
-        result = computed(name, changes | {"output.quantities": ["sif"]})
-        result.save(tmp_path / f"{name}.h5")
-        assert not check.faults(tmp_path / f"{name}.h5")
-        result.data["states/fem/v0"] *= 1.0 + 3e-3
-        result.save(tmp_path / f"{name}_wrong.h5")
-        faults = check.faults(tmp_path / f"{name}_wrong.h5")
-        assert len(faults) == len(make_plan(result.scene).tasks)
-        assert all("states/fem/v0: found" in text for text in faults)
-
-
 ONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.8, "motion.c": 0.3}
 CLOSED = {"solve.methods": ["closed_form"]}
 
@@ -235,17 +205,11 @@ def test_a_nan_that_is_not_allowed_fails(nan_allowed, verdict, monkeypatch, tmp_
     assert any("not finite" in reason for reason in reasons) == (verdict == "FAIL")
 
 
-def test_exponents_that_cannot_be_fitted_are_no_fault(tmp_path):
-    """At μ_C = 5 the raw pressure changes its sign beside an edge."""
-    changes = ONE | {"friction.mu_c": 5.0, "friction.sigma0_over_load": 1e7, "solve.tolerance": 1e-4}
-    result = computed("tables4_5", changes | {"motion.c": 0.82746})
-    assert np.isnan(result.data["states/fem/alpha"]).any() or result.verdict == "PASS"
-    assert not any(np.isnan(value) for value in result.comparisons.values())
-    result.save(tmp_path / "a.h5")
-    assert here("check", tmp_path / "a.h5").returncode == 0
-
-
 @pytest.mark.parametrize("changes", [
+    {  # exponents that cannot be fitted: the raw pressure changes its sign beside an edge
+        "friction": {"mu_c": 5.0, "sigma0_over_load": 1e7}, "solve": {"tolerance": 1e-4},
+        "motion": {"c": 0.82746, "strokes": ["forward"], "X_over_L": 0.8},
+    },
     {  # no degree reaches the tolerance but on finer cells
         "solid": {"kind": "anisotropic", "rho": 3000, "stiffness": [5e10, 2e10, 5e9, 4e10, -3e9, 1.5e10]},
         "punch": {"profile": "parabolic", "radius": 4e-3, "load": 6e3},
@@ -264,5 +228,7 @@ def test_exponents_that_cannot_be_fitted_are_no_fault(tmp_path):
     },
 ])  # fmt: skip
 def test_what_was_just_computed_has_no_faults(changes, tmp_path):
-    computed(changes={"solve": None, "output": None} | changes).save(tmp_path / "a.h5")
+    result = computed(changes={"solve": None, "output": None} | changes)
+    assert not np.isnan([*result.comparisons.values()]).any()
+    result.save(tmp_path / "a.h5")
     assert check.faults(tmp_path / "a.h5") == []

@@ -118,24 +118,6 @@ def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
     assert both.returncode == 2 and "--surface and --inside exclude each other" in both.stderr
 
 
-def test_friction_along_the_contact_is_the_force_over_the_load(tmp_path):
-    """Its mean over the contact at rest, by which it is known, stands in no column."""
-    along = computed(
-        "tables4_5",
-        {
-            "motion": {"speed": "100 m/s"}, "solve.methods": ["sie"], "output": {"quantities": ["sif"]},
-            "punch": {"profile": "parabolic", "radius": "50 mm", "load": ["20 N/mm", "100 N/mm"]},
-            "friction": {"state": "advected", "model": "dahl", "mu_c": 0.4, "sigma0_over_load": 2000},
-        },
-    )  # fmt: skip
-    along.save(tmp_path / "along.h5")
-    found = read(tmp_path / "along.h5")
-    assert not {"g [1]", "inner_state_1 [1]"} & {*found}
-    force = -along.data["states/sie/resultant_ratio"]
-    np.testing.assert_allclose(numbers(found["f [1]"]), force, rtol=1e-12)
-    assert force[1] > 1.5 * force[0]
-
-
 @pytest.mark.parametrize("load", ["100 N/mm", ["10 N/mm", "100 N/mm"]])
 def test_histories_tell_their_laws(load, tmp_path):
     """A loop is that of all speeds, and of all loads: it names neither where there are several."""

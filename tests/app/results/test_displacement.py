@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 from support import THOROUGH, computed
 
-from galinx import template
-from galinx.app.errors import BadInput
-
 ALONE = {"motion.strokes": ["forward"], "motion.X_over_L": 0.0}
 
 
@@ -46,24 +43,3 @@ def test_its_energy_is_the_work_of_the_tractions_round_it(mesh, c, tolerance):
     N = result.scene.punch.load
     assert load == pytest.approx(N, rel=1e-7)
     assert energy == pytest.approx(N * result.data["states/fem/v0"][0] / 2.0 + beyond, rel=1e-7)
-
-
-@pytest.mark.parametrize(
-    "mesh, tolerance, c", [("confocal", 1e-4, 0.8), ("confocal", 1e-7, 0.0), ("graded", 1e-4, 0.8)]
-)
-def test_indentation_is_alike_at_all_tolerances(mesh, tolerance, c):
-    """Without friction v = (2n/π) arcosh X - v₀ beside a flat punch, far away (2n/π) log 2X - v₀."""
-    changes = {"motion.c": c, "solve.mesh": mesh, "solve.tolerance": tolerance}
-    result = computed("tables4_5", ALONE | changes)
-    solid, N = result.scene.solid, result.scene.punch.load
-    exact = N / solid.μ * solid.response(c).n / np.pi * np.log(200.0)
-    assert result.data["states/fem/v0"][0] == pytest.approx(exact, rel=0.1 * tolerance)
-
-
-def test_what_has_no_displacement_is_bad_input():
-    from galinx.app.results.fields import displacement
-
-    with pytest.raises(BadInput, match="state 99: no such state; expected 0 to 11"):
-        displacement(template("tables4_5"), 99)
-    with pytest.raises(BadInput, match=r"expected ν <= 0\.49"):
-        displacement(template("tables4_5", {"solid.nu": 0.495}), 0)

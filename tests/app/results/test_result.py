@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import computed, here
+from support import here
 
 from galinx import load
 from galinx.app.errors import BadInput
@@ -34,12 +34,6 @@ def test_saved_and_loaded_is_the_same(map_run, tmp_path):
     assert here("check", tmp_path / "a.h5").returncode == 0
     with pytest.raises(Occupied, match="exists"):
         map_run.save(tmp_path / "a.h5")
-
-
-def test_steps_of_the_clock_have_the_names_of_methods():
-    alone = {"solve.methods": ["sie"], "output.quantities": ["sif"]}
-    steps = computed("tables4_5", alone).data["run/steps"].tolist()
-    assert "integral equation" in steps and "sie" not in steps
 
 
 def test_plot_gives_a_figure_that_notebooks_show(exact_run, tmp_path, monkeypatch):

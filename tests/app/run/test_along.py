@@ -5,8 +5,6 @@ import pytest
 from support import computed
 
 from galinx.postprocess.tables import loops_sheet
-from galinx.solvers.contact.equation import LayersUnderPunch
-from galinx.solvers.errors import SolveError
 
 ISOTROPIC = {"E": "40 GPa", "nu": 0.3, "rho": 2000}
 
@@ -49,43 +47,6 @@ def test_an_edge_is_free_where_its_intensity_vanishes():
     free = data["states/sie/K_I_right"] == 0.0
     assert 0 < free.sum() < 11
     np.testing.assert_array_equal(data["states/alpha"] > 0.0, free)
-
-
-def test_the_largest_pressure_beside_a_kink_of_friction():
-    """Its top is not that of a polynomial through places on both sides of the kink."""
-    f = {"along": [[-1, 0.035], [-0.424, 0.66], [1, 0.454]]}
-    punch = {"profile": "parabolic", "radius": 0.039, "load": 19500.0}
-    solid = {"kind": "orthotropic", "E1": 3e11, "E2": 1e11, "E3": 1e11, "G12": 5e10, "nu12": 0.3,
-             "nu13": 0.3, "nu23": 0.35, "rho": 3000, "angle": 83.0}  # fmt: skip
-    data = slid(f, solid, punch=punch, solve={"tolerance": 1e-5}).data
-    fem, sie = (data[f"states/{name}/largest_pressure"] for name in ("fem", "sie"))
-    np.testing.assert_allclose(fem, sie, rtol=1e-5)
-
-
-def test_a_load_without_a_contact_leaves_the_others_theirs(monkeypatch):
-    """Each contact is solved once, the one that has no solution once to its tolerance, once to 1e-6."""
-    solve, tried = LayersUnderPunch.contact, []
-
-    def contact(self, g, h=1.0, checked=True):
-        tried.append(self.punch.profile.radius / self.punch.unit)
-        if tried[-1] == max(tried):
-            raise SolveError("not resolved")
-        return solve(self, g, h, checked)
-
-    monkeypatch.setattr(LayersUnderPunch, "contact", contact)
-    friction = advected("dahl", mu_c=0.4, sigma0_over_load=1e4)
-    loads = {"profile": "parabolic", "radius": "50 mm", "load": ["10 N/mm", "100 N/mm", "30 N/mm"]}
-    only = {"solve": {"methods": ["sie"], "tolerance": 1e-6}}
-    result = slid(friction, punch=loads, **only)
-    (failure,) = result.data["run/failures"]
-    assert failure.endswith("N = 10000 N/m: not resolved") and result.verdict == "FAIL"
-    assert len(tried) == 4
-    alone = slid(friction, punch=loads | {"load": "30 N/mm"}, **only)
-    units, of_alone = ({column.name: column.unit for column in of.table()} for of in (result, alone))
-    assert {name: units[name] for name in of_alone} == of_alone
-    for path in ("states/sie/half_width", "states/alpha", "states/sie/resultant_ratio"):
-        of_all = result.data[path]
-        assert np.isnan(of_all[0]) and of_all[2] == alone.data[path][0]
 
 
 def test_archive_has_friction_over_x_its_resultant_and_the_centre():

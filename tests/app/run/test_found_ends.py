@@ -4,7 +4,6 @@ import itertools
 
 import numpy as np
 import pytest
-from support import computed
 
 import galinx
 from galinx.app.scene.read import parse
@@ -66,18 +65,6 @@ def test_a_tolerance_below_the_rounding_at_free_ends_is_given_up_at_once():
     assert data["states/fem/estimate_inside"].max() <= 0.1 * data["states/fem/estimate_sigma_XX"].max()
     # No finer cells, of which there would be four times as many.
     assert data["run/fem/cells"].max() < 400
-
-
-def test_a_parabola_is_one_by_every_name():
-    """A power of the exponent 2 is the cylinder of its curvature, by both methods."""
-    few = {"motion.c": 0.5, "motion.strokes": ["forward"], "motion.X_over_L": [0.7],
-           "solve.tolerance": 1e-5, "punch.half_width": None}  # fmt: skip
-    names = {"punch.profile": "parabolic", "punch.radius": 0.02}, {
-        "punch.profile": "power", "punch.exponent": 2.0, "punch.coefficient": 25.0,
-    }  # fmt: skip
-    cylinder, power = (computed("tables4_5", few | name).data for name in names)
-    for path in (f"states/{by}/{of}" for by in ("closed_form", "fem") for of in ("half_width", "centre")):
-        np.testing.assert_allclose(power[path], cylinder[path], rtol=1e-13)
 
 
 def test_kinks_with_no_room_for_cells_between_them_are_refused():

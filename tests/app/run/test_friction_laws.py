@@ -92,19 +92,6 @@ def test_strokes_may_have_speeds_and_rests_of_their_own():
     assert data["states/f"][2] == pytest.approx(steady, rel=1e-12)
 
 
-def test_a_motion_may_be_given_point_by_point():
-    path = [[0, 0], ["1 s", "0.05 mm"], [3, 5e-5], [4, 1e-4], [4.5, 0]]
-    motion = f"path = {json.dumps(path)}"
-    result = galinx.compute(scene("dahl", {"mu_c": 0.4, "sigma0_over_load": 2e4}, motion))
-    data = result.data
-    assert [*data["states/motion"]] == ["FM1", "FM2", "BM1"]
-    np.testing.assert_allclose(data["states/X_over_L"], [0.5, 1.0, 0.0])
-    np.testing.assert_allclose(data["states/speed"], [5e-5, 5e-5, 2e-4])
-    y = np.exp(-2e4 * 5e-5 / 0.4)
-    wanted = [0.4 * (1.0 - y), 0.4 * (1.0 - y**2), -0.4 * (1.0 - (2.0 - y**2) * y**2)]
-    np.testing.assert_allclose(data["states/f"], wanted, rtol=1e-13)
-
-
 SLIDER = """
 slider = {mass = 2, stiffness = "8 N/m^2", drive_speed = "0.1 m/s", duration = "20 s"}
 """

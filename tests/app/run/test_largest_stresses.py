@@ -10,8 +10,6 @@ from galinx.app.scene.read import parse
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
-from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 from galinx.solvers.profiles import cusp
 
 #: Relative, of what a search may miss: anywhere, and next to a cusp of the pressure. Distance over a from
@@ -50,9 +48,9 @@ def random_scene(seed, profile, methods, strokes):
         )
     load, mu = 10.0 ** rng.uniform(4.0, 5.5), rng.uniform(0.0, 0.9, len(strokes)).tolist()
     share = rng.choice([0.0, rng.uniform(0.05, 0.9)])
-    punches = np.random.default_rng(seed)
+    punch = PUNCHES[profile](np.random.default_rng(seed))
 
-    def at(c, punch):
+    def at(c):
         return parse(
             f"[solid]\n{solid}\nyield_strength = 3e8\n"
             f"[punch]\nload = {load}\nprofile = '{profile}'\n{punch}\n"
@@ -62,23 +60,7 @@ def random_scene(seed, profile, methods, strokes):
             f"[solve]\nmethods = {methods}\n[output]\nquantities = ['sif', 'surface', 'yield']\n"
         )
 
-    while True:
-        punch = PUNCHES[profile](punches)
-        scene = at(share * at(0.0, punch).solid.limit(), punch)
-        if methods != BOTH or not refused(scene, share, np.array(mu)):
-            return scene
-
-
-def refused(scene, share, mu):
-    """True where finite elements refuse a kink for being next to an end, in either direction."""
-    response = scene.solid.response(share * scene.solid.limit())
-    solved = contacts(response, np.append(mu, -mu), scene.body.profile, scene.body.compression)
-    try:
-        for centre, half_width in zip(solved.of("centre"), solved.of("half_width")):
-            EndsBetweenKinks(scene.body, (centre, half_width), scene.solve.tolerance)
-    except SolveError:
-        return True
-    return False
+    return at(share * at(0.0).solid.limit())
 
 
 def samples(rng, measure, X, Y, around, rounds=5):
@@ -154,6 +136,8 @@ def test_largest_values_are_those_of_samples(seed, methods, strokes):
     scene = random_scene(seed, tuple(PUNCHES)[seed % 4], methods, strokes)
     result = galinx.compute(scene)
     data, body = result.data, scene.body
+    if any("kink" in text for text in data.get("run/failures", ())):
+        pytest.skip("finite elements refuse a kink for being next to an end")
     response = scene.solid.response(float(data["states/c"][0]))
     allowed = NEXT_TO_CUSP if cusp(body.profile) else MISSED
     for i in range(len(data["states/g"])):

@@ -5,8 +5,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from agreement import check
-from layers_cases import SUBSTRATE
 from scipy.integrate import trapezoid
 from support import THOROUGH, areas, computed, scene_of
 
@@ -17,29 +15,15 @@ from galinx.meshes.rings import CONTACT, FAR, FREE
 from galinx.solvers.contact import residual
 from galinx.solvers.contact.stresses import von_mises
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.layered import Layer, Layered
-from galinx.solvers.solids.half_plane import DATUM
 from galinx.solvers.solids.isotropic import Isotropic
 
-BOTH = ["sie", "fem"]
 HARD, SOFT = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
 #: scenes/coating.toml for one state, by the integral equation.
 ONE = {
     "friction.mu_c": 0.4, "motion.speed": "447.21359549995794 m/s", "solve.tolerance": 1e-6,
     "output.quantities": ["sif"],
 }  # fmt: skip
-ALL = {
-    "output.quantities": ["sif", "surface", "interior", "interfaces"],
-    "output.points": [[0.2, -0.5], [-1.0, -1.4]],
-}
 GRADED = {"layer[0].to": {"E": "2.5 GPa", "nu": 0.25, "rho": "1000 kg/m^3"}}
-#: No layer, and two of the solid below.
-_SOFT = {"E": "2.5 GPa", "nu": 0.25, "rho": 1000.0}
-BARE = {"layer": None, "solve.methods": ["closed_form"]}
-SAME = {"layer": [_SOFT | {"thickness": "1 mm"}] * 2}
-CYLINDER = {"punch": {"profile": "parabolic", "radius": "20 mm", "load": 1e5}}
-HUMP = [[-1, -1], [0, -1], [0.3, -4], [1, 0]]
-GIVEN = {"solve.mode": "traction", "solve.pressure": HUMP}
 
 
 def coated(*changes):
@@ -70,16 +54,6 @@ def test_the_example_from_scene_to_archive(tmp_path):
     again = galinx.load(tmp_path / "coated.h5")
     assert again.scene.layers == result.scene.layers
     assert json.loads(again.attributes["solid"])["layer 1"].startswith("1 mm of E = 7.5 GPa")
-
-
-@pytest.mark.parametrize("tolerance", [1e-6, *(1e-8,) * THOROUGH])
-def test_the_example_by_finite_elements(tolerance):
-    result = coated({"solve.tolerance": tolerance, "solve.methods": BOTH})
-    data = result.data
-    assert result.verdict == "PASS"
-    check(data, tolerance)
-    assert data["states/fem/K_I_left"][0] == pytest.approx(0.46957498690109, rel=tolerance)
-    assert "states/fem/v0" not in data
 
 
 def test_rows_by_depth_are_linear_grading():
@@ -169,26 +143,6 @@ def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypa
     assert result.verdict == verdict, result.data["states/fem/residual"]
 
 
-@pytest.mark.parametrize("V", [0.0, 0.6])
-def test_layers_of_the_substrates_solid_move_as_it_does(V):
-    """What is left of the expansion falls with the distance's square."""
-    solid = SOFT
-    stack = Layered((Layer(0.7, solid), Layer(0.5, solid)), solid)
-    response = stack.response(V / solid.c_s)
-
-    def left(R):
-        X, Y = R * np.array([1.0, -1.0, 0.3, -0.7]), np.array([-0.4, -1.0, -R, -0.8 * R])
-        datum = DATUM * max(1.0, response.far_length)
-        exact = solid.response(response.c).far(X, Y, datum=datum)
-        return np.abs(response.far(X, Y, 1) - exact).max()
-
-    near, far = left(50.0), left(100.0)
-    assert near < 1e-3
-    # A rank may have no node of the far boundary.
-    assert response.far(np.empty(0), np.empty(0), 1).shape == (1, 2, 2, 0)
-    assert 3.5 < near / far < 4.5
-
-
 @pytest.mark.parametrize("depths", [(0.01,), (1.0,), (100.0,), (0.05, 0.1, 7.0)])
 def test_meshes_follow_interfaces(depths):
     kind = OnLayers(depths=depths)
@@ -203,36 +157,3 @@ def test_meshes_follow_interfaces(depths):
         assert all(len(mesh.edges[tag]) for tag in (CONTACT, FREE, FAR))
         contact = mesh.points[mesh.edges[CONTACT]]
         assert np.abs(contact[:, 1, 0] - contact[:, 0, 0]).sum() == pytest.approx(2.0)
-
-
-@pytest.mark.parametrize(
-    "punch, mu, share",
-    [(CYLINDER, mu, c) for mu in ([1e-9, 0.4, 1.0] if THOROUGH else [0.4])
-     for c in ([0.0, 0.5, 0.95] if THOROUGH else [0.95])]
-    + [(GIVEN, 0.6, c) for c in ([0.0, 0.9] if THOROUGH else [0.9])],
-    ids=lambda value: "" if isinstance(value, dict) else str(value),
-)  # fmt: skip
-def test_layers_of_one_solid_are_the_half_plane(punch, mu, share):
-    """All that is told of a contact is that of the closed form."""
-    asked = ALL | punch | {
-        "motion.speed": None, "friction.mu_c": mu, "solve.tolerance": 1e-9,
-        "motion.c": share * SUBSTRATE.limit(), "output.quantities": ["sif", "surface", "interior"],
-        "output.points": [[0.2, -0.5], [-1.0, -0.3], [0.7, -3.0]],
-    }  # fmt: skip
-    layered, plain = (coated(asked, layers).data for layers in (SAME, BARE))
-    names = ["surface/{}/sigma_YY", "surface/{}/sigma_XX",
-             *(f"interior/{{}}/sigma_{ij}" for ij in ("XX", "YY", "XY"))]  # fmt: skip
-    if punch == CYLINDER:
-        names.append("states/{}/largest_pressure")
-        h = plain["states/closed_form/half_width"][0]
-        assert layered["states/sie/half_width"][0] == pytest.approx(h, rel=1e-10)
-        centre = plain["states/closed_form/centre"][0]
-        assert layered["states/sie/centre"][0] == pytest.approx(centre, abs=1e-10 * h)
-    else:
-        names.append("states/{}/normal_force")
-    for name in names:
-        one, other = (data[name.format(by)] for data, by in ((layered, "sie"), (plain, "closed_form")))
-        known = np.isfinite(other)
-        assert np.array_equal(known, np.isfinite(one)) and known.any()
-        most = (1e-8 if punch == CYLINDER else 1e-10) * np.abs(other[known]).max()
-        assert np.abs(one - other)[known].max() <= most

@@ -111,24 +111,6 @@ def test_a_pressure_that_is_put_in_has_every_load(pressure):
     same_as_alone(ALL | given, (3e4, 3e6))
 
 
-def test_yield_follows_the_load():
-    """Stresses over N/(2a) are the same, the yielded zone is not; the load at first yield is one."""
-    asked = {
-        "output.quantities": ["sif", "yield"],
-        "output.points": None,
-        "solid.yield_strength": "1 GPa",
-    }
-    changes = ALL | CLOSED | asked
-    many, _ = same_as_alone(changes | punch("parabolic"), (3e4, 3e6))
-    first = many.data["states/closed_form/first_yield_load"].reshape(2, 2)
-    np.testing.assert_allclose(first[0], first[1], rtol=1e-9)
-    depth = many.data["states/closed_form/yield_depth"].reshape(2, 2)
-    assert (depth[0] == 0.0).all() and (depth[1] > 0.1).all()
-    flat, _ = same_as_alone(changes | punch("flat"), (3e4, 3e6))
-    reach = flat.data["states/closed_form/yield_reach_right"].reshape(2, 2)
-    assert (reach[1] > 10.0 * reach[0]).all()
-
-
 def test_loads_are_one_list_of_the_product():
     """Slower than the laws, faster than the speeds; each once."""
     lists = {"punch.load": ["2 N/mm", "1 N/mm", 2e3], "friction.mu_c": [0.3, 0.7], "motion.c": [0.1, 0.2]}

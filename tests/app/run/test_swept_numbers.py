@@ -143,17 +143,6 @@ def test_a_swept_strength_is_that_of_each_state(scene, words):
     assert any(texts[0] != texts[1] for texts in each)
 
 
-def test_one_friction_beside_that_along_the_contact_is_over_each_solid():
-    """Friction that is the same all along has the pressure of one friction, whatever the swept ν is."""
-    along = FLAT | {"friction": {"along": [[-1, 0.8], [0, 0.8], [1, 0.8]]}, "motion": {"speed": "1 m/s"}}
-    result = swept_by(along, "punch.load=50 N/mm", "solid.nu=[0.0, 0.45]")
-    over_uniform = result.figure("along").axes[2]
-    curves = [line.get_ydata() for line in over_uniform.lines if len(line.get_xdata()) > 10]
-    assert len(curves) == 2
-    for ratio in curves:
-        np.testing.assert_allclose(ratio[np.isfinite(ratio)], 1.0, rtol=1e-6)
-
-
 @pytest.mark.parametrize("kinds", [PROFILES, SOLIDS], ids=["profiles", "solids"])
 def test_a_key_of_several_kinds_has_one_name_for_all(kinds):
     """Columns have one description a key: what one kind alone means stands behind a comma."""

@@ -21,15 +21,6 @@ def test_a_change_stands_in_the_text_and_comments_stay():
     assert parse(result).friction.parameters["mu_c"] == (0.3, 0.5)
 
 
-def test_words_are_toml_values_or_texts():
-    changes = from_words(
-        ["friction.mu_c=[0.3, 0.5]", "solid.E=70 GPa", "title=Two words", "motion.c=0.1"]
-    )
-    assert changes == {
-        "friction.mu_c": [0.3, 0.5], "solid.E": "70 GPa", "title": "Two words", "motion.c": 0.1
-    }  # fmt: skip
-
-
 @pytest.mark.parametrize("key", ["friction", "a.b.c", "mu_c"])
 def test_keys_name_section_and_key(key):
     with pytest.raises(BadInput, match="cannot be changed"):

@@ -104,20 +104,6 @@ def test_no_two_states_of_a_panel_would_pass_for_each_other():
             assert not np.allclose(one, other, rtol=1e-5, atol=1e-5)
 
 
-def test_legends_name_the_values(drawings):
-    legends = {
-        name: [text.get_text() for text in drawings[name].figure.legends[0].texts] for name in ROWS
-    }
-    assert legends["fig5"][:2] == ["$X/L = 0.2$", "$X/L = 0.8$"]
-    assert legends["fig7"][:3] == ["FM1", "BM1", "FM2"]
-    assert legends["fig8"][:4] == [rf"$\mu_C = {mu:g}$" for mu in MU]
-    assert [text.replace(r"\,", "") for text in legends["fig9"][:3]] == [
-        rf"$\sigma_0 l/N = {sigma:.0f}\mathrm{{m^{{-1}}}}$" for sigma in SIGMA
-    ]
-    assert legends["fig10"][:4] == [rf"$\delta_D = {delta:g}$" for delta in DELTA]
-    assert all("SS" in legends[name][-2] and "HS" in legends[name][-1] for name in ROWS if name != "fig5")
-
-
 def loops_of(axis, strokes=3):
     """Loops of a panel: its strokes one after the other, (loops, strokes) of x and y."""
     lines, _ = drawn(axis)
@@ -158,17 +144,6 @@ def test_the_block_has_the_studys_proportions(drawings):
     (left, low), (right, high) = np.nanmin(edges, axis=0), np.nanmax(edges, axis=0)
     assert 2.0 / (right - left) == pytest.approx(0.01) and 2.0 / (high - low) == pytest.approx(0.02)
     assert "2a/W = 0.01 and 2a/H = 0.02" in drawings["fig4"].caption
-
-
-def test_a_sinusoidal_motion_has_the_loop_of_its_way(drawings):
-    over_time, over_X = drawings["sinusoidal"].figure.axes
-    (place, force), _ = drawn(over_time)
-    turns = place[:, 0] <= 0.5  # the first half cycle is FM1
-    expected = [f_of(**REFERENCE, motion="FM1", X=X) for X in place[turns][:, 1]]
-    np.testing.assert_allclose(force[turns][:, 1], expected, atol=1e-12)
-    np.testing.assert_allclose(place[:, 1], 0.5 - 0.5 * np.cos(2.0 * np.pi * place[:, 0]), atol=4e-3)
-    strokes = loops_of(over_X, 4)[0]
-    is_loop(strokes[:3], **REFERENCE)
 
 
 def test_laws_stand_side_by_side_on_contact_stresses(drawings):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact.closed_form import rule_of_ends
-from galinx.solvers.contact.ends import NoRoot, Punch, free_ends, half_width_of_load, root
+from galinx.solvers.contact.ends import Punch, free_ends, half_width_of_load
 from galinx.solvers.errors import SolveError
 
 #: N/μ [m], and n of the half-plane.
@@ -60,28 +60,3 @@ def test_a_load_that_is_infinite_on_one_side():
     assert h == pytest.approx(3.0, rel=1e-13)
     h = half_width_of_load(lambda h: np.inf if h > 4.0 else np.log(h / 3.0), 1e6, punch)
     assert h == pytest.approx(3.0, rel=1e-13)
-
-
-def test_an_expensive_load_is_called_as_often_as_its_rounding_asks_for():
-    punch, called = Punch(Shape(np.sign), 1.0, LOAD), {}
-    for rounding in (1e-3, 1e-13):
-
-        def load(h, rounding=rounding):
-            called.setdefault(rounding, []).append(h)
-            return 1.7 * np.log(h / 3.0) + 0.1 * np.log(h / 3.0) ** 3
-
-        assert half_width_of_load(load, 1.0, punch, rounding) == pytest.approx(3.0, rel=rounding)
-    assert len(called[1e-3]) < len(called[1e-13]) <= 12
-
-
-def test_roots_are_places_where_the_function_was_called():
-    called = []
-
-    def function(x):
-        called.append(x)
-        return np.arctan(x - 5.0)
-
-    assert root(function, -1.0, 0.1, 100.0) in called
-    assert called[-1] == pytest.approx(5.0, abs=1e-14) and len(called) < 25
-    with pytest.raises(NoRoot):
-        root(lambda x: -1.0, 0.0, 1.0, 100.0)

@@ -127,15 +127,3 @@ def test_constant_friction_over_layers_is_one_number(profile, thickness):
     assert contact.half_width == pytest.approx(one.half_width, rel=1e-9)
     assert contact.centre == pytest.approx(one.centre, abs=1e-9)
     np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), one.pressure.σ_YY(PLACES), atol=2e-8)
-
-
-@pytest.mark.parametrize("stiffness, f", [(1e-3, 0.0), (1e9, 0.6)])
-def test_cylinder_between_no_friction_and_full_friction(stiffness, f):
-    """Long pre-sliding leaves Hertz's contact, a short one is full friction but next to the end."""
-    half_width = make_contact(ISOTROPIC, CYLINDER, LOAD).half_width
-    friction = advected(Dahl(0.6, stiffness, 1.0), 1, 1.0, half_width, -1.0)
-    contact, body, response = solved(ISOTROPIC, friction, tolerance=1e-6)
-    one = contacts(response, np.array([-f]), CYLINDER, body.compression)
-    assert contact.half_width * half_width == pytest.approx(one.of("half_width")[0], rel=1e-5)
-    expected = np.ravel(one.groups[0].pressure.σ_YY(PLACES))
-    np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), expected, rtol=3e-4)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.approximation import lagrange
-from galinx.solvers.contact.recovery import KinkedPressure, error_at_kink
+from galinx.solvers.contact.recovery import KinkedPressure
 
 #: A chart in which surface coordinates are positions.
 AS_DRAWN = SimpleNamespace(
@@ -113,8 +113,3 @@ def test_a_limit_at_a_kink_near_an_end_is_as_good_from_the_far_side(kink):
         (np.array([-1.0, 1.0]) * (1.0 - 1e-6), 1e-5),
     ):
         np.testing.assert_allclose(pressure.σ_YY(beside)[0], under_a_kink(beside, kink), rtol=left)
-
-
-def test_two_limits_that_differ_are_wrong_by_half_of_that():
-    limits = np.array([1.0, 3.0])
-    assert error_at_kink(limits, limits) == 1.0

@@ -9,14 +9,6 @@ from galinx.solvers.contact import recovery as pressure
 β = -1.0 - α
 
 
-def test_products_are_the_integrals():
-    for i in range(len(α)):
-        with np.errstate(invalid="ignore"):
-            t, w = roots_jacobi(20, α[i], β[i])
-        T = pressure.chebyshev(t)
-        np.testing.assert_allclose(pressure.products(α, β)[..., i], (T.T * w) @ T, atol=1e-12)
-
-
 def test_a_pressure_is_found_from_its_moments():
     """(1 - r)^α (1 + r)^β (2 + r³) and its values at the ends."""
     for i in range(len(α)):

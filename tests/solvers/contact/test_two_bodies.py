@@ -3,13 +3,11 @@
 from dataclasses import replace
 from math import pi
 
-import mpmath as mp
 import numpy as np
 import pytest
 from stroh import admittances
 
-from galinx.solvers.contact.closed_form import FlatPunch, contacts
-from galinx.solvers.profiles import PROFILES
+from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids import SOLIDS, Isotropic
 from galinx.solvers.solids.pair import Pair
 
@@ -49,32 +47,6 @@ def test_the_gap_between_two_surfaces_is_that_of_waves_in_both_bodies(seed):
     )[1]  # fmt: skip
     by_constants = (1j * (pair.n + g * pair.n12) - g * pair.q) / plate.μ  # H[e^(ikX)] = i e^(ikX)
     assert abs(slope - by_constants) < 1e-10 * abs(slope)
-
-
-@pytest.mark.parametrize("c, speed, g", [(0.0, 0.0, -0.4), (0.5, 0.0, -0.6), (0.3, 400.0, 0.8)])
-def test_a_flat_punch_satisfies_the_singular_equation_of_both_bodies(c, speed, g):
-    pair = Pair(STEEL, POLYMER, speed).response(c)
-    flat = FlatPunch(pair, g)
-    α, β, r = mp.mpf(float(flat.α)), mp.mpf(float(flat.β)), mp.mpf("0.3")
-    amplitude = 2 * mp.sin(mp.pi * α) / mp.pi
-    weight = lambda t: (1 - t) ** α * (1 + t) ** β  # noqa: E731
-    # The singular part by the symmetric rule about r; ends by powers of their distance.
-    near = mp.quad(lambda x: (weight(r + x) - weight(r - x)) / x, [0, 0.35, 0.69])
-    right = mp.quad(lambda x: x ** (1 / (1 + α) - 1 + α / (1 + α)) * (2 - x ** (1 / (1 + α))) ** β
-                    / (1 - x ** (1 / (1 + α)) - r) / (1 + α), [0, mp.mpf("0.01") ** (1 + α)])  # fmt: skip
-    left = mp.quad(lambda x: x ** (1 / (1 + β) - 1 + β / (1 + β)) * (2 - x ** (1 / (1 + β))) ** α
-                   / (x ** (1 / (1 + β)) - 1 - r) / (1 + β), [0, mp.mpf("0.61") ** (1 + β)])  # fmt: skip
-    H = amplitude * (near + right + left) / mp.pi
-    slope = (pair.n + g * pair.n12) * H - g * pair.q * amplitude * weight(r)
-    assert abs(slope) < 1e-9 * abs(amplitude * weight(r)) * pair.n
-
-
-def test_hertz_with_the_contact_modulus_of_both_bodies():
-    R, N = 10e-3, 1e5
-    modulus = 1.0 / sum((1.0 - s.ν**2) / s.E for s in (STEEL, POLYMER))
-    pair = Pair(STEEL, POLYMER, 0.0).response(0.0)
-    contact = contacts(pair, np.zeros(1), PROFILES["parabolic"](R), N / STEEL.μ)
-    assert contact.of("half_width")[0] == pytest.approx(np.sqrt(4.0 * N * R / (pi * modulus)), rel=1e-12)
 
 
 @pytest.mark.parametrize("plane", ["strain", "stress"])

@@ -9,13 +9,12 @@ from mpi4py import MPI
 from support import clean_environment, mpirun, small_punch, space_on
 
 from galinx.meshes import MESHES, Requirements
-from galinx.meshes.charts import Physical
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.contact import stresses
 from galinx.solvers.contact.fem_plan import requirements, unknowns
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.fields import surface_slopes
-from galinx.solvers.fem.space import Space, consistent_forces, distribute
+from galinx.solvers.fem.space import Space, distribute
 
 
 def test_a_missing_boundary_part_is_named():
@@ -78,17 +77,6 @@ def test_more_ranks_than_cells():
         capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_forces_of_a_load_know_the_distances_from_both_edges(sign):
-    """Sum and moment of 1 + X and of 1 - X over the contact, on two facets that meet in its middle."""
-    s = np.array([[-1.0, -0.5, 0.0], [0.0, 0.5, 1.0]])
-    forces = consistent_forces(
-        s, Physical(), (-1.0, 1.0), lambda left, right: left if sign > 0.0 else right, ()
-    )
-    assert forces.sum() == pytest.approx(2.0, rel=1e-13)
-    assert (forces * s).sum() == pytest.approx(sign * 2.0 / 3.0, rel=1e-13)
 
 
 def test_a_mesh_reaches_the_farthest_place_in_every_plane_of_the_solid():

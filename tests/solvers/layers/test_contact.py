@@ -7,8 +7,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from layers_cases import COAT, SUBSTRATE, constants, converged_pressure, equation
-from layers_reference import admittance, plane_strain, punch
-from scipy.special import eval_jacobi
+from layers_reference import admittance
 from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import contacts
@@ -17,11 +16,9 @@ from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import (
     Jacobi,
     LayersUnderPunch,
-    jacobi,
     under_punch,
     weights_between,
 )
-from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.errors import SolveError
@@ -30,8 +27,8 @@ from galinx.solvers.profiles import PROFILES
 from galinx.solvers.profiles.punches import Flat, Power
 from galinx.solvers.solids.isotropic import Isotropic
 
-#: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes by the
-#: reference.
+#: V², and α, K_I left, K_I right, σ_YY(0) over N/a, found in 30 and 50 digits with 24 to 36 nodes of a
+#: collocation with the admittance of the reference.
 EXAMPLE = {
     0.2: (-0.46191902660637, 0.46957498690109, 0.44068899120707, -0.17306141207014),
     1e-6: (-0.46377887035456, 0.44527894507991, 0.42102580318078, -0.19463531965638),
@@ -47,20 +44,6 @@ def read(pressure):
 def test_the_example_to_all_digits(V2):
     one = converged_pressure(equation(Layered((Layer(1.0, COAT),), SUBSTRATE), V2, -0.4), 1e-11)
     assert np.abs(read(one.pressure) - EXAMPLE[V2]).max() <= 2e-12
-
-
-@pytest.mark.skipif(not THOROUGH, reason="a minute")
-@pytest.mark.parametrize("V2", EXAMPLE)
-def test_the_reference_finds_the_example(V2):
-    layers = [(mp.mpf(1), plane_strain("7.5", "0.3"), mp.mpf("1.2"))]
-    exact = punch(layers, (plane_strain("2.5", "0.25"), mp.mpf(1)), repr(V2), "-0.4", 36)
-    assert np.abs(np.array(exact, dtype=float) - EXAMPLE[V2]).max() <= 1e-13
-
-
-def test_the_reference_finds_it_roughly():
-    layers = [(mp.mpf(1), plane_strain("7.5", "0.3"), mp.mpf("1.2"))]
-    exact = punch(layers, (plane_strain("2.5", "0.25"), mp.mpf(1)), "0.2", "-0.4", 12, 20, 8, 10)
-    assert np.abs(np.array(exact, dtype=float) - EXAMPLE[0.2]).max() <= 1e-5
 
 
 @pytest.mark.parametrize("V2", EXAMPLE)
@@ -84,17 +67,6 @@ def test_frictions_between_are_interpolated_within_the_tolerance():
             equation(solid, (0.3 * COAT.c_s) ** 2, float(g[i])), 1e-11
         ).pressure.series(ENDS)
         assert np.abs(ends[i] / exact - 1.0).max() <= 1e-8
-
-
-def test_panels_have_the_hilbert_transform_of_polynomials():
-    """Of one pressure by values on panels and by Jacobi's polynomials, under the punch and beside it."""
-    α, β, X = -0.45, -0.55, np.array([-3.0, -1.2, -0.99, -0.3, 0.2, 0.8, 1.5])
-    panels, polynomials = Panels(α, β, 0.1), Jacobi(α, β)
-    p = 1.0 + panels.t - 2.0 * panels.t**3
-    c = np.linalg.lstsq(polynomials.values(panels.t, 6), p, rcond=None)[0]
-    by_panels, expected = Expansion(α, β, p, panels), Expansion(α, β, c, polynomials)
-    np.testing.assert_allclose(by_panels.σ_YY(X), expected.σ_YY(X), rtol=1e-11)
-    np.testing.assert_allclose(by_panels.hilbert(X), expected.hilbert(X), rtol=1e-10)
 
 
 @pytest.mark.parametrize("terms, limit", [(20, 1e-10), (60, 1e-10), (150, 1e-10), (300, 1e-9)])
@@ -133,6 +105,7 @@ PUNCHES = {
     "table": table(tuple((x, 0.01 * (x**2 + 0.05 * x**3 + abs(x))) for x in range(-3, 4))),
     "touching": flat(1.0, 0.05),
     "lifted": flat(1.0, -1.0),
+    "edges": flat(1.0),
 }  # fmt: skip
 
 
@@ -198,7 +171,7 @@ class ReferenceEquation:
         return np.real(np.exp(1j * np.multiply.outer(x, self.k)) @ self.of_k)
 
     def off(self, σ, r, kinks):
-        """What is left of the equation at r, and the size of its slope."""
+        """What is left of the equation at r, and the size of its terms."""
         near = 0.5 * min(abs(r - one) for one in [-1.0, 1.0, *kinks])
         t, w = _rule(sorted([-1.0, *kinks, r - near, r + near, 1.0]))
         beside = np.abs(t - r) > near
@@ -208,8 +181,10 @@ class ReferenceEquation:
         cauchy = w[beside] @ (σ(t[beside]) / (t[beside] - r)) + v @ ((both[0] - both[1]) / u)
         bent = w[beside] @ (σ(t[beside]) * self.kernel(r - t[beside]))
         bent += v @ (both[0] * self.kernel(-u) + both[1] * self.kernel(u))
+        # A flat punch has no slope.
+        size = np.abs(self.slope(t)).max() or self.n * np.abs(σ(np.array([r]))[0])
         left = self.n / np.pi * cauchy - self.Q * σ(np.array([r]))[0] + bent
-        return float(left - self.slope(np.array([r]))[0]), float(np.abs(self.slope(t)).max())
+        return float(left - self.slope(np.array([r]))[0]), float(size)
 
 
 def _rule(places):
@@ -224,7 +199,7 @@ def _rule(places):
     return t[inside.ravel()], weights[inside.ravel()]
 
 
-@pytest.mark.parametrize("name", list(PUNCHES) if THOROUGH else ["wedge", "lifted"])
+@pytest.mark.parametrize("name", list(PUNCHES) if THOROUGH else ["wedge", "lifted", "edges"])
 @pytest.mark.parametrize("g", [0.9, -0.6] if THOROUGH else [-0.6])
 def test_the_equation_of_the_reference_holds(name, g):
     """With its load, and no intensity at free ends: the punch, the layers and the kink all told."""
@@ -255,23 +230,6 @@ def _kinks(profile, m, h):
     return [x for x in at if abs(x) < 1.0]
 
 
-def test_an_edge_lifts_off_beyond_the_tilt_that_leaves_it_no_intensity():
-    """Between two tilts: the contact begins to shrink, and the exponents say so."""
-    response = COATED.response(0.5 * COATED.limit())
-    free, sizes = [], []
-    tilts = (0.2, 0.3, 0.4, 0.5, 0.6)
-    for tilt in tilts:
-        one, _, unit = found(COATED, flat(1.0, tilt), -0.4)
-        free.append(one.pressure.free[1])
-        sizes.append(one.half_width * unit)
-        body = make_contact(COATED, flat(1.0, tilt), LOAD * COATED.μ)
-        local = body.local_exponents(response, np.array([-0.4]))
-        assert (local.α[0] > 0.0) == one.pressure.free[1] and local.β[0] < 0.0
-        assert one.centre * unit == pytest.approx(sizes[-1] - 1.0)
-    assert not free[0] and free[-1] and sorted(free) == free
-    assert np.all(np.diff(sizes) <= 1e-12) and sizes[0] == pytest.approx(1.0) and sizes[-1] < 0.9
-
-
 @pytest.mark.skipif(not THOROUGH, reason="half a minute")
 def test_over_a_graded_top_rules_know_of_kinks():
     """Whatever they are fine enough for, what they add up to is the load."""
@@ -279,14 +237,6 @@ def test_over_a_graded_top_rules_know_of_kinks():
     one, _, _ = found(graded, wedge(0.01), -0.6, tolerance=1e-6)
     for finest in (3.0, 0.1):
         assert one.pressure.points(finest)[1].sum() == pytest.approx(-2.0, rel=1e-8)
-
-
-@pytest.mark.parametrize(("α", "β"), [(-0.5, -0.5), (-0.71, -0.29), (0.4, 0.6), (-0.3, 0.3)])
-def test_recurrence_is_the_series(α, β):
-    r = np.array([-1.0, -0.9999, -0.3, 0.0, 0.77, 1.0, 1.08])
-    exact = eval_jacobi(np.arange(60), α, β, r[:, None])
-    assert (np.abs(jacobi(60, α, β, r) - exact) / np.maximum(np.abs(exact), 0.1)).max() <= 1e-11
-    assert jacobi(1, α, β, r).shape == (7, 1)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

@@ -38,19 +38,6 @@ def test_stiffness_of_random_stacks_is_that_of_the_reference(seed):
         assert np.abs(one - exact).max() <= 3e-12 * np.abs(exact).max()
 
 
-def test_excess_keeps_its_digits_where_it_is_small():
-    stack = Layered((Layer(1.0, COAT),), SUBSTRATE).response(0.3).stack(1.0)
-    mp.mp.dps = 60
-    V2 = mp.mpf(0.3 * COAT.c_s) ** 2
-    top = admittance([], (constants(COAT), mp.mpf(COAT.ρ)), V2, mp.mpf(1))
-    layers = [(mp.mpf(1), constants(COAT), mp.mpf(COAT.ρ))]
-    whole = admittance(layers, (constants(SUBSTRATE), mp.mpf(1)), V2, mp.mpf(12))
-    exact = np.array((whole - top).tolist(), dtype=complex) * COAT.μ
-    found = stack.admittance(np.array([12.0]))[0]
-    assert np.abs(exact).max() < 1e-7
-    assert np.abs(found - exact).max() <= 1e-12 * np.abs(exact).max()
-
-
 @pytest.mark.parametrize(("grading", "exponent"), [("linear", 1.0), ("exponential", 1.0), ("power", 2.5)])
 def test_graded_layers_are_those_of_the_reference(grading, exponent):
     bottom = Isotropic(2.0, 0.2, 1.0)
@@ -69,42 +56,6 @@ def test_graded_layers_are_those_of_the_reference(grading, exponent):
     for one, number in zip(found, k.tolist()):
         exact = graded_admittance(properties, 0.8, (c * solid.c_s) ** 2, number)
         assert np.abs(one - exact).max() <= 1e-9 * np.abs(exact).max()
-
-
-def test_graded_layer_is_the_limit_of_uniform_ones():
-    """Of second order, at all wavenumbers; the first order for large k is known."""
-    bottom = Isotropic(2.0, 0.2, 1.0)
-    graded = Layer(1.0, COAT, bottom)
-    k = np.array([0.3, 3.0, 20.0])
-    exact = Layered((graded,), bottom).response(0.3).stack(1.0)
-    off = []
-    for count in (16, 32, 64):
-        middles = (np.arange(count) + 0.5) / count
-        layers = tuple(Layer(1.0 / count, graded.at(float(s))) for s in middles)
-        solid = Layered(layers, bottom)
-        c = 0.3 * COAT.c_s / solid.c_s
-        stiffness = solid.response(c).stack(1.0).stiffness(k) * (solid.μ / COAT.μ)
-        off.append(np.abs(stiffness - exact.stiffness(k)).max(axis=(1, 2)))
-    rates = np.log2(np.array(off[:-1]) / off[1:])
-    assert np.all(np.abs(rates[-1, :2] - 2.0) < 0.05)
-    far = np.array([1e5])
-    first = exact.layers[0].first_order()
-    assert np.abs(far * exact.excess(far)[0] - first).max() <= 1e-4 * np.abs(first).max()
-
-
-def test_displacement_carried_down_is_that_of_the_parts():
-    """A layer cut in two carries down what it carries down whole."""
-    k = np.array([0.4, 2.0, 9.0])
-    bottom = Isotropic(2.0, 0.2, 1.0)
-    for layer in (Layer(1.0, COAT), Layer(1.0, COAT, bottom)):
-        stack = Layered((layer,), bottom).response(0.3).stack(1.0)
-        one, below = stack.layers[0], stack.below(k)[0]
-        upper, lower = one.cut(0.3)
-        between = lower.top.down + lower.excess(k, below)
-        twice = lower.carried(k, below) @ upper.carried(k, between)
-        whole = one.carried(k, below)
-        assert np.abs(whole).min() < 0.01 < np.abs(whole).max()
-        assert np.abs(twice - whole).max() <= 1e-9
 
 
 def test_speed_limit_of_uniform_half_planes_and_of_soft_layers_inside():

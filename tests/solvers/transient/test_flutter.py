@@ -172,23 +172,10 @@ def test_between_two_bodies_no_wave_grows_below_the_threshold_and_some_do_above(
             assert growing_between(plate, punch, V, V_punch, sign * (1.5 * g + 0.1)) > 0
 
 
-def test_under_a_stiff_punch_the_threshold_is_that_of_the_plate():
-    stiff = Isotropic(1e25, 0.3, 5e17)
-    for plate in (STEEL, material("copper", 30.0), material("carbon-epoxy", 90.0)):
-        for c in (0.0, 0.3):
-            np.testing.assert_allclose(Pair(plate, stiff, 0.0).flutter(c), plate.flutter(), rtol=1e-8)
-
-
 def test_like_bodies_flutter_only_where_they_slide_over_one_another():
     assert Pair(STEEL, STEEL, 0.0).flutter(0.0) == (np.inf, np.inf)
     assert Pair(STEEL, STEEL, 0.5 * STEEL.c_s).flutter(0.5) == (np.inf, np.inf)
     assert min(Pair(STEEL, STEEL, 0.0).flutter(0.3)) == 0.0
-
-
-def test_the_same_two_bodies_upside_down_have_the_same_thresholds():
-    plate, punch = material("copper", 30.0), material("zinc", -20.0)
-    one = Pair(plate, punch, 100.0).flutter(400.0 / plate.c_s)
-    np.testing.assert_allclose(Pair(punch, plate, 100.0).flutter(400.0 / punch.c_s), one, rtol=1e-7)
 
 
 @pytest.mark.parametrize("ν", [-0.4, 0.0, 0.3, 0.49])

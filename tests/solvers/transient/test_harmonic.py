@@ -64,11 +64,6 @@ def test_polynomials_tell_their_error():
     assert off < found.error[0] + 1e-11 < 1e-7
 
 
-def test_waves_that_are_too_short_are_refused():
-    with pytest.raises(ValueError, match=r"at most 4\.1"):
-        oscillation(SOLIDS[0], 0.85, 0.0, [5.0])
-
-
 def test_finite_elements_in_time_answer_alike():
     """Laplace's transform of what a pulse of the load does, at complex s: ∫ e^(-st) v₀ dt."""
     started, g = ByFiniteElements(SOLIDS[0], 0.6, 5.0, 50), -0.4

@@ -53,14 +53,6 @@ def test_kernels_of_any_solid_are_the_transform_of_their_symbols(seed):
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
 
 
-def test_slopes_are_those_of_the_response():
-    solid = random_solid(2)
-    kernel = Kernel(Admittance.of(solid.response(0.0)), 0.2, solid.limit())
-    x, s, h = np.array([0.1, 0.7]), 1.0 + 5.0j, 1e-4
-    expected = (kernel(x + h, s) - kernel(x - h, s)) / (2.0 * h)
-    np.testing.assert_allclose(kernel(x, s, slopes=True), expected, rtol=1e-5)
-
-
 def test_roots_meet_at_speeds_of_waves_in_isotropic_solids():
     """Those of shear and pressure; nothing is faster, and straight down waves are these two."""
     solid = Isotropic(1.0, 0.3, 1.0)

@@ -11,7 +11,6 @@ from support import THOROUGH
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.history import smooth
-from galinx.solvers.transient.line_load import both_sides
 from galinx.solvers.transient.punch import (
     ON_SURFACE,
     PLACES,
@@ -114,19 +113,6 @@ def strains(solid, c, g, s, X):
     (answers,) = transformed.answers(basis)
     a = answers[:, :-1, None]
     return (AlongSurface(response, solid.limit(), s, X).strains(basis) @ a)[..., 0], basis, a
-
-
-def test_strain_beside_the_contact_is_that_of_the_kernel():
-    X, s, g = np.array([-1.3, 1.3]), [0.3, 1.0 + 4.0j, 2.0 - 6.0j], -0.5
-    found, basis, a = strains(SOLID, 0.5, g, s, X)
-    loads, w = basis.pressure.rule(120)
-    σ = (w * (basis.pressure.polynomials(loads) @ a)[..., 0])[:, None]
-    ahead, behind = both_sides(SOLID.response(0.5), SOLID.limit(), 1)
-    kernels = np.array(
-        [[behind(loads - X[0], at, True)[2:], ahead(X[1] - loads, at, True)[2:]] for at in s]
-    )
-    expected = ((kernels[:, :, 0] + g * kernels[:, :, 1]) * σ).sum(axis=-1)
-    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-8)
 
 
 @pytest.mark.parametrize(("solid", "c", "g"), [(SOLID, 0.6, -0.5), (random_solid(1), 0.2, 0.4)])

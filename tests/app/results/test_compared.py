@@ -153,3 +153,25 @@ def test_measured_points_lie_at_their_places(light, heavy, table):
 def test_what_is_no_measured_table_is_refused(table, text, said):
     with pytest.raises(BadInput, match=re.escape(said)):
         read(table(text))
+
+
+def test_the_swapped_order_is_the_mirror(light, heavy):
+    there, back = (by_name(galinx.compare(*pair)) for pair in ((light, heavy), (heavy, light)))
+    assert there.keys() - {n for n in there if "difference" in n} == {
+        re.sub(r"_[12]$", lambda m: {"_1": "_2", "_2": "_1"}[m[0]], name)
+        for name in back
+        if "difference" not in name
+    }
+    compared = 0
+    for name, column in there.items():
+        mirrored = re.sub(r"_1$", "_2", name)
+        if name.endswith("_1"):
+            assert column.unit == back[mirrored].unit
+            np.testing.assert_array_equal(column.values, back[mirrored].values)
+        elif name.endswith("_difference") and not column.place:
+            a, b = (there[name.replace("_2_difference", f"_{n}")].values for n in (1, 2))
+            np.testing.assert_allclose(
+                column.values * np.abs(a), -back[name].values * np.abs(b), rtol=1e-9
+            )
+            compared += 1
+    assert compared > 5

@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from support import computed
 
 import galinx
 from galinx.app.scene.read import parse
@@ -109,3 +110,15 @@ def test_the_integral_equation_alone_solves_uniform_solids(punch, frictions):
     assert "stresses inside cannot be computed: in a uniform solid closed_form gives it" in str(
         by["sie"].attributes["warnings"]
     )
+
+
+def test_a_parabola_is_one_by_every_name():
+    """A power of the exponent 2 is the cylinder of its curvature, by both methods."""
+    few = {"motion.c": 0.5, "motion.strokes": ["forward"], "motion.X_over_L": [0.7],
+           "solve.tolerance": 1e-5, "punch.half_width": None}  # fmt: skip
+    names = {"punch.profile": "parabolic", "punch.radius": 0.02}, {
+        "punch.profile": "power", "punch.exponent": 2.0, "punch.coefficient": 25.0,
+    }  # fmt: skip
+    cylinder, power = (computed("tables4_5", few | name).data for name in names)
+    for path in (f"states/{by}/{of}" for by in ("closed_form", "fem") for of in ("half_width", "centre")):
+        np.testing.assert_allclose(power[path], cylinder[path], rtol=1e-13)

@@ -71,3 +71,21 @@ def test_flat_states_of_a_punch_with_a_profile_are_those_of_a_flat_punch():
     profile = small_punch(heights=0.1 * flat.space.contact.s**2)
     expected = flat.states(g).normal
     np.testing.assert_allclose(profile.states(g, flat=True).normal, expected, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("c", [0.0, 0.6, 0.91])
+def test_friction_along_the_contact_that_does_not_vary_is_a_number(c):
+    g = np.linspace(-0.9, 0.8, 7)
+    number = small_punch(c)
+    unit = np.eye(len(number.space.contact.s))
+    matrix = small_punch(c, along=lambda g: g * unit)
+    expected, states = (punch.states(g) for punch in (number, matrix))
+    scale = np.abs(expected.normal).max()
+    np.testing.assert_allclose(states.normal, expected.normal, rtol=0.0, atol=1e-10 * scale)
+    np.testing.assert_allclose(states.tangential, g[:, None] * states.normal, rtol=0.0, atol=1e-9 * scale)
+    np.testing.assert_allclose(states.v0, expected.v0, rtol=1e-9)
+    fields = [
+        sum(w * field.array for w, field in zip(state.weights[0], punch.fields))
+        for state, punch in ((expected, number), (states, matrix))
+    ]
+    assert np.linalg.norm(fields[1] - fields[0]) <= 1e-9 * np.linalg.norm(fields[0])

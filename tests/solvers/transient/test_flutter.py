@@ -203,3 +203,10 @@ def test_thresholds_of_a_pair_have_their_limit_at_ν_one_half(seed):
         assert (limit >= 0.0).all() and (
             np.abs(nearer - limit) <= 0.11 * np.abs(near - limit) + 1e-9
         ).all()
+
+
+def test_under_a_stiff_punch_the_threshold_is_that_of_the_plate():
+    stiff = Isotropic(1e25, 0.3, 5e17)
+    for plate in (STEEL, material("copper", 30.0), material("carbon-epoxy", 90.0)):
+        for c in (0.0, 0.3):
+            np.testing.assert_allclose(Pair(plate, stiff, 0.0).flutter(c), plate.flutter(), rtol=1e-8)

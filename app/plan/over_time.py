@@ -293,7 +293,7 @@ class Starts:
         turn = f"; {self.until_turn}" * bool(self.until_turn)
         lines = [f"integral equation in time: {what}{turn}"] if SIE in self.methods else []
         if not self.smooth:
-            lines.append("no K_I over time: strokes are over before waves cross the contact")
+            lines.append("no K_I over time: load, friction or direction changes within 2 a/c_s")
         for c in self.drives if FEM in self.methods else ():
             _, level = self.levels(c)
             lines.append(

@@ -40,7 +40,6 @@ from galinx.solvers.contact.fem_plan import (
     OWN_MESHES,
     OWN_MESHES_KEPT,
     FemPlan,
-    levels,
     unknowns,
 )
 from galinx.solvers.contact.solution import FINITE, GIVEN_ENDS, SOLVED, Contact, Places, Task
@@ -486,8 +485,7 @@ def _bytes(plan: Plan) -> float:
     held, fem = _HELD * plan.chunk * plan.numbers, plan.fem
     if not fem:
         return held + _FRICTION * plan.states
-    finest = max(p * k for p, k in levels(max(fem.degrees), fem.cuts, fem.fixed))
-    most = unknowns(fem.pattern, finest) / (1 if fem.shared_speeds else ranks.size())
+    most = fem.size / (1 if fem.shared_speeds else ranks.size())
     return held + elements.memory(most, fem.solver == "direct")
 
 

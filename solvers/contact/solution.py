@@ -371,14 +371,15 @@ class Contact:
         """Load over the shear modulus, N/μ [m]."""
         return self.load / self.solid.μ
 
-    def height(self, X: NDArray) -> NDArray[np.float64]:
-        """Height of the punch over N/(2μ) at X over a, in the shape of X."""
-        return self.profile.height(self.half_width * X) / self.displacement
+    def height(self, r: NDArray, m: float = 0.0, h: Any = None) -> NDArray[np.float64]:
+        """Height of the punch over N/(2μ) at places r over the half-width h from the middle m [m]."""
+        h = self.half_width if h is None else h
+        return np.asarray(self.profile.height(m + h * r) / self.displacement)
 
-    def slope(self, X: NDArray) -> NDArray[np.float64]:
-        """Slope μ v,X under the punch over N/(2a), at X over a, in the shape of X."""
-        a = self.half_width
-        return self.profile.slope(a * X) * a / self.displacement
+    def slope(self, r: NDArray, m: float = 0.0, h: Any = None) -> NDArray[np.float64]:
+        """Slope μ v,X under the punch over N/(2h) at these places."""
+        h = self.half_width if h is None else h
+        return np.asarray(h * self.profile.slope(m + h * r) / self.displacement)
 
     @property
     def force(self) -> Any:

@@ -81,9 +81,7 @@ class ExactSolution(Solution):
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
-        flat = self.task.body.edges(self.task.response, self.g, self.half_width)
-        free_left, free_right = self._of("free").T
-        return Exponents(flat.α + free_right, flat.β + free_left)
+        return self.task.body.edges(self.task.response, self.g, self.half_width, self._of("free"))
 
     @property
     def half_width(self) -> NDArray[np.float64]:

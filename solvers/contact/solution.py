@@ -259,10 +259,17 @@ class Contact:
     def _friction_has_length(self) -> bool:
         return self.found and any(along.has_length for along in self.along.values())
 
-    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Exponents:
-        """Exponents of sharp ends with frictions of :meth:`ratio`, (states,)."""
-        at = self.ratio(g, _BOTH_ENDS, a)
-        return Exponents(EdgeExponents(response, at[:, -1]).α, EdgeExponents(response, at[:, 0]).β)
+    def edges(self, response: HalfPlane, g: NDArray, a: Any = None, free: Any = False) -> Exponents:
+        """Exponents of the pressure at ends with frictions of :meth:`ratio`, (states,).
+
+        Args:
+            response: of the half-plane.
+            g, a: as of :meth:`ratio`.
+            free: True where the left and the right end are free, broadcast to (states, 2).
+        """
+        at, (left, right) = self.ratio(g, _BOTH_ENDS, a), np.broadcast_to(free, (len(g), 2)).T
+        at_right, at_left = (EdgeExponents(response, at[:, end]) for end in (-1, 0))
+        return Exponents(at_right.α + right, at_left.β + left)
 
     def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Half-widths [m] on which frictions depend, (states,), to a millionth; None where none does.
@@ -285,9 +292,8 @@ class Contact:
             g: σ_XY/σ_YY under the punch, (states,).
             load: of each state [N/m], (states,); None for this contact's.
         """
-        edges = self.edges(response, g, self.half_widths(response, g, load))
-        free_left, free_right = self._free_ends(response, g, load).T
-        return Exponents(edges.α + free_right, edges.β + free_left)
+        half_widths, free = self.half_widths(response, g, load), self._free_ends(response, g, load)
+        return self.edges(response, g, half_widths, free)
 
     def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
         """True where the left and the right end of states are free, (states, 2)."""

@@ -182,29 +182,30 @@ class Level:
 
     def stress_gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of the requested stresses of states."""
-        at, places, weights = self.gauged_displacement, self.gauged_task.places, states.contact.weights
-        #: Stresses by word, and their sizes.
-        by_word: dict[str, tuple[Callable[[], NDArray], Callable[[NDArray], NDArray]]] = {
-            ON_SURFACE: (
-                lambda: self.σ_XX(*self.fields_of(states))[None],
-                lambda σ: stresses.of_in_plane(σ[0], places.X),
-            ),
-            BELOW: (lambda: at.inside(weights), lambda σ: stresses.of_inside(σ, *places.points.T)),
-            YIELD: (lambda: at.around(weights), lambda σ: stresses.of_inside(σ, *places.around.T)),
-            AT_INTERFACES: (lambda: at.interfaces(weights), stresses.of_interfaces),
+        at, places = self.gauged_displacement, self.gauged_task.places
+        #: Stresses inside by word, and their sizes.
+        by_word: dict[str, tuple[Callable[[NDArray], NDArray], Callable[[NDArray], NDArray]]] = {
+            BELOW: (at.inside, lambda σ: stresses.of_inside(σ, *places.points.T)),
+            YIELD: (at.around, lambda σ: stresses.of_inside(σ, *places.around.T)),
+            AT_INTERFACES: (at.interfaces, stresses.of_interfaces),
         }
-        gauges = []
+        gauges = [self._on_surface(states)] if ON_SURFACE in self.work.stresses else []
         for word, (evaluate, size) in by_word.items():
             if word in self.work.stresses:
-                σ = evaluate()
+                σ = evaluate(states.contact.weights)
                 gauges.append(of_components(word, σ, size(σ)))
-                if word == ON_SURFACE:
-                    gauges[-1] = self.with_ends(gauges[-1], states, σ[0])
         return gauges
 
-    def with_ends(self, gauge: Gauge, states: SolvedStates, σ_XX: NDArray) -> Gauge:
-        """Gauge of σ_XX on the surface, (states, n), and of its limits at free ends, its extremes."""
-        return gauge
+    def _on_surface(self, states: SolvedStates) -> Gauge:
+        """Gauge of σ_XX on the surface, and of its limits at free ends, its extremes there."""
+        places, σ_XX = self.measured_task.places, self.σ_XX(*self.fields_of(states))
+        groups = [(σ_XX, stresses.of_in_plane(σ_XX, places.X))]
+        if states.contact.free.any():
+            surface = Surface(places, np.full(σ_XX.shape, np.nan), σ_XX)
+            at_ends = turns_at_ends(surface, states.local).σ[0]  # NaN at sharp edges
+            largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
+            groups.append((np.nan_to_num(at_ends), largest))
+        return joined(ON_SURFACE, groups)
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
         """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""

@@ -20,7 +20,6 @@ all loads differ in size alone, a single state of a friction stands for all of t
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, replace
-from functools import cache
 from math import ceil, log
 from typing import Any, TypeAlias
 
@@ -416,19 +415,12 @@ class BalancedLevel(SingleLevel):
 class VaryingBalancedLevel(AlongLevel, BalancedLevel):
     """Contact over layers whose friction varies along it: that of the mesh's half-width."""
 
-    def along(self) -> Callable[[float], NDArray]:
-        body = self.task.body  # of the mesh's half-width
-        return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
+    def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
+        return np.full(len(contact.g), self.task.body.half_width)
 
     def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        parts = self.punch.parts(g)
-        return parts, self.punch.loads(parts), self.intensities(parts, g).T[None]
-
-    def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, None, contact.tested, free=True)
-
-    def gauge(self, states: SolvedStates) -> Gauge:
-        return self.gauge_by_knots(states, None)
+        parts, h = self.punch.parts(g), self.task.body.half_width
+        return parts, self.punch.loads(parts), self.intensities(parts, g[0], h).T[None]
 
     def continuation(self) -> None:
         # Next to an end where friction varies slopes have logarithms, which no series of powers follows.

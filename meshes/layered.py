@@ -14,7 +14,7 @@ as far as the distance times Im p/|p|.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, isfinite, log, log10
+from math import asinh, ceil, hypot, isfinite, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,8 +103,10 @@ _RESOLVED, _A_DIGIT = 1.2, 0.15
 #: End of that region over the farthest point, and over the last interface; growth of lines beyond it.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
 #: Apparent shift of the contact's edges, over the size of the innermost cells and over the
-#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65.
-_MOVED = 0.8
+#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65. Change of the
+#: pressure at the ends by a shift on a solid that is graded from the surface on, over that on others with
+#: the same moments; measured with 20 to 38 functions.
+_MOVED, _STEEPER = 0.8, 300.0
 #: Number of moments over a solid that is graded from the surface on with which the innermost cells take
 #: their usual share of the tolerance: with more of them cells are smaller by the square of the ratio.
 _FUNCTIONS = 6.0
@@ -141,6 +143,20 @@ _ALIKE, _THICK, _LONGER = 2.0, 2.0, 6.0
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
 _FARTHEST = 2e5
+
+
+def steepness(count: int, length: float) -> float:
+    """Relative change of a pressure at an end by a misplaced edge, over its distance over a.
+
+    The pressure without its weight is a sum of Chebyshev polynomials in the coordinate that
+    :class:`galinx.solvers.contact.recovery.Stretch` stretches towards the ends.
+
+    Args:
+        count: number of the polynomials.
+        length: over a within which the pressure changes next to an end.
+    """
+    slope = (1.0 / hypot(length, 2.0) + 1.0 / length) / asinh(2.0 / length)
+    return count**2 / 2.0 * slope
 
 
 @dataclass(frozen=True)
@@ -245,10 +261,13 @@ class OnLayers(MeshKind):
         return super()._innermost(replace(required, tolerance=_OF_INNERMOST * required.tolerance))
 
     def unseen(self, required: Requirements, degree: int, cuts: int, margin: float) -> float:
-        return 0.3 * self.innermost_size(required) / margin**0.4
+        """Estimated relative error by the innermost cells: of K_I, and of the pressure at the ends.
 
-    def moved_edges(self, required: Requirements, degree: int, margin: float) -> float:
-        return _MOVED * self.innermost_size(required) / (degree**2 * margin**0.4)
+        By these cells both edges of the contact seem misplaced, which functions that recover the pressure
+        show as pressure at the ends.
+        """
+        shown = steepness(self.moments(required), self.length) * (_STEEPER if self.graded else 1.0)
+        return (0.3 + _MOVED * shown / degree**2) * self.innermost_size(required) / margin**0.4
 
     def degree(self, required: Requirements, margin: float) -> int:
         """Degree, one less than usual for K_I alone: the measured error raises it where needed."""

@@ -69,10 +69,6 @@ class Polynomials(Functions):
         """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
         return np.zeros(len(c))
 
-    def moved_edges(self, pressure: Expansion, r: NDArray, _: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges are misplaced, 0: no edge of the mesh is."""
-        return np.zeros((len(pressure.c), len(r)))
-
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     """Chebyshev coefficients of smooth factors divided by 1 + r or 1 - r where they vanish at an end.
@@ -365,24 +361,6 @@ class Stretch(Functions):
         tail = _TAIL_STIFFENING if self.stiffens else _TAIL
         return float((tail if self.graded else 1.0) * share)
 
-    def moved_edges(self, pressure: Expansion, r: NDArray, length: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges are misplaced by a length, (states, points).
-
-        The pressure is stretched from the opposite edge. Its moments change like the functions over the
-        length of the misplacement; the more functions there are, the more of this change appears as
-        pressure at the ends.
-        """
-        change = np.empty((len(pressure.c), len(r)))
-        for i, c in enumerate(pressure.c):
-            c = np.trim_zeros(c, "b")
-            count = len(c)
-            f, at_r = _at_points(self, count), self.values(r, count)
-            weights = _rule(float(pressure.α[i, 0]), float(pressure.β[i, 0]), self).weights
-            moments = _moved(self, count, length) @ (weights * (f @ c))
-            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
-            change[i] = np.abs(at_r @ to_factor).sum(axis=1)
-        return change
-
 
 @cache
 def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
@@ -411,24 +389,6 @@ def _rule(α: float, β: float, stretch: Stretch) -> Panels:
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """Functions at the points of the quadrature, (points, count)."""
     return stretch.values(_rule(-0.5, -0.5, stretch).t, count)
-
-
-@lru_cache(maxsize=8)
-def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
-    """Changes of functions at the points of the quadrature where the right or the left edge is misplaced.
-
-    Args:
-        stretch: the functions.
-        count: number of the functions.
-        length: misplacement over a.
-
-    Returns:
-        Changes for either edge, (2, count, points).
-    """
-    t = _rule(-0.5, -0.5, stretch).t
-    inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
-    moved = [stretch.values(at, count) for at in inwards]
-    return np.array([(functions - _at_points(stretch, count)).T for functions in moved])
 
 
 #: Distances from an end, over that of the nearest kink, between which the pressure is sampled to continue

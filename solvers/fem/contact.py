@@ -242,9 +242,7 @@ class SharpLevel(PunchLevel):
         return self.over_flat(contact.tested(self.moments), contact.g)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        plan, margin = self.plan, self.task.response.margin
-        moved = plan.kind.moved_edges(plan.wanted, self.space.degree, margin)
-        return of_pressure(states.pressure, states.contact.tested(self.moments), moved)
+        return of_pressure(states.pressure, states.contact.tested(self.moments))
 
 
 #: Distance from an end or a kink within which the pressure without its weight has no knots, over the root

@@ -72,18 +72,16 @@ def joined(word: str, groups: Sequence[tuple[NDArray, Any]], unresolved: Any = 0
     return Gauge(word, np.concatenate(values, axis=1), np.concatenate(sizes, axis=1), unresolved)
 
 
-def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Gauge:
+def of_pressure(pressure: Expansion, moments: NDArray) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:
         pressure: of the states.
         moments: of it, (states, moments).
-        moved: distance over a by which the edges of the contact seem off, on cells that no degree mends.
     """
     factor = pressure.series(_ACROSS)
-    size = stresses.of_factor(factor)
-    unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
-    return joined(INTENSITIES, ((factor, size), (moments[:, 1:6], 2.0)), unresolved)
+    groups = (factor, stresses.of_factor(factor)), (moments[:, 1:6], 2.0)
+    return joined(INTENSITIES, groups, pressure.unresolved)
 
 
 def of_components(word: str, σ: NDArray, size: NDArray) -> Gauge:

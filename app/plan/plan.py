@@ -412,7 +412,7 @@ def lines(plan: Plan) -> list[str]:
 
 def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
     loads = plan.tasks.order.loads  # contacts that are similar under all of them are solved once
-    solved = plan.states // len(loads) * len(plan.body.dissimilar(loads))
+    solved = plan.states // (len(loads) if plan.body.alike else 1)
     if fem.mode == OWN_MESHES:
         return [
             f"finite elements: {solved} states, each on a confocal mesh of its own, graded "

@@ -368,10 +368,6 @@ class Contact:
         k = self.growth_exponent
         return None if k is None else (load / self.load) ** k
 
-    def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
-        """Loads [N/m], of several, under which contacts differ in more than their size."""
-        return loads if self.growth_exponent is None else loads[:1]
-
     @property
     def compression(self) -> Any:
         """Load over the shear modulus, N/μ [m]."""
@@ -582,21 +578,6 @@ class Task:
     def of(self, values: NDArray) -> NDArray:
         """Rows of the task's states, of values of all states, (states, …)."""
         return np.concatenate([values[run] for run in self.runs])
-
-    def probes(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
-        """Frictions and loads of states that stand for all: at both ends of the loads, unless similar.
-
-        Args:
-            g: frictions, (n,).
-
-        Returns:
-            Frictions, and loads [N/m], None for the task's, (states,) each.
-        """
-        loads = self.body.dissimilar(self.loads)
-        ends = sorted({min(loads), max(loads)})
-        if len(ends) == 1:
-            return g, None
-        return np.tile(g, len(ends)), np.repeat(ends, len(g))
 
 
 def solved_once(

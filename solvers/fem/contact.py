@@ -30,7 +30,6 @@ from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
     ContactFacets,
     ContactRecovery,
-    contact_recovery,
     from_moments,
     without_zeros,
 )
@@ -145,7 +144,7 @@ class PunchLevel(Level):
     def recovery(self) -> ContactRecovery:  # type: ignore[override]
         """Maps from nodal forces to moments, raw pressure and exponents."""
         space, X = self.space, self.task.places.X
-        return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
+        return ContactRecovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, self.punch.slopes, self.continuation())

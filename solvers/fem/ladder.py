@@ -313,11 +313,19 @@ class Estimate:
         return {word: errors[of_load, both].max(axis=(1, 2)) for word, errors in self.errors.items()}
 
 
-def stand_ins(task: Task, g: NDArray) -> tuple[NDArray[np.float64], NDArray | None, NDArray]:
-    """States with frictions g that stand for all: frictions, loads, None if similar, and each load."""
+def stand_ins(
+    task: Task, g: NDArray, most: int = PROBES
+) -> tuple[NDArray[np.float64], NDArray | None, NDArray]:
+    """States with frictions g that stand for all: frictions, loads, None if similar, and each load.
+
+    Args:
+        task: the speed.
+        g: σ_XY/σ_YY, (n,).
+        most: number of loads at most, from the least to the largest.
+    """
     if task.body.alike:
         return g, None, np.zeros(1)
-    loads = spread(np.unique(task.loads), PROBES)
+    loads = spread(np.unique(task.loads), most)
     return np.tile(g, len(loads)), np.repeat(loads, len(g)), loads
 
 

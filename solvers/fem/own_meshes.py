@@ -20,6 +20,7 @@ all loads differ in size alone, a single state of a friction stands for all of t
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, replace
+from functools import partial
 from math import ceil, log
 from typing import Any, TypeAlias
 
@@ -337,16 +338,14 @@ class BetweenKinks(OwnMeshes):
     def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
         super().__init__(work, task, g)
         ends = work.for_ends
-        self._ends = climb(
-            ends, task, g, lambda space, g: EndsLevel(ends, task, space, g), done=self._done
-        )
+        self._ends = climb(ends, task, g, partial(EndsLevel, ends, task), done=self._done)
 
     def _solved(self, g: NDArray, task: Task) -> SolvedStates:
         work, load = self._work, task.body.load
         lengths, unseen = self._ends.level.lengths(g, np.array([load]))
         between = EndsBetweenKinks(task.body, tuple(lengths[:, 0].tolist()), work.plan.tolerance)
         mesh = replace(work, plan=replace(work.plan, graded=between.drawn))
-        state = self._on(mesh, task, g, lambda space, g: KinkedLevel(mesh, task, space, g, between))
+        state = self._on(mesh, task, g, partial(KinkedLevel, mesh, task, base=between))
         state.errors[INTENSITIES] += self._ends.error.of(g, load)[INTENSITIES] + unseen
         return state
 

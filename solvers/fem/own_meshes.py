@@ -192,7 +192,8 @@ class SingleLevel(PunchLevel):
 #: in innermost cells, nearer than which these follow no logarithm; and where derivatives lose digits.
 _CELLS, _DIGITS = 3.0, 1e-5
 
-#: Rings more around a cusp of the pressure; size of the innermost cells at a kink, over the tolerance.
+#: Rings of the usual ratio more around a cusp of the pressure; size of innermost cells at a kink, over
+#: the tolerance.
 _AROUND_CUSP, _INNERMOST = 4, 30.0
 
 #: Size of the innermost cells at a tip, over the least distance from it at which stresses are evaluated.
@@ -253,7 +254,9 @@ class EndsBetweenKinks:
             rings = replace(rings, levels=count, ratio=ratio)
         order = max((exponent(self.body.profile) or 2.0) - 1.0, 1.0)
         size = _OF_TIP * NEAR_TIP if len(self.tips) else (_INNERMOST * plan.tolerance) ** (1.0 / order)
-        more = _AROUND_CUSP if cusp(self.body.profile) else max(0, rings_at_kinks(rings, size))
+        more = max(0, rings_at_kinks(rings, size))
+        if cusp(self.body.profile):
+            more = ceil(_AROUND_CUSP * log(ratio) / log(rings.ratio))
         return with_kinks(rings, self.places, more)
 
 

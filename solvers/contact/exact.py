@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..approximation import polynomial_through
 from ..layers.kernel import Level
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .edges import EdgeExponents, Exponents
-from .equation import OF_ENDS, LayersUnderPunch, SolvedContact, under_punch, weights_between
+from .equation import OF_ENDS, LayersUnderPunch, SolvedContact, under_punch
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS, Contacts, Group, Pressure
 from .residual import indentation, of_contact, of_field, places
@@ -371,7 +372,7 @@ class Nodes:
             np.concatenate([getattr(node, name) for node in self.groups])
             for name in ("g", "half_width", "centre")
         )
-        weights, edges = weights_between(g_nodes, g), EdgeExponents(first.response, g[:, None])
+        weights, edges = polynomial_through(g_nodes).shares(g), EdgeExponents(first.response, g[:, None])
         pressure = Interpolated(self, weights, edges.α, edges.β)
         # Exact where all nodes have one half-width.
         half_width = h[0] + weights @ (h - h[0])

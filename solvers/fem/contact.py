@@ -115,7 +115,7 @@ class PunchLevel(Level):
     def gauge(self, states: SolvedStates) -> Gauge:
         """Gauge of pressure and ends."""
 
-    def along(self) -> Callable[[float], NDArray] | None:
+    def along(self) -> Callable[[Any], NDArray] | None:
         """Map from g to G where friction varies along the contact, see :class:`SlidingPunch`."""
         return None
 
@@ -261,7 +261,7 @@ class AlongLevel(PunchLevel):
     def facets(self) -> ContactFacets:
         return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
-    def along(self) -> Callable[[float], NDArray]:
+    def along(self) -> Callable[[Any], NDArray]:
         body = self.task.body
         return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
 
@@ -420,36 +420,30 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
     half-width.
     """
 
-    @cached_property
-    def _numbers(self) -> dict[Any, float]:
-        """Numbers by which the punch knows frictions."""
-        return {}
-
-    def along(self) -> Callable[[float], NDArray]:
-        numbers = self._numbers
-        return lru_cache(_KEPT)(lambda number: self.facets.product([*numbers][int(number)]))
+    def along(self) -> Callable[[Any], NDArray]:
+        return lru_cache(_KEPT)(self.facets.product)
 
     def prepare(self, punch: SlidingPunch) -> None:
         self.punch = punch
         g, loads = self.g, np.array(self.task.loads)
         # Parts that are asked for add fields.
-        self.solved(np.repeat(g, len(loads)), self.task.body.loaded(np.tile(loads, len(g))))
-        punch.prepare(np.array([len(self._numbers) - 1.0]))
+        contact = self.solved(np.repeat(g, len(loads)), self.task.body.loaded(np.tile(loads, len(g))))
+        punch.prepare(self._frictions(contact.g[-1:], contact.half_width[-1:]))
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         loads = np.broadcast_to(body.load, g.shape).tolist()
         each = [self._balanced(*state) for state in zip(g.tolist(), loads)]
         (m, h), free = np.transpose([lengths for lengths, _ in each]), np.array([of for _, of in each])
-        numbers = [self._number(*state) for state in zip(g.tolist(), h.tolist())]
-        parts = self.punch.parts(np.array(numbers))
+        parts = self.punch.parts(self._frictions(g, h))
         amplitudes, lowest, ends = self.smooth(body, self.punch.loads(parts), m, h)
         if body.ends == ONE_FREE:
             lowest = np.abs(amplitudes[:, 1])  # an edge is the lowest point of a tilted base
         return self.summed(g, parts, (amplitudes, lowest, ends | {"free": free}))
 
-    def _number(self, g: float, h: float) -> float:
-        """Number by which the punch knows the friction of a half-width [m]."""
-        return self._numbers.setdefault(self.task.body.friction(g, h), float(len(self._numbers)))
+    def _frictions(self, g: NDArray, h: NDArray) -> NDArray[Any]:
+        """Frictions along contacts of half-widths [m], objects of :class:`.along.Along`, (states,)."""
+        each = zip(g.tolist(), h.tolist())
+        return np.array([self.task.body.friction(*state) for state in each], dtype=object)
 
     def _balanced(self, g: float, load: float) -> tuple[tuple[float, float], list[bool]]:
         """Middle and half-width [m] of a contact, and which ends are free; its search adds fields.
@@ -471,7 +465,7 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
             m, h = ends(x)
-            parts = self.punch.parts(np.array([self._number(g, h)]))
+            parts = self.punch.parts(np.array([body.friction(g, h)], dtype=object))
             amplitudes, *_ = self.smooth(body, self.punch.loads(parts), np.array([m]), np.array([h]))
             return (amplitudes[0] @ self.intensities(parts, g, h))[free]
 

@@ -11,6 +11,7 @@ from layers_reference import admittance, plane_strain, punch
 from scipy.special import eval_jacobi
 from support import THOROUGH
 
+from galinx.solvers.approximation import polynomial_through
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import weights_hilbert
 from galinx.solvers.contact.ends import Punch
@@ -19,7 +20,6 @@ from galinx.solvers.contact.equation import (
     LayersUnderPunch,
     jacobi,
     under_punch,
-    weights_between,
 )
 from galinx.solvers.contact.panels import Panels
 from galinx.solvers.contact.pressure import Expansion
@@ -77,7 +77,7 @@ def test_frictions_between_are_interpolated_within_the_tolerance():
     g = np.linspace(-1.0, 1.0, 301)
     solved, left = speed.solved(g)
     assert len(solved) < 40 and left <= 1e-8
-    weights = weights_between(np.array([contact.g for contact in solved]), g)
+    weights = polynomial_through(np.array([contact.g for contact in solved])).shares(g)
     ends = weights @ [contact.pressure.series(ENDS) for contact in solved]
     for i in (3, 150):
         exact = converged_pressure(

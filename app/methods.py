@@ -173,9 +173,9 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
 
 
 def _closed_form(plan: Any, progress: Any, clock: Any) -> Method:
-    from galinx.solvers.contact.exact import ClosedForm, ExactSolution
+    from galinx.solvers.contact.exact import ClosedForm
 
-    return ClosedForm(ExactSolution)
+    return ClosedForm()
 
 
 def _integral_equation(plan: Any, progress: Any, clock: Any) -> Method:

@@ -15,7 +15,7 @@ from petsc4py import PETSc
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import contact_recovery, from_moments
+from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
@@ -41,7 +41,7 @@ def measured(space: Space) -> tuple[float, int, np.ndarray]:
 def intensities(space: Space) -> np.ndarray:
     """K_I at X = -a and X = a."""
     punch, local = SlidingPunch(space, RESPONSE), FlatPunch(RESPONSE, np.array([G]))
-    recovery = contact_recovery(space.contact.s, space.degree, space.chart, np.zeros(0))
+    recovery = ContactRecovery(space.contact.s, space.degree, space.chart, np.zeros(0))
     K_I = from_moments(punch.states(G).tested(recovery.moments), local.α, local.β).K_I[0]
     punch.destroy()
     return K_I

@@ -16,7 +16,7 @@ from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS, QuadMesh, Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import contact_recovery, from_moments
+from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -52,7 +52,7 @@ def study() -> tuple[float, int, int]:
     space = Space(*distribute(pattern, MPI.COMM_SELF), TAGS, chart, 2)
     response = MovingFrame(2.0, 0.0)
     punch = SlidingPunch(space, response)
-    recovery = contact_recovery(space.contact.s, 2, chart, np.array([0.0]))
+    recovery = ContactRecovery(space.contact.s, 2, chart, np.array([0.0]))
     local = FlatPunch(response, np.array([G]))
     pressure = from_moments(punch.states(G).normal @ recovery.moments, local.α, local.β)
     punch.destroy()

@@ -337,16 +337,6 @@ class MeshKind:
         """The mesh where it is drawn for its places; None where it is built by a refinement."""
         return None
 
-    def moved_edges(self, required: Requirements, degree: int, margin: float) -> float:
-        """Apparent shift over a of the contact's edges, by the singularity in the innermost cells.
-
-        Args:
-            required: requirements on the mesh.
-            degree: of the cells.
-            margin: of the solid's response.
-        """
-        return 0.0
-
     def unseen_beside(self, required: Requirements, degree: int, cuts: int) -> float:
         """Estimated relative error of the stresses nearest to an edge by the innermost cells.
 

@@ -4,7 +4,7 @@ Columns grow outwards from both edges of the punch, rows with depth, and an inte
 two rows. Only inside a square around each edge, of at most half the uppermost layer's thickness, L-shaped
 rings go on towards it: their lines do not run through the whole mesh.
 
-Sizes of rows and columns follow the lengths over which fields change in layers, see :class:`Layers`.
+Sizes of rows and columns follow the lengths over which fields change in layers (:meth:`OnLayers.change`).
 Fields of a solid are functions of X + pY. The punch's edges, where these are singular, are seen from a
 depth at the complex distance Σ p H of the solids that lie between; with S the least of its imaginary
 parts, fields change over S along X and over S/|p| along Y. From a place at the side an edge is at least
@@ -14,7 +14,7 @@ as far as the distance times Im p/|p|.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, isfinite, log, log10
+from math import asinh, ceil, hypot, isfinite, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,43 +25,6 @@ from .rings import QuadMesh, Refinement, corner, lines_and_corners
 
 #: Halvings in search of the share with which a number of rows just fits.
 _HALVINGS = 25
-
-
-@dataclass(frozen=True)
-class Layers:
-    """Layers on a substrate, with the lengths over which fields change in them; lengths over a.
-
-    Attributes:
-        depths: of the interfaces, rising.
-        roots: p of every solid from the top down, those of the substrate last.
-        changes: length over which each layer's own constants change, infinite where it is uniform; empty
-            where all are.
-    """
-
-    depths: tuple[float, ...]
-    roots: tuple[tuple[complex, ...], ...]
-    changes: tuple[float, ...] = ()
-
-    @property
-    def aside(self) -> float:
-        """Least distance of an edge from a point, over the offset of the point along X."""
-        return min(p.imag / abs(p) for roots in self.roots for p in roots)
-
-    def length(self, depth: float) -> float:
-        """Length over which fields change along Y just below a depth."""
-        S, top = 0.0, 0.0
-        changes = (*(self.changes or (np.inf,) * len(self.depths)), np.inf)
-        for bottom, roots, change in zip((*self.depths, np.inf), self.roots, changes):
-            if depth < bottom:
-                return min(change, *((S + p.imag * (depth - top)) / abs(p) for p in roots))
-            S += min(p.imag for p in roots) * (bottom - top)
-            top = bottom
-        return S
-
-    def rows(self, first: float, last: float, share: float) -> NDArray[np.float64]:
-        """Depths of rows from first to before last, none higher than a share of :meth:`length`."""
-        lines = [first, *(depth for depth in self.depths if first * (1.0 + 1e-9) < depth < last), last]
-        return np.concatenate([fitted(self.length, *ends, share) for ends in pairwise(lines)])
 
 
 def fitted(
@@ -103,8 +66,10 @@ _RESOLVED, _A_DIGIT = 1.2, 0.15
 #: End of that region over the farthest point, and over the last interface; growth of lines beyond it.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
 #: Apparent shift of the contact's edges, over the size of the innermost cells and over the
-#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65.
-_MOVED = 0.8
+#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65. Change of the
+#: pressure at the ends by a shift on a solid that is graded from the surface on, over that on others with
+#: the same moments; measured with 20 to 38 functions.
+_MOVED, _STEEPER = 0.8, 300.0
 #: Number of moments over a solid that is graded from the surface on with which the innermost cells take
 #: their usual share of the tolerance: with more of them cells are smaller by the square of the ratio.
 _FUNCTIONS = 6.0
@@ -143,6 +108,20 @@ _SMALLER = 5.0
 _FARTHEST = 2e5
 
 
+def steepness(count: int, length: float) -> float:
+    """Relative change of a pressure at an end by a misplaced edge, over its distance over a.
+
+    The pressure without its weight is a sum of Chebyshev polynomials in the coordinate that
+    :class:`galinx.solvers.contact.recovery.Stretch` stretches towards the ends.
+
+    Args:
+        count: number of the polynomials.
+        length: over a within which the pressure changes next to an end.
+    """
+    slope = (1.0 / hypot(length, 2.0) + 1.0 / length) / asinh(2.0 / length)
+    return count**2 / 2.0 * slope
+
+
 @dataclass(frozen=True)
 class OnLayers(MeshKind):
     """A kind of meshes for layers.
@@ -155,7 +134,8 @@ class OnLayers(MeshKind):
         far_length: length over a of the layers' effect far away.
         left: 1 at rest, 0 where a wave runs along the substrate with the load.
         roots: p of every solid from the top down, those of the substrate last; of one at rest if empty.
-        changes: of :class:`Layers`.
+        changes: length over which each layer's own constants change, infinite where it is uniform; empty
+            where all are.
         places: positions over a towards which cells are graded, rising from -1 to 1.
     """
 
@@ -177,7 +157,33 @@ class OnLayers(MeshKind):
     changes: tuple[float, ...] = ()
     places: tuple[float, ...] = (-1.0, 1.0)
 
-    def radius(self, required: Requirements) -> float:
+    @property
+    def solids(self) -> tuple[tuple[complex, ...], ...]:
+        """p of every solid from the top down."""
+        return self.roots or ((1j,),) * (len(self.depths) + 1)
+
+    @property
+    def aside(self) -> float:
+        """Least distance of an edge from a point, over the offset of the point along X."""
+        return min(p.imag / abs(p) for roots in self.solids for p in roots)
+
+    def change(self, depth: float) -> float:
+        """Length over a over which fields change along Y just below a depth."""
+        S, top = 0.0, 0.0
+        changes = (*(self.changes or (np.inf,) * len(self.depths)), np.inf)
+        for bottom, roots, change in zip((*self.depths, np.inf), self.solids, changes):
+            if depth < bottom:
+                return min(change, *((S + p.imag * (depth - top)) / abs(p) for p in roots))
+            S += min(p.imag for p in roots) * (bottom - top)
+            top = bottom
+        return S
+
+    def rows(self, first: float, last: float, share: float) -> NDArray[np.float64]:
+        """Depths of rows from first to before last, none higher than a share of :meth:`change`."""
+        lines = [first, *(depth for depth in self.depths if first * (1.0 + 1e-9) < depth < last), last]
+        return np.concatenate([fitted(self.change, *ends, share) for ends in pairwise(lines)])
+
+    def reach(self, required: Requirements) -> float:
         """Half the width of the mesh, and its depth, over a."""
         allowed = _OF_FAR * required.tolerance
         if required.nearest is not None:
@@ -188,12 +194,9 @@ class OnLayers(MeshKind):
         )
         return max(min(far, _FARTHEST), 30.0 * max(1.0, self.depths[-1]), 10.0 * required.farthest)
 
-    def reach(self, required: Requirements) -> float:
-        return self.radius(required)
-
     def truncation(self, required: Requirements, margin: float = 1.0) -> float:
         """Estimated relative error of K_I by the far boundary, which moves as that below line loads."""
-        R = self.radius(required)
+        R = self.reach(required)
         return self._moment / R**2 + self._cubed * (self.far_length / R) ** 3
 
     def terms(self, required: Requirements) -> int:
@@ -245,10 +248,13 @@ class OnLayers(MeshKind):
         return super()._innermost(replace(required, tolerance=_OF_INNERMOST * required.tolerance))
 
     def unseen(self, required: Requirements, degree: int, cuts: int, margin: float) -> float:
-        return 0.3 * self.innermost_size(required) / margin**0.4
+        """Estimated relative error by the innermost cells: of K_I, and of the pressure at the ends.
 
-    def moved_edges(self, required: Requirements, degree: int, margin: float) -> float:
-        return _MOVED * self.innermost_size(required) / (degree**2 * margin**0.4)
+        By these cells both edges of the contact seem misplaced, which functions that recover the pressure
+        show as pressure at the ends.
+        """
+        shown = steepness(self.moments(required), self.length) * (_STEEPER if self.graded else 1.0)
+        return (0.3 + _MOVED * shown / degree**2) * self.innermost_size(required) / margin**0.4
 
     def degree(self, required: Requirements, margin: float) -> int:
         """Degree, one less than usual for K_I alone: the measured error raises it where needed."""
@@ -265,7 +271,7 @@ class OnLayers(MeshKind):
         """The mesh."""
         gaps = np.diff(self.places)
         square = _SQUARE * min(gaps) / 2.0 / max(self._width, 1.0)
-        b, R = min(_SHARE * self.depths[0], square), self.radius(required)
+        b, R = min(_SHARE * self.depths[0], square), self.reach(required)
         near = required.nearest is not None and required.nearest < b
         legs = (2 if near else 1) + ceil(_LEGS * required.spread - 0.5)
         wide, in_square = self._width * b, b * np.arange(1, legs) / legs
@@ -295,19 +301,17 @@ class OnLayers(MeshKind):
             Distances over a of columns from an edge beside the punch, depths over a of rows below b, and
             the growth of columns under the punch.
         """
-        R, wide = self.radius(required), self._width * b
+        R, wide = self.reach(required), self._width * b
         if required.nearest is None:
             growth = _GENTLE_GROWTH if self.depths[0] < _THIN else _GROWTH
             beside = between(wide, R, growth)
             fixed = [b, *(d for d in self.depths if d > b * (1.0 + 1e-9)), R]
             below = np.concatenate([between(*pair, growth) for pair in pairwise(fixed)])
         else:
-            roots = self.roots or ((1j,),) * (len(self.depths) + 1)
-            layers = Layers(self.depths, roots, self.changes)
             share = _RESOLVED + _A_DIGIT * (6.0 + log10(required.tolerance))
-            growth = max(1.0 + share * layers.aside, _LEAST_GROWTH)
+            growth = max(1.0 + share * self.aside, _LEAST_GROWTH)
             far = min(max(_DEEPER * self.depths[-1], self.far_length, _BEYOND * required.farthest), R)
             beyond = between(far, R, _FAR_GROWTH)
             beside = np.append(between(wide, far, growth), beyond)
-            below = np.append(layers.rows(b, far, share), beyond)
+            below = np.append(self.rows(b, far, share), beyond)
         return np.append(beside, R), below, min(_UNDER, growth)

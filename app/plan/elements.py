@@ -6,6 +6,7 @@ mesh, and :func:`memory` what matrices need.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from math import log2
 from pathlib import Path
 
@@ -21,18 +22,15 @@ from galinx.solvers.contact.fem_plan import (
     FITTED,
     NEAR_FREE_END,
     FemPlan,
+    at_friction_kinks,
     kind_of,
-    largest_level,
     no_nearer,
     pressure_moments,
     required_of_free_ends,
     required_of_pieces,
     required_over_layers,
     requirements,
-    size_of,
     swept,
-    unknowns,
-    with_friction_kinks,
 )
 from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Places
 from galinx.solvers.errors import SolveError
@@ -184,24 +182,21 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     degrees = tuple(
         solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
     )
-    largest = largest_level(max(degrees), solve.cuts, solve.degree is not None)
-    drawn, kinks = kind.drawn(required), scene.body.friction_kinks
-    if kinks and not drawn:
-        drawn = with_friction_kinks(refinement, kinks, solve.tolerance)
-    size = unknowns(drawn, largest) if drawn else size_of(refinement, largest)
-    shared = shares_speeds(size, len(responses))
-    solver = solve.solver
-    if mixed or solver == "auto":
-        needed = memory(size, direct=True) * (ranks.size() if shared else 1)
-        solver = "direct" if mixed or needed < 0.8 * free_memory() else "multigrid"
-    return FemPlan(
+    kinks = scene.body.friction_kinks
+    plan = FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
-        assembler=solve.assembler, solver=solver, degrees=degrees, fixed=solve.degree is not None,
-        wanted=required, mode=mode, shared_speeds=shared, sharp=exponent, drawn=drawn,
+        assembler=solve.assembler, solver=solve.solver, degrees=degrees, fixed=solve.degree is not None,
+        wanted=required, mode=mode, shared_speeds=False, sharp=exponent,
+        graded=partial(at_friction_kinks, kinks=kinks) if kinks else None,
         tests=pressure_moments(scene.solid, kind, required),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        kinks=kinks, shapes=_shapes(scene, responses, g) if mode in _OF_SHAPES else 0,
+        shapes=_shapes(scene, responses, g) if mode in _OF_SHAPES else 0,
     )  # fmt: skip
+    shared, solver = shares_speeds(plan.size, len(responses)), solve.solver
+    if mixed or solver == "auto":
+        needed = memory(plan.size, direct=True) * (ranks.size() if shared else 1)
+        solver = "direct" if mixed or needed < 0.8 * free_memory() else "multigrid"
+    return replace(plan, solver=solver, shared_speeds=shared)
 
 
 #: Modes in which punches are sums of polynomials.

@@ -40,7 +40,6 @@ from galinx.solvers.contact.fem_plan import (
     OWN_MESHES,
     OWN_MESHES_KEPT,
     FemPlan,
-    levels,
     unknowns,
 )
 from galinx.solvers.contact.solution import FINITE, GIVEN_ENDS, SOLVED, Contact, Places, Task
@@ -405,7 +404,7 @@ def lines(plan: Plan) -> list[str]:
 
 def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
     loads = plan.tasks.order.loads  # contacts that are similar under all of them are solved once
-    solved = plan.states // len(loads) * len(plan.body.dissimilar(loads))
+    solved = plan.states // (len(loads) if plan.body.alike else 1)
     if fem.mode == OWN_MESHES:
         return [
             f"finite elements: {solved} states, each on a confocal mesh of its own, graded "
@@ -478,8 +477,7 @@ def _bytes(plan: Plan) -> float:
     held, fem = _HELD * plan.chunk * plan.numbers, plan.fem
     if not fem:
         return held + _FRICTION * plan.states
-    finest = max(p * k for p, k in levels(max(fem.degrees), fem.cuts, fem.fixed))
-    most = unknowns(fem.pattern, finest) / (1 if fem.shared_speeds else ranks.size())
+    most = fem.size / (1 if fem.shared_speeds else ranks.size())
     return held + elements.memory(most, fem.solver == "direct")
 
 

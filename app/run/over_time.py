@@ -17,9 +17,10 @@ from galinx.postprocess import over_time
 from galinx.postprocess.over_time import COMPARED, contact_numbers, largest_change
 from galinx.postprocess.quantities import over_time as rows
 from galinx.postprocess.quantities.quantity import FEM, SIE
+from galinx.solvers.approximation import polynomial_through
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.ends import Punch
-from galinx.solvers.contact.equation import LayersUnderPunch, weights_between
+from galinx.solvers.contact.equation import LayersUnderPunch
 from galinx.solvers.contact.pressure import Pressure
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
@@ -104,7 +105,7 @@ def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.flo
         stack, accuracy = response.stack(response.a), 0.1 * starts.scene.solve.tolerance
         punch = Punch(Flat(response.a), response.a, 1.0)
         solved, _ = LayersUnderPunch(response.surface, stack, accuracy, punch).solved(different)
-        weights = weights_between(np.array([contact.g for contact in solved]), different)
+        weights = polynomial_through(np.array([contact.g for contact in solved])).shares(different)
         return np.asarray((weights @ [_centre(contact.pressure) for contact in solved])[which])
     punches = [FlatPunch(response, ratio) for ratio in different]
     return np.array([punch.β - punch.α for punch in punches])[which]

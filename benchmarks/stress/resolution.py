@@ -9,7 +9,7 @@ from row import Row, Verdict
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import contact_recovery, from_moments
+from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -29,7 +29,7 @@ def _errors(levels: int, outer: float, degree: int, c: float = 0.6) -> np.ndarra
     cells = kind.build(Refinement(levels, _RATIO, 2, (reach / count,) * count))
     space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, kind.chart, degree, terms=_MOMENTS)
     punch, g = SlidingPunch(space, MovingFrame(2.0, c)), np.array([-0.66, 0.66])
-    recovery = contact_recovery(space.contact.s, degree, space.chart, np.array([0.0]))
+    recovery = ContactRecovery(space.contact.s, degree, space.chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, c), g)
     pressure = from_moments(punch.states(g).tested(recovery.moments), local.α, local.β)
     punch.destroy()

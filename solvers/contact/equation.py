@@ -41,7 +41,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
-from ..approximation import barycentric, gauss
+from ..approximation import gauss
 from ..errors import SolveError
 from ..friction.along import Along, constant
 from ..layers.kernel import REACH, Kernel, Level, Scaled
@@ -715,10 +715,3 @@ def _unresolved(each: Sequence[SolvedContact]) -> float:
     x = np.cos(np.pi * np.arange(len(each)) / (len(each) - 1))
     c = np.linalg.solve(np.polynomial.chebyshev.chebvander(x, len(x) - 1), values)
     return float(np.abs(c[-_LAST:]).max() / np.abs(values).max())
-
-
-def weights_between(nodes: NDArray, g: NDArray) -> NDArray[np.float64]:
-    """Weights that interpolate values at Chebyshev's points in g to others, (states, nodes)."""
-    weights = (-1.0) ** np.arange(len(nodes))
-    weights[[0, -1]] /= 2.0
-    return barycentric(nodes, weights, g)

@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..approximation import polynomial_through
 from ..layers.kernel import Level
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from .closed_form import FlatPunch
 from .edges import EdgeExponents, Exponents
-from .equation import OF_ENDS, LayersUnderPunch, SolvedContact, under_punch, weights_between
+from .equation import OF_ENDS, LayersUnderPunch, SolvedContact, under_punch
 from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS, Contacts, Group, Pressure
 from .residual import indentation, of_contact, of_field, places
@@ -32,21 +33,11 @@ _TOGETHER = 20_000
 _MIRROR = np.array([1.0, 1.0, -1.0])[:, None, None]
 
 
-@dataclass(frozen=True)
 class ClosedForm:
-    """Method that answers every task directly, without a mesh.
-
-    Attributes:
-        solution: makes the solution of a task, of values of σ_XY/σ_YY and, or None, of loads, (states,).
-    """
-
-    solution: Callable[[Task, NDArray, NDArray | None], Any]
+    """Method that answers every task directly, without a mesh."""
 
     def at(self, task: Task, g: NDArray) -> AbstractContextManager[Any]:
-        def states(g: NDArray, load: NDArray | None = None) -> Any:
-            return self.solution(task, g, load)
-
-        return nullcontext(SimpleNamespace(states=states, record=dict))
+        return nullcontext(SimpleNamespace(states=partial(ExactSolution, task), record=dict))
 
 
 class ExactSolution(Solution):
@@ -81,9 +72,7 @@ class ExactSolution(Solution):
     @cached_property
     def local(self) -> Exponents:
         """Exponents at the ends of punches: those of a flat punch, one more where they are free."""
-        flat = self.task.body.edges(self.task.response, self.g, self.half_width)
-        free_left, free_right = self._of("free").T
-        return Exponents(flat.α + free_right, flat.β + free_left)
+        return self.task.body.edges(self.task.response, self.g, self.half_width, self._of("free"))
 
     @property
     def half_width(self) -> NDArray[np.float64]:
@@ -383,7 +372,7 @@ class Nodes:
             np.concatenate([getattr(node, name) for node in self.groups])
             for name in ("g", "half_width", "centre")
         )
-        weights, edges = weights_between(g_nodes, g), EdgeExponents(first.response, g[:, None])
+        weights, edges = polynomial_through(g_nodes).shares(g), EdgeExponents(first.response, g[:, None])
         pressure = Interpolated(self, weights, edges.α, edges.β)
         # Exact where all nodes have one half-width.
         half_width = h[0] + weights @ (h - h[0])

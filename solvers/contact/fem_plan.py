@@ -5,8 +5,9 @@ see :class:`PressureMoments`. In a scene of many speeds finite elements solve a 
 through these gives the others, see :class:`Sweep`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -228,10 +229,10 @@ def crowded_kinks(places: Sequence[float] | NDArray) -> str:
 _OF_FRICTION, _LARGEST = 500.0, 0.1
 
 
-def with_friction_kinks(refinement: Refinement, kinks: Sequence[float], tolerance: float) -> QuadMesh:
+def at_friction_kinks(plan: "FemPlan", kinks: Sequence[float]) -> QuadMesh:
     """The mesh of a punch with sharp ends, graded towards kinks of friction at positions over a."""
-    size = min(_OF_FRICTION * tolerance, _LARGEST)
-    return with_kinks(refinement, np.array(kinks), rings_at_kinks(refinement, size))
+    size = min(_OF_FRICTION * plan.tolerance, _LARGEST)
+    return with_kinks(plan.refinement, np.array(kinks), rings_at_kinks(plan.refinement, size))
 
 
 @dataclass(frozen=True)
@@ -253,10 +254,9 @@ class FemPlan:
         shared_speeds: True where speeds are shared out over the ranks, each rank with a mesh of its own;
             False where all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
-        drawn: the mesh where it follows interfaces or kinks, None elsewhere.
+        graded: draws the mesh of a plan where cells are graded towards kinks; None elsewhere.
         tests: moments that recover the pressure.
         sweep: speeds of a fit; None where each speed is solved.
-        kinks: positions over a of kinks of friction along the contact.
         shapes: number of polynomials whose sum is the punch under every contact, for free ends.
     """
 
@@ -273,10 +273,9 @@ class FemPlan:
     mode: str
     shared_speeds: bool
     sharp: float = -0.5
-    drawn: QuadMesh | None = None
+    graded: Callable[["FemPlan"], QuadMesh] | None = None
     tests: PressureMoments = PressureMoments()
     sweep: Sweep | None = None
-    kinks: tuple[float, ...] = ()
     shapes: int = 0
 
     @property
@@ -289,16 +288,21 @@ class FemPlan:
         """Number of moments of the contact forces that the far boundary follows; 0 where it is held."""
         return self.kind.terms(self.wanted)
 
-    @property
+    @cached_property
+    def drawn(self) -> QuadMesh | None:
+        """The mesh where it follows interfaces or kinks, None elsewhere."""
+        return self.kind.drawn(self.wanted) or (self.graded(self) if self.graded else None)
+
+    @cached_property
     def pattern(self) -> QuadMesh:
         """The mesh before it is cut."""
         return self.drawn or self.kind.build(self.refinement)
 
     @property
     def size(self) -> int:
-        """Unknowns of the largest system, estimated without building the mesh."""
-        largest = largest_level(max(self.degrees), self.cuts, self.fixed)
-        return unknowns(self.drawn, largest) if self.drawn else size_of(self.refinement, largest)
+        """Unknowns of the largest system."""
+        largest = max(p * k for p, k in levels(max(self.degrees), self.cuts, self.fixed))
+        return unknowns(self.pattern, largest)
 
 
 def requirements(
@@ -359,21 +363,11 @@ def levels(degree: int, cuts: int, fixed: bool) -> list[tuple[int, int]]:
     return [(degree - 2, cuts), (degree - 1, cuts), (degree, cuts)]
 
 
-def largest_level(degree: int, cuts: int, fixed: bool) -> int:
-    """Degree times cuts of the largest level."""
-    return max(p * k for p, k in levels(degree, cuts, fixed))
-
-
-def size_of(refinement: Refinement, p: int) -> int:
-    """Unknowns of a mesh by its refinement; p is degree times cuts, which gives the same nodes."""
-    cells = 2 * refinement.sectors * (
-        2 * len(refinement.sizes) - 2 + refinement.sectors + len(refinement.columns)
-    )  # fmt: skip
-    return 2 * p**2 * cells
-
-
 def unknowns(mesh: QuadMesh, p: int) -> int:
-    """Unknowns at degree p, two a node: p - 1 nodes an edge (Euler's formula), (p - 1)² a cell."""
+    """Unknowns at degree p, two a node: p - 1 nodes an edge (Euler's formula), (p - 1)² a cell.
+
+    Cells cut into k x k at the degree p have as many as those of the mesh at the degree k p.
+    """
     cells, vertices = len(mesh.cells), len(mesh.points)
     edges = cells + vertices - 1
     return 2 * (vertices + edges * (p - 1) + cells * (p - 1) ** 2)
@@ -412,15 +406,10 @@ _FINER = 0.03
 
 def on_finer_cells(plan: FemPlan) -> FemPlan:
     """Plan with cells for a tighter tolerance, and twice as many of them in angle and in distance."""
-    kind, target = plan.kind, replace(plan.wanted, tolerance=_FINER * plan.tolerance)
-    if drawn := kind.drawn(target):
-        return replace(plan, wanted=target, drawn=drawn)
-    rings = kind.refinement(target)
+    target = replace(plan.wanted, tolerance=_FINER * plan.tolerance)
+    rings = plan.kind.refinement(target)
     columns = tuple(width / 2.0 for width in rings.columns for _ in range(2))
     refinement = replace(
         rings, levels=2 * rings.levels, ratio=rings.ratio**0.5, sectors=2 * rings.sectors, columns=columns
     )
-    plan = replace(plan, wanted=target, refinement=refinement)
-    if not plan.kinks:
-        return plan
-    return replace(plan, drawn=with_friction_kinks(refinement, plan.kinks, target.tolerance))
+    return replace(plan, wanted=target, refinement=refinement)

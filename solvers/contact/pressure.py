@@ -247,15 +247,6 @@ class Expansion(Pressure):
         """Relative error measured on the last of the functions, (states,)."""
         return np.asarray(self.functions.unresolved(self.c))
 
-    def moved_edges(self, r: NDArray, length: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges of the contact are misplaced, (states, points).
-
-        Args:
-            r: positions over a in [-1, 1], (points,).
-            length: misplacement of each edge over a.
-        """
-        return np.asarray(self.functions.moved_edges(self, r, length))
-
 
 @dataclass(frozen=True)
 class Group:

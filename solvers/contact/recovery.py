@@ -69,10 +69,6 @@ class Polynomials(Functions):
         """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
         return np.zeros(len(c))
 
-    def moved_edges(self, pressure: Expansion, r: NDArray, _: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges are misplaced, 0: no edge of the mesh is."""
-        return np.zeros((len(pressure.c), len(r)))
-
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     """Chebyshev coefficients of smooth factors divided by 1 + r or 1 - r where they vanish at an end.
@@ -126,26 +122,6 @@ def from_moments(
     return Expansion(α[:, None], β[:, None], functions.coefficients(moments, α, β), functions)
 
 
-@dataclass(frozen=True)
-class ContactRecovery:
-    """Linear maps from nodal forces to moments and to the raw pressure; they depend on the mesh alone.
-
-    Attributes:
-        moments: map to ∫ σ_YY T_k dr, or to moments with other test functions, (nodes, moments).
-        raw: map to the raw pressure at chosen positions, NaN outside the contact, (nodes, points).
-        edges: for X = a and X = -a: distances from it over a, (q,), and the map to the raw pressure
-            there, (nodes, q).
-    """
-
-    moments: NDArray[np.float64]
-    raw: NDArray[np.float64]
-    edges: tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]
-
-    def exponents(self, forces: NDArray) -> NDArray[np.float64]:
-        """Exponents at X = a and X = -a fitted to the raw pressure, (states, 2)."""
-        return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
-
-
 def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
     """Exponent of σ ~ d^α by least squares on the logarithms, (states,); NaN where the sign changes.
 
@@ -157,51 +133,6 @@ def fitted_exponent(d: NDArray, σ: NDArray) -> NDArray[np.float64]:
     one_sign = np.all(σ < 0.0, axis=1) | np.all(σ > 0.0, axis=1)
     slopes = np.log(np.where(one_sign[:, None], np.abs(σ), 1.0)) @ (x / (x @ x))
     return np.where(one_sign, slopes, np.nan)
-
-
-def contact_recovery(
-    s: NDArray,
-    degree: int,
-    chart: Any,
-    r: NDArray,
-    farthest: float = 1e-3,
-    tests: Callable[[NDArray], NDArray] = chebyshev,
-) -> ContactRecovery:
-    """Linear maps from nodal forces at the contact nodes of a mesh to moments and raw pressure.
-
-    The raw pressure is the piecewise polynomial with these nodal forces: the mass matrix of the contact
-    is solved, and no exponent is assumed. Exponents are fitted at its Gauss points, where a polynomial
-    best approximates functions that it cannot represent.
-
-    Args:
-        s: surface coordinates of the contact nodes in order of X, (F p + 1,).
-        degree: polynomial degree p.
-        chart: chart of the mesh, see :class:`galinx.meshes.charts.Chart`.
-        r: positions X/a of the raw pressure, (points,).
-        farthest: distance from an edge over a of the facets to which an exponent is fitted. The fit uses
-            the outer half of them, two at least: the innermost cannot follow the singularity and disturb
-            their neighbours, and beyond this distance the pressure's second term biases the exponent.
-        tests: smooth functions of r, (points, moments), with which forces are tested.
-    """
-    contact = ContactFacets(s, degree, chart)
-    density = contact.density(np.eye(len(s)))  # symmetric
-    facets, start, length = contact.facets, contact.start, contact.length
-    inside = under_punch(r)
-    raw = np.full((len(s), len(r)), np.nan)
-    raw[:, inside] = contact.stress(density, r[inside])
-
-    t = (roots_legendre(degree)[0] + 1.0) / 2.0
-    d_left, d_right, stretch = chart.under_punch(
-        start[:, None] - s[0] + length[:, None] * t,
-        s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
-    )
-    at_gauss = density[:, facets] @ lagrange(contact.nodes, t)[0].T / stretch
-    edges = []
-    for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
-        last = max(int((d.max(axis=1) < farthest).sum()), 3)
-        used = slice(min(last // 2, last - 2), last)
-        edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
-    return ContactRecovery(tests(chart.surface_position(s)), raw, tuple(edges))
 
 
 class ContactFacets:
@@ -261,6 +192,55 @@ class ContactFacets:
         facet = np.maximum(np.searchsorted(self.start, s, side="right") - 1, 0)
         values, _ = lagrange(self.nodes, (s - self.start[facet]) / self.length[facet])
         return np.einsum("qi,...qi->...q", values, nodal[..., self.facets[facet]])
+
+
+class ContactRecovery(ContactFacets):
+    """Linear maps from nodal forces at the contact nodes of a mesh to moments and raw pressure.
+
+    The raw pressure is the piecewise polynomial with these nodal forces: the mass matrix of the contact
+    is solved, and no exponent is assumed. Exponents are fitted at its Gauss points, where a polynomial
+    best approximates functions that it cannot represent.
+
+    Args:
+        s, degree, chart: as of :class:`ContactFacets`.
+        r: positions X/a of the raw pressure, (points,).
+        farthest: distance from an edge over a of the facets to which an exponent is fitted. The fit uses
+            the outer half of them, two at least: the innermost cannot follow the singularity and disturb
+            their neighbours, and beyond this distance the pressure's second term biases the exponent.
+        tests: smooth functions of r, (points, moments), with which forces are tested.
+
+    Attributes:
+        moments: map to ∫ σ_YY T_k dr, or to moments with other test functions, (nodes, moments).
+        raw: map to the raw pressure at chosen positions, NaN outside the contact, (nodes, points).
+        edges: for X = a and X = -a: distances from it over a, (q,), and the map to the raw pressure
+            there, (nodes, q).
+    """
+
+    def __init__(
+        self, s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3,
+        tests: Callable[[NDArray], NDArray] = chebyshev,
+    ) -> None:  # fmt: skip
+        super().__init__(s, degree, chart)
+        self.moments = tests(chart.surface_position(s))
+        density, start, length = self.density(np.eye(len(s))), self.start, self.length  # symmetric
+        inside = under_punch(r)
+        self.raw = np.full((len(s), len(r)), np.nan)
+        self.raw[:, inside] = self.stress(density, r[inside])
+        t = (roots_legendre(degree)[0] + 1.0) / 2.0
+        d_left, d_right, stretch = chart.under_punch(
+            start[:, None] - s[0] + length[:, None] * t,
+            s[-1] - (start + length)[:, None] + length[:, None] * (1.0 - t),
+        )
+        at_gauss = density[:, self.facets] @ lagrange(self.nodes, t)[0].T / stretch
+        self.edges = []
+        for d, to_σ in ((d_right[::-1], at_gauss[:, ::-1]), (d_left, at_gauss)):  # from the edge inwards
+            last = max(int((d.max(axis=1) < farthest).sum()), 3)
+            used = slice(min(last // 2, last - 2), last)
+            self.edges.append((d[used].ravel(), to_σ[:, used].reshape(len(s), -1)))
+
+    def exponents(self, forces: NDArray) -> NDArray[np.float64]:
+        """Exponents at X = a and X = -a fitted to the raw pressure, (states, 2)."""
+        return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
 
 
 #: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.
@@ -365,24 +345,6 @@ class Stretch(Functions):
         tail = _TAIL_STIFFENING if self.stiffens else _TAIL
         return float((tail if self.graded else 1.0) * share)
 
-    def moved_edges(self, pressure: Expansion, r: NDArray, length: float) -> NDArray[np.float64]:
-        """Change of the smooth factor where both edges are misplaced by a length, (states, points).
-
-        The pressure is stretched from the opposite edge. Its moments change like the functions over the
-        length of the misplacement; the more functions there are, the more of this change appears as
-        pressure at the ends.
-        """
-        change = np.empty((len(pressure.c), len(r)))
-        for i, c in enumerate(pressure.c):
-            c = np.trim_zeros(c, "b")
-            count = len(c)
-            f, at_r = _at_points(self, count), self.values(r, count)
-            weights = _rule(float(pressure.α[i, 0]), float(pressure.β[i, 0]), self).weights
-            moments = _moved(self, count, length) @ (weights * (f @ c))
-            to_factor = np.linalg.solve((f * weights[:, None]).T @ f, moments.T)
-            change[i] = np.abs(at_r @ to_factor).sum(axis=1)
-        return change
-
 
 @cache
 def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
@@ -411,24 +373,6 @@ def _rule(α: float, β: float, stretch: Stretch) -> Panels:
 def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
     """Functions at the points of the quadrature, (points, count)."""
     return stretch.values(_rule(-0.5, -0.5, stretch).t, count)
-
-
-@lru_cache(maxsize=8)
-def _moved(stretch: Stretch, count: int, length: float) -> NDArray[np.float64]:
-    """Changes of functions at the points of the quadrature where the right or the left edge is misplaced.
-
-    Args:
-        stretch: the functions.
-        count: number of the functions.
-        length: misplacement over a.
-
-    Returns:
-        Changes for either edge, (2, count, points).
-    """
-    t = _rule(-0.5, -0.5, stretch).t
-    inwards = (t - length * (1.0 + t) / 2.0, t + length * (1.0 - t) / 2.0)
-    moved = [stretch.values(at, count) for at in inwards]
-    return np.array([(functions - _at_points(stretch, count)).T for functions in moved])
 
 
 #: Distances from an end, over that of the nearest kink, between which the pressure is sampled to continue

@@ -259,10 +259,17 @@ class Contact:
     def _friction_has_length(self) -> bool:
         return self.found and any(along.has_length for along in self.along.values())
 
-    def edges(self, response: HalfPlane, g: NDArray, a: Any = None) -> Exponents:
-        """Exponents of sharp ends with frictions of :meth:`ratio`, (states,)."""
-        at = self.ratio(g, _BOTH_ENDS, a)
-        return Exponents(EdgeExponents(response, at[:, -1]).α, EdgeExponents(response, at[:, 0]).β)
+    def edges(self, response: HalfPlane, g: NDArray, a: Any = None, free: Any = False) -> Exponents:
+        """Exponents of the pressure at ends with frictions of :meth:`ratio`, (states,).
+
+        Args:
+            response: of the half-plane.
+            g, a: as of :meth:`ratio`.
+            free: True where the left and the right end are free, broadcast to (states, 2).
+        """
+        at, (left, right) = self.ratio(g, _BOTH_ENDS, a), np.broadcast_to(free, (len(g), 2)).T
+        at_right, at_left = (EdgeExponents(response, at[:, end]) for end in (-1, 0))
+        return Exponents(at_right.α + right, at_left.β + left)
 
     def half_widths(self, response: HalfPlane, g: NDArray, load: Any = None) -> Any:
         """Half-widths [m] on which frictions depend, (states,), to a millionth; None where none does.
@@ -285,9 +292,8 @@ class Contact:
             g: σ_XY/σ_YY under the punch, (states,).
             load: of each state [N/m], (states,); None for this contact's.
         """
-        edges = self.edges(response, g, self.half_widths(response, g, load))
-        free_left, free_right = self._free_ends(response, g, load).T
-        return Exponents(edges.α + free_right, edges.β + free_left)
+        half_widths, free = self.half_widths(response, g, load), self._free_ends(response, g, load)
+        return self.edges(response, g, half_widths, free)
 
     def _free_ends(self, response: HalfPlane, g: NDArray, load: Any) -> NDArray[np.bool_]:
         """True where the left and the right end of states are free, (states, 2)."""
@@ -362,23 +368,20 @@ class Contact:
         k = self.growth_exponent
         return None if k is None else (load / self.load) ** k
 
-    def dissimilar(self, loads: tuple[float, ...]) -> tuple[float, ...]:
-        """Loads [N/m], of several, under which contacts differ in more than their size."""
-        return loads if self.growth_exponent is None else loads[:1]
-
     @property
     def compression(self) -> Any:
         """Load over the shear modulus, N/μ [m]."""
         return self.load / self.solid.μ
 
-    def height(self, X: NDArray) -> NDArray[np.float64]:
-        """Height of the punch over N/(2μ) at X over a, in the shape of X."""
-        return self.profile.height(self.half_width * X) / self.displacement
+    def height(self, r: NDArray, m: float = 0.0, h: Any = None) -> NDArray[np.float64]:
+        """Height of the punch over N/(2μ) at places r over the half-width h from the middle m [m]."""
+        h = self.half_width if h is None else h
+        return np.asarray(self.profile.height(m + h * r) / self.displacement)
 
-    def slope(self, X: NDArray) -> NDArray[np.float64]:
-        """Slope μ v,X under the punch over N/(2a), at X over a, in the shape of X."""
-        a = self.half_width
-        return self.profile.slope(a * X) * a / self.displacement
+    def slope(self, r: NDArray, m: float = 0.0, h: Any = None) -> NDArray[np.float64]:
+        """Slope μ v,X under the punch over N/(2h) at these places."""
+        h = self.half_width if h is None else h
+        return np.asarray(h * self.profile.slope(m + h * r) / self.displacement)
 
     @property
     def force(self) -> Any:
@@ -575,21 +578,6 @@ class Task:
     def of(self, values: NDArray) -> NDArray:
         """Rows of the task's states, of values of all states, (states, …)."""
         return np.concatenate([values[run] for run in self.runs])
-
-    def probes(self, g: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
-        """Frictions and loads of states that stand for all: at both ends of the loads, unless similar.
-
-        Args:
-            g: frictions, (n,).
-
-        Returns:
-            Frictions, and loads [N/m], None for the task's, (states,) each.
-        """
-        loads = self.body.dissimilar(self.loads)
-        ends = sorted({min(loads), max(loads)})
-        if len(ends) == 1:
-            return g, None
-        return np.tile(g, len(ends)), np.repeat(ends, len(g))
 
 
 def solved_once(

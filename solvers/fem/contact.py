@@ -30,12 +30,10 @@ from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
     ContactFacets,
     ContactRecovery,
-    contact_recovery,
     from_moments,
     without_zeros,
 )
 from ..contact.solution import ONE_FREE, Contact, Task
-from ..contact.stresses import Surface, turns_at_ends
 from ..errors import SolveError
 from ..profiles import radius
 from .discretisation import Discretisation
@@ -117,7 +115,7 @@ class PunchLevel(Level):
     def gauge(self, states: SolvedStates) -> Gauge:
         """Gauge of pressure and ends."""
 
-    def along(self) -> Callable[[float], NDArray] | None:
+    def along(self) -> Callable[[Any], NDArray] | None:
         """Map from g to G where friction varies along the contact, see :class:`SlidingPunch`."""
         return None
 
@@ -146,7 +144,7 @@ class PunchLevel(Level):
     def recovery(self) -> ContactRecovery:  # type: ignore[override]
         """Maps from nodal forces to moments, raw pressure and exponents."""
         space, X = self.space, self.task.places.X
-        return contact_recovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
+        return ContactRecovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, self.punch.slopes, self.continuation())
@@ -194,16 +192,6 @@ class PunchLevel(Level):
         """Gauges of states: of pressure and ends, and of requested stresses."""
         states = self.states(g, load)
         return [self.gauge(states), *(self.stress_gauges(states) if self.work.stresses else [])]
-
-    def with_ends(self, gauge: Gauge, states: SolvedStates, σ_XX: NDArray) -> Gauge:
-        if not states.contact.free.any():
-            return gauge
-        surface = Surface(self.measured_task.places, np.full(σ_XX.shape, np.nan), σ_XX)
-        at_ends = turns_at_ends(surface, states.local).σ[0]  # NaN at sharp edges
-        largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
-        ends = np.nan_to_num(at_ends), np.broadcast_to(largest, at_ends.shape)
-        values, scale = (np.column_stack(of) for of in zip((gauge.values, gauge.scale), ends))
-        return replace(gauge, values=values, scale=scale)
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
@@ -253,9 +241,7 @@ class SharpLevel(PunchLevel):
         return self.over_flat(contact.tested(self.moments), contact.g)
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        plan, margin = self.plan, self.task.response.margin
-        moved = plan.kind.moved_edges(plan.wanted, self.space.degree, margin)
-        return of_pressure(states.pressure, states.contact.tested(self.moments), moved)
+        return of_pressure(states.pressure, states.contact.tested(self.moments))
 
 
 #: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
@@ -275,15 +261,26 @@ class AlongLevel(PunchLevel):
     def facets(self) -> ContactFacets:
         return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
+    def along(self) -> Callable[[Any], NDArray]:
+        body = self.task.body
+        return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
+
+    def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
+        """Half-widths [m] on which frictions of contacts depend, (states,)."""
+        return np.asarray(contact.half_width)
+
+    def pressure(self, contact: ContactStates, nearest: float = _NEXT) -> Expansion:
+        lengths = self.half_widths(contact)
+        return self.splines(contact.g, lengths, contact.tested, nearest, contact.free)
+
     def splines(
-        self, g: NDArray, half_width: NDArray | None, tested: Callable[[NDArray], NDArray],
+        self, g: NDArray, half_width: NDArray, tested: Callable[[NDArray], NDArray],
         nearest: float = _NEXT, free: Any = False,
     ) -> Expansion:  # fmt: skip
         """Pressure of contacts, by splines without knots within a distance of ends and kinks.
 
         Args:
-            g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,), None
-                for that of the task.
+            g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
             tested: normal forces times tests (nodes, n), (states, n).
             nearest: distance over a of knots from ends and kinks, over the root of a length.
             free: True where the left and the right end are free, broadcast to (states, 2).
@@ -303,44 +300,30 @@ class AlongLevel(PunchLevel):
         knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
-        local, at_nodes = body.edges(self.task.response, g, half_width), splines.values(self.r)
-        left, right = np.broadcast_to(free, (len(g), 2)).T
+        local, at_nodes = body.edges(self.task.response, g, half_width, free), splines.values(self.r)
         # Nodal forces know of tests their interpolants only.
         return splines.fitted(
-            tested(at_nodes), local.α + right, local.β + left,
-            lambda r: self.facets.interpolated(at_nodes.T, r).T,
-        )  # fmt: skip
+            tested(at_nodes), local.α, local.β, lambda r: self.facets.interpolated(at_nodes.T, r).T
+        )
 
-    def intensities(self, parts: NDArray, g: Any, half_width: float | None = None) -> NDArray[np.float64]:
+    def intensities(self, parts: NDArray, g: Any, half_width: float) -> NDArray[np.float64]:
         """Intensities of the parts (1, parts, fields) of one state at both ends, (parts, 2)."""
-        count = parts.shape[1]
-        lengths = None if half_width is None else np.full(count, half_width)
-        return self.splines(
-            g * np.ones(count), lengths, lambda tests: self.punch.tested(parts, tests)[0]
-        ).K_I
+        each, lengths = np.multiply.outer([g, half_width], np.ones(parts.shape[1]))
+        return self.splines(each, lengths, lambda tests: self.punch.tested(parts, tests)[0]).K_I
 
-    def gauge_by_knots(self, states: SolvedStates, half_width: NDArray | None) -> Gauge:
-        """Gauge of contacts with free ends, by moved knots; half-widths as of :meth:`splines`."""
+    def gauge(self, states: SolvedStates) -> Gauge:
+        """Gauge of contacts with free ends, by moved knots."""
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
-        coarse = self.splines(contact.g, half_width, contact.tested, COARSE, contact.free)
-        off = np.abs(coarse.σ_YY(ACROSS) - σ) / size
+        off = np.abs(self.pressure(contact, COARSE).σ_YY(ACROSS) - σ) / size
         return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
 class VaryingLevel(AlongLevel, SharpLevel):
     """Sharp edges of a flat punch with friction that varies along the contact."""
 
-    def along(self) -> Callable[[float], NDArray]:
-        along = self.task.body.along  # type: ignore[attr-defined]
-        return cache(lambda g: self.facets.product(along[g]))
-
-    def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, contact.half_width, contact.tested)
-
     def gauge(self, states: SolvedStates) -> Gauge:
-        gauge, contact = super().gauge(states), states.contact
-        coarse = self.splines(contact.g, contact.half_width, contact.tested, COARSE)
+        gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, COARSE)
         # Without knots next to ends and kinks, splines of all degrees are off alike.
         off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
         return replace(gauge, unresolved=gauge.unresolved + off)
@@ -437,36 +420,30 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
     half-width.
     """
 
-    @cached_property
-    def _numbers(self) -> dict[Any, float]:
-        """Numbers by which the punch knows frictions."""
-        return {}
-
-    def along(self) -> Callable[[float], NDArray]:
-        numbers = self._numbers
-        return lru_cache(_KEPT)(lambda number: self.facets.product([*numbers][int(number)]))
+    def along(self) -> Callable[[Any], NDArray]:
+        return lru_cache(_KEPT)(self.facets.product)
 
     def prepare(self, punch: SlidingPunch) -> None:
         self.punch = punch
         g, loads = self.g, np.array(self.task.loads)
         # Parts that are asked for add fields.
-        self.solved(np.repeat(g, len(loads)), self.task.body.loaded(np.tile(loads, len(g))))
-        punch.prepare(np.array([len(self._numbers) - 1.0]))
+        contact = self.solved(np.repeat(g, len(loads)), self.task.body.loaded(np.tile(loads, len(g))))
+        punch.prepare(self._frictions(contact.g[-1:], contact.half_width[-1:]))
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         loads = np.broadcast_to(body.load, g.shape).tolist()
         each = [self._balanced(*state) for state in zip(g.tolist(), loads)]
         (m, h), free = np.transpose([lengths for lengths, _ in each]), np.array([of for _, of in each])
-        numbers = [self._number(*state) for state in zip(g.tolist(), h.tolist())]
-        parts = self.punch.parts(np.array(numbers))
+        parts = self.punch.parts(self._frictions(g, h))
         amplitudes, lowest, ends = self.smooth(body, self.punch.loads(parts), m, h)
         if body.ends == ONE_FREE:
             lowest = np.abs(amplitudes[:, 1])  # an edge is the lowest point of a tilted base
         return self.summed(g, parts, (amplitudes, lowest, ends | {"free": free}))
 
-    def _number(self, g: float, h: float) -> float:
-        """Number by which the punch knows the friction of a half-width [m]."""
-        return self._numbers.setdefault(self.task.body.friction(g, h), float(len(self._numbers)))
+    def _frictions(self, g: NDArray, h: NDArray) -> NDArray[Any]:
+        """Frictions along contacts of half-widths [m], objects of :class:`.along.Along`, (states,)."""
+        each = zip(g.tolist(), h.tolist())
+        return np.array([self.task.body.friction(*state) for state in each], dtype=object)
 
     def _balanced(self, g: float, load: float) -> tuple[tuple[float, float], list[bool]]:
         """Middle and half-width [m] of a contact, and which ends are free; its search adds fields.
@@ -488,7 +465,7 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
             m, h = ends(x)
-            parts = self.punch.parts(np.array([self._number(g, h)]))
+            parts = self.punch.parts(np.array([body.friction(g, h)], dtype=object))
             amplitudes, *_ = self.smooth(body, self.punch.loads(parts), np.array([m]), np.array([h]))
             return (amplitudes[0] @ self.intensities(parts, g, h))[free]
 
@@ -499,12 +476,6 @@ class VaryingFreeLevel(AlongLevel, FreeLevel):
             raise SolveError("no contact of a finite half-width carries the load")
         self._ends[g, load] = ends(x)
         return ends(x), free.tolist()
-
-    def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, contact.half_width, contact.tested, free=contact.free)
-
-    def gauge(self, states: SolvedStates) -> Gauge:
-        return self.gauge_by_knots(states, states.contact.half_width)
 
 
 def without_intensity(loads: NDArray, K: NDArray) -> NDArray[np.float64]:

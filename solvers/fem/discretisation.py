@@ -1,7 +1,7 @@
 """Meshes and spaces that all speeds of a plan share."""
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -36,7 +36,6 @@ class Discretisation:
         stresses: words of output.quantities that request stresses of finite elements.
         progress: shows the work.
         clock: takes wall time by step.
-        refine: gives the plan with finer cells.
     """
 
     plan: FemPlan
@@ -44,7 +43,6 @@ class Discretisation:
     stresses: frozenset[str]
     progress: Messages
     clock: Clock
-    refine: Callable[[FemPlan], FemPlan] = on_finer_cells
     _meshes: dict[int, tuple[Any, Any]] = field(default_factory=dict, init=False)
     _spaces: dict[tuple[int, int], Space] = field(default_factory=dict, init=False)
 
@@ -69,7 +67,7 @@ class Discretisation:
     @cached_property
     def finer(self) -> "Discretisation":
         """Discretisation of the plan on cells for a tighter tolerance."""
-        return replace(self, plan=self.refine(self.plan))
+        return replace(self, plan=on_finer_cells(self.plan))
 
     def space(self, degree: int, cuts: int = 1) -> Space:
         """The space of a degree on a mesh; speeds share it, its form and its numbering."""

@@ -72,18 +72,16 @@ def joined(word: str, groups: Sequence[tuple[NDArray, Any]], unresolved: Any = 0
     return Gauge(word, np.concatenate(values, axis=1), np.concatenate(sizes, axis=1), unresolved)
 
 
-def of_pressure(pressure: Expansion, moments: NDArray, moved: float = 0.0) -> Gauge:
+def of_pressure(pressure: Expansion, moments: NDArray) -> Gauge:
     """Gauge of K_I, the pressure all over the contact, and its moments 1 to 5 over the load.
 
     Args:
         pressure: of the states.
         moments: of it, (states, moments).
-        moved: distance over a by which the edges of the contact seem off, on cells that no degree mends.
     """
     factor = pressure.series(_ACROSS)
-    size = stresses.of_factor(factor)
-    unresolved = pressure.unresolved + (pressure.moved_edges(_ACROSS, moved) / size).max(axis=1)
-    return joined(INTENSITIES, ((factor, size), (moments[:, 1:6], 2.0)), unresolved)
+    groups = (factor, stresses.of_factor(factor)), (moments[:, 1:6], 2.0)
+    return joined(INTENSITIES, groups, pressure.unresolved)
 
 
 def of_components(word: str, σ: NDArray, size: NDArray) -> Gauge:
@@ -182,29 +180,30 @@ class Level:
 
     def stress_gauges(self, states: SolvedStates) -> list[Gauge]:
         """Gauges of the requested stresses of states."""
-        at, places, weights = self.gauged_displacement, self.gauged_task.places, states.contact.weights
-        #: Stresses by word, and their sizes.
-        by_word: dict[str, tuple[Callable[[], NDArray], Callable[[NDArray], NDArray]]] = {
-            ON_SURFACE: (
-                lambda: self.σ_XX(*self.fields_of(states))[None],
-                lambda σ: stresses.of_in_plane(σ[0], places.X),
-            ),
-            BELOW: (lambda: at.inside(weights), lambda σ: stresses.of_inside(σ, *places.points.T)),
-            YIELD: (lambda: at.around(weights), lambda σ: stresses.of_inside(σ, *places.around.T)),
-            AT_INTERFACES: (lambda: at.interfaces(weights), stresses.of_interfaces),
+        at, places = self.gauged_displacement, self.gauged_task.places
+        #: Stresses inside by word, and their sizes.
+        by_word: dict[str, tuple[Callable[[NDArray], NDArray], Callable[[NDArray], NDArray]]] = {
+            BELOW: (at.inside, lambda σ: stresses.of_inside(σ, *places.points.T)),
+            YIELD: (at.around, lambda σ: stresses.of_inside(σ, *places.around.T)),
+            AT_INTERFACES: (at.interfaces, stresses.of_interfaces),
         }
-        gauges = []
+        gauges = [self._on_surface(states)] if ON_SURFACE in self.work.stresses else []
         for word, (evaluate, size) in by_word.items():
             if word in self.work.stresses:
-                σ = evaluate()
+                σ = evaluate(states.contact.weights)
                 gauges.append(of_components(word, σ, size(σ)))
-                if word == ON_SURFACE:
-                    gauges[-1] = self.with_ends(gauges[-1], states, σ[0])
         return gauges
 
-    def with_ends(self, gauge: Gauge, states: SolvedStates, σ_XX: NDArray) -> Gauge:
-        """Gauge of σ_XX on the surface, (states, n), and of its limits at free ends, its extremes."""
-        return gauge
+    def _on_surface(self, states: SolvedStates) -> Gauge:
+        """Gauge of σ_XX on the surface, and of its limits at free ends, its extremes there."""
+        places, σ_XX = self.measured_task.places, self.σ_XX(*self.fields_of(states))
+        groups = [(σ_XX, stresses.of_in_plane(σ_XX, places.X))]
+        if states.contact.free.any():
+            surface = Surface(places, np.full(σ_XX.shape, np.nan), σ_XX)
+            at_ends = turns_at_ends(surface, states.local).σ[0]  # NaN at sharp edges
+            largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
+            groups.append((np.nan_to_num(at_ends), largest))
+        return joined(ON_SURFACE, groups)
 
     def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
         """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
@@ -314,11 +313,19 @@ class Estimate:
         return {word: errors[of_load, both].max(axis=(1, 2)) for word, errors in self.errors.items()}
 
 
-def stand_ins(task: Task, g: NDArray) -> tuple[NDArray[np.float64], NDArray | None, NDArray]:
-    """States with frictions g that stand for all: frictions, loads, None if similar, and each load."""
+def stand_ins(
+    task: Task, g: NDArray, most: int = PROBES
+) -> tuple[NDArray[np.float64], NDArray | None, NDArray]:
+    """States with frictions g that stand for all: frictions, loads, None if similar, and each load.
+
+    Args:
+        task: the speed.
+        g: σ_XY/σ_YY, (n,).
+        most: number of loads at most, from the least to the largest.
+    """
     if task.body.alike:
         return g, None, np.zeros(1)
-    loads = spread(np.unique(task.loads), PROBES)
+    loads = spread(np.unique(task.loads), most)
     return np.tile(g, len(loads)), np.repeat(loads, len(g)), loads
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -79,7 +79,7 @@ class FiniteElements:
         work, mode = self.work, self.work.plan.mode
         if mode in OWN:
             return OWN[mode](work, task, g)
-        return to_tolerance(work, task, g, lambda space, g: LEVELS[mode](work, task, space, g))
+        return to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
 
     @contextmanager
     def one_state(

@@ -20,7 +20,7 @@ all loads differ in size alone, a single state of a friction stands for all of t
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import partial
 from math import ceil, log
 from typing import Any, TypeAlias
 
@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes.kind import DEGREES
-from galinx.meshes.rings import Refinement, rings_at_kinks, with_kinks
+from galinx.meshes.rings import QuadMesh, rings_at_kinks, with_kinks
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
 from ..contact.edges import EdgeExponents
@@ -40,7 +40,6 @@ from ..contact.fem_plan import (
     crowded_kinks,
     kind_of,
     no_nearer,
-    on_finer_cells,
     pressure_moments,
     requirements,
 )
@@ -227,16 +226,6 @@ class EndsBetweenKinks:
         """Positions of the kinks over the half-width."""
         return kinks_between(self.body.profile, *self.lengths)
 
-    def height(self, r: NDArray) -> NDArray[np.float64]:
-        """Height of the punch over N/(2μ) at places r over the half-width from the middle."""
-        m, h = self.lengths
-        return np.asarray(self.body.profile.height(m + h * r) / self.body.displacement)
-
-    def slope(self, r: NDArray) -> NDArray[np.float64]:
-        """Slope of the punch times the half-width over N/(2μ) at these places."""
-        m, h = self.lengths
-        return np.asarray(h * self.body.profile.slope(m + h * r) / self.body.displacement)
-
     @property
     def tips(self) -> NDArray[np.float64]:
         """Kinks at which stresses are infinite."""
@@ -247,39 +236,28 @@ class EndsBetweenKinks:
         """Kinks at which stresses are finite."""
         return np.empty(0) if jumps(self.body.profile) else self.places
 
-    def drawn(self, plan: FemPlan) -> FemPlan:
-        """Plan with a mesh whose cells are graded towards the kinks."""
-        rings = _gentle(plan)
-        return replace(plan, drawn=with_kinks(rings, self.places, self._more_rings(rings, plan)))
+    def drawn(self, plan: FemPlan) -> QuadMesh:
+        """Mesh of a plan whose cells are graded towards the kinks.
 
-    def _more_rings(self, rings: Refinement, plan: FemPlan) -> int:
-        """Number of rings around kinks beyond those around the ends.
+        Rings are no steeper than the usual ones of its mesh. They are steeper where cells are finer in
+        angle, which does at ends that are free: the pressure at a kink is no power of the distance, and a
+        ring that spans a fifth of it is slow to follow that.
 
         Next to a kink of the slope's derivative the pressure is d log d, and its error in the innermost
         cells is of their size at any degree. At a tip the pressure is infinite, and stresses are
         evaluated farther away: if an innermost cell reached that far, no degree would resolve them at
         any tolerance.
         """
+        rings, ratio = plan.refinement, plan.kind.ratio
+        if rings.ratio < ratio:
+            count = ceil(rings.levels * log(rings.ratio) / log(ratio))
+            rings = replace(rings, levels=count, ratio=ratio)
+        order = max((exponent(self.body.profile) or 2.0) - 1.0, 1.0)
+        size = _OF_TIP * NEAR_TIP if len(self.tips) else (_INNERMOST * plan.tolerance) ** (1.0 / order)
+        more = max(0, rings_at_kinks(rings, size))
         if cusp(self.body.profile):
-            return ceil(_AROUND_CUSP * log(plan.kind.ratio) / log(rings.ratio))
-        if len(self.tips):
-            size = _OF_TIP * NEAR_TIP
-        else:
-            order = max((exponent(self.body.profile) or 2.0) - 1.0, 1.0)
-            size = (_INNERMOST * plan.tolerance) ** (1.0 / order)
-        return max(0, rings_at_kinks(rings, size))
-
-
-def _gentle(plan: FemPlan) -> Refinement:
-    """Plan's refinement with rings no steeper than the usual ones of its mesh.
-
-    They are steeper where cells are finer in angle, which does at ends that are free: the pressure at a
-    kink is no power of the distance, and a ring that spans a fifth of it is slow to follow that.
-    """
-    rings, ratio = plan.refinement, plan.kind.ratio
-    if rings.ratio >= ratio:
-        return rings
-    return replace(rings, levels=ceil(rings.levels * log(rings.ratio) / log(ratio)), ratio=ratio)
+            more = ceil(_AROUND_CUSP * log(ratio) / log(rings.ratio))
+        return with_kinks(rings, self.places, more)
 
 
 class KinkedLevel(SingleLevel):
@@ -290,7 +268,7 @@ class KinkedLevel(SingleLevel):
         return gaps_of(self.base.places)
 
     def heights(self) -> NDArray[np.float64]:
-        return self.base.height(self.r)
+        return self.base.body.height(self.r, *self.base.lengths)
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         m, h = self.base.lengths
@@ -363,18 +341,14 @@ class BetweenKinks(OwnMeshes):
     def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
         super().__init__(work, task, g)
         ends = work.for_ends
-        self._ends = climb(
-            ends, task, g, lambda space, g: EndsLevel(ends, task, space, g), done=self._done
-        )
+        self._ends = climb(ends, task, g, partial(EndsLevel, ends, task), done=self._done)
 
     def _solved(self, g: NDArray, task: Task) -> SolvedStates:
         work, load = self._work, task.body.load
         lengths, unseen = self._ends.level.lengths(g, np.array([load]))
         between = EndsBetweenKinks(task.body, tuple(lengths[:, 0].tolist()), work.plan.tolerance)
-        mesh = replace(
-            work, plan=between.drawn(work.plan), refine=lambda plan: between.drawn(on_finer_cells(plan))
-        )
-        state = self._on(mesh, task, g, lambda space, g: KinkedLevel(mesh, task, space, g, between))
+        mesh = replace(work, plan=replace(work.plan, graded=between.drawn))
+        state = self._on(mesh, task, g, partial(KinkedLevel, mesh, task, base=between))
         state.errors[INTENSITIES] += self._ends.error.of(g, load)[INTENSITIES] + unseen
         return state
 
@@ -411,7 +385,8 @@ class BalancedLevel(SingleLevel):
         return float(self.contact.centre[0] / self.base.lengths[1])
 
     def heights(self) -> NDArray[np.float64]:
-        return np.stack([self.base.height(self.r), self.base.slope(self.r)])
+        body, lengths = self.base.body, self.base.lengths
+        return np.stack([body.height(self.r, *lengths), body.slope(self.r, *lengths)])
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         """Contact without intensities.
@@ -442,19 +417,12 @@ class BalancedLevel(SingleLevel):
 class VaryingBalancedLevel(AlongLevel, BalancedLevel):
     """Contact over layers whose friction varies along it: that of the mesh's half-width."""
 
-    def along(self) -> Callable[[float], NDArray]:
-        body = self.task.body  # of the mesh's half-width
-        return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
+    def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
+        return np.full(len(contact.g), self.task.body.half_width)
 
     def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        parts = self.punch.parts(g)
-        return parts, self.punch.loads(parts), self.intensities(parts, g).T[None]
-
-    def pressure(self, contact: ContactStates) -> Expansion:
-        return self.splines(contact.g, None, contact.tested, free=True)
-
-    def gauge(self, states: SolvedStates) -> Gauge:
-        return self.gauge_by_knots(states, None)
+        parts, h = self.punch.parts(g), self.task.body.half_width
+        return parts, self.punch.loads(parts), self.intensities(parts, g[0], h).T[None]
 
     def continuation(self) -> None:
         # Next to an end where friction varies slopes have logarithms, which no series of powers follows.
@@ -482,7 +450,7 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
     target = no_nearer(target, NEAR_FREE_END)
     degree = kind.degree(target, task.response.margin)
     return replace(
-        plan, kind=kind, wanted=target, drawn=kind.drawn(target), degrees=(degree,) * len(plan.degrees),
+        plan, kind=kind, wanted=target, degrees=(degree,) * len(plan.degrees),
         tests=pressure_moments(task.body.solid, kind, target),
     )  # fmt: skip
 

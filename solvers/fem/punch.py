@@ -180,7 +180,8 @@ class SlidingPunch(Punch):
         solver: of linear systems: ``"direct"``, ``"boomeramg"``, ``"gamg"`` or ``"multigrid"``.
         heights: of the punch at the contact nodes, (nodes,), over N/(2μ) or in another unit that shares
             make up for; or of shapes that are combined, (shapes, nodes); None for a flat punch.
-        along: gives G by g where friction varies along the contact; None where G is g.
+        along: gives G where friction varies along the contact, by what stands for g then, a number or an
+            object; None where G is g.
         negligible: relative change of the contact forces that needs no refinement of a solution. The
             first solution is refined in any case, which shows whether the others need it.
         least: relative residual of the contact forces that may remain.
@@ -188,7 +189,7 @@ class SlidingPunch(Punch):
 
     def __init__(
         self, space: Space, response: HalfPlane, solver: str = "direct",
-        heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
+        heights: NDArray[np.float64] | None = None, along: Callable[[Any], NDArray] | None = None,
         negligible: float = NEGLIGIBLE, least: float = LEAST,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
@@ -286,9 +287,10 @@ class SlidingPunch(Punch):
                 self.fields = [*self.fields, *fields]
                 continue
             if self._loads.shape[1] >= limit:
+                of = "" if self._along else f" at g = {g[0]:g} to {g[-1]:g} (dimensionless)"
                 raise SolveError(
-                    f"the contact forces at g = {g[0]:g} to {g[-1]:g} (dimensionless) did not converge "
-                    f"in {limit} steps: residual {left:.3g}, expected {self._left:g}"
+                    f"the contact forces{of} did not converge in {limit} steps: residual "
+                    f"{left:.3g}, expected {self._left:g}"
                 )
             more = self._loads[:, :0]
             while (sizes := np.linalg.norm(rest, axis=0)).max() > self._left:
@@ -445,7 +447,7 @@ class ElasticPunch(SlidingPunch):
 
     def __init__(
         self, space: Space, response: PairAtSpeed, solver: str = "direct",
-        heights: NDArray[np.float64] | None = None, along: Callable[[float], NDArray] | None = None,
+        heights: NDArray[np.float64] | None = None, along: Callable[[Any], NDArray] | None = None,
         least: float = LEAST,
     ) -> None:  # fmt: skip
         unit = np.eye(len(space.contact.s))

@@ -70,8 +70,8 @@ class SolvedStates:
     @property
     def local(self) -> Exponents:
         """Exponents of the pressure at the right and the left end."""
-        flat = self.body.edges(self.task.response, self.contact.g, self.contact.half_width)
-        return Exponents(flat.α + self.contact.free[:, 1], flat.β + self.contact.free[:, 0])
+        contact = self.contact
+        return self.body.edges(self.task.response, contact.g, contact.half_width, contact.free)
 
     @cached_property
     def on_surface(self) -> Surface:

@@ -14,6 +14,7 @@ fit. A fitted speed has that error and the error of the discretisation (:class:`
 
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -48,6 +49,7 @@ from .ladder import (
     climb,
     largest_changes,
     size_of,
+    stand_ins,
 )
 from .punch import Punch
 from .space import Space
@@ -173,7 +175,8 @@ class Fit:
         self.rational: Barycentric | None = None
         self.error: dict[str, float] | None = None
         g = self._sweep.g
-        self._probes = self._tasks[0].probes(g if self._sweep.few else np.linspace(g[0], g[-1], PROBES))
+        g = g if self._sweep.few else np.linspace(g[0], g[-1], PROBES)
+        self._probes = stand_ins(self._tasks[0], g, 2)[:2]
         #: Most speeds that are solved for a fit.
         self._most = min(MOST, len(self._tasks) // 2)
         # The fastest needs the highest degree: it is solved first, by every rank for itself.
@@ -383,10 +386,7 @@ class Fit:
     def _climbed(self, task: Task, degree: int | None) -> Solved:
         """Speed that is solved with the measurement of its error, from a degree on."""
         work = self._work
-        return climb(
-            work, task, self._all, lambda space, g: self._kind(work, task, space, g), degree,
-            DISCRETISATION,
-        )  # fmt: skip
+        return climb(work, task, self._all, partial(self._kind, work, task), degree, DISCRETISATION)
 
     def _speed(self, task: Task, solved: Solved, off: dict[str, float]) -> Speed:
         level, error = solved.level, solved.error

@@ -152,7 +152,7 @@ def test_meshes_follow_interfaces(depths):
         Y = -mesh.points[mesh.cells][..., 1]
         for depth in depths:
             assert not np.any((Y.min(axis=1) < depth - 1e-9) & (Y.max(axis=1) > depth + 1e-9))
-        R = kind.radius(wanted)
+        R = kind.reach(wanted)
         assert areas(mesh.points, mesh.cells).sum() == pytest.approx(2.0 * (1.0 + R) * R, rel=1e-12)
         assert all(len(mesh.edges[tag]) for tag in (CONTACT, FREE, FAR))
         contact = mesh.points[mesh.edges[CONTACT]]

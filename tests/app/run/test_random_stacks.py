@@ -128,7 +128,7 @@ def test_the_far_boundary_under_stiff_thick_layers_is_in_the_estimate(
 ):
     """Nearer than the tolerance asks for, so that nearly all of the error is its effect."""
     solid = on(Isotropic(1.0, 0.3, 1.0), thickness, Isotropic(ratio, 0.25, ratio**0.5))
-    monkeypatch.setattr(OnLayers, "radius", lambda self, required: R)
+    monkeypatch.setattr(OnLayers, "reach", lambda self, required: R)
     data = galinx.compute(of_stack(solid, 0.0, f, tolerance=1e-6)).data
     off = check(data, np.inf)[""].max()
     assert off > 3e-6 and data["states/fem/estimate"][0] <= 5.0 * off

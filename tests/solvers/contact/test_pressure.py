@@ -40,7 +40,7 @@ def test_a_pressure_is_recovered_from_its_nodal_forces():
     for first in range(0, len(s) - 1, degree):
         forces[first : first + degree + 1] -= newton_cotes(degree)[0] * (s[1] - s[0])
     r = np.array([-1.5, -0.8, 0.0, 0.33, 0.9, 1.2])
-    maps = pressure.contact_recovery(s, degree, chart, r, farthest=1e-2)
+    maps = pressure.ContactRecovery(s, degree, chart, r, farthest=1e-2)
     inside = np.abs(r) < 1.0
     found = forces @ maps.raw
     assert np.isnan(found[~inside]).all()
@@ -64,5 +64,5 @@ def test_rounding_of_the_smallest_cells_positions_stays_there():
     moved = s.copy()
     moved[1:4] = np.nextafter(moved[1:4], 1.0)
     chart, r = MESHES["graded"].chart, np.array([-0.9, 0.0, 0.7])
-    one, other = (pressure.contact_recovery(positions, 4, chart, r).raw for positions in (s, moved))
+    one, other = (pressure.ContactRecovery(positions, 4, chart, r).raw for positions in (s, moved))
     np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-9 * np.abs(one).max())

@@ -8,7 +8,7 @@ from support import space_on
 from galinx.meshes import MESHES
 from galinx.meshes.rings import TAGS, Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import contact_recovery, from_moments
+from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.fem.traction import LoadedHalfPlane
@@ -25,7 +25,7 @@ def error(R, terms):
     mesh = distribute(KIND.build(Refinement(9, 0.35, 2, widths)), MPI.COMM_SELF)
     space, response = Space(*mesh, TAGS, KIND.chart, 8, terms=terms), MovingFrame(2.0, C)
     punch = SlidingPunch(space, response)
-    recovery = contact_recovery(space.contact.s, 8, space.chart, np.empty(0))
+    recovery = ContactRecovery(space.contact.s, 8, space.chart, np.empty(0))
     local = FlatPunch(response, np.array([G]))
     pressure = from_moments(punch.states(G).tested(recovery.moments), local.α, local.β)
     punch.destroy()

@@ -10,6 +10,7 @@ from layers_cases import COAT, SUBSTRATE, constants, converged_pressure, equatio
 from layers_reference import admittance
 from support import THOROUGH
 
+from galinx.solvers.approximation import polynomial_through
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import weights_hilbert
 from galinx.solvers.contact.ends import Punch
@@ -17,7 +18,6 @@ from galinx.solvers.contact.equation import (
     Jacobi,
     LayersUnderPunch,
     under_punch,
-    weights_between,
 )
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.solution import make_contact
@@ -60,7 +60,7 @@ def test_frictions_between_are_interpolated_within_the_tolerance():
     g = np.linspace(-1.0, 1.0, 301)
     solved, left = speed.solved(g)
     assert len(solved) < 40 and left <= 1e-8
-    weights = weights_between(np.array([contact.g for contact in solved]), g)
+    weights = polynomial_through(np.array([contact.g for contact in solved])).shares(g)
     ends = weights @ [contact.pressure.series(ENDS) for contact in solved]
     for i in (3, 150):
         exact = converged_pressure(

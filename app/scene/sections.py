@@ -185,6 +185,7 @@ class LayerTable(GivenSolid):
             ValueError: constants cannot change so.
         """
         assert self.thickness is not None
+        bottom = None if bottom == self.solid else bottom  # it does not change
         return Layer(self.thickness, self.solid, bottom, self.grading, self.exponent, self.yield_strength)
 
 

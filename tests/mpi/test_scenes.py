@@ -78,7 +78,8 @@ def test_a_decomposed_mesh_gives_what_one_rank_gives(name, monkeypatch):
         elif kind == "states" and quantity.endswith("_over_a"):
             np.testing.assert_allclose(two[key], one[key], atol=PLACES, rtol=0.0, err_msg=key)
         elif kind == "states":
-            np.testing.assert_allclose(two[key], one[key], atol=SMALL, rtol=0.0, err_msg=key)
+            atol = SMALL * max(np.nanmax(np.abs(one[key]), initial=0.0), 1.0)  # largest stresses are more
+            np.testing.assert_allclose(two[key], one[key], atol=atol, rtol=0.0, err_msg=key)
         else:
             unit = np.nanmedian(np.abs(one[key]))
             np.testing.assert_allclose(

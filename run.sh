@@ -94,8 +94,8 @@ if [ "${1:-}" = test ]; then
   shift
   set_up "${packages[@]}" "${test_packages[@]}"
   cd "$home"
-  # Files of tests side by side, more than there are cores: tests wait for what they start.
-  suite=("$python" -m pytest -n "$((cores + 2))" --dist loadfile)
+  # Files of tests side by side, one more than there are cores: tests wait for what they start.
+  suite=("$python" -m pytest -n "$((cores + 1))" --dist loadfile)
   for argument in "$@"; do # tests that are named are run alone
     [ ! -e "${argument%%::*}" ] || exec "${suite[@]}" "$@"
   done

@@ -21,9 +21,9 @@ _STIFF, _SPEEDS = 30.0, 200
 #: scales of the motion; the first is for motions that are not stiff, of laws without memory.
 _EXPLICIT = ("DOP853", 1e-12, 1e-14)
 _IMPLICIT = *(("BDF", of, 1e-2 * of) for of in (1e-10, 1e-8, 1e-6)), ("Radau", 1e-10, 1e-12)
-#: Evaluations in a piece after which a scheme is given up: where friction follows the slightest change
-#: of a slow creep it is at odds with rounding.
-_PATIENCE = 10_000
+#: Evaluations after which a piece of more periods is tried in a shorter one; how often a piece in which no
+#: scheme succeeds is tried in a shorter one yet.
+_PATIENCE, _TRIALS = 20_000, 5
 #: Scheme, relative tolerance, and absolute ones.
 _Scheme = tuple[str, float, float]
 #: Stops, starts and switches of a law after which a motion is given up.
@@ -32,9 +32,10 @@ PIECES = 20_000
 #: speed, for laws of the logarithm of the speed.
 _AT_REST = 1e-9
 #: Periods of the mass on its spring after which the integration begins anew, and progress is reported;
-#: steps up to which a piece without stops makes the next twice as long; by how much one is shorter that
-#: takes too many.
-_PERIODS, _STEPS, _SHORTER = 10, 500, 8.0
+#: evaluations up to which a piece without stops makes the next twice as long; by how much one is shorter
+#: that takes too many. Derivatives by differences in a piece, besides a tenth of its steps, from which a
+#: scheme is given up: where friction follows the slightest change of a slow creep, it follows rounding.
+_PERIODS, _FEW, _SHORTER, _STEPS = 10, 2_000, 8.0, 100
 #: Unit of time of the integration over the length of a piece: SciPy locates events to an absolute time.
 _INSTANT = 1e-16
 #: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
@@ -228,7 +229,7 @@ def pull(
 
 
 class _Tired(ValueError):
-    """A scheme takes more evaluations than it is worth."""
+    """A long piece takes more evaluations than short ones would."""
 
 
 class _Motion:
@@ -328,7 +329,7 @@ class _Motion:
         ]
         self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]
         self.z = np.array(z)
-        if piece.status == 0 and len(piece.t) <= _STEPS:  # a slow creep needs no step a period
+        if piece.status == 0 and piece.nfev <= _FEW:  # a slow creep needs no step a period
             self._longest *= 2.0
         if len(piece.t_events[0]):
             self.v = 0.0
@@ -342,24 +343,25 @@ class _Motion:
             ValueError: no scheme succeeds.
         """
         stiff = self._stiff or self.law.flow(self.z, self.s, self.slider.drive_speed).any()
-        schemes = [scheme for scheme in _IMPLICIT if scheme not in self._given_up]
-        while True:
-            tired, reason = set[_Scheme](), ""
+        reason, shortest = "", self._usual / _SHORTER**_TRIALS
+        while self._longest > shortest:
+            schemes = [scheme for scheme in _IMPLICIT if scheme not in self._given_up]
             for scheme in schemes if stiff else (_EXPLICIT, *schemes):
                 try:
                     result = self._by(scheme)
                 except _Tired as error:
-                    tired, reason = tired | {scheme}, str(error)
+                    reason = str(error)
+                    break
                 except ValueError as error:  # an event could not be located
                     reason = str(error)
-                else:
-                    if result.success:
-                        self._given_up |= tired
-                        return result
-                    reason = result.message
-            if not tired or self._longest <= self._usual:
-                raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
+                    continue
+                if result.success:
+                    if result.njev > _STEPS + 0.1 * len(result.t) and scheme != _IMPLICIT[-1]:
+                        self._given_up.add(scheme)
+                    return result
+                reason = result.message
             self._longest /= _SHORTER
+        raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
 
     def _by(self, scheme: "_Scheme") -> Any:
         """SciPy's result by a scheme, with times since the start of the piece [s].
@@ -383,7 +385,7 @@ class _Motion:
         unit, left = _INSTANT * self._longest, iter(range(_PATIENCE))
 
         def rates(_: float, y: NDArray) -> NDArray[np.float64]:
-            if next(left, None) is None:
+            if self._longest > self._usual and next(left, None) is None:
                 raise _Tired("it takes too many steps")
             return unit * self._rates(y)
 

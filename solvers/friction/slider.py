@@ -21,8 +21,8 @@ _STIFF, _SPEEDS = 30.0, 200
 #: scales of the motion; the first is for motions that are not stiff, of laws without memory.
 _EXPLICIT = ("DOP853", 1e-12, 1e-14)
 _IMPLICIT = *(("BDF", of, 1e-2 * of) for of in (1e-10, 1e-8, 1e-6)), ("Radau", 1e-10, 1e-12)
-#: Evaluations after which a piece of more periods is tried in a shorter one; how often a piece in which no
-#: scheme succeeds is tried in a shorter one yet.
+#: Evaluations after which a piece of more periods is tried in a shorter one; how often a piece in which
+#: no scheme succeeds is tried in a shorter one yet.
 _PATIENCE, _TRIALS = 20_000, 5
 #: Scheme, relative tolerance, and absolute ones.
 _Scheme = tuple[str, float, float]

@@ -109,7 +109,12 @@ def in_units(given: Quantity, target: Units) -> float | None:
             dimension = [a + sign * exponent * b for a, b in zip(dimension, kind)]
     if any(dimension):
         return None
-    return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
+    return _shifted(given.number, power)
+
+
+def _shifted(number: float, power: int) -> float:
+    """A number times a power of ten; divided by one below one, see :func:`in_units`."""
+    return number * 10.0**power if power >= 0 else number / 10.0**-power
 
 
 def in_si(value: Any) -> Any:
@@ -122,7 +127,7 @@ def in_si(value: Any) -> Any:
         with suppress(ValueError, OverflowError, KeyError):
             given = quantity(value)
             power = sum(_UNITS[name][0] * exponent for name, exponent in given.units)
-            return given.number * 10.0**power if power >= 0 else given.number / 10.0**-power
+            return _shifted(given.number, power)
     return value
 
 

@@ -363,7 +363,7 @@ class _Motion:
             self._longest /= _SHORTER
         raise ValueError(f"the slider's motion could not be integrated at {self.t:g} s: {reason}")
 
-    def _by(self, scheme: "_Scheme") -> Any:
+    def _by(self, scheme: _Scheme) -> Any:
         """SciPy's result by a scheme, with times since the start of the piece [s].
 
         Raises:

@@ -372,7 +372,7 @@ class Level:
         under = stack.layers[above].top if above < len(stack.layers) else stack.substrate
         return stack.layers[above - 1].bottom, under
 
-    @property
+    @cached_property
     def _modulus(self) -> float:
         """Modulus that makes a stress of the strain: the larger one of both sides."""
         return max(medium.modulus for medium in self.media)

@@ -2,7 +2,6 @@
 
 import csv
 
-import pytest
 from support import computed, here
 
 from galinx.app.results.csv import pieces
@@ -84,20 +83,3 @@ def test_lengths_over_a_say_which_a_that_is():
         dimensionless.notes
     )
     assert "depth of yield/a" in {row[0] for row in dimensionless.rows} | set(dimensionless.columns)
-
-
-def test_screen_csv_and_notebook_show_the_same_row(tmp_path):
-    result = computed(SCENE, {"friction.mu": 0.15, "solid.yield_strength": 600e6})
-    result.save(tmp_path / "a.h5")
-    shown, html = here("show", tmp_path / "a.h5").stdout, result._repr_html_()
-    heads, cells = csv.reader("".join(pieces(tmp_path / "a.h5")).splitlines())
-    table = dict(zip(heads, cells))
-    for column in result.table():
-        if column.constant and column.name in ("motion", "X_over_L"):
-            continue
-        head = column.name if column.unit == "none" else f"{column.name} [{column.unit}]"
-        assert head in table, head
-        text = column.texts()[0]
-        assert text in shown and (text in html or f"{column.head} = {text}" in html), column.head
-        if not isinstance(column.values[0], str):
-            assert float(table[head]) == pytest.approx(float(column.values[0]), rel=1e-14)

@@ -501,6 +501,8 @@ _AT_REST = 1e-5
 OF_ENDS = 1e-6
 #: Reach of tabulated kernels over that which the largest contact so far needs.
 _KERNEL_MARGIN = 1.5
+#: Accuracy of steps through graded layers over the tolerance.
+_OF_STEPS = 1e-6
 #: Depths whose fields are kept.
 _LEVELS = 256
 #: Chebyshev's points in g at first and at most; the last coefficients estimate the error; places at which
@@ -531,12 +533,19 @@ class LayersUnderPunch:
     #: Largest error of stresses at each height over a at which they were evaluated.
     errors: dict[float, float] = field(default_factory=dict)
 
-    @cached_property
-    def level(self) -> Callable[[float, float], Level]:
-        """Fields at a depth, up to a distance from their load; lengths over the unit."""
+    #: Fields at the depths asked for last, each up to the largest distance so far.
+    _levels: dict[float, Level] = field(default_factory=dict)
+
+    def level(self, depth: float, reach: float) -> Level:
+        """Fields at a depth, up to a distance from their load at least; lengths over the unit."""
         assert self.stack
-        stack = self.stack
-        return lru_cache(_LEVELS)(lambda depth, reach: Level(stack, depth, reach, self.tolerance))
+        level = self._levels.pop(depth, None)
+        if level is None or level.reach < reach:
+            level = Level(self.stack, depth, reach, self.tolerance)
+        self._levels[depth] = level
+        if len(self._levels) > _LEVELS:
+            del self._levels[next(iter(self._levels))]
+        return level
 
     @cached_property
     def _kernels(self) -> list[Any]:
@@ -682,7 +691,7 @@ class LayersUnderPunch:
 def under_punch(body: Any, response: Any, tolerance: float, every: bool = False) -> LayersUnderPunch:
     """A half-plane under the punch of a contact, with or without layers; lengths over its half-width."""
     unit = body.half_width
-    stack = response.stack(unit) if body.solid.layers else None
+    stack = response.stack(unit, _OF_STEPS * tolerance) if body.solid.layers else None
     punch = Punch(body.profile, unit, body.compression)
     return LayersUnderPunch(response, stack, tolerance, punch, every, body.friction)
 

@@ -38,7 +38,7 @@ from ..errors import SolveError
 from ..parameters import build_model, parameters, values
 from ..solids.half_plane import DATUM, LOADS, HalfPlane, Potential, UniformHalfPlane
 from ..solids.solid import Composite, Solid
-from .stiffness import Graded, Medium, Uniform, inverse, least
+from .stiffness import STEP, Graded, Medium, Uniform, inverse, least
 
 
 @dataclass(frozen=True)
@@ -512,12 +512,12 @@ class LayeredHalfPlane(HalfPlane):
         """One of the solids at this speed."""
         return Medium(self.uniform(solid), solid.μ / self.solid.μ)
 
-    def stack(self, a: float, rtol: float = 0.0) -> LayersAtSpeed:
+    def stack(self, a: float, rtol: float = STEP) -> LayersAtSpeed:
         """The layers with lengths over a.
 
         Args:
             a: length [m].
-            rtol: of the integration of graded layers, 0 for the usual one.
+            rtol: of the integration of graded layers; a smaller one than the usual is that.
         """
         layers = [self._layer(layer, a, rtol) for layer in self.solid.layers]
         return LayersAtSpeed(layers, self.medium(self.solid.substrate))
@@ -525,9 +525,8 @@ class LayeredHalfPlane(HalfPlane):
     def _layer(self, layer: Layer, a: float, rtol: float) -> Uniform | Graded:
         if layer.bottom is None:
             return Uniform(self.medium(layer.solid), layer.thickness / a)
-        graded: dict[str, Any] = {"rtol": rtol} if rtol else {}
         of: Callable[[float], Medium] = lambda share: self.medium(layer.at(share))  # noqa: E731
-        return Graded(of, layer.thickness / a, layer.power, **graded)
+        return Graded(of, layer.thickness / a, layer.power, rtol=max(rtol, STEP))
 
     def constants(self, names: Sequence[str]) -> list[NDArray[np.float64]]:
         return [np.stack([table[_COLUMNS[name]] for name in names], axis=-1) for table in self._tables]

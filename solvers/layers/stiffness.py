@@ -189,7 +189,7 @@ _LOOKED_AT = 33
 #: Number of slices by which waves inside are detected.
 _SLICES = 16
 #: Relative error of a step, and absolute error of δ over Z.
-_STEP, _ABSOLUTE = 1e-10, 1e-14
+STEP, _ABSOLUTE = 1e-10, 1e-14
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ class Graded:
     power: float = 1.0
     offset: float = 0.0
     whole: float = 0.0
-    rtol: float = _STEP
+    rtol: float = STEP
 
     @property
     def _whole(self) -> float:

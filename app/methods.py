@@ -113,7 +113,7 @@ def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | N
 _MODES = {
     SHARP: ((CONTACT, CONTACT), (CONTACT, CONTACT)),
     PRESCRIBED: ((OWN_PRESSURE, OWN_PRESSURE), (PRESCRIBED_ON_LAYERS, PRESCRIBED_ON_LAYERS)),
-    FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, "")),
+    FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, FREE_ON_LAYERS)),
     ONE_FREE: ((FREE_ENDS, OWN_MESHES), ("", "")),
 }
 _RECOVERED = {stresses.RAW_PRESSURE.path: "σ_YY itself is that of the nodal forces there"}
@@ -136,8 +136,8 @@ def fem_mode(scene: Any) -> str:
 
 def _fem_along_refusal(scene: Any, body: Contact) -> str:
     """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
-    if body.found and len(kinks(body.profile)):
-        return "friction varies along the contact of a punch with kinks"
+    if body.friction_kinks and body.found and len(kinks(body.profile)):
+        return "friction and the punch both have kinks"
     moving = body.found and any(along.has_length for along in scene.along.values())
     return "kinks of friction move with the half-width" if moving and body.friction_kinks else ""
 

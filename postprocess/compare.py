@@ -85,8 +85,12 @@ def _pull(by: str, method: str, **limits: Any) -> Rule:
     return Rule(text, (pressure,), measure, own_pressure=True, **limits)
 
 
+#: Padding and cut by which samples have those of their left and of their right neighbour.
+_NEIGHBOURS = ((1, 0), slice(None, -1)), ((0, 1), slice(1, None))
+
+
 def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
-    """False next to an infinite pressure of the closed form, by states and positions, (states, n).
+    """False next to tips, where the pressure is infinite, by states and positions, (states, n).
 
     Args:
         data: datasets by path.
@@ -94,13 +98,15 @@ def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]
             count.
     """
     X = data[at.SURFACE_X.path]
-    rows = of.LARGEST[CLOSED_FORM], at.PRESSURE[CLOSED_FORM]
-    if any(row.path not in data for row in rows):
-        return np.ones((1, len(X)), dtype=bool)
-    infinite = np.isnan(data[rows[0].path])[:, None]
-    σ_YY = np.where(under_punch(X), data[rows[1].path], 0.0)
-    tips = X[np.abs(σ_YY).argmax(axis=1)][:, None]
-    return ~infinite | (np.abs(tips) >= inside) | stresses.off_tips(X, tips)
+    rows = ((of.LARGEST[method], at.PRESSURE[method]) for method in (CLOSED_FORM, SIE))
+    each = (row for row in rows if all(of_row.path in data for of_row in row))
+    for largest_pressure, pressure in each:
+        infinite = np.isnan(data[largest_pressure.path])[:, None] & (np.abs(X) < inside)
+        σ_YY = np.where(under_punch(X), np.abs(data[pressure.path]), 0.0)
+        before, after = (np.pad(σ_YY, ((0, 0), pad))[:, cut] for pad, cut in _NEIGHBOURS)
+        tips = infinite & (σ_YY >= before) & (σ_YY >= after)
+        return ~(tips @ (np.abs(X[:, None] - X) < stresses.NEAR_TIP))
+    return np.ones((1, len(X)), dtype=bool)
 
 
 def not_finite(data: dict[str, Any]) -> list[str]:

@@ -533,6 +533,8 @@ class KinkedPressure(Pressure):
             :func:`towards_kink`; 0 where it is infinite there.
         tolerance: relative error allowed for the limit at a kink.
         infinite: the pressure is infinite at its kinks.
+        at_ends: pressure that holds next to the ends; None where its power of the distance times a
+            polynomial does.
     """
 
     kinks: NDArray[np.float64]
@@ -543,9 +545,9 @@ class KinkedPressure(Pressure):
     def __init__(
         self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
         exponents: tuple[float, float], exponent: float = 0.0, tolerance: float = 1e-6,
-        infinite: bool = False,
+        infinite: bool = False, at_ends: Pressure | None = None,
     ) -> None:  # fmt: skip
-        self._infinite, self._chart, self._exponent = infinite, chart, exponent
+        self._infinite, self._chart, self._exponent, self._at_ends = infinite, chart, exponent, at_ends
         self.kinks, (self.β, self.α) = kinks, exponents
         self._farthest = farthest_at_kink(tolerance)
         self._facets = ContactFacets(s, degree, chart)
@@ -568,22 +570,22 @@ class KinkedPressure(Pressure):
         return lengths[[i, i + 1]]
 
     @cached_property
-    def _ends(self) -> list[tuple[float, float, np.polynomial.Chebyshev]]:
-        """Exponent, nearest sample's distance and smooth factor of the pressure next to each end."""
+    def _ends(self) -> list[tuple[float, Callable[[NDArray], NDArray]]]:
+        """Distance of the nearest sample from each end, and the pressure nearer than that, by distance."""
         t, each = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES)), []
         for side, gap, a in zip((-1.0, 1.0), gaps_of(self.kinks), (self.β, self.α)):
             near, far = (share * min(gap, 1.0) for share in _SAMPLED_AT_END)
             d = (near + far) / 2.0 + (far - near) / 2.0 * t
-            factor = self._piecewise(side * (1.0 - d)) / d**a
-            each.append((a, float(d[0]), np.polynomial.Chebyshev.fit(d, factor, _DEGREE)))
+            factor = np.polynomial.Chebyshev.fit(d, self._piecewise(side * (1.0 - d)) / d**a, _DEGREE)
+            each.append((float(d[0]), lambda d, a=a, factor=factor: d**a * factor(d)))
         return each
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
         σ, inside = np.full(len(r), np.nan), under_punch(r)
         σ[inside] = self._piecewise(r[inside])
-        for d, (a, nearest, factor) in zip((1.0 + r, 1.0 - r), self._ends):
+        for d, (nearest, pressure) in zip((1.0 + r, 1.0 - r), self._ends):
             near = (d > 0.0) & (d < nearest)
-            σ[near] = d[near] ** a * factor(d[near])
+            σ[near] = self._at_ends.σ_YY(r[near])[0] if self._at_ends else pressure(d[near])
         for number, at in enumerate(self.kinks if self._exponent else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)

@@ -449,7 +449,7 @@ class FreeEndContact(Contact):
 
     @property
     def fem_mode(self) -> str:
-        return VARYING_FREE if self.along and not self.solid.layers else ""
+        return VARYING_FREE if self.along and not self.solid.layers and not kinks(self.profile) else ""
 
     @property
     def finite(self) -> bool:

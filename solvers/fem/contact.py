@@ -265,6 +265,11 @@ class AlongLevel(PunchLevel):
         body = self.task.body
         return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
 
+    @property
+    def kinks(self) -> NDArray[np.float64]:
+        """Rising positions over a between the ends at which the pressure is not smooth."""
+        return np.array(self.task.body.friction_kinks)
+
     def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
         """Half-widths [m] on which frictions of contacts depend, (states,)."""
         return np.asarray(contact.half_width)
@@ -285,11 +290,10 @@ class AlongLevel(PunchLevel):
             nearest: distance over a of knots from ends and kinks, over the root of a length.
             free: True where the left and the right end are free, broadcast to (states, 2).
         """
-        body, degree = self.task.body, self.space.degree
-        kinks = np.array(body.friction_kinks)
+        body, degree, kinks = self.task.body, self.space.degree, self.kinks
         places = np.concatenate([[-1.0], kinks, [1.0]])
         ends_of_cells = self.r[::degree]
-        ratio = body.ratio(g, ends_of_cells, half_width)
+        ratio = np.broadcast_to(body.ratio(g, ends_of_cells, half_width), (len(g), len(ends_of_cells)))
         steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
@@ -306,10 +310,12 @@ class AlongLevel(PunchLevel):
             tested(at_nodes), local.α, local.β, lambda r: self.facets.interpolated(at_nodes.T, r).T
         )
 
-    def intensities(self, parts: NDArray, g: Any, half_width: float) -> NDArray[np.float64]:
+    def intensities(
+        self, parts: NDArray, g: Any, half_width: float, nearest: float = _NEXT
+    ) -> NDArray[np.float64]:
         """Intensities of the parts (1, parts, fields) of one state at both ends, (parts, 2)."""
         each, lengths = np.multiply.outer([g, half_width], np.ones(parts.shape[1]))
-        return self.splines(each, lengths, lambda tests: self.punch.tested(parts, tests)[0]).K_I
+        return self.splines(each, lengths, lambda tests: self.punch.tested(parts, tests)[0], nearest).K_I
 
     def gauge(self, states: SolvedStates) -> Gauge:
         """Gauge of contacts with free ends, by moved knots."""

@@ -16,7 +16,7 @@ from ..contact.solution import ContactStress, Solver, Task
 from .contact import PUNCHES
 from .discretisation import Discretisation, quiet_compiler
 from .ladder import to_tolerance
-from .own_meshes import BetweenKinks, OverLayers
+from .own_meshes import BetweenKinks, FollowedKinks, OverLayers
 from .space import Space
 from .sweep import Fit, train
 from .traction import FormulaLevel, PiecesLevel, WholeLevel
@@ -27,8 +27,12 @@ LEVELS: dict[str, Any] = PUNCHES | {
     OWN_PRESSURE: PiecesLevel,
     PRESCRIBED_ON_LAYERS: WholeLevel,
 }
-#: Solvers of states each of which has its own mesh, by the plan's mode.
-OWN: dict[str, Any] = {OWN_MESHES: BetweenKinks, FREE_ON_LAYERS: OverLayers}
+#: Solvers of states each of which has its own mesh, by the plan's mode, for one friction and for friction
+#: that varies along the contact.
+OWN: dict[str, Any] = {
+    OWN_MESHES: (BetweenKinks, FollowedKinks),
+    FREE_ON_LAYERS: (OverLayers, OverLayers),
+}
 
 
 class FiniteElements:
@@ -78,7 +82,7 @@ class FiniteElements:
     def _solved(self, task: Task, g: NDArray) -> Any:
         work, mode = self.work, self.work.plan.mode
         if mode in OWN:
-            return OWN[mode](work, task, g)
+            return OWN[mode][bool(task.body.along)](work, task, g)
         return to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
 
     @contextmanager

@@ -48,9 +48,9 @@ from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task, make_contact
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
-from ..profiles import check_reach, cusp, exponent, jumps, kinks_between, leaving
+from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
 from ..profiles.punches import Flat
-from .contact import ACROSS, AlongLevel, FreeLevel, PunchLevel, without_intensity
+from .contact import ACROSS, COARSE, AlongLevel, FreeLevel, PunchLevel, without_intensity
 from .discretisation import Discretisation
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
@@ -263,6 +263,9 @@ class EndsBetweenKinks:
 class KinkedLevel(SingleLevel):
     """Contact between ends that were solved for before, on cells graded towards kinks of the punch."""
 
+    #: Pressure next to the ends where that is no power of the distance times a polynomial.
+    next_to_ends: Any = None
+
     @property
     def gaps(self) -> tuple[float, float]:  # type: ignore[override]
         return gaps_of(self.base.places)
@@ -275,10 +278,11 @@ class KinkedLevel(SingleLevel):
         return self.punch.states(g).between(h, m, True)
 
     def pressure(self, contact: ContactStates) -> KinkedPressure:
-        space, profile = self.space, self.task.body.profile
+        space, profile = self.space, self.base.body.profile
         return KinkedPressure(
             space.contact.s, space.degree, space.chart, contact.normal[0], self.base.places,
             self.end_exponents, leaving(profile), self.base.tolerance, bool(jumps(profile)),
+            self.next_to_ends,
         )  # fmt: skip
 
     def nearest(self, states: SolvedStates) -> float:
@@ -317,13 +321,13 @@ class KinkedLevel(SingleLevel):
         X, pressure, strain = self.base.kinks, states.pressure, states.displacement.strain
         σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
         u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
-        g, response = float(states.contact.g[0]), states.task.response
-        under = np.array([response.σ_XX(u_X, σ_YY, g * σ_YY), σ_YY, g * σ_YY])
+        response, σ_XY = states.task.response, states.ratio(X)[0] * σ_YY
+        under = np.array([response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
         def in_plane(r: NDArray) -> NDArray[np.float64]:
             r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
             σ = pressure.σ_YY(r)
-            return np.atleast_2d(response.σ_XX(strain(r), σ, g * σ))
+            return np.atleast_2d(response.σ_XX(strain(r), σ, states.ratio(r) * σ))
 
         between = None
         if len(X):
@@ -394,14 +398,17 @@ class BalancedLevel(SingleLevel):
         Raises:
             SolveError: no load makes such a contact.
         """
-        (parts, loads, K), (near, h) = self.parts(g), self.base.lengths
+        parts, loads, K = self.parts(g)
         amplitudes = without_intensity(loads, K)
-        # Over its own load the punch's height is that over the task's load times their quotient.
-        _, share, slope = amplitudes[0].tolist()
+        return self.punch.summed(g, parts, amplitudes).between(*self.lengths(amplitudes), True)
+
+    def lengths(self, amplitudes: NDArray) -> tuple[float, float]:
+        """Half-width and middle [m] of the contact without intensities, by its parts' amplitudes."""
+        (near, h), (_, share, slope) = self.base.lengths, amplitudes[0].tolist()
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        half_width, centre = h * share ** (1.0 / GROWTH), near + h * slope / share
-        return self.punch.summed(g, parts, amplitudes).between(half_width, centre, True)
+        # Over its own load the punch's height is that over the task's load times their quotient.
+        return h * share ** (1.0 / GROWTH), near + h * slope / share
 
     def pressure(self, contact: ContactStates) -> Expansion:
         return self.over_flat(contact.tested(self.moments), contact.g, 1.0)
@@ -429,16 +436,50 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         return None
 
 
-def drawn_for(task: Task, plan: FemPlan, words: frozenset[str]) -> FemPlan:
+class VaryingKinkedLevel(VaryingBalancedLevel, KinkedLevel):
+    """Contact under a punch with kinks, on a mesh graded towards these, whose friction varies along it."""
+
+    gaps, nearest = KinkedLevel.gaps, KinkedLevel.nearest  # type: ignore[assignment]
+
+    @property
+    def kinks(self) -> NDArray[np.float64]:
+        return self.base.places
+
+    @property
+    def end_exponents(self) -> tuple[float, float]:
+        local = self.task.body.edges(self.task.response, self.g, self.task.body.half_width, True)
+        return float(local.β[0]), float(local.α[0])
+
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
+        contact, parts, h = super().solved(g, body), self.punch.parts(g), self.task.body.half_width
+        K = self.intensities(parts, g[0], h, COARSE).T[None]
+        half_width, centre = self.lengths(without_intensity(self.punch.loads(parts), K))
+        #: Change of the ends over the half-width where splines have no knots next to ends and kinks.
+        self.moved = max(abs(half_width - contact.half_width[0]), abs(centre - contact.centre[0])) / h
+        self.next_to_ends = self.splines(g, np.array([h]), contact.tested, free=True)
+        return contact
+
+    def pressure(self, contact: ContactStates) -> KinkedPressure:  # type: ignore[override]
+        return KinkedLevel.pressure(self, contact)
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        gauge = KinkedLevel.gauge(self, states)
+        return replace(gauge, unresolved=gauge.unresolved + self.moved)
+
+
+def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray) -> FemPlan:
     """Plan of a mesh drawn for a contact over layers.
 
     Args:
         task: the speed, with lengths over the half-width of the mesh.
         plan: plan of all contacts.
         words: words of output.quantities that request stresses.
+        kinks: positions of the punch's kinks over the half-width.
     """
     places, interfaces = task.places, task.places.interfaces
-    kind = kind_of(interfaces, [task.response], (-1.0, *task.body.friction_kinks, 1.0))
+    kind = kind_of(
+        interfaces, [task.response], (-1.0, *sorted([*task.body.friction_kinks, *kinks.tolist()]), 1.0)
+    )
     below = places.points if BELOW in words else np.empty((0, 2))
     if AT_INTERFACES in words:
         X, depth = np.meshgrid(places.along, interfaces)
@@ -461,7 +502,7 @@ _ROUGH, _LOWER, _SETTLED = 3e-2, 3, 0.5
 #: Least difference of the half-width's logarithm from which the growth of the load is computed; error of
 #: that growth, which hardly depends on the degree; most trials at the usual degree.
 _APART, _OF_GROWTH, _TRIALS = 1e-5, 0.05, 5
-#: Largest error of the half-width over the tolerance once all is solved; else another mesh is drawn.
+#: Largest error by the mesh's ends over the tolerance once all is solved; else another mesh is drawn.
 _ERROR = 0.3
 
 
@@ -486,14 +527,26 @@ class OverLayers(OwnMeshes):
         self._sought, self._g, self._lean = task, g, 0.0
         drawn = self._half_width(float(min(near)[-1] if near else task.body.half_width))
         state, lean, h = self._contact(drawn)
-        if abs(h / drawn - 1.0) > _ERROR * self._work.plan.tolerance:
+        if self._off(h / drawn, lean - self._lean) > _ERROR * self._work.plan.tolerance:
             state.level.close()
-            drawn = h
+            drawn, self._lean = h, lean
             state, lean, h = self._contact(drawn)
         check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
-        contact = state.contact.between(h, h * lean, True)
-        errors = {word: value + abs(h / drawn - 1.0) for word, value in state.errors.items()}
-        return replace(state, body=task.body, contact=contact, errors=errors, deeper=h / drawn)
+        contact, off = state.contact.between(h, h * lean, True), self._off(h / drawn, lean - self._lean)
+        errors = {word: value + off for word, value in state.errors.items()}
+        deeper = h / drawn if task.body.solid.layers else 1.0
+        return replace(state, body=task.body, contact=contact, errors=errors, deeper=deeper)
+
+    def _off(self, wider: float, moved: float) -> float:
+        """Relative error of a contact that is near to that of its mesh.
+
+        Args:
+            wider: its half-width over that of the mesh.
+            moved: distance of their middles over the half-width.
+        """
+        if not kinks(self._sought.body.profile):
+            return max(abs(wider - 1.0), moved**2)  # heights are linear in the middle
+        return max(abs(wider - 1.0), abs(moved)) / NEAR_TIP  # kinks are elsewhere than those of the mesh
 
     def _contact(self, h: float) -> tuple[SolvedStates, float, float]:
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
@@ -507,7 +560,7 @@ class OverLayers(OwnMeshes):
         tried, rough = dict[float, float](), max(_ROUGH, settled)
 
         def off(h: float) -> float:
-            tried[h] = self._off(h, _LOWER, rough)
+            tried[h] = self._load(h, _LOWER, rough)
             return tried[h]
 
         h = half_width_of_load(off, h, Punch(body.profile, 1.0, float(body.compression)), rough)
@@ -515,7 +568,7 @@ class OverLayers(OwnMeshes):
         # Loads of a low degree do not compare with those of a high one, but they grow alike.
         tried = {}
         for _ in range(_TRIALS):
-            tried[h] = self._off(h, 0, settled)
+            tried[h] = self._load(h, 0, settled)
             error = abs(tried[h]) * (_OF_GROWTH if self._growth else 1.0)
             h = self._moved(tried)
             if error <= settled:
@@ -534,7 +587,7 @@ class OverLayers(OwnMeshes):
             self._growth = (of_last - of_first) / apart
         return last * float(np.exp(-of_last / (self._growth or GROWTH)))
 
-    def _off(self, h: float, lower: int, error: float) -> float:
+    def _load(self, h: float, lower: int, error: float) -> float:
         """Logarithm of the load that makes a contact of half-width h [m], over the task's.
 
         Args:
@@ -542,10 +595,10 @@ class OverLayers(OwnMeshes):
             lower: difference of the degree from the usual one.
             error: relative error that is allowed.
         """
-        mesh, task, solve = self._drawn(h, frozenset())
-        degree = max(mesh.plan.degrees[task.number] - lower, DEGREES[0])
         moved = np.inf
-        while moved**2 > error:  # the shift of the middle is accurate to its square
+        while self._off(1.0, moved) > error:
+            mesh, task, solve = self._drawn(h, frozenset())
+            degree = max(mesh.plan.degrees[task.number] - lower, DEGREES[0])
             with closing(solve(mesh.space(degree), self._g)) as level:
                 self._done.count(level.factor)
                 moved, self._lean = level.lean - self._lean, level.lean
@@ -563,11 +616,24 @@ class OverLayers(OwnMeshes):
             response=replace(sought.response, a=h),  # type: ignore[type-var]
             places=replace(sought.places, interfaces=depths),
         )
-        mesh = replace(self._work, plan=drawn_for(task, plan, words), stresses=words)
+        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
+        mesh = replace(self._work, plan=drawn_for(task, plan, words, base.places), stresses=words)
         kind = VaryingBalancedLevel if task.body.along else BalancedLevel
+        kind = VaryingKinkedLevel if len(base.places) else kind
+        return mesh, task, partial(kind, mesh, task, base=base)
 
-        def level(space: Space, g: NDArray) -> BalancedLevel:
-            base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
-            return kind(mesh, task, space, g, base)
 
-        return mesh, task, level
+class FollowedKinks(OverLayers):
+    """Contacts with kinks and friction that varies along them, on meshes that follow both."""
+
+    def _drawn(
+        self, h: float, words: frozenset[str]
+    ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
+        sought, plan = self._sought, self._work.plan
+        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
+        body = make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along)
+        task, mesh = (
+            replace(sought, body=body),
+            replace(self._work, plan=replace(plan, graded=base.drawn), stresses=words),
+        )
+        return mesh, task, partial(VaryingKinkedLevel, mesh, task, base=base)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 #: Places at which a function is evaluated about a top; samples of a curve that a polynomial goes through;
 #: places at which the polynomial is compared first; most tops of a curve that are refined.
-_NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
+NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
 #: Samples that a polynomial goes through along an interface, where they are an eighth of its depth apart,
 #: and in log(d/d') of two turns, where they are a quarter apart.
 ALONG = 14
@@ -78,7 +78,7 @@ def largest(
     for _, _, low, high in sorted(tops, reverse=True)[:refined]:
         if high - low <= _CLOSEST * max(abs(low), abs(high)):
             continue
-        u = (low + high) / 2.0 + (high - low) / 2.0 * _NODES
+        u = (low + high) / 2.0 + (high - low) / 2.0 * NODES
         height, place = summit(u[None], function(u)[None], np.array([low]), np.array([high]))
         best.append((height[0], place[0]))
     (value,), (place,) = highest(*np.array(best).T[:, None])

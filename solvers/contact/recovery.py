@@ -571,7 +571,7 @@ class KinkedPressure(Pressure):
 
     @cached_property
     def _ends(self) -> list[tuple[float, Callable[[NDArray], NDArray]]]:
-        """Distance of the nearest sample from each end, and the pressure nearer than that, by distance."""
+        """Distance of the nearest sample from each end, and the pressure nearer, by its distance."""
         t, each = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES)), []
         for side, gap, a in zip((-1.0, 1.0), gaps_of(self.kinks), (self.β, self.α)):
             near, far = (share * min(gap, 1.0) for share in _SAMPLED_AT_END)

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ..profiles import exponent
 from ..solids.half_plane import HalfPlane
-from .extremes import extreme, largest
+from .extremes import NODES, extreme, largest, summit
 from .stresses import Turns, maximum_shear, on_surface, turns_at_ends, von_mises
 
 #: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
@@ -75,8 +75,6 @@ class Levels:
     Attributes:
         places: X and Y over a, (n, 2).
         steps: distances over a from each place to its neighbours, (n,).
-        depths: of the levels over a, rising, (levels,).
-        level: number of each place's level, (n,).
     """
 
     def __init__(self, knots: NDArray) -> None:
@@ -94,37 +92,104 @@ class Levels:
             steps.insert(1, np.full(len(X[1]), apart))
             depths.insert(1, y)
             y /= 2.0
-        self.depths, self.steps = np.array(depths), np.concatenate(steps)
-        self.level = np.repeat(np.arange(len(depths)), [len(x) for x in X])
-        self.places = np.column_stack([np.concatenate(X), 0.0 - self.depths[self.level]])
+        self.steps, depth = np.concatenate(steps), np.repeat(depths, [len(x) for x in X])
+        self.places = np.column_stack([np.concatenate(X), 0.0 - depth])
 
-    def depth(self, stress: Stress, there: NDArray, peak: Peak) -> NDArray[np.float64]:
-        """Depth over a of the deepest place at which a stress is 1 or more, (states,); 0 without any.
 
-        Args:
-            stress: function that gives the stress at points.
-            there: stress at :attr:`places`, (states, n).
-            peak: largest stress.
+#: Depths over a at which the largest stress is compared with the strength, from below upwards: the least,
+#: each over the one below it, and factor by which a largest one between two of them may be higher.
+_THINNEST, _NEXT_ABOVE, _BETWEEN_LEVELS = 1e-4, 0.5**0.25, 1.01
+#: Places along X at a depth: distance of the nearest from a turn over the depth, of the farthest over a
+#: or the depth, and of each over the next nearer one; places all along; and how many of the largest
+#: stresses between two places are refined.
+_CLOSE, _REACH, _APART_BESIDE, _ALL_ALONG, _REFINED = 0.3, 3.0, 1.5, np.linspace(-1.5, 1.5, 31), 3
+#: Trials of a depth between two others.
+_TRIALS = 8
 
-        Returns:
-            Depths, NaN where the zone extends below all places.
-        """
-        deepest = np.where(there >= 1.0, self.level, -1).max(axis=1)
-        at = np.where(self.level == deepest[:, None], there, -np.inf).argmax(axis=1)
-        X, inner = self.places[at, 0], np.where(deepest < 0, -1.0, self.depths[deepest])
-        of_peak = (peak.value >= 1.0) & (inner < -peak.Y)
-        X, inner = np.where(of_peak, peak.X, X), np.where(of_peak, -peak.Y, inner)
-        next_level = np.searchsorted(self.depths, inner, side="right")
-        outer = self.depths[np.minimum(next_level, len(self.depths) - 1)]
 
-        def log_stress(y: NDArray, X: NDArray) -> NDArray[np.float64]:
-            points = np.stack([X, np.broadcast_to(-y, X.shape)], axis=-1)
-            return _log(stress(points[:, 0]))[:, None]
+def depth_of_yield(stress: Stress, peak: Peak, turns: NDArray) -> NDArray[np.float64]:
+    """Largest depth over a at which a stress is 1 or more, (states,): 0 without any, NaN beyond 10 a.
 
-        inner, outer = np.maximum(inner, 0.0)[:, None], outer[:, None]
-        farthest = _farthest(log_stress, inner, outer, X[:, None], _APART * (outer - inner))[:, 0]
-        farthest = np.where(deepest == len(self.depths) - 1, np.nan, farthest)
-        return np.where((deepest >= 0) | (peak.value >= 1.0), farthest, 0.0)
+    At each depth the stress is largest at some X; that is compared with 1 from below upwards.
+
+    Args:
+        stress: function that gives the stress at points, NaN where it is not known.
+        peak: largest stress.
+        turns: places X over a on the surface near which stresses vary fast, (states, k).
+    """
+    inner, outer = np.zeros(len(turns)), np.full(len(turns), np.nan)
+    levels = _DEEPEST * _NEXT_ABOVE ** np.arange(np.log(_THINNEST / _DEEPEST) / np.log(_NEXT_ABOVE) + 1.0)
+    tops: list[NDArray] = []
+    open_ = peak.value >= 1.0
+    for i, level in enumerate(levels):
+        if not open_.any():
+            break
+        tops.append(_largest_at(stress, np.full(len(turns), level), turns))
+        if i > 1:
+            # A zone may lie between two depths.
+            below, middle, above = tops[-3:]
+            bend = below - 2.0 * middle + above
+            between = open_ & (middle >= np.maximum(below, above)) & (middle * _BETWEEN_LEVELS >= 1.0)
+            if between.any():
+                u = np.where(
+                    between & (bend < 0.0), (below - above) / 2.0 / np.where(bend, bend, 1.0), 0.0
+                )
+                y = levels[i - 1] * _NEXT_ABOVE**u
+                between &= _largest_at(stress, y, turns) >= 1.0
+                inner, outer = np.where(between, y, inner), np.where(between, levels[i - 2], outer)
+                open_ = open_ & ~between
+        passed = open_ & (tops[-1] >= 1.0)
+        inner = np.where(passed, level, inner)
+        outer = np.where(passed, levels[i - 1] if i else np.nan, outer)
+        open_ = open_ & ~passed
+    outer = np.where(open_, levels[-1], outer)
+    deeper = (peak.value >= 1.0) & (inner < -peak.Y)
+    next_below = levels[np.maximum(np.searchsorted(-levels, peak.Y, side="left") - 1, 0)]
+    inner, outer = np.where(deeper, -peak.Y, inner), np.where(deeper, next_below, outer)
+    return np.where(peak.value >= 1.0, _crossing(stress, inner, outer, turns), 0.0)
+
+
+def _crossing(stress: Stress, inner: NDArray, outer: NDArray, turns: NDArray) -> NDArray[np.float64]:
+    """Depth between one with a stress of 1 or more and a deeper one without, (states,)."""
+    of_inner, of_outer = (_log(_largest_at(stress, y, turns)) for y in (inner, outer))
+    for trial in range(_TRIALS):
+        share = of_inner / np.where(of_inner > of_outer, of_inner - of_outer, np.inf)
+        # Every third halves the interval, whatever the curve is like.
+        share = np.clip(share, 0.02, 0.98) if trial % 3 else 0.5
+        t = inner + (outer - inner) * share
+        top = _log(_largest_at(stress, t, turns))
+        passed = top >= 0.0
+        inner, of_inner = np.where(passed, t, inner), np.where(passed, top, of_inner)
+        outer, of_outer = np.where(passed, outer, t), np.where(passed, of_outer, top)
+    share = of_inner / np.where(of_inner > of_outer, of_inner - of_outer, np.inf)
+    return np.asarray(inner + (outer - inner) * np.clip(share, 0.0, 1.0))
+
+
+def _largest_at(stress: Stress, y: NDArray, turns: NDArray) -> NDArray[np.float64]:
+    """Largest stress at depths y over a, (states,)."""
+    y = np.nan_to_num(y, nan=_DEEPEST)[:, None]
+    wide = np.maximum(y, 1.0)
+    near, far = _CLOSE * np.maximum(y, _THINNEST), _REACH * wide
+    count = int(np.ceil(np.log((far / near).max()) / np.log(_APART_BESIDE))) + 1
+    beside = near * (far / near) ** np.linspace(0.0, 1.0, count)
+    offsets = np.concatenate([-beside, np.zeros_like(y), beside], axis=1)
+    around = (turns[..., None] + offsets[:, None]).reshape(len(y), -1)
+    X = np.sort(np.concatenate([around, wide * _ALL_ALONG], axis=1))
+
+    def at(X: NDArray) -> NDArray[np.float64]:
+        return _known(stress(np.stack([X, np.broadcast_to(-y, X.shape)], axis=-1)))
+
+    values = at(X)
+    padded = np.pad(values, ((0, 0), (1, 1)))
+    tops = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -1.0)
+    i = np.argsort(-tops, axis=1, kind="stable")[:, :_REFINED]
+    low, high = (np.take_along_axis(X, np.clip(i + side, 0, X.shape[1] - 1), 1) for side in (-1, 1))
+    middle, half = (low + high) / 2.0, np.maximum(high - low, 1e-6 * wide) / 2.0
+    u = middle[..., None] + half[..., None] * NODES
+    of_nodes = at(u.reshape(len(u), -1)).reshape(u.shape)
+    bounds = (middle - half).ravel(), (middle + half).ravel()
+    refined, _ = summit(u.reshape(-1, len(NODES)), of_nodes.reshape(-1, len(NODES)), *bounds)
+    return np.asarray(np.maximum(values.max(axis=1), refined.reshape(i.shape).max(axis=1)))
 
 
 #: Circles around a place where stresses vary like a power of the distance: radius over that of the next
@@ -454,9 +519,15 @@ class Strength:
         """Largest depth over a at which the solid yields under the load, (states,)."""
         if self._levels is None:
             return self._zones[1]
-        peak, there = self.von_mises, _known(self._von_mises_of(self._sampled))
-        scaled = Peak(peak.value / self.strength, peak.X, peak.Y)
-        return self._levels.depth(self._over_strength, there / self.strength[:, None], scaled)
+        peak, turns = self.von_mises, self.solution.yield_turns
+        if turns is None:
+            X, stress = np.tile(self.body.yield_knots, (len(peak.X), 1)), self._over_strength
+        else:
+            X = np.where(np.isnan(turns.X), turns.X[:, :1], turns.X)
+            stress = self._away_from_turns(self._over_strength)
+        # An infinite stress reaches any strength.
+        value = np.where(self.infinite, np.inf, peak.value / self.strength)
+        return depth_of_yield(stress, Peak(value, peak.X, np.nan_to_num(peak.Y)), X)
 
     @cached_property
     def _zones(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -493,6 +564,17 @@ class Strength:
         at, steps = circles(centres, self.solution.nearest)
         return at, steps, self.solution.stresses(at)
 
+    def _away_from_turns(self, stress: Stress) -> Stress:
+        """Stress, NaN nearer to turns than the field is accurate."""
+
+        def away(points: NDArray) -> NDArray[np.float64]:
+            turns = self.solution.yield_turns.X[:, None]  # type: ignore[union-attr]
+            distance = np.hypot(points[..., None, 0] - turns, points[..., None, 1])
+            near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self.solution.nearest * _HARDLY
+            return np.where(near, np.nan, stress(points))
+
+        return away
+
     def _peak(self, measure: Callable[[NDArray], NDArray]) -> Peak:
         """Peak of a measure of the stresses (3, states, n)."""
         assert self._levels
@@ -502,13 +584,7 @@ class Strength:
             best = peak(lambda points: measure(self.solution.stresses(points)), at, steps, there)
         else:
             more, more_steps, σ = around
-
-            def stress(points: NDArray) -> NDArray[np.float64]:
-                """Measure, NaN nearer to turns than the field is accurate."""
-                distance = np.hypot(points[..., None, 0] - turns.X[:, None], points[..., None, 1])
-                near = np.nan_to_num(distance, nan=np.inf).min(axis=-1) < self.solution.nearest * _HARDLY
-                return np.where(near, np.nan, measure(self.solution.stresses(points)))
-
+            stress = self._away_from_turns(lambda points: measure(self.solution.stresses(points)))
             at = np.concatenate([np.broadcast_to(at, (len(more), *at.shape[1:])), more], axis=1)
             there = np.concatenate([there, _known(measure(σ))], axis=1)
             inside = peak(stress, at, np.append(steps, more_steps), there)

@@ -437,7 +437,7 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
 
 
 class VaryingKinkedLevel(VaryingBalancedLevel, KinkedLevel):
-    """Contact under a punch with kinks, on a mesh graded towards these, whose friction varies along it."""
+    """Contact under a punch with kinks, on a mesh graded towards these, with any friction along it."""
 
     gaps, nearest = KinkedLevel.gaps, KinkedLevel.nearest  # type: ignore[assignment]
 

@@ -77,6 +77,42 @@ def test_under_the_load_of_first_yield_the_largest_stress_is_the_strength(punch)
     np.testing.assert_allclose(largest * load / (2.0 * h), 205e6, rtol=1e-6)
 
 
+#: Zones that end between the places where stresses are sampled, of another branch, or a spot apart.
+DEEP = {
+    "two zones": ({"punch.profile": "parabolic", "punch.radius": 5e-3, "friction.mu": 0.7}, 1200),
+    "a spot": ({
+        "punch.profile": "parabolic", "punch.radius": 5e-3, "friction.mu": 0.3,
+        "punch.solid": {"material": "aluminium"},
+    }, 384),
+    "beside a kink": ({
+        "punch.profile": "rounded_flat", "punch.flat_half_width": 1e-4, "punch.radius": 5e-3,
+        "friction.mu": 0.6,
+    }, 600),
+    "a pressure": (OWN | {"friction.mu": 0.6}, 45),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "strength"), DEEP.values(), ids=DEEP)
+def test_no_deeper_place_yields_and_the_deepest_does(changes, strength):
+    scene = {
+        "solid": {"material": "steel", "yield_strength": f"{strength} MPa"}, "motion": {"speed": "1 m/s"},
+        "punch.load": "100 N/mm", "friction": {}, "solve.methods": ["closed_form"],
+        "output.quantities": ["friction", "sif", "interior", "yield"],
+        "output.map": {"X": [-1.5, 1.5, 301], "Y": [-0.8, -0.005, 160]},
+    } | changes  # fmt: skip
+    if "punch.radius" in changes:
+        scene["punch.half_width"] = None
+    data = computed("tables4_5", scene).data
+    depth = data[yielding.DEPTH["closed_form"].path][0]
+    half_width = data.get(HALF_WIDTH["closed_form"].path, [1e-3])[0]
+    mises = next(row for row in stresses.INVARIANTS_INSIDE["closed_form"] if "von_mises" in row.path)
+    over = data[mises.path][0] * 1e5 / (2.0 * half_width) / (strength * 1e6)
+    Y = data[stresses.INSIDE_Y.path]
+    assert 0.03 < depth < 0.7
+    assert over[-depth - 1e-9 > Y].max() < 1.0
+    assert over[(depth * 0.9 < -Y) & (depth > -Y)].max() > 0.99
+
+
 @pytest.mark.filterwarnings("error")
 def test_at_rest_an_incompressible_surface_is_not_strained_and_nothing_overflows():
     changes = {"solid.nu": 0.5, "motion.c": 0.0, "solve.methods": ["closed_form"]}

@@ -157,10 +157,7 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
         if solve.degree or solve.mesh != "confocal":
             return "layers have meshes of their own: no mesh, and no degree"
         if not mode:
-            return (
-                "over layers meshes follow contacts of smooth punches with two free ends alone; sie "
-                "takes all"
-            )
+            return "over layers no mesh follows the contact of a tilted punch; sie takes it"
         lacks = lacks | {states.INDENTATION.path: "the far boundary moves with the load"}
     elif mode == OWN_MESHES and (solve.mesh != "confocal" or solve.degree):
         return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'

@@ -89,7 +89,9 @@ class Dahl(FrictionLaw):
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         return s * self.rate(z[..., 0], s)
 
-    def stiffness(self, z: NDArray, s: int, V: float = 0.0) -> float:
+    def stiffness(self, z: NDArray, s: int, V: float = 0.0) -> float | None:
+        if self.δ < 1.0:
+            return None  # it is infinite at full slip, about which steps of any length go to and fro
         y0 = max(1.0, abs(1.0 - s * float(z[0]) / self.μ_C))
         return self.λ * self.δ * y0 ** (self.δ - 1.0) / self.μ_C
 

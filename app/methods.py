@@ -111,7 +111,7 @@ def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | N
 #: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
 #: uniform and on layered solids; "" where no mesh follows the contact.
 _MODES = {
-    SHARP: ((CONTACT, CONTACT), (CONTACT, CONTACT)),
+    SHARP: ((CONTACT, CONTACT), (VARYING, VARYING)),
     PRESCRIBED: ((OWN_PRESSURE, OWN_PRESSURE), (PRESCRIBED_ON_LAYERS, PRESCRIBED_ON_LAYERS)),
     FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, FREE_ON_LAYERS)),
     ONE_FREE: ((FREE_ENDS, OWN_MESHES), ("", "")),

@@ -107,10 +107,13 @@ def of_pressure(
     """
     (α, β), kinks = exponents, np.asarray(kinks, dtype=float)
     s = _AT[np.abs(_AT[:, None] - kinks).min(axis=1, initial=1.0) > _OFF_KINKS]
-    # Where a kernel has a logarithm, it has it at the places themselves.
-    rough = s if layers and layers[0].rough else np.empty(0)
-    sizes = np.append(np.full(len(kinks) + len(rough), _SHORTEST), np.full(len(breaks), 1.0))
-    rule = Rule(np.concatenate([kinks, rough, breaks]), sizes)
+    # A kernel changes fastest at the places themselves; there it may have a logarithm.
+    peaks = s if layers else np.empty(0)
+    finest = min([_SHORTEST if kernel.rough else kernel.length for kernel in layers], default=1.0)
+    each = (kinks, _SHORTEST), (peaks, finest), (breaks, 1.0)
+    rule = Rule(
+        np.concatenate([at for at, _ in each]), np.concatenate([np.full(len(at), size) for at, size in each])
+    )
     loads, σ = rule.weights(α, β) * rule.smooth(pressure, α, β), pressure(s)
     ratio = g(np.append(s, rule.t)) if callable(g) else g[:, None]
     ratio, there = np.split(np.broadcast_to(ratio, (len(σ), len(s) + len(rule.t))), [len(s)], axis=1)

@@ -261,8 +261,10 @@ class AlongLevel(PunchLevel):
     def facets(self) -> ContactFacets:
         return ContactFacets(self.space.contact.s, self.space.degree, self.space.chart)
 
-    def along(self) -> Callable[[Any], NDArray]:
+    def along(self) -> Callable[[Any], NDArray] | None:
         body = self.task.body
+        if not body.along:
+            return None
         return cache(lambda g: self.facets.product(body.friction(g, body.half_width)))
 
     @property

@@ -618,8 +618,7 @@ class OverLayers(OwnMeshes):
         )
         base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
         mesh = replace(self._work, plan=drawn_for(task, plan, words, base.places), stresses=words)
-        kind = VaryingBalancedLevel if task.body.along else BalancedLevel
-        kind = VaryingKinkedLevel if len(base.places) else kind
+        kind = VaryingKinkedLevel if len(base.places) else VaryingBalancedLevel
         return mesh, task, partial(kind, mesh, task, base=base)
 
 

@@ -17,6 +17,7 @@ from galinx.solvers.contact.fem_plan import (
     FREE_ON_LAYERS,
     OWN_MESHES,
     PRESCRIBED_ON_LAYERS,
+    SHARP_ON_LAYERS,
     crowded_kinks,
 )
 from galinx.solvers.contact.solution import (
@@ -111,7 +112,7 @@ def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | N
 #: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
 #: uniform and on layered solids; "" where no mesh follows the contact.
 _MODES = {
-    SHARP: ((CONTACT, CONTACT), (VARYING, VARYING)),
+    SHARP: ((CONTACT, CONTACT), (SHARP_ON_LAYERS, SHARP_ON_LAYERS)),
     PRESCRIBED: ((OWN_PRESSURE, OWN_PRESSURE), (PRESCRIBED_ON_LAYERS, PRESCRIBED_ON_LAYERS)),
     FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, FREE_ON_LAYERS)),
     ONE_FREE: ((FREE_ENDS, OWN_MESHES), ("", "")),

@@ -14,7 +14,7 @@ as far as the distance times Im p/|p|.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import asinh, ceil, hypot, isfinite, log, log10
+from math import ceil, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,14 +65,6 @@ _GENTLE_GROWTH, _THIN = 2.5, 0.4
 _RESOLVED, _A_DIGIT = 1.2, 0.15
 #: End of that region over the farthest point, and over the last interface; growth of lines beyond it.
 _BEYOND, _DEEPER, _FAR_GROWTH = 1.1, 3.0, 3.0
-#: Apparent shift of the contact's edges, over the size of the innermost cells and over the
-#: degree's inverse square; measured on 22 layered solids at degrees 4 to 12: 0.3 to 0.65. Change of the
-#: pressure at the ends by a shift on a solid that is graded from the surface on, over that on others with
-#: the same moments; measured with 20 to 38 functions.
-_MOVED, _STEEPER = 0.8, 300.0
-#: Number of moments over a solid that is graded from the surface on with which the innermost cells take
-#: their usual share of the tolerance: with more of them cells are smaller by the square of the ratio.
-_FUNCTIONS = 6.0
 #: Tolerance of the innermost cells over that of stresses.
 _OF_INNERMOST = 0.3
 #: Tolerance of stresses below which the degree is one more from the first.
@@ -85,10 +77,6 @@ _RATIO, _NEAR_RATIO = 0.45, 0.5
 _LEGS = 0.5
 #: Largest ratio of sides of the rectangle around an edge.
 _WIDEST = 4.0
-#: Number of moments of the pressure over the logarithm of the tolerance, and its growth over thin layers.
-_MOMENTS = 0.27, 0.54
-#: Fewest moments, two degrees below the first.
-_FEWEST = 12
 #: Largest square around an edge, over a, and its size over the uppermost layer's thickness.
 _SQUARE, _SHARE = 0.5, 0.5
 #: Relative error of K_I by the far boundary: over its inverse distance squared, by what the pressure's
@@ -106,20 +94,6 @@ _ALIKE, _THICK, _LONGER = 2.0, 2.0, 6.0
 _SMALLER = 5.0
 #: Distance of the far boundary over a at most: longer cells lose digits.
 _FARTHEST = 2e5
-
-
-def steepness(count: int, length: float) -> float:
-    """Relative change of a pressure at an end by a misplaced edge, over its distance over a.
-
-    The pressure without its weight is a sum of Chebyshev polynomials in the coordinate that
-    :class:`galinx.solvers.contact.recovery.Stretch` stretches towards the ends.
-
-    Args:
-        count: number of the polynomials.
-        length: over a within which the pressure changes next to an end.
-    """
-    slope = (1.0 / hypot(length, 2.0) + 1.0 / length) / asinh(2.0 / length)
-    return count**2 / 2.0 * slope
 
 
 @dataclass(frozen=True)
@@ -217,44 +191,15 @@ class OnLayers(MeshKind):
         long = _LONG * max(1.0, _LONGER * (self.depths[-1] / _THICK) ** 2)
         return _CUBED * min(1.0, long / at_rest) / self.left**0.5
 
-    @property
-    def length(self) -> float:
-        """Length over which the pressure changes next to the edges: to their image in the interface."""
-        return 2.0 * self.depths[0] * self.drawn_together
-
-    def moments(self, required: Requirements) -> int:
-        """Number of moments that give the pressure to a tenth of the tolerance; measured on 30 solids."""
-        share, of_length = _MOMENTS
-        count = (share + of_length * asinh(2.0 / self.length)) * log(30.0 / required.tolerance)
-        return max(ceil(count), _FEWEST) + 2 * self._one_more(required)
-
-    @property
-    def graded(self) -> bool:
-        """True where the solid is graded from the surface on."""
-        return bool(self.changes) and isfinite(self.changes[0])
-
     def innermost_size(self, required: Requirements) -> float:
         """Size over a of the cells at the edges."""
-        size = self._innermost(required) ** 2
-        if self.graded:
-            # The functions that recover the pressure are steep at the ends there.
-            size *= (_FUNCTIONS / self.moments(required)) ** 2
-        return max(size, 1e-11)
+        return max(self._innermost(required) ** 2, 1e-11)
 
     def _innermost(self, required: Requirements) -> float:
         if required.nearest is None:
             return super()._innermost(required)
         # The error of these cells in stresses beside them does not fall with the degree.
         return super()._innermost(replace(required, tolerance=_OF_INNERMOST * required.tolerance))
-
-    def unseen(self, required: Requirements, degree: int, cuts: int, margin: float) -> float:
-        """Estimated relative error by the innermost cells: of K_I, and of the pressure at the ends.
-
-        By these cells both edges of the contact seem misplaced, which functions that recover the pressure
-        show as pressure at the ends.
-        """
-        shown = steepness(self.moments(required), self.length) * (_STEEPER if self.graded else 1.0)
-        return (0.3 + _MOVED * shown / degree**2) * self.innermost_size(required) / margin**0.4
 
     def degree(self, required: Requirements, margin: float) -> int:
         """Degree, one less than usual for K_I alone: the measured error raises it where needed."""

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import xlogy
 
 from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.transient.punch import ON_SURFACE
+from galinx.solvers.transient.punch import LEAST, ON_SURFACE
 from galinx.solvers.transient.transform import Weighted
 
 from .compare import RULES, Rule, against, largest
@@ -77,9 +77,8 @@ def largest_change(
         share = load if n == 1 else np.ones_like(load)
         off.append(np.abs((values - other) * share).max(axis=-1))
         sizes.append(np.abs(other * share).max(axis=-1))
-    least = 1e-2  # indentation over N/(2μ), and centre over a, to which differences are relative
-    sizes[0] = np.maximum(sizes[0], least)
-    sizes[1] = np.maximum(np.maximum(sizes[1], least), np.abs(np.atleast_1d(lean)).max(axis=-1))
+    sizes[0] = np.maximum(sizes[0], LEAST)
+    sizes[1] = np.maximum(np.maximum(sizes[1], LEAST), np.abs(np.atleast_1d(lean)).max(axis=-1))
     sizes[2] = sizes[3] = np.maximum(sizes[2], sizes[3])
     return float(np.nanmax(np.array(off) / np.array(sizes)))
 

@@ -18,6 +18,7 @@ from galinx.solvers.contact import FREE_ENDS, VARYING_FREE
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import EdgeExponents
 from galinx.solvers.contact.ends import SHAPES, slopes_of_shapes
+from galinx.solvers.contact.estimate import SLOWER, of_degrees
 from galinx.solvers.contact.fem_plan import (
     FITTED,
     NEAR_FREE_END,
@@ -25,14 +26,12 @@ from galinx.solvers.contact.fem_plan import (
     at_friction_kinks,
     kind_of,
     no_nearer,
-    pressure_moments,
     required_of_free_ends,
     required_of_pieces,
-    required_over_layers,
     requirements,
     swept,
 )
-from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Places
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, Places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import radius
 from galinx.solvers.rays import NEAR
@@ -188,7 +187,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         assembler=solve.assembler, solver=solve.solver, degrees=degrees, fixed=solve.degree is not None,
         wanted=required, mode=mode, shared_speeds=False, sharp=exponent,
         graded=partial(at_friction_kinks, kinks=kinks) if kinks else None,
-        tests=pressure_moments(scene.solid, kind, required),
+        rate=SLOWER if scene.layers else of_degrees(2),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
         shapes=_shapes(scene, responses, g) if mode in _OF_SHAPES else 0,
     )  # fmt: skip
@@ -203,7 +202,6 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
 _OF_SHAPES = (FREE_ENDS, VARYING_FREE)
 #: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
 _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
-    (SHARP, True): lambda required, scene, *_: required_over_layers(required, scene.solid),
     (PRESCRIBED, False): lambda required, scene, *_: required_of_pieces(
         required, np.array(scene.body.knots)
     ),

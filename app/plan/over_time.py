@@ -311,7 +311,8 @@ class Starts:
         """Two levels: a coarser one, which measures the error, and the one that is archived.
 
         The coarser one has half as many steps, a degree less, and cells that grow faster, so that
-        waves are too short for cells from little more than half the distance on.
+        waves are too short for cells from little more than half the distance on. Steady motion is held at
+        less than half the distance, to whose inverse its error is proportional.
         """
         digits, gap = -log10(self.scene.solve.tolerance), self.scene.solid.limit() - c
         depths = tuple((self.scene.solid.depths / self.scene.body.half_width).tolist())
@@ -338,10 +339,10 @@ class Starts:
             size, seen = (min(side * slower, 2.0 * depths[0]) for side in (size, seen))
         coarse, fine = (
             Reached(
-                max(width, 3.0), max(depth, 2.0), size, of, innermost, beyond, ratio, depths, seen,
+                max(width, 3.0), max(depth, 2.0), size, of, innermost, held, ratio, depths, seen,
                 (BOX[0] + 1.0, BOX[1]),
             )
-            for of in (1.75 * growth, growth)
+            for of, held in ((1.75 * growth, 0.4 * beyond), (growth, beyond))
         )  # fmt: skip
         return Level(coarse, degree - 1, 2), Level(fine, degree, 1)
 

@@ -38,7 +38,7 @@ from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, LOCA
 from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
-from galinx.solvers.contact.fem_plan import on_finer_cells, unknowns
+from galinx.solvers.contact.fem_plan import SHARP_ON_LAYERS, on_finer_cells, unknowns
 from galinx.solvers.contact.solution import FLAT, Task
 from galinx.solvers.profiles import kinks
 
@@ -62,7 +62,7 @@ _OF_ESTIMATES, _ROUNDED = 0.05, 1e-11
 #: Relative difference of finite elements and closed forms; comparisons say more.
 _FROM_EXACT = 1e-2
 #: Modes in which all speeds have one mesh.
-_ONE_MESH = ("contact", "traction", FREE_ENDS)
+_ONE_MESH = ("contact", "traction", SHARP_ON_LAYERS, FREE_ENDS)
 
 
 def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:

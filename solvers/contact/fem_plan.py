@@ -1,8 +1,7 @@
 """Plan of the finite elements of a scene: mesh, degrees, solver; it needs no mesh and no dolfinx.
 
-Over layers, meshes follow the interfaces, and the pressure is recovered from nodal forces by moments,
-see :class:`PressureMoments`. In a scene of many speeds finite elements solve a few of them, and a fit
-through these gives the others, see :class:`Sweep`.
+Over layers, meshes follow the interfaces. In a scene of many speeds finite elements solve a few of them,
+and a fit through these gives the others, see :class:`Sweep`.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,11 +17,9 @@ from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import QuadMesh, Refinement, rings_at_kinks, with_kinks
 
 from ..rays import NEAR
-from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS
-from .estimate import SLOWER, Rate, of_degrees
-from .recovery import MOMENTS, Polynomials, Stretch
+from .estimate import Rate, of_degrees
 from .solution import Places
 
 #: Assemblers of the matrices: element matrices by tensor products, or dolfinx's own.
@@ -40,46 +37,6 @@ _LEAST_LEFT = 1e-6
 #: Distance over a from a free end within which stresses are continued from farther away, and where an
 #: unknown pressure, with a jump from cell to cell, oscillates in the innermost cells.
 NEAR_FREE_END, _NEAR_INCOMPRESSIBLE = 1e-2, 1e-5
-#: Additional moments over solids that are graded from the surface on: few polynomials do not make up for
-#: what functions of the ends add away from these.
-_MORE_GRADED = 6
-#: Loosest tolerance of meshes over them: on coarser ones these functions' moments are not sure.
-_LOOSEST_GRADED = 1e-4
-
-
-@dataclass(frozen=True)
-class PressureMoments:
-    """Moments by which a pressure is recovered from nodal forces; those of a uniform solid by default.
-
-    Attributes:
-        functions: functions whose sum is the pressure without its weight.
-        count: moments at the first degree.
-        a_degree: additional moments a degree: over layers, so that the error of a finite number of them
-            shows in the measured error; over graded solids fewer, where they are nearly dependent.
-        rate: rate at which intensities converge with the degree.
-        even: True where intensities of a flat punch are equal at both ends.
-    """
-
-    functions: Any = Polynomials()
-    count: int = MOMENTS
-    a_degree: int = 0
-    rate: Rate = of_degrees(2)
-    even: bool = True
-
-    def values(self, r: NDArray, degrees: int) -> NDArray[np.float64]:
-        """Functions with which forces are tested so many degrees above the first, (len(r), moments)."""
-        return np.asarray(self.functions.values(r, self.count + degrees * self.a_degree))
-
-
-def pressure_moments(solid: Solid, kind: MeshKind, required: Requirements) -> PressureMoments:
-    """Moments that recover the pressure on a solid."""
-    if not isinstance(kind, OnLayers):
-        return PressureMoments()
-    graded, top = graded_from_the_surface(solid), solid.layers[0]
-    stretch = Stretch(kind.length, graded, graded and top.bottom.μ > top.solid.μ)  # type: ignore[union-attr]
-    count = kind.moments(required) + _MORE_GRADED * graded + stretch.of_ends
-    # What a thin layer adds converges unevenly: a small change says less there.
-    return PressureMoments(stretch, count, 1 if graded else 2, SLOWER, even=False)
 
 
 def no_nearer(required: Requirements, distance: float) -> Requirements:
@@ -87,18 +44,6 @@ def no_nearer(required: Requirements, distance: float) -> Requirements:
     if required.nearest is None:
         return required
     return replace(required, nearest=max(required.nearest, distance))
-
-
-def graded_from_the_surface(solid: Solid) -> bool:
-    """True where constants change within the uppermost layer."""
-    return any(layer.bottom not in (None, layer.solid) for layer in solid.layers[:1])
-
-
-def required_over_layers(required: Requirements, solid: Solid) -> Requirements:
-    """Requirements on a mesh for sharp edges over layers; tighter where the uppermost is graded."""
-    if not graded_from_the_surface(solid):
-        return required
-    return replace(required, tolerance=min(required.tolerance, _LOOSEST_GRADED))
 
 
 def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)) -> OnLayers:
@@ -196,12 +141,14 @@ def variable(responses: Sequence[HalfPlane]) -> NDArray[np.float64]:
 _NEAREST = 1e-12
 #: Mode in which every state has a mesh of its own, graded towards kinks of the punch.
 OWN_MESHES = "own meshes"
+#: Mode of a flat punch over layers, whose pressure is a spline.
+SHARP_ON_LAYERS = "flat punch over layers"
 #: Mode in which meshes over layers follow a contact with free ends.
 FREE_ON_LAYERS = "meshes that follow the contact"
 #: Mode of a prescribed pressure over layers.
 PRESCRIBED_ON_LAYERS = "loads over layers"
 #: Modes in which a fit through a few speeds may give the others.
-FITTED = ("contact", FREE_ENDS)
+FITTED = ("contact", SHARP_ON_LAYERS, FREE_ENDS)
 #: Number of cuts from which half as many, at one degree more, are no worse.
 _MANY = 8
 
@@ -249,13 +196,13 @@ class FemPlan:
         degrees: polynomial degree to begin with, by speed; the measured error may ask for more.
         fixed: True where the scene fixes the degree.
         wanted: requirements on the mesh.
-        mode: ``"contact"``, ``"traction"``, ``VARYING``, ``OWN_PRESSURE``, ``FREE_ENDS``,
-            ``OWN_MESHES``, ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
+        mode: ``"contact"``, ``"traction"``, ``SHARP_ON_LAYERS``, ``VARYING``, ``OWN_PRESSURE``,
+            ``FREE_ENDS``, ``OWN_MESHES``, ``FREE_ON_LAYERS`` or ``PRESCRIBED_ON_LAYERS``.
         shared_speeds: True where speeds are shared out over the ranks, each rank with a mesh of its own;
             False where all ranks share one mesh.
         sharp: exponent of the strongest pressure next to a sharp edge.
         graded: draws the mesh of a plan where cells are graded towards kinks; None elsewhere.
-        tests: moments that recover the pressure.
+        rate: rate at which intensities converge with the degree.
         sweep: speeds of a fit; None where each speed is solved.
         shapes: number of polynomials whose sum is the punch under every contact, for free ends.
     """
@@ -274,7 +221,7 @@ class FemPlan:
     shared_speeds: bool
     sharp: float = -0.5
     graded: Callable[["FemPlan"], QuadMesh] | None = None
-    tests: PressureMoments = PressureMoments()
+    rate: Rate = of_degrees(2)
     sweep: Sweep | None = None
     shapes: int = 0
 

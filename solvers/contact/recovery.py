@@ -27,11 +27,11 @@ smooth function, and a smooth function times a power of the distance or its loga
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 from scipy.special import beta, roots_legendre
 
@@ -39,7 +39,7 @@ from ..approximation import lagrange
 from .edges import under_punch
 from .estimate import SAFETY
 from .extremes import between, largest
-from .panels import Panels, panels_of_slope
+from .panels import panels_of_slope
 from .pressure import Expansion, Functions, Pressure
 
 #: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
@@ -108,17 +108,14 @@ def products(α: Any, β: Any, count: int = MOMENTS) -> NDArray[np.float64]:
     return np.asarray((of[np.add.outer(n, n)] + of[np.abs(np.subtract.outer(n, n))]) / 2.0)
 
 
-def from_moments(
-    moments: NDArray, α: NDArray, β: NDArray, functions: "Polynomials | Stretch" = Polynomials()
-) -> Expansion:
+def from_moments(moments: NDArray, α: NDArray, β: NDArray) -> Expansion:
     """Pressure with given moments.
 
     Args:
-        moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, functions).
-        α, β: exponents at X = a and X = -a, (states,); of polynomials those of the local analysis of
-            sharp edges, α + β = -1.
-        functions: functions f_k, which represent the smooth factor.
+        moments: ∫ σ_YY T_k dr of each state over N/(2a), (states, polynomials).
+        α, β: exponents at X = a and X = -a by the local analysis of sharp edges, (states,): α + β = -1.
     """
+    functions = Polynomials()
     return Expansion(α[:, None], β[:, None], functions.coefficients(moments, α, β), functions)
 
 
@@ -241,138 +238,6 @@ class ContactRecovery(ContactFacets):
     def exponents(self, forces: NDArray) -> NDArray[np.float64]:
         """Exponents at X = a and X = -a fitted to the raw pressure, (states, 2)."""
         return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
-
-
-#: Longest panel of the quadrature for products of functions, over the smaller of 1 and h.
-_FINE = 0.3
-#: Number of last polynomials that measure how well a pressure is resolved, and on graded solids, where
-#: the remainder falls like a power of their number.
-_LAST, _LAST_GRADED = 2, 4
-#: Remainder on graded solids over the part of the last polynomials, where the solid softens and where it
-#: stiffens with depth; measured on layers whose moduli fall to a tenth or grow three to three hundred
-#: times, 0.1 to 1.5 a thick, with 18 to 46 functions. In stiffening ones the pressure changes within less
-#: than h, which no number of functions follows.
-_TAIL, _TAIL_STIFFENING = 4.0, 16.0
-#: Highest power of the distance from an end, with its logarithms, among the functions of an end.
-_POWERS = 3
-#: Distance over h beyond which functions of an end are nearly constant; for a larger one functions become
-#: nearly dependent.
-_SHARE = 0.25
-#: Both ends of the contact.
-_ENDS = np.array([-1.0, 1.0])
-#: Fewest polynomials beside functions of the ends.
-_FEWEST = 6
-#: Number of functions of both ends.
-_OF_ENDS = _POWERS * (_POWERS + 1)
-#: Times that functions are made orthonormal: rounding spoils the first result.
-_TIMES = 2
-
-
-@dataclass(frozen=True)
-class Stretch(Functions):
-    """Functions of a coordinate stretched towards the ends, which follow a pressure without its weight.
-
-    Attributes:
-        h: length over a within which the pressure changes next to an end.
-        graded: True where the solid is graded from the surface on.
-        stiffens: True where it stiffens with depth from the surface on.
-    """
-
-    h: float
-    graded: bool = False
-    stiffens: bool = False
-
-    def __call__(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Stretched coordinate ζ in [-1, 1] at r, in the shape of r."""
-        r = np.asarray(r, dtype=float)
-        ζ = np.arcsinh((1.0 + r) / self.h) - np.arcsinh((1.0 - r) / self.h)
-        return np.asarray(np.clip(ζ / np.arcsinh(2.0 / self.h), -1.0, 1.0))
-
-    @property
-    def of_ends(self) -> int:
-        """Number of functions of both ends, which stand before the polynomials of ζ."""
-        return _OF_ENDS * self.graded
-
-    def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Values of ``count`` functions at r, those of the ends among them, (len(r), count)."""
-        if not self.graded:
-            return chebyshev(self(r), count)
-        r = np.clip(r, -1.0, 1.0)  # a contact node at an edge may be a rounding beyond it
-        with np.errstate(divide="ignore"):
-            x = np.log1p(r) - np.log1p(-r)
-        return _rule(-0.5, -0.5, self).interpolated(_orthonormal(self, count), x)
-
-    def dependent(self, r: NDArray, count: int) -> NDArray[np.float64]:
-        """Functions as in :meth:`values`, before they are orthonormal, (len(r), count)."""
-        columns = []
-        for d in (1.0 - r, 1.0 + r):
-            d = np.maximum(d, 0.0)
-            u = d / (d + _SHARE * self.h)
-            log = np.log(np.maximum(u, np.finfo(float).tiny))
-            columns += [u**n * log**m for n in range(1, _POWERS + 1) for m in range(1, n + 1)]
-        return np.column_stack([*columns, chebyshev(self(r), count - self.of_ends)])
-
-    def coefficients(self, moments: NDArray, α: NDArray, β: NDArray) -> NDArray[np.float64]:
-        """Coefficients of the smooth factor, (states, functions); see :class:`Polynomials`.
-
-        On graded solids further functions are nearly dependent on those before them, and what moments
-        leave grows. So many of the first functions are taken that the last of these add least; the
-        coefficients of the others are 0.
-        """
-        c, f = np.zeros_like(moments), _at_points(self, moments.shape[1])
-        at_ends = self.values(_ENDS, moments.shape[1])
-        for i, row in enumerate(moments):
-            weights = _rule(float(α[i]), float(β[i]), self).weights
-            products, least = (f * weights[:, None]).T @ f, np.inf
-            # On graded solids fewer functions may be better.
-            fewest = min(_OF_ENDS + _FEWEST, len(row)) if self.graded else len(row)
-            for count in range(fewest, len(row) + 1):
-                first = np.linalg.solve(products[:count, :count], row[:count])
-                unresolved = self._unresolved(first, at_ends)
-                if unresolved < least:
-                    c[i], least = np.pad(first, (0, len(row) - count)), unresolved
-        return c
-
-    def unresolved(self, c: NDArray) -> NDArray[np.float64]:
-        """Share of the last functions in the larger smooth factor at both ends, (states,)."""
-        at_ends = self.values(_ENDS, c.shape[1])
-        return np.array([self._unresolved(np.trim_zeros(row, "b"), at_ends) for row in c])
-
-    def _unresolved(self, c: NDArray, at_ends: NDArray) -> float:
-        """Share of the last functions of a state's; see :meth:`unresolved`."""
-        last, f = _LAST_GRADED if self.graded else _LAST, at_ends[:, : len(c)]
-        share = np.abs(c[-last:] * f[:, -last:]).sum(axis=1).max() / np.abs(f @ c).max()
-        tail = _TAIL_STIFFENING if self.stiffens else _TAIL
-        return float((tail if self.graded else 1.0) * share)
-
-
-@cache
-def _orthonormal(stretch: Stretch, count: int) -> NDArray[np.float64]:
-    """Combinations of a graded solid's functions that are orthonormal under the weight of no friction.
-
-    The functions are nearly dependent, and rounding of their combinations differs from place to place. So
-    combinations are represented by polynomials on panels through their values at the points of the
-    quadrature, and evaluated by these everywhere: pressure and test functions are then equal.
-
-    Returns:
-        Values at the points of the quadrature, (points, functions).
-    """
-    rule = _rule(-0.5, -0.5, stretch)
-    f, root = stretch.dependent(rule.t, count), np.sqrt(rule.weights)[:, None]
-    for _ in range(_TIMES):
-        f = f @ np.linalg.inv(np.linalg.qr(f * root, mode="r"))
-    return np.asarray(f)
-
-
-def _rule(α: float, β: float, stretch: Stretch) -> Panels:
-    """Quadrature of products of functions under a weight; its points do not depend on the exponents."""
-    return Panels(α, β, _FINE * min(1.0, stretch.h))
-
-
-@lru_cache(maxsize=8)
-def _at_points(stretch: Stretch, count: int) -> NDArray[np.float64]:
-    """Functions at the points of the quadrature, (points, count)."""
-    return stretch.values(_rule(-0.5, -0.5, stretch).t, count)
 
 
 #: Distances from an end, over that of the nearest kink, between which the pressure is sampled to continue

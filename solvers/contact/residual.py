@@ -112,7 +112,8 @@ def of_pressure(
     finest = min([_SHORTEST if kernel.rough else kernel.length for kernel in layers], default=1.0)
     each = (kinks, _SHORTEST), (peaks, finest), (breaks, 1.0)
     rule = Rule(
-        np.concatenate([at for at, _ in each]), np.concatenate([np.full(len(at), size) for at, size in each])
+        np.concatenate([at for at, _ in each]),
+        np.concatenate([np.full(len(at), size) for at, size in each]),
     )
     loads, σ = rule.weights(α, β) * rule.smooth(pressure, α, β), pressure(s)
     ratio = g(np.append(s, rule.t)) if callable(g) else g[:, None]

@@ -1,7 +1,7 @@
 """Rigid punches by finite elements at one speed, their pressure unknown, to the measured error.
 
 A :class:`PunchLevel` solves contacts at one degree. Its kinds differ in the ends of the contact: sharp
-(:class:`SharpLevel`, :class:`VaryingLevel`), free (:class:`FreeLevel`), or those of a single contact on a
+(:class:`SharpLevel`, :class:`SharpSplineLevel`), free (:class:`FreeLevel`), or those of one contact on a
 mesh drawn for it (:mod:`galinx.solvers.fem.own_meshes`).
 
 With free ends: the half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its
@@ -26,10 +26,12 @@ from ..contact import FREE_ENDS, INTENSITIES, VARYING, VARYING_FREE
 from ..contact.along import Splines
 from ..contact.edges import EdgeExponents
 from ..contact.ends import SHAPES, end_conditions, heights_of_shapes, slopes_of_shapes
+from ..contact.fem_plan import SHARP_ON_LAYERS
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
     ContactFacets,
     ContactRecovery,
+    chebyshev,
     from_moments,
     without_zeros,
 )
@@ -131,20 +133,16 @@ class PunchLevel(Level):
         """Positions over a of the contact nodes, (nodes,)."""
         return self.space.chart.surface_position(self.space.contact.s)
 
-    def _tests(self, r: NDArray) -> NDArray[np.float64]:
-        """Test functions of r for nodal forces, (len(r), moments)."""
-        return self.plan.tests.values(r, self.space.degree - self.plan.degrees[self.task.number])
-
     @cached_property
     def moments(self) -> NDArray[np.float64]:
         """Map from nodal forces to moments of the pressure, (nodes, moments)."""
-        return self._tests(self.r)
+        return chebyshev(self.r)
 
     @cached_property
     def recovery(self) -> ContactRecovery:  # type: ignore[override]
         """Maps from nodal forces to moments, raw pressure and exponents."""
         space, X = self.space, self.task.places.X
-        return ContactRecovery(space.contact.s, space.degree, space.chart, X, tests=self._tests)
+        return ContactRecovery(space.contact.s, space.degree, space.chart, X)
 
     def displacement_at(self, task: Task) -> Displacement:
         return Displacement(task, self.space, self.fields, self.punch.slopes, self.continuation())
@@ -154,10 +152,10 @@ class PunchLevel(Level):
         """True where there is a mirror image on the same mesh."""
         return self.task.response.mirrored and self.twins
 
-    def over_flat(self, moments: NDArray, g: NDArray, more: float = 0.0) -> Expansion:
-        """Pressure from moments, with exponents of sharp edges at frictions g, or larger ones."""
+    def over_flat(self, moments: NDArray, g: NDArray) -> Expansion:
+        """Pressure from moments, with exponents of sharp edges at frictions g."""
         local = EdgeExponents(self.task.response, g)
-        return from_moments(moments, local.α + more, local.β + more, self.plan.tests.functions)
+        return from_moments(moments, local.α, local.β)
 
     def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """Parts of the punch, their loads, (states, parts), and intensities, (states, 2, parts)."""
@@ -197,13 +195,13 @@ class PunchLevel(Level):
         """Effect of rounding on each gauge, relative: difference of a flat punch from its mirror at -g.
 
         In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
-        under a flat punch all the same. Over layers they differ, and a single state has no flat punch
-        beside it: what the solve leaves of its forces stands for rounding there. Stresses are relative to
+        under a flat punch all the same. Where they differ, or a single state has no flat punch beside it,
+        what the solve leaves of its forces stands for rounding. Stresses are relative to
         those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
         they are not, and their rounding is as large.
         """
         own = self.fields_of(self.states(g, load))
-        if not self.twins or not (self.mirrored or self.plan.tests.even):
+        if not self.twins:
             return [self.factor.largest_residual, *self.rounding_of_stresses(own)]
         X = self.measured_task.places.X
         K_I, σ_XX = [], []
@@ -248,12 +246,15 @@ class SharpLevel(PunchLevel):
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
 _NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
-#: The first of these for splines that show what the others leave out.
-COARSE = 4.0 * _NEXT
+#: The first of these for splines that show what the others leave out, and factor of what they show.
+COARSE, _SURE = 4.0 * _NEXT, 1.5
+#: Places over a at which a pressure between sharp edges is measured, and least stress over the mean to
+#: which its error is relative.
+_ALL_ACROSS, _SMALL = np.cos(np.pi * (np.arange(64) + 0.5) / 64.0), 0.1
 
 
-class AlongLevel(PunchLevel):
-    """Contacts with friction that varies along them, whose pressures are splines."""
+class SplineLevel(PunchLevel):
+    """Contacts whose pressures are splines: over layers, or with friction that varies along them."""
 
     twins = False
 
@@ -324,17 +325,23 @@ class AlongLevel(PunchLevel):
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
         off = np.abs(self.pressure(contact, COARSE).σ_YY(ACROSS) - σ) / size
-        return self.gauge_of_free(states, σ, size, off.max(axis=1))
+        return self.gauge_of_free(states, σ, size, _SURE * off.max(axis=1))
 
 
-class VaryingLevel(AlongLevel, SharpLevel):
-    """Sharp edges of a flat punch with friction that varies along the contact."""
+class SharpSplineLevel(SplineLevel, SharpLevel):
+    """Sharp edges of a flat punch over layers, or with friction that varies along the contact."""
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, COARSE)
+        contact = states.contact
         # Without knots next to ends and kinks, splines of all degrees are off alike.
-        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
-        return replace(gauge, unresolved=gauge.unresolved + off)
+        (K, σ), (coarse_K, coarse_σ) = (
+            (pressure.series(ENDS), pressure.σ_YY(_ALL_ACROSS))
+            for pressure in (states.pressure, self.pressure(contact, COARSE))
+        )
+        size = np.maximum(np.abs(σ), _SMALL)
+        off = np.abs(np.column_stack([coarse_K / K - 1.0, (coarse_σ - σ) / size])).max(axis=1)
+        groups = (K, np.abs(K)), (σ, size), (contact.tested(self.moments[:, 1:6]), 2.0)
+        return joined(INTENSITIES, groups, _SURE * off)
 
 
 #: Amplitudes of the shapes (states, parts), depth of the punch's lowest point below the level of the
@@ -421,7 +428,7 @@ _KEPT, _BALANCED, _OF_INTENSITIES = 32, 1e-12, 1e-7
 ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
 
 
-class VaryingFreeLevel(AlongLevel, FreeLevel):
+class VaryingFreeLevel(SplineLevel, FreeLevel):
     """Free ends of smooth punches and of tilted bases with friction that varies along the contact.
 
     Middle and half-width are the root of the intensities at the free ends, with the friction of each
@@ -554,7 +561,8 @@ _LINEAR = {1: _tilted, 2: _parabola}
 #: Levels of punches on the mesh of all contacts, by the plan's mode.
 PUNCHES: dict[str, type[PunchLevel]] = {
     "contact": SharpLevel,
+    SHARP_ON_LAYERS: SharpSplineLevel,
     FREE_ENDS: FreeLevel,
-    VARYING: VaryingLevel,
+    VARYING: SharpSplineLevel,
     VARYING_FREE: VaryingFreeLevel,
 }

@@ -548,13 +548,9 @@ class MeasuredError(Estimate):
         return _LASTS * max(earlier) <= change <= bound
 
     def _own(self, gauges: Sequence[Gauge]) -> Any:
-        """Errors that a level shows by itself where the level before showed hardly more.
-
-        They may fall later where more functions recover the pressure at a higher degree.
-        """
+        """Errors that a level shows by itself where the level before showed hardly more."""
         earlier, last = (gauge.unresolved for gauge in gauges[-2:])
-        more = self._work.plan.tests.a_degree
-        return 0.0 if more else np.where(last > _LASTS * earlier, last, 0.0)
+        return np.where(last > _LASTS * earlier, last, 0.0)
 
     def _rate(self, word: str) -> Rate:
         """Usual rate of convergence, or a slower one by the decay over two degrees; one may be luck."""
@@ -562,7 +558,7 @@ class MeasuredError(Estimate):
         if word == AT_INTERFACES:
             rate = AT_DEPTHS
         elif word == INTENSITIES:
-            rate = self._work.plan.tests.rate
+            rate = self._work.plan.rate
         earlier = self._changes.get(self._degree - _DECAY, {}).get(word)
         if not earlier:
             return rate

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from galinx.meshes.kind import DEGREES
 from galinx.meshes.rings import QuadMesh, rings_at_kinks, with_kinks
 
-from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
+from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE
 from ..contact.edges import EdgeExponents
 from ..contact.ends import SHAPES, Punch, half_width_of_load
 from ..contact.fem_plan import (
@@ -40,17 +40,15 @@ from ..contact.fem_plan import (
     crowded_kinks,
     kind_of,
     no_nearer,
-    pressure_moments,
     requirements,
 )
-from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task, make_contact
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
 from ..profiles.punches import Flat
-from .contact import ACROSS, COARSE, AlongLevel, FreeLevel, PunchLevel, without_intensity
+from .contact import ACROSS, COARSE, FreeLevel, PunchLevel, SplineLevel, without_intensity
 from .discretisation import Discretisation
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
@@ -365,7 +363,7 @@ class BetweenKinks(OwnMeshes):
 GROWTH = 2.0
 
 
-class BalancedLevel(SingleLevel):
+class BalancedLevel(SplineLevel, SingleLevel):
     """Contact over layers without intensities, on a mesh drawn for its half-width.
 
     The contact has that half-width under a load of its own. Its half-width under the task's load is
@@ -373,10 +371,6 @@ class BalancedLevel(SingleLevel):
 
     The base of the level has the mesh's half-width and the middle of a contact near by.
     """
-
-    @property
-    def gaps(self) -> tuple[float, float]:  # type: ignore[override]
-        return (min(1.0, self.plan.tests.functions.h),) * 2
 
     @property
     def off(self) -> float:
@@ -410,20 +404,6 @@ class BalancedLevel(SingleLevel):
         # Over its own load the punch's height is that over the task's load times their quotient.
         return h * share ** (1.0 / GROWTH), near + h * slope / share
 
-    def pressure(self, contact: ContactStates) -> Expansion:
-        return self.over_flat(contact.tested(self.moments), contact.g, 1.0)
-
-    def gauge(self, states: SolvedStates) -> Gauge:
-        pressure, σ = states.pressure, states.pressure.σ_YY(ACROSS)
-        # What the last functions add is largest where they are multiplied by most.
-        factor, ends = (np.abs(pressure.series(at)).max(axis=1) for at in (ACROSS, ENDS))
-        unresolved = pressure.unresolved * ends / factor
-        return self.gauge_of_free(states, σ, stresses.of_factor(σ), unresolved)
-
-
-class VaryingBalancedLevel(AlongLevel, BalancedLevel):
-    """Contact over layers whose friction varies along it: that of the mesh's half-width."""
-
     def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
         return np.full(len(contact.g), self.task.body.half_width)
 
@@ -436,7 +416,7 @@ class VaryingBalancedLevel(AlongLevel, BalancedLevel):
         return None
 
 
-class VaryingKinkedLevel(VaryingBalancedLevel, KinkedLevel):
+class KinkedSplineLevel(BalancedLevel, KinkedLevel):
     """Contact under a punch with kinks, on a mesh graded towards these, with any friction along it."""
 
     gaps, nearest = KinkedLevel.gaps, KinkedLevel.nearest  # type: ignore[assignment]
@@ -491,8 +471,7 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray) 
     target = no_nearer(target, NEAR_FREE_END)
     degree = kind.degree(target, task.response.margin)
     return replace(
-        plan, kind=kind, wanted=target, degrees=(degree,) * len(plan.degrees),
-        tests=pressure_moments(task.body.solid, kind, target),
+        plan, kind=kind, wanted=target, degrees=(degree,) * len(plan.degrees)
     )  # fmt: skip
 
 
@@ -618,7 +597,7 @@ class OverLayers(OwnMeshes):
         )
         base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
         mesh = replace(self._work, plan=drawn_for(task, plan, words, base.places), stresses=words)
-        kind = VaryingKinkedLevel if len(base.places) else VaryingBalancedLevel
+        kind = KinkedSplineLevel if len(base.places) else BalancedLevel
         return mesh, task, partial(kind, mesh, task, base=base)
 
 
@@ -635,4 +614,4 @@ class FollowedKinks(OverLayers):
             replace(sought, body=body),
             replace(self._work, plan=replace(plan, graded=base.drawn), stresses=words),
         )
-        return mesh, task, partial(VaryingKinkedLevel, mesh, task, base=base)
+        return mesh, task, partial(KinkedSplineLevel, mesh, task, base=base)

@@ -222,6 +222,10 @@ def march(
 _FEWER_STEPS, _MORE = 0.7, 8
 
 
+#: Indentation over N/(2μ) and centre over a to which differences are relative at least.
+LEAST = 1e-2
+
+
 class Residual:
     """Residuals of motions at one speed.
 
@@ -243,6 +247,8 @@ class Residual:
     def of(self, bases: Sequence[Basis], a: NDArray, v0: NDArray) -> float:
         """Largest tested displacement under the punch besides its indentation, over the largest of that.
 
+        An indentation of less than ``LEAST`` over N/(2μ) counts as that.
+
         Args:
             bases: polynomials of the pressure.
             a: coefficients of their σ_YY, less those before t = 0, (times, bases·terms).
@@ -255,7 +261,7 @@ class Residual:
         v = self._scheme.answered(rows, self._interpolated(a, self._scheme.times))
         v[:, 0] += tests.integral * self._interpolated(v0, self._scheme.times[:, -1])
         largest = float(np.linalg.norm(v, axis=1).max())
-        return largest / max(tests.integral * float(np.abs(v0).max()), np.finfo(float).tiny)
+        return largest / (tests.integral * max(float(np.abs(v0).max()), LEAST))
 
     def _interpolated(self, values: NDArray, t: NDArray) -> NDArray[np.float64]:
         """Values (times, ...), 0 at t = 0, at other times."""

@@ -7,7 +7,7 @@ import pytest
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
-from galinx.solvers.contact.fem_plan import PressureMoments
+from galinx.solvers.contact.estimate import of_degrees
 from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
 
 G = np.array([-0.5])
@@ -36,7 +36,7 @@ class Work:
         kind, wanted = MESHES["confocal"], Requirements(tolerance)
         self.plan = SimpleNamespace(
             kind=kind, wanted=wanted, tolerance=tolerance, degrees=(FIRST,), fixed=False, cuts=1,
-            tests=PressureMoments(),
+            rate=of_degrees(2),
         )  # fmt: skip
         self.errors, self.finer, self.said, self.solved = errors, finer, [], []
         self.progress = self

@@ -103,6 +103,22 @@ def test_unloading_from_steady_motion_by_both_methods():
     assert data["time/fem/centre_of_pressure"][0, -1] < 1.5 * data["time/steady_centre"][0] < 0.0
 
 
+@pytest.mark.parametrize("method", ["fem", "sie"])
+def test_steady_motion_goes_on_and_the_estimate_covers_its_error(method):
+    """Nothing changes: the error is that of the far boundary alone."""
+    scene = {
+        "time": {"start": "steady", "end": 1.0}, "motion.c": 0.8, "friction.mu_c": 0.6,
+        "solve.tolerance": 1e-2, "solve.methods": [method],
+    }  # fmt: skip
+    result = computed("start_from_rest", scene)
+    data, worst = result.data, max(result.comparisons.values())
+    K_I = max(data[f"time/{method}/K_I_{side}"][0, -1] for side in ("left", "right"))
+    off = abs(K_I / data["time/steady_K_I"][0] - 1.0)
+    assert result.verdict == "PASS"
+    assert off <= worst
+    assert off < 1e-13 if method == "sie" else 1e-4 < off < 5e-3
+
+
 def test_a_stroke_by_its_law_is_over_before_the_pressure_leans(monkeypatch):
     """Friction grows as along the strokes of the states; where they turn the direction does."""
     monkeypatch.setattr(over_time, "_HIGHEST", 4)  # of degrees, which tells as much of this

@@ -104,7 +104,7 @@ def test_maps_show_where_each_layer_yields_and_its_interface_in_every_state():
     depths = (5.0, 20.0)
     for panel, depth in zip(drawing.figure.panels, depths, strict=True):
         assert panel.dashes == pytest.approx([-depth])
-        strengths = np.where(panel.map.Y >= -depth, 900.0, 600.0)
+        strengths = np.where(-depth > panel.map.Y, 600.0, 900.0)
         np.testing.assert_allclose(panel.map.level, strengths, rtol=1e-12)
         assert (panel.map.values > strengths[:, None]).any()
     (alone,) = drawn(result, "inside", states=(1,), **chosen).figure.panels

@@ -220,6 +220,7 @@ def surface(of: Archive) -> Drawing:
     same = of.scene.body.alike and N in of.parameters and not choice.states and of.units.dimensionless
     every = of.selected()
     states = of.where(every, **{N: of.parameter(N)[every[0]]}) if same else every
+    states, alike_at = of.once(states, *(y for along in stressed.values() for y in along.values.values()))
     groups = _groups(of, states, width)
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
@@ -245,7 +246,7 @@ def surface(of: Archive) -> Drawing:
     )
     if same:
         caption += " Over N/(2a) they are the same under every load."
-    caption += of.all_at(every)
+    caption += alike_at + of.all_at(every)
     missing = of.not_shown(every, "--figure surface --states")
     return Drawing("surface", caption, figure, left_out=missing)
 
@@ -338,7 +339,10 @@ _SIDES = {"above": "-", "below": (0, (4.0, 1.5))}
 
 def interfaces(of: Archive) -> Drawing:
     """Figure of stresses along interfaces: a column for each interface, or for some of many."""
-    choice, states = of.choice, of.selected()
+    choice = of.choice
+    available = of.by_method(STATE, INTERFACE, ALONG)
+    every = (of.values(row) for rows in available.values() for row in rows.values())
+    states, same = of.once(of.selected(), *every)
     width = choice.size.width if choice.size else PAGE
     names = of.varied(states)
     if not choice.states:
@@ -358,7 +362,6 @@ def interfaces(of: Archive) -> Drawing:
         for i, (depth, same) in enumerate(zip(over_a, alike), 1)
     ]
     columns = spread(range(len(over_a)), max(1, int(width / 2.2)))
-    available = of.by_method(STATE, INTERFACE, ALONG)
     position = position_name(of, "position along the interface ")
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
     X, places = of.data[ALONG_X.path], places_of(of, of.all)
@@ -388,7 +391,7 @@ def interfaces(of: Archive) -> Drawing:
     )
     if len(columns) < len(over_a):
         caption += f" {len(columns)} of {len(over_a)} interfaces are shown; a wider --size shows more."
-    caption += of.all_at(numbers)
+    caption += same + of.all_at(numbers)
     missing = of.not_shown(numbers, "--figure interfaces --states")
     figure = render(panels, choice.size, across_, notes + explained(methods))
     return Drawing("interfaces", caption, figure, left_out=missing)

@@ -109,3 +109,11 @@ def test_maps_show_where_each_layer_yields_and_its_interface_in_every_state():
         assert (panel.map.values > strengths[:, None]).any()
     (alone,) = drawn(result, "inside", states=(1,), **chosen).figure.panels
     assert "20" in alone.title and "V" not in alone.title
+
+
+def test_curves_that_do_not_depend_on_what_is_swept_stand_once():
+    result = computed("coating", {"solid.yield_strength": [1e6, 2e6, 3e6], "friction.mu_c": [0.1, 0.4]})
+    for name in ("surface", "interfaces"):
+        drawing = drawn(result, name)
+        assert "the same for every" in drawing.caption and "4 of 6 states" in drawing.left_out
+        assert not any("Y" in panel.title for panel in drawing.figure.panels)

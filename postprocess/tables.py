@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
+from galinx.solvers.contact.solution import FINITE
 from galinx.texts import plain
 
 from .quantities import (
@@ -412,8 +413,12 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     of_solid = column_of(
         "yields", yielding.FIRST_LOAD, yielding.VON_MISES, "solid.yield_strength", contact.yield_strength
     )
-    if not of_solid and preferred(data, yielding.REACH_LEFT) is not None:
-        of_solid = [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
+    asked = f'"{YIELD}"' in str(data.get(runs.SCENE.path, ""))
+    words = "yes, at the sharp edges" * (preferred(data, yielding.REACH_LEFT) is not None)
+    if asked and contact.yield_strength and FINITE not in contact.modes and not contact.solid.layers:
+        words = words or _share(np.inf)  # at a tip, or beside an end that is free
+    if words and not of_solid:
+        of_solid = [Column("yields", [words] * count, "none", "yields")]
     of_punch = column_of(
         "punch yields", yielding.PUNCH_FIRST_LOAD, yielding.PUNCH_VON_MISES, "punch.solid.yield_strength",
         contact.solid.punch_strength,

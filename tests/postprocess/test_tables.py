@@ -36,6 +36,13 @@ def test_a_stress_that_is_none_has_no_place_beside_others():
     assert rows[tension][2] != "0" and rows[tension + 1][2] != ""
 
 
+def test_a_tilted_punch_that_yields_under_any_load_says_so():
+    punch = {"punch.tilt": 0.01, "punch.load": "400 N/mm", "solid.yield_strength": "300 MPa"}
+    asked = {"output.quantities": ["sif", "yield"], "solve.methods": ["closed_form"]}
+    (told,) = (c for c in computed("tables4_5", punch | asked).table() if c.head == "yields")
+    assert {*told.texts()} == {"yes, under any load"}
+
+
 def test_only_strokes_have_a_friction_loop(tmp_path):
     for strokes, loops in ((None, False), (["forward"], True)):
         archive = tmp_path / f"{loops}.h5"

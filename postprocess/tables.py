@@ -575,8 +575,8 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         if len(same) < len(kept):
             kept = [c for c in kept if c not in same]
             notes = [f"the same in all: {', '.join(f'{c.head}: {c.words(0)}' for c in same)}"]
-        elif width:
-            title, count = f"{title}, the same in all states", 1
+        else:  # one row, as lines
+            title, count, width = f"{title}, the same in all states", 1, max(width, 1)
     notes += _more(count, "states")
     return replace(layout(title, count, kept, width), notes=notes) if kept else Sheet("", [], [])
 

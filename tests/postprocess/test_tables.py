@@ -2,10 +2,11 @@
 
 import csv
 
+import pytest
 from support import computed, here
 
 from galinx.app.results.csv import pieces
-from galinx.postprocess.tables import sliders_sheet, states_sheet
+from galinx.postprocess.tables import limits_sheet, sliders_sheet, states_sheet
 
 SCENE = """
 solid.material = "steel"
@@ -41,6 +42,13 @@ def test_a_tilted_punch_that_yields_under_any_load_says_so():
     asked = {"output.quantities": ["sif", "yield"], "solve.methods": ["closed_form"]}
     (told,) = (c for c in computed("tables4_5", punch | asked).table() if c.head == "yields")
     assert {*told.texts()} == {"yes, under any load"}
+
+
+@pytest.mark.parametrize("width", [0, 80])
+def test_limits_that_are_the_same_in_all_states_stand_once(width):
+    result = computed("coating", {"friction.mu_c": {"from": 0.1, "to": 0.2, "number": 9}})
+    sheet = limits_sheet(result.data, result.units(), width)
+    assert "the same in all" in sheet.title and [row[1] for row in sheet.rows] == ["1", "1"]
 
 
 def test_only_strokes_have_a_friction_loop(tmp_path):

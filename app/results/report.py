@@ -129,12 +129,9 @@ def chart(panel: Panel) -> dict[str, Any]:
             "colorbar": {"title": {"text": label, "side": "right"}, "thickness": 14},
             "hovertemplate": f"X = %{{x:.4g}}, Y = %{{y:.4g}}<br>%{{z:.4g}}<extra>{label}</extra>",
         })  # fmt: skip
-        layout["yaxis"]["scaleanchor"] = "x"
-        for axis in ("xaxis", "yaxis"):  # which are as long as the map, however narrow the page is
-            layout[axis] |= {
-                "constrain": "domain",
-                "constraintoward": "top" if axis[0] == "y" else "left",
-            }
+        # As long as the map, however narrow the page is.
+        layout["xaxis"] |= {"constrain": "domain"}
+        layout["yaxis"] |= {"scaleanchor": "x", "constrain": "domain", "constraintoward": "top"}
     return {"data": data, "layout": layout}
 
 
@@ -195,8 +192,8 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     """Stresses of states behind a slider, along the surface and below it; None where there are none.
 
     Returns:
-        ``states``: labels in HTML; ``of``: number of all states; ``surface``: for each stress a chart a state;
-        ``maps``: name and charts of each stress inside.
+        ``states``: labels in HTML; ``of``: number of all states; ``surface``: for each stress a chart a
+        state; ``maps``: name and charts of each stress inside.
     """
     below, surface = map_names(of), stresses_along(of)
     if not surface and not below:

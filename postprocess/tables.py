@@ -251,7 +251,7 @@ def _occurring(columns: Sequence[Column]) -> list[Column]:
     """Columns of numbers but those that are 0 in all states, with the places of those that are left."""
     left: list[Column] = []
     for one in columns:
-        if np.nan_to_num(one.values).any() or any(one.owner is other for other in left):
+        if np.nan_to_num(one.shown()).any() or any(one.owner is other for other in left):
             left.append(one)
     return left
 
@@ -317,7 +317,7 @@ def _columns(
         if row.type == TEXT:
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():
-            least = length if place or row.scale == CONTACT else stress * (row.unit == "N/(2a)")
+            least = length if place or row.scale in (CONTACT, OVER_A) else stress * (row.unit == "N/(2a)")
             columns.append(
                 Column(
                     f"{head}/a" if units.dimensionless and (place or row.scale == OVER_A) else head,

@@ -122,6 +122,7 @@ class Panel:
         bar: black bar along the top, from where to where.
         dashes: y of dashed lines.
         whole: ticks of x are whole numbers.
+        ticks: of x, where they have room; else, and by default, round numbers.
     """
 
     x: str | None = ""
@@ -142,6 +143,7 @@ class Panel:
     bar: tuple[float, float] | None = None
     dashes: Sequence[float] = ()
     whole: bool = False
+    ticks: Sequence[float] = ()
 
 
 def as_text(label: str) -> str:
@@ -327,6 +329,9 @@ class _Drawn:
                 whole = panel.whole and one is axis.xaxis
                 count = max(2, min(8, int(side / apart)))
                 one.set_major_locator(MaxNLocator(count, integer=whole, steps=[1, 2, 2.5, 5, 10]))
+        few, span = len(panel.ticks) > 1 and axis.get_xscale() == "linear", np.ptp(axis.get_xlim())
+        if few and np.diff(panel.ticks).min() * wide > 0.3 * span:
+            axis.set_xticks(panel.ticks)
         if self.bar is not None:
             assert panel.map
             fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + 0.25)

@@ -187,6 +187,8 @@ class _Sweep:
         if _spans(x, 30.0):  # and the middle number lies midway by ratios rather than by differences
             low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
             logarithmic = "x" * bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
+        ticks = np.unique(x[np.isfinite(x)])
+        ticks = ticks[: len(ticks) * (max(len(f"{value:g}") for value in ticks) <= 4)]
         for name in self.drawn:
             shown, curves = self.columns[name], []
             for k, ((label, numbers), look) in enumerate(zip(self.groups, styles)):
@@ -201,7 +203,7 @@ class _Sweep:
             every = np.concatenate([curve.y for curve in curves])
             crosses = np.nanmin(every) < 0.0 < np.nanmax(every)
             panels.append(Panel(
-                self.label, shown.about, shown.unit, curves, beside=self.beside,
+                self.label, shown.about, shown.unit, curves, beside=self.beside, ticks=ticks,
                 log=logarithmic + "y" * _spans(every, 200.0), at_y=(0.0,) if crosses else (),
             ))  # fmt: skip
         return panels

@@ -2,10 +2,12 @@
 
 import csv
 
+import numpy as np
 import pytest
 from support import computed, here
 
 from galinx.app.results.csv import pieces
+from galinx.postprocess.quantities import validity
 from galinx.postprocess.tables import limits_sheet, sliders_sheet, states_sheet
 
 SCENE = """
@@ -50,6 +52,15 @@ def test_limits_that_are_the_same_in_all_states_stand_once(width):
     sheet = limits_sheet(result.data, result.units(), width)
     assert "the same in all" in sheet.title and len(sheet.rows) == 3
     assert [row[1] for row in sheet.rows[1:]] == ["1", "1"]
+
+
+def test_a_reach_that_is_rounding_is_not_shown():
+    result = computed("tables4_5", {"solve.methods": ["closed_form"], "output.quantities": ["sif"]})
+    paths = [row.path for row in validity.SLIP_REVERSED]
+    for reach, shown in ((1e-9, False), (1e-3, True)):
+        changed = dict.fromkeys(paths, np.full(len(result.data["states/f"]), reach))
+        sheet = limits_sheet({**result.data, **changed}, result.units(), 80)
+        assert ("slip reversed" in str(sheet)) == shown
 
 
 def test_only_strokes_have_a_friction_loop(tmp_path):

@@ -94,7 +94,7 @@ def parameters(of: Archive) -> Drawing:
     figure = render(panels, size, notes=[] if maps else explained(methods), high=0.72)
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
     at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
-    caption = f"What follows from {plain(sweep.label)}{at}."
+    caption = f"What follows from {plain(sweep.label)}{at}.{sweep.same}"
     left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
@@ -114,11 +114,15 @@ class _Sweep:
         fixed: other parameters that differ between states, and the values at which they are held.
         drawn: names of columns.
         more: names of columns that change as well.
+        same: sentence on swept numbers that change no column; "" for none.
     """
 
     def __init__(self, of: Archive) -> None:
         self._of, self.columns = of, columns_of(of)
-        choice, every = of.choice, of.selected()
+        choice, every, self.same = of.choice, of.selected(), ""
+        once = of.once(every, *(column.best for column in self.columns.values()))
+        if of.varied(once[0]) and not (choice.x or choice.by):
+            every, self.same = once
         self.beside: tuple[str, float] | None = None
         self.name, self.label, self.x = self._over(every)
         varied = of.varied(every)

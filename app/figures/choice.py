@@ -206,7 +206,7 @@ class Archive:
             states: numbers of states, all of which are kept where they were chosen.
             curves: numbers of all states, (states, …) each.
         """
-        idle = []
+        idle = list[str]()
         for name in self.varied(states) if not self.choice.states else ():
             each = [self.ordered(self.where(states, **{name: v})) for v in self.distinct(name, states)]
             if "." in name and all(

@@ -272,7 +272,7 @@ def film(of: Archive) -> Drawing:
     )  # fmt: skip
 
     def panels(frame: int) -> list[Panel]:
-        i, made = steps[frame], []
+        i, made = steps[frame], list[Panel]()
         for name, along in held.items():
             shown = along.shown(looks(1), rows=[frames[frame]])
             called = [] if made else ["steady"]

@@ -76,7 +76,8 @@ def short(text: str, most: int = 80) -> str:
 def meant(word: str, valid: Iterable[str]) -> str:
     """Hint at the nearest valid word for the end of a message; "" where nothing is near."""
     by_lower_case = {name.lower(): name for name in valid}
-    close = get_close_matches(short(word).lower(), by_lower_case, 1, 0.6)
+    one_of_two = 0.5 if len(word) == 2 else 0.6
+    close = get_close_matches(short(word).lower(), by_lower_case, 1, one_of_two)
     return f"; did you mean {by_lower_case[close[0]]}?" if close else ""
 
 

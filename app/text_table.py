@@ -14,13 +14,28 @@ from numpy.typing import NDArray
 
 from galinx import files
 
-from .errors import BadInput, excerpt
+from .errors import BadInput, excerpt, meant
 from .scene.units import to_si
 
 #: Bytes of a table.
 _LARGEST = 100 * 10**6
 #: A column's head: its name, and its unit in brackets.
 _HEAD = re.compile(r"\s*([^\[\]()]*?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
+#: Names of columns by what they are, without case.
+_NAMES = {
+    "slip": ("slip",),
+    "time": ("time", "t"),
+    "position": ("position", "x", "displacement"),
+    "friction": (
+        "f", "friction", "friction_coefficient", "coefficient_of_friction", "cof", "mu", "µ", "μ",
+    ),
+    "force": ("force", "friction_force", "tangential_force"),
+    "load": ("load", "normal_load", "normal_force", "n"),
+    "pressure": ("pressure", "p"),
+    "sigma_XX": ("sigma_xx",),
+}  # fmt: skip
+#: What spreadsheets write before the head to name the separator.
+_SEPARATOR = re.compile(r"sep=.?", re.IGNORECASE)
 #: Numbers with a decimal comma, and with a decimal point.
 _COMMA = re.compile(r"\s*[-+]?[0-9]*,[0-9]*(?:[eE][-+]?[0-9]+)?\s*")
 _POINT = re.compile(r"\s*[-+]?[0-9]*\.[0-9]*(?:[eE][-+]?[0-9]+)?\s*")
@@ -43,6 +58,20 @@ class TextTable:
     units: list[str]
     rows: list[tuple[int, list[str]]]
     decimal: str
+
+    @property
+    def kinds(self) -> list[str]:
+        """What the columns are: ``"friction"`` of f, of COF and of mu; "" for any other."""
+        return [
+            next((kind for kind, valid in _NAMES.items() if name in valid), "") for name in self.names
+        ]
+
+    @property
+    def near_miss(self) -> str:
+        """Hint at the name that a column without one may be meant to have, for the end of a message."""
+        valid = [name for names in _NAMES.values() for name in names if len(name) > 1]
+        hints = (meant(name, valid) for name, kind in zip(self.names, self.kinds) if not kind)
+        return next(filter(None, hints), "")
 
     def numbers(self, column: int, unit: str) -> NDArray[np.float64]:
         """Numbers of a column in an SI unit, "" for dimensionless, (rows,).
@@ -81,7 +110,7 @@ class TextTable:
 
 
 def read_table(path: Path, form: str, columns: int = 0) -> TextTable:
-    """Table of a file; lines before the head that begin with # are left out, and empty ones.
+    """Table of a file; before the head lines that begin with #, sep=; and empty ones are left out.
 
     Args:
         path: the file.
@@ -103,7 +132,11 @@ def read_table(path: Path, form: str, columns: int = 0) -> TextTable:
     if len(text) > _LARGEST:
         raise BadInput(f"{path} is larger than {_LARGEST // 10**6} MB, expected a table of numbers")
     lines = text.splitlines()
-    first = next((n for n, line in enumerate(lines) if line.strip() and line[0] != "#"), None)
+    heads_at = (
+        n for n, line in enumerate(lines)
+        if line.strip() and line[0] != "#" and not _SEPARATOR.fullmatch(line.strip())
+    )  # fmt: skip
+    first = next(heads_at, None)
     if first is None and not columns:
         raise BadInput(f"{path} is empty, expected a first line as {form}")
     start = first or 0

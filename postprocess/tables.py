@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
+from galinx.solvers.contact.solution import FINITE
 from galinx.texts import plain
 
 from .quantities import (
@@ -250,7 +251,7 @@ def _occurring(columns: Sequence[Column]) -> list[Column]:
     """Columns of numbers but those that are 0 in all states, with the places of those that are left."""
     left: list[Column] = []
     for one in columns:
-        if np.nan_to_num(one.values).any() or any(one.owner is other for other in left):
+        if np.nan_to_num(one.shown()).any() or any(one.owner is other for other in left):
             left.append(one)
     return left
 
@@ -316,7 +317,7 @@ def _columns(
         if row.type == TEXT:
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():
-            least = length if place or row.scale == CONTACT else stress * (row.unit == "N/(2a)")
+            least = length if place or row.scale in (CONTACT, OVER_A) else stress * (row.unit == "N/(2a)")
             columns.append(
                 Column(
                     f"{head}/a" if units.dimensionless and (place or row.scale == OVER_A) else head,
@@ -378,29 +379,52 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 
 def _share(share: float) -> str:
-    """Yes or no to yield under a share of the strength, with the share; "" for NaN."""
+    """Yes or no to yield under a share of the strength, with the share; "" for NaN.
+
+    What does not yield is not rounded up to 100 %.
+    """
     if share == np.inf:
         return "yes, under any load"
-    return "" if isnan(share) else f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, 3)} %"
+    if isnan(share):
+        return ""
+    digits = next(n for n in range(3, 18) if share >= 1.0 or float(number(100.0 * share, n)) < 100.0)
+    return f"{'yes' if share >= 1.0 else 'no'}, {number(100.0 * share, digits)} %"
 
 
 def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
-    """Columns of whether every state yields, and from which load on; none where that was not computed."""
+    """Columns of whether every state yields, and an elastic punch, and from which load on; none where
+    that was not computed."""
     count, contact = len(data[of.FRICTION.path]), units.contact
-    first, stress = preferred(data, yielding.FIRST_LOAD), preferred(data, yielding.VON_MISES)
-    if first is not None:
-        with np.errstate(divide="ignore"):  # infinite stresses yield under any load
-            shares, unit = np.full(count, units.load) / data[first.path], "of first yield"
-    elif stress is not None and contact.yield_strength:
-        strength = data.get(column("solid.yield_strength"), contact.yield_strength)
-        strength = strength * 2.0 * units.half_width / units.load
-        shares, unit = data[stress.path] / strength, "of the yield strength"
-    elif preferred(data, yielding.REACH_LEFT) is not None:
-        return [Column("yields", ["yes, at the sharp edges"] * count, "none", "yields")]
-    else:
-        return []
+
+    def column_of(head: str, first: Any, stress: Any, key: str, strength: float | None) -> list[Column]:
+        load, largest = preferred(data, first), preferred(data, stress)
+        if load is not None:
+            with np.errstate(divide="ignore"):  # infinite stresses yield under any load
+                shares, unit = np.full(count, units.load) / data[load.path], "of first yield"
+        elif largest is not None and strength:
+            unit = "of the yield strength"
+            over = data.get(column(key), strength) * 2.0 * units.half_width / units.load
+            shares = data[largest.path] / over
+        else:
+            return []
+        name = "_".join(head.split())
+        return [Column(head, [_share(share) for share in shares], unit, name)]
+
+    of_solid = column_of(
+        "yields", yielding.FIRST_LOAD, yielding.VON_MISES, "solid.yield_strength", contact.yield_strength
+    )
+    asked = f'"{YIELD}"' in str(data.get(runs.SCENE.path, ""))
+    words = "yes, at the sharp edges" * (preferred(data, yielding.REACH_LEFT) is not None)
+    if asked and contact.yield_strength and FINITE not in contact.modes and not contact.solid.layers:
+        words = words or _share(np.inf)  # at a tip, or beside an end that is free
+    if words and not of_solid:
+        of_solid = [Column("yields", [words] * count, "none", "yields")]
+    of_punch = column_of(
+        "punch yields", yielding.PUNCH_FIRST_LOAD, yielding.PUNCH_VON_MISES, "punch.solid.yield_strength",
+        contact.solid.punch_strength,
+    )  # fmt: skip
     loads = _columns(data, units, [_Spec("load at first yield", yielding.FIRST_LOAD)])
-    return [Column("yields", [_share(share) for share in shares], unit, "yields"), *loads]
+    return [*of_solid, *of_punch, *loads]
 
 
 def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
@@ -472,7 +496,7 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
     """
     columns, count = state_columns(data, units), len(data[of.FRICTION.path])
     known = {*parameters(data), of.LOAD.path, of.FRICTION.path, ""}
-    given = [column for column in columns if column.path in known and column.name != "yields"]
+    given = [column for column in columns if column.path in known and "yields" not in column.head]
     same = [
         c for c in given if c.constant and not c.place and (count > 1 or c.name in ("motion", "X_over_L"))
     ]
@@ -551,8 +575,8 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         if len(same) < len(kept):
             kept = [c for c in kept if c not in same]
             notes = [f"the same in all: {', '.join(f'{c.head}: {c.words(0)}' for c in same)}"]
-        elif width:
-            title, count = f"{title}, the same in all states", 1
+        else:  # one row, as lines
+            title, count, width = f"{title}, the same in all states", 1, max(width, 1)
     notes += _more(count, "states")
     return replace(layout(title, count, kept, width), notes=notes) if kept else Sheet("", [], [])
 

@@ -184,7 +184,8 @@ class Units:
         if kind == "N/(2a)":
             unit, factor, size = "Pa", N / (2.0 * a), np.median(solved(self.load / self.half_width)) / 2.0
         elif kind in (OVER_A, X_OVER_A, CONTACT):
-            unit, factor, size = "m", (1.0 if kind == CONTACT else a), np.max(solved(self.half_width))
+            unit, factor = "m", (1.0 if kind == CONTACT else a)
+            size = max(np.max(np.abs(solved(length))) for length in (self.half_width, self.middle))
             offset = self.middle if kind == X_OVER_A and of_states_ else 0.0
         elif kind == OVER_C_S:
             unit, factor = "m/s", (self.c_s if of_states_ else contact.solid.c_s)

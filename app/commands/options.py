@@ -82,7 +82,7 @@ def read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
 
 dimensionless = click.option(
     "--dimensionless", is_flag=True,
-    help="Stresses over N/(2a), lengths over a, speeds over c_s; default: MPa, mm, m/s.",
+    help="Stresses over N/(2a), places over a, speeds over c_s, loads, v₀ in SI; default: MPa, mm, m/s.",
 )  # fmt: skip
 
 figures_to = click.option(

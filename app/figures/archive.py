@@ -60,7 +60,7 @@ def film(of: Archive) -> Drawing:
         made = [stresses.surface_panels(along, frames, x=x) for along in alone]
     elif stresses.map_names(of):
         fields, shown = stresses.Fields(of), of.choice.quantities or ("sigma_XX", "von_mises")
-        made = [fields.panels(name, frames, level=0.0, equal=False) for name in shown]
+        made = [fields.panels(name, frames, level=np.inf, equal=False) for name in shown]
     else:
         raise BadInput('a film needs stresses; add "surface" to output.quantities, or output.map')
     loop = Loops(of).of(frames[0])

@@ -198,6 +198,25 @@ class Archive:
             states = states[self.parameter(name)[states] == value]
         return states
 
+    def once(self, states: NDArray, *curves: NDArray) -> tuple[NDArray[np.int64], str]:
+        """Some states, those with the first value of each swept number that changes no curve, and a
+        sentence on these numbers.
+
+        Args:
+            states: numbers of states, all of which are kept where they were chosen.
+            curves: numbers of all states, (states, …) each.
+        """
+        idle = list[str]()
+        for name in self.varied(states) if not self.choice.states else ():
+            each = [self.ordered(self.where(states, **{name: v})) for v in self.distinct(name, states)]
+            if "." in name and all(
+                len(other) == len(each[0])
+                and np.allclose(y[other], y[each[0]], rtol=1e-9, atol=0.0, equal_nan=True)
+                for other in each[1:] for y in curves
+            ):  # fmt: skip
+                states, idle = each[0], [*idle, plain(f"${self.axis(name)[0]}$")]
+        return states, f" They are the same for every {' and '.join(idle)}." * bool(idle)
+
     def ordered(self, states: NDArray) -> NDArray[np.int64]:
         """Some states in the order of their parameters, the first parameter slowest."""
         return states[np.lexsort([self._places(name, states) for name in self.parameters][::-1])]

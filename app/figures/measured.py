@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.units import Units, number
 
-from ..errors import BadInput, listed, nearest, short
+from ..errors import BadInput, listed
 from ..scene.units import to_si
 from ..text_table import read_table
 from .render import DOTS, Curve, Panel, as_text
@@ -17,11 +17,10 @@ from .style import Look
 
 POSITION, SLIP, PRESSURE, TENSION, FRICTION = "position", "slip", "sigma_YY", "sigma_XX", "f"
 
-#: Columns by their names, which no case distinguishes, and their SI units.
+#: Columns by what they are, and their SI units.
 _COLUMNS = {
-    **dict.fromkeys(("position", "x"), (POSITION, "m")), "slip": (SLIP, "m"),
-    **dict.fromkeys(("pressure", "p"), (PRESSURE, "Pa")), "sigma_xx": (TENSION, "Pa"),
-    **dict.fromkeys(("f", "friction", "friction_coefficient"), (FRICTION, "")),
+    "position": (POSITION, "m"), "slip": (SLIP, "m"), "pressure": (PRESSURE, "Pa"),
+    "sigma_XX": (TENSION, "Pa"), "friction": (FRICTION, ""),
 }  # fmt: skip
 #: Figures that show what was measured.
 _FIGURES = {PRESSURE: "surface", TENSION: "surface", FRICTION: "friction"}
@@ -113,18 +112,17 @@ def read(path: Path) -> Measured:
 
     Args:
         path: a file whose first line names the columns, units in brackets: position and pressure or
-            sigma_XX; slip (or position) and f.
+            sigma_XX; slip (or position) and f; with any others beside them.
 
     Raises:
         BadInput: it is no such table; the message says what was found.
     """
     table = read_table(path, _FORM)
     columns: dict[str, NDArray[np.float64]] = {}
-    for n, name in enumerate(table.names):
-        if name not in _COLUMNS:
-            hint = nearest(name, _COLUMNS)
-            raise BadInput(f"{path}, line 1: found the unknown column {short(name)!r}{hint}")
-        kind, unit = _COLUMNS[name]
+    for n, (name, what) in enumerate(zip(table.names, table.kinds)):
+        if what not in _COLUMNS:
+            continue
+        kind, unit = _COLUMNS[what]
         if kind in columns:
             raise BadInput(f"{path}, line 1: found two columns of {name}, expected one")
         if unit and not table.units[n]:
@@ -144,5 +142,5 @@ def read(path: Path) -> Measured:
     }
     if not points or len(points) < len(_FIGURES.keys() & columns.keys()):
         found = f"{listed(table.names)} in {len(table.rows)} rows"
-        raise BadInput(f"{path}: found {found}, expected {_FORM} and rows of numbers")
+        raise BadInput(f"{path}: found {found}, expected {_FORM} and rows of numbers{table.near_miss}")
     return Measured(path.name, points)

@@ -272,10 +272,11 @@ def film(of: Archive) -> Drawing:
     )  # fmt: skip
 
     def panels(frame: int) -> list[Panel]:
-        i, made = steps[frame], []
+        i, made = steps[frame], list[Panel]()
         for name, along in held.items():
             shown = along.shown(looks(1), rows=[frames[frame]])
-            shown += steady[name].shown([_STEADY], width=0.8) if steady else []
+            called = [] if made else ["steady"]
+            shown += steady[name].shown([_STEADY], called, 0.8) if steady else []
             made.append(surface_panel(shown, ylims[name]))
         made[0] = replace(made[0], title=_at_time(of, of.data[rows.TIMES.path][i]))
         return [*made, with_dot(way, t[i], centre[i])]

@@ -85,7 +85,7 @@ class Map:
         signed: zero is in the middle of the colours.
         extend: ends of the bar at which colours are clipped.
         lines: draw lines of equal numbers.
-        level: number along which a white line is drawn; 0 for none.
+        level: number of each Y that is reached along a white line, (rows,); infinite for none.
         above: numbers at -Y, (rows, columns), and their level; None for nothing above Y = 0.
         equal: both axes have one scale.
     """
@@ -98,8 +98,8 @@ class Map:
     signed: bool = False
     extend: str = "neither"
     lines: bool = False
-    level: float = 0.0
-    above: tuple[NDArray, float] | None = None
+    level: Any = np.inf
+    above: tuple[NDArray, Any] | None = None
     equal: bool = True
 
 
@@ -122,6 +122,7 @@ class Panel:
         bar: black bar along the top, from where to where.
         dashes: y of dashed lines.
         whole: ticks of x are whole numbers.
+        ticks: of x, where they have room; else, and by default, round numbers.
     """
 
     x: str | None = ""
@@ -142,6 +143,7 @@ class Panel:
     bar: tuple[float, float] | None = None
     dashes: Sequence[float] = ()
     whole: bool = False
+    ticks: Sequence[float] = ()
 
 
 def as_text(label: str) -> str:
@@ -327,6 +329,9 @@ class _Drawn:
                 whole = panel.whole and one is axis.xaxis
                 count = max(2, min(8, int(side / apart)))
                 one.set_major_locator(MaxNLocator(count, integer=whole, steps=[1, 2, 2.5, 5, 10]))
+        few, span = len(panel.ticks) > 1 and axis.get_xscale() == "linear", np.ptp(axis.get_xlim())
+        if few and np.diff(panel.ticks).min() * wide > 0.3 * span:
+            axis.set_xticks(panel.ticks)
         if self.bar is not None:
             assert panel.map
             fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + 0.25)
@@ -430,8 +435,9 @@ def _draw_map(axis: Axes, shown: Map) -> None:
         if shown.lines:
             levels = MaxNLocator(9).tick_values(lowest, shown.limit)
             axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
-        if values.max() > level > 0.0:
-            axis.contour(X, side * Y, values, [level], colors="white", linewidths=1.0)
+        share = values / np.reshape(level, (-1, 1))
+        if share.max() > 1.0:
+            axis.contour(X, side * Y, share, [1.0], colors="white", linewidths=1.0)
     top = -Y[0] if shown.above else max(Y[-1], 0.0) if shown.equal else Y[-1]
     axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], top))
 

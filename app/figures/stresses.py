@@ -22,7 +22,7 @@ from galinx.postprocess.quantities.quantity import (
 )
 from galinx.postprocess.quantities.states import CENTRE, HALF_WIDTH, LOAD, RESULTANT_RATIO, SPEED
 from galinx.postprocess.quantities.stresses import PRESSURE, RATIO_ALONG, SURFACE_X
-from galinx.postprocess.quantities.swept import INTERFACE_DEPTHS, interface_depths
+from galinx.postprocess.quantities.swept import interface_depths
 from galinx.solvers.contact.edges import from_edge, under_punch
 from galinx.solvers.contact.equation import under_punch as half_plane_under_punch
 from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, make_contact
@@ -31,6 +31,8 @@ from galinx.texts import number, plain
 
 from ..plan.variants import of_state
 from .choice import (
+    PLACE,
+    STROKE,
     Archive,
     C,
     Drawing,
@@ -218,6 +220,7 @@ def surface(of: Archive) -> Drawing:
     same = of.scene.body.alike and N in of.parameters and not choice.states and of.units.dimensionless
     every = of.selected()
     states = of.where(every, **{N: of.parameter(N)[every[0]]}) if same else every
+    states, alike_at = of.once(states, *(y for along in stressed.values() for y in along.values.values()))
     groups = _groups(of, states, width)
     every = [state for _, numbers, _ in groups for state in numbers]
     panels: list[Panel] = []
@@ -243,7 +246,7 @@ def surface(of: Archive) -> Drawing:
     )
     if same:
         caption += " Over N/(2a) they are the same under every load."
-    caption += of.all_at(every)
+    caption += alike_at + of.all_at(every)
     missing = of.not_shown(every, "--figure surface --states")
     return Drawing("surface", caption, figure, left_out=missing)
 
@@ -336,7 +339,10 @@ _SIDES = {"above": "-", "below": (0, (4.0, 1.5))}
 
 def interfaces(of: Archive) -> Drawing:
     """Figure of stresses along interfaces: a column for each interface, or for some of many."""
-    choice, states = of.choice, of.selected()
+    choice = of.choice
+    available = of.by_method(STATE, INTERFACE, ALONG)
+    every = (of.values(row) for rows in available.values() for row in rows.values())
+    states, same = of.once(of.selected(), *every)
     width = choice.size.width if choice.size else PAGE
     names = of.varied(states)
     if not choice.states:
@@ -356,7 +362,6 @@ def interfaces(of: Archive) -> Drawing:
         for i, (depth, same) in enumerate(zip(over_a, alike), 1)
     ]
     columns = spread(range(len(over_a)), max(1, int(width / 2.2)))
-    available = of.by_method(STATE, INTERFACE, ALONG)
     position = position_name(of, "position along the interface ")
     shown = [require_one_of("quantity", name, available) for name in choice.quantities or available]
     X, places = of.data[ALONG_X.path], places_of(of, of.all)
@@ -386,7 +391,7 @@ def interfaces(of: Archive) -> Drawing:
     )
     if len(columns) < len(over_a):
         caption += f" {len(columns)} of {len(over_a)} interfaces are shown; a wider --size shows more."
-    caption += of.all_at(numbers)
+    caption += same + of.all_at(numbers)
     missing = of.not_shown(numbers, "--figure interfaces --states")
     figure = render(panels, choice.size, across_, notes + explained(methods))
     return Drawing("interfaces", caption, figure, left_out=missing)
@@ -408,6 +413,7 @@ _MAPS = {
 }
 #: What names of quantities in an elastic punch begin with.
 _PUNCH = "punch_"
+_NO_DEPTHS = np.empty(0)
 #: The stress that no archive has, and those that it follows from.
 _SHEAR, _COMPONENTS = "max_shear", ("sigma_XX", "sigma_YY", "sigma_XY")
 
@@ -448,19 +454,30 @@ class Fields:
         # The largest values, at the edges of the punch, would leave no colours for the rest.
         return values, float(np.quantile(np.abs(values), 0.985)) or 1.0
 
-    def above(self, name: str, method: str, state: int) -> tuple[NDArray, float] | None:
+    def above(self, name: str, method: str, state: int) -> tuple[NDArray, NDArray] | None:
         """A stress of a state in an elastic punch at -Y, and its strength; None without."""
         values = self._values(name, method, [state], _PUNCH)
         if values is None:
             return None
-        return values[0], self._level(name, of_state(self._of.scene, state)[0].solid.punch_strength)
+        return values[0], self._level(name, [of_state(self._of.scene, state)[0].solid.punch_strength])
 
-    def _level(self, name: str, strength: float | None) -> float:
-        """Yield strength [Pa] in the figure's units where a map shows von Mises stresses, 0 for none."""
-        of, units = self._of, self._of.units
-        if name != "von_mises" or not strength or of.scene.layers or units.dimensionless:
-            return 0.0
-        return strength * float(np.max(units.stress.factor * 2.0 * units.half_width / units.load))
+    def _level(
+        self, name: str, strengths: Sequence[float | None], depths: NDArray = _NO_DEPTHS
+    ) -> NDArray[np.float64]:
+        """Yield strength at every Y in the figure's units where a map shows von Mises stresses, (rows,);
+        infinite where there is none.
+
+        Args:
+            name: of the stress.
+            strengths: of bodies from the surface down [Pa].
+            depths: where they meet, over a.
+        """
+        units = self._of.units
+        if name != "von_mises" or units.dimensionless:
+            return np.full(len(self.Y), np.inf)
+        known = np.array([strength or np.inf for strength in strengths])
+        factor = float(np.max(units.stress.factor * 2.0 * units.half_width / units.load))
+        return factor * known[np.searchsorted(depths, -self.Y)]
 
     def label(self, name: str) -> str:
         """Label of the colour bar of a quantity."""
@@ -478,11 +495,13 @@ class Fields:
             options: further attributes of the map.
         """
         of, ((a, b),) = self._of, places_of(self._of, [state])
-        level = self._level(name, of_state(of.scene, state)[0].half_plane.yield_strength)
+        depths = _depths(of, state)
+        level = self._level(name, of_state(of.scene, state)[0].body.strengths, depths)
         shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
         x = position_name(of, "")
         drawn = Map(b + a * self.X, a * self.Y, values, limit=limit, **shown)
-        return Panel(x, x.replace("X", "Y"), map=drawn, bar=(b - a, b + a))
+        heights = (-a * depths).tolist()
+        return Panel(x, x.replace("X", "Y"), map=drawn, bar=(b - a, b + a), dashes=heights)
 
     def panels(self, name: str, states: Sequence[int], **options: Any) -> list[Panel]:
         """A panel for each of some states by the first method, all with the same colours."""
@@ -505,11 +524,12 @@ def inside(of: Archive) -> Drawing:
         every = of.where(every, **of.fixed(varied[1:], every))
         states = sorted({int(every[0]), int(every[-1])})
     alone, wide = len(names) == len(states) == 1, len(states) > 1
-    apart = of.varied(states) or ([C] if C in varied or alone else [])
+    swept = [name for name in varied if name not in (PLACE, STROKE)]
+    apart = of.varied(states) or swept or [C] * alone
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
-    dashes, panels, off = _interfaces(of), list[Panel](), 0.0
+    panels, off = list[Panel](), 0.0
     for n, name in enumerate(names):
         every, limit = fields.of_states(name, method, states)
         low, high = name.startswith("sigma") and every.min() < -limit, every.max() > limit
@@ -525,13 +545,13 @@ def inside(of: Archive) -> Drawing:
             )  # fmt: skip
             panels.append(replace(
                 panel, x=panel.x if not wide or n == len(names) - 1 else None,
-                y=panel.y if k == 0 else None, dashes=dashes,
+                y=panel.y if k == 0 else None,
                 title=of.label(state, apart) if n == 0 or not wide else "",
             ))  # fmt: skip
     maps = [panel.map for panel in panels if panel.map]
     both = any(m.above for m in maps)
     bodies = [body for m in maps for body in ((m.values, m.level), m.above) if body]
-    yields = any(0.0 < level < values.max() for values, level in bodies)
+    yields = any((values > level[:, None]).any() for values, level in bodies)
     xlim, ylim = (min(m.X[0] for m in maps), max(m.X[-1] for m in maps)), min(m.Y[0] for m in maps)
     panels = [replace(panel, xlim=xlim, ylim=(ylim, -ylim if both else 0.0)) for panel in panels]
     columns = len(states) if wide else across(size.width, len(names), 2.4) if size else 1
@@ -542,7 +562,7 @@ def inside(of: Archive) -> Drawing:
         f"{of.text(states[0], fixed)}. They spread from the edges; beyond an arrow at the end of a "
         "bar its colours are clipped."
     )
-    caption += " Dashed lines are the interfaces." * bool(dashes)
+    caption += " Dashed lines are the interfaces." * any(panel.dashes for panel in panels)
     caption += f" Within the white line {'a body' if both else 'the solid'} would yield." * yields
     if off:
         caption += (
@@ -553,13 +573,10 @@ def inside(of: Archive) -> Drawing:
     return Drawing("inside", caption, render(panels, size, columns), True, missing)
 
 
-def _interfaces(of: Archive) -> list[float]:
-    """Heights of the lower faces of layers in the figure's units; none where these differ by state."""
-    unit, depths = of.scene.body.depths
-    factor = of.units.length.factor if unit == "1" else _length(of, 1.0)[0]
-    if INTERFACE_DEPTHS.path in of.data or np.ndim(factor) or (unit != "1" and of.units.dimensionless):
-        return []
-    return (-factor * depths).tolist()
+def _depths(of: Archive, state: int) -> NDArray[np.float64]:
+    """Depths of the lower faces of layers of a state, over the half-width of its contact."""
+    half_widths = np.broadcast_to(of.units.half_width, len(of.all))
+    return np.asarray(of_state(of.scene, state)[0].solid.depths / half_widths[state])
 
 
 def map_names(of: Archive) -> list[str]:

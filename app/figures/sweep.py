@@ -94,7 +94,7 @@ def parameters(of: Archive) -> Drawing:
     figure = render(panels, size, notes=[] if maps else explained(methods), high=0.72)
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
     at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
-    caption = f"What follows from {plain(sweep.label)}{at}."
+    caption = f"What follows from {plain(sweep.label)}{at}.{sweep.same}"
     left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
@@ -114,11 +114,15 @@ class _Sweep:
         fixed: other parameters that differ between states, and the values at which they are held.
         drawn: names of columns.
         more: names of columns that change as well.
+        same: sentence on swept numbers that change no column; "" for none.
     """
 
     def __init__(self, of: Archive) -> None:
         self._of, self.columns = of, columns_of(of)
-        choice, every = of.choice, of.selected()
+        choice, every, self.same = of.choice, of.selected(), ""
+        once = of.once(every, *(column.best for column in self.columns.values()))
+        if of.varied(once[0]) and not (choice.x or choice.by):
+            every, self.same = once
         self.beside: tuple[str, float] | None = None
         self.name, self.label, self.x = self._over(every)
         varied = of.varied(every)
@@ -187,6 +191,8 @@ class _Sweep:
         if _spans(x, 30.0):  # and the middle number lies midway by ratios rather than by differences
             low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
             logarithmic = "x" * bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
+        ticks = np.unique(x[np.isfinite(x)])
+        ticks = ticks[: len(ticks) * (max(len(f"{value:g}") for value in ticks) <= 4)]
         for name in self.drawn:
             shown, curves = self.columns[name], []
             for k, ((label, numbers), look) in enumerate(zip(self.groups, styles)):
@@ -201,7 +207,7 @@ class _Sweep:
             every = np.concatenate([curve.y for curve in curves])
             crosses = np.nanmin(every) < 0.0 < np.nanmax(every)
             panels.append(Panel(
-                self.label, shown.about, shown.unit, curves, beside=self.beside,
+                self.label, shown.about, shown.unit, curves, beside=self.beside, ticks=ticks,
                 log=logarithmic + "y" * _spans(every, 200.0), at_y=(0.0,) if crosses else (),
             ))  # fmt: skip
         return panels

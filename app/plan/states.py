@@ -165,10 +165,8 @@ def speeds(scene: Scene) -> tuple[float, ...]:
             limit = (
                 f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s (by closed_form alone, {limit})"
             )
-        raise BadInput(
-            f"motion.speed = {listed(fast)} m/s: expected less than {limit}"
-            + "".join(f"; {text}" for text in oddities(scene))
-        )
+        fault = f"motion.speed = {listed(fast)} m/s: expected less than {limit}"
+        raise BadInput("; ".join([*oddities(scene), fault]))  # what is unusual may be the cause
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 
 

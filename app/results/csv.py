@@ -136,8 +136,11 @@ def _of_loops(data: dict[str, Any], units: Units, block: slice) -> list[_Column]
         values = data.get(row.path, np.zeros(len(loop)))
         return len(np.unique(loop)) < len({*zip(loop.tolist(), values.tolist())})
 
-    shared = [row for row in (SPEED, LOAD) if differs(row)]
-    return _parameters(data, units, own, 2, (MOTION, POSITION, *shared))
+    columns = _parameters(data, units, own, 2, (MOTION, POSITION, *[SPEED] * differs(SPEED)))
+    if differs(LOAD):  # energies are those under the first
+        head, first = columns[-1]
+        columns[-1] = f"cycle_dissipated_{head}", first
+    return columns
 
 
 def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:

@@ -30,15 +30,6 @@ from ..scene import read as scenes
 from ..scene.values import Number, kind_of
 from ..text_table import read_table
 
-#: Names of columns by what they are; a friction with a unit of force is a force.
-_NAMES = {
-    "slip": ("slip",),
-    "time": ("time", "t"),
-    "position": ("position", "x", "displacement"),
-    "friction": ("f", "friction", "friction_coefficient", "mu", "µ", "μ"),
-    "force": ("force", "friction_force", "tangential_force"),
-    "load": ("load", "normal_load", "normal_force", "n"),
-}
 _FORM = '"slip [mm],f", "time [s],position [mm],f", or with "force [N],load [N]" for f'
 
 
@@ -77,8 +68,7 @@ def read(path: Path) -> Table:
             if table.units[n] not in ("", "1", "-") and table.factor(n, unit):
                 forces[n] = unit
     columns: dict[str, int] = {}
-    for n, name in enumerate(table.names):
-        kind = next((kind for kind, valid in _NAMES.items() if name in valid), "")
+    for n, (name, kind) in enumerate(zip(table.names, table.kinds)):
         if kind == "friction" and n in forces:  # F [N] is a force, N without a unit of one no load
             kind = "force"
         if name != "n" or n in forces:
@@ -96,7 +86,9 @@ def read(path: Path) -> Table:
 
     timed = {"time", "position"} <= columns.keys()
     if not (timed or "slip" in columns) or not {"friction", "force"} & columns.keys():
-        raise BadInput(f"{path}, line 1: found the columns {excerpt(table.names)}, expected {_FORM}")
+        hint = "; alone, a slip since rest is named slip" if "position" in columns else table.near_miss
+        found = f"found the columns {excerpt(table.names)}"
+        raise BadInput(f"{path}, line 1: {found}, expected {_FORM}{hint}")
     if "friction" in columns:
         f = table.numbers(columns["friction"], "")
     elif "load" not in columns:
@@ -118,7 +110,10 @@ def read(path: Path) -> Table:
     if len(clock) < 3 or len(back):
         row = int(back[0]) + 1 if len(clock) >= 3 else len(clock) - 1
         line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
-        raise BadInput(f"{path}, line {line}: expected three or more rows in which the {name} grows")
+        hint = "; where it falls, as in a loop, write time and position" * (len(back) > 0 and not timed)
+        raise BadInput(
+            f"{path}, line {line}: expected three or more rows in which the {name} grows{hint}"
+        )
     if not np.ptp(X):
         raise BadInput(f"{path}: found one position in all rows, expected a motion")
     if not timed and X[0] < 0.0:

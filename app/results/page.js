@@ -107,7 +107,7 @@ addEventListener("load", async () => {
       line: { ...trace.line, color: COLOURS[k % 5] }, marker: { ...trace.marker, color: COLOURS[k % 5] } });
     const show = () => {
       const now = Number(slider.value), states = [...new Set([now, ...held])];
-      byId("which").textContent = large.states[now];
+      byId("which").innerHTML = large.states[now];
       large.surface.forEach((charts, n) => draw(byId(`surface-${n}`), states.length > 1 ?
         states.flatMap((state, k) => charts[state].data.map(beside(state, k))) : charts[now].data, charts[now].layout));
       if (chosen) {

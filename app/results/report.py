@@ -58,7 +58,9 @@ _WIDE = 100
 _CELLS, _NUMBERS = 60_000, 60_000
 
 #: Names of stresses, factors and coefficients, as archives, verdicts and figures write them.
-_INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|κ|δ)_([A-Za-z0-9]{1,3})\b")
+_INDEXED = re.compile(r"\b(K|N|F|P|c|v|μ|σ|sigma|τ|κ|δ)_([A-Za-z0-9]{1,3})\b")
+#: A symbol with an index, which the choice of a form cannot typeset.
+_SYMBOL = re.compile(r" \w_\w+")
 #: Powers of ten as numbers in programs and as plain text write them.
 _POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
 _RAISED = re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
@@ -127,7 +129,9 @@ def chart(panel: Panel) -> dict[str, Any]:
             "colorbar": {"title": {"text": label, "side": "right"}, "thickness": 14},
             "hovertemplate": f"X = %{{x:.4g}}, Y = %{{y:.4g}}<br>%{{z:.4g}}<extra>{label}</extra>",
         })  # fmt: skip
-        layout["yaxis"]["scaleanchor"] = "x"
+        # As long as the map, however narrow the page is.
+        layout["xaxis"] |= {"constrain": "domain"}
+        layout["yaxis"] |= {"scaleanchor": "x", "constrain": "domain", "constraintoward": "top"}
     return {"data": data, "layout": layout}
 
 
@@ -188,8 +192,8 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     """Stresses of states behind a slider, along the surface and below it; None where there are none.
 
     Returns:
-        ``states``: labels; ``of``: number of all states; ``surface``: for each stress a chart a state;
-        ``maps``: name and charts of each stress inside.
+        ``states``: labels in HTML; ``of``: number of all states; ``surface``: for each stress a chart a
+        state; ``maps``: name and charts of each stress inside.
     """
     below, surface = map_names(of), stresses_along(of)
     if not surface and not below:
@@ -200,7 +204,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     shown = spread(of.selected().tolist(), max(1, _NUMBERS // max(sizes)))
     varied = of.varied()
     made: dict[str, Any] = {
-        "states": [f"state {i}{': ' * bool(varied)}{of.text(i, varied)}" for i in shown],
+        "states": [str(markup(f"state {i}{': ' * bool(varied)}{of.text(i, varied)}")) for i in shown],
         "of": len(of.all), "surface": [], "maps": [],
     }  # fmt: skip
     for along in surface.values():
@@ -212,7 +216,8 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     for name in (name for name in ("von_mises", *SHOWN) if name in below):
         assert fields
         charts = [chart(panel) for panel in fields.panels(name, shown)]
-        made["maps"].append({"label": plain(fields.label(name)), "charts": charts})
+        words = _SYMBOL.sub("", plain(fields.label(name)))
+        made["maps"].append({"label": words, "charts": charts})
     return made
 
 

@@ -377,17 +377,18 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     return scenes.parse(changed(available[name], changes or {}), name)
 
 
-def compute(scene: Scene, progress: bool = False) -> Result:
+def compute(scene: Scene | Path | str, progress: bool = False) -> Result:
     """Compute a scene in memory.
 
     Args:
-        scene: the scene.
+        scene: the scene, or its file.
         progress: show a bar on a terminal.
 
     Raises:
-        BadInput: the scene asks for what has no answer.
+        BadInput: the file cannot be read, or the scene has faults or asks for what has no answer.
         SolveError: no speed could be solved.
     """
+    scene = scene if isinstance(scene, Scene) else read_scene(scene)
     data = Memory()
     with Progress() if progress else nullcontext() as shown:
         attributes = compute_into(scene, data, shown)

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Item
@@ -190,16 +191,19 @@ def _change(tree: Any, path: str, value: Any) -> None:
         raise ValueError(f"found {excerpt(path)}, expected section.key, as in friction.mu_c")
     if isinstance(value, str) and len(value) > _LONGEST:
         raise ValueError(f"found a text of {len(value)} characters, expected at most {_LONGEST}")
-    for section in sections:
-        tree = _section(tree, section)
+    for depth, section in enumerate(sections):
+        tree = _section(tree, section, tomlkit.inline_table() if depth else tomlkit.table())
     if value is None:
         del tree[key]
     else:
         tree[key] = _item(value)
 
 
-def _section(tree: Any, name: str) -> Any:
-    """Section of a scene, which is made where it is missing, or a layer by its number, ``layer[0]``."""
+def _section(tree: Any, name: str, new: Any) -> Any:
+    """Section of a scene, or a layer by its number, ``layer[0]``.
+
+    A missing one is ``new``: within a section it stands in one line, which fits below dotted keys too.
+    """
     match = _NUMBERED.fullmatch(name)
     tables = tree.get(match[1] if match else name)
     if isinstance(tables, list) or match or name == "layer":
@@ -212,7 +216,7 @@ def _section(tree: Any, name: str) -> Any:
                 f"{count}, {first}, as in layer[0].thickness"
             )
         return tables[number]  # type: ignore[index]
-    section = tree.setdefault(name, tomlkit.table())
+    section = tree.setdefault(name, new)
     if not isinstance(section, dict):
         raise ValueError(f"found {excerpt(name)} without keys, expected a section")
     return section
@@ -220,6 +224,8 @@ def _section(tree: Any, name: str) -> Any:
 
 def _item(value: Any) -> Any:
     """A value as tomlkit holds it; lists are parsed, as the time to build one grows with its square."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
     if isinstance(value, dict) and not isinstance(value, Item):  # a range; stays in its line
         (table := tomlkit.inline_table()).update(value)
         return table

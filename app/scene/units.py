@@ -13,7 +13,7 @@ from functools import lru_cache
 from math import isfinite
 from typing import Any
 
-from ..errors import excerpt
+from ..errors import excerpt, meant
 
 #: Most characters of a quantity.
 LONGEST = 200
@@ -169,6 +169,9 @@ def to_si(value: Any, unit: str) -> float:
     try:
         if isinstance(value, str):
             given, target = quantity(value), units(unit)
+            if unit == "N/m" and in_units(given, units("N")) is not None:
+                expected = "a force per depth, such as 100 N/mm"
+                raise ValueError("which is a force")
             metric = in_units(given, target)
             number = _by_pint(given, target) if metric is None else metric
         else:
@@ -201,7 +204,9 @@ def _by_pint(given: Quantity, target: Units) -> float:
             try:
                 of_pint = table.get_name(name)
             except pint.UndefinedUnitError:
-                raise ValueError(f"with the unknown unit {excerpt(name)}") from None
+                hint = meant(name, _UNITS).removeprefix("; ")
+                why = f"with the unknown unit {excerpt(name)}" + f" ({hint})" * bool(hint)
+                raise ValueError(why) from None
             exponents[of_pint] = exponents.get(of_pint, 0) + exponent
         products.append(pint.util.UnitsContainer(exponents))
     source, goal = products

@@ -2,10 +2,13 @@
 
 import csv
 
+import numpy as np
+import pytest
 from support import computed, here
 
 from galinx.app.results.csv import pieces
-from galinx.postprocess.tables import sliders_sheet, states_sheet
+from galinx.postprocess.quantities import validity
+from galinx.postprocess.tables import limits_sheet, sliders_sheet, states_sheet
 
 SCENE = """
 solid.material = "steel"
@@ -34,6 +37,30 @@ def test_a_stress_that_is_none_has_no_place_beside_others():
     tension = [row[0] for row in rows].index("largest tension σ_XX [MPa]")
     assert [rows[tension][1], rows[tension + 1][1]] == ["0", ""]
     assert rows[tension][2] != "0" and rows[tension + 1][2] != ""
+
+
+def test_a_tilted_punch_that_yields_under_any_load_says_so():
+    punch = {"punch.tilt": 0.01, "punch.load": "400 N/mm", "solid.yield_strength": "300 MPa"}
+    asked = {"output.quantities": ["sif", "yield"], "solve.methods": ["closed_form"]}
+    (told,) = (c for c in computed("tables4_5", punch | asked).table() if c.head == "yields")
+    assert {*told.texts()} == {"yes, under any load"}
+
+
+@pytest.mark.parametrize("width", [0, 80])
+def test_limits_that_are_the_same_in_all_states_stand_once(width):
+    result = computed("coating", {"friction.mu_c": {"from": 0.1, "to": 0.2, "number": 9}})
+    sheet = limits_sheet(result.data, result.units(), width)
+    assert "the same in all" in sheet.title and len(sheet.rows) == 3
+    assert [row[1] for row in sheet.rows[1:]] == ["1", "1"]
+
+
+def test_a_reach_that_is_rounding_is_not_shown():
+    result = computed("tables4_5", {"solve.methods": ["closed_form"], "output.quantities": ["sif"]})
+    paths = [row.path for row in validity.SLIP_REVERSED]
+    for reach, shown in ((1e-9, False), (1e-3, True)):
+        changed = dict.fromkeys(paths, np.full(len(result.data["states/f"]), reach))
+        sheet = limits_sheet({**result.data, **changed}, result.units(), 80)
+        assert ("slip reversed" in str(sheet)) == shown
 
 
 def test_only_strokes_have_a_friction_loop(tmp_path):

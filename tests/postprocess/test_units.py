@@ -6,7 +6,7 @@ from support import computed, kept
 
 from galinx.postprocess.quantities import table
 from galinx.postprocess.quantities.quantity import CONTACT
-from galinx.postprocess.units import number, prefixed
+from galinx.postprocess.units import Units, number, prefixed
 
 #: What units that may stand in a result are in SI, as powers of m, kg and s, and their sizes.
 _PASCAL, _METRE, _SECOND = (-1, 1, -2), (1, 0, 0), (0, 0, 1)
@@ -152,3 +152,10 @@ def test_prefixes_are_those_of_engineers(unit, size, expected):
 )  # fmt: skip
 def test_numbers_have_reasonable_digits(value, text):
     assert number(value) == text
+
+
+def test_places_far_from_the_axis_choose_the_prefix_of_lengths():
+    result = computed("cylinder", CLOSED)
+    far = {**result.data, "states/closed_form/centre": np.full(len(result.data["states/f"]), 1e3)}
+    for data, unit in ((result.data, result.units().position.unit), (far, "m")):
+        assert Units(result.scene.body, data).position.unit == unit

@@ -87,3 +87,35 @@ def test_a_solid_whose_stress_along_Z_is_not_known_has_no_map_of_von_mises():
     result = computed(changes=scene | {"solid": solid, "motion.c": [0.3]})
     labels = [panel.map.label for panel in drawn(result, "inside").figure.panels]
     assert sum("sigma" in label for label in labels) == 3 and not any("Mises" in text for text in labels)
+
+
+def test_maps_show_where_each_layer_yields_and_its_interface_in_every_state():
+    """Over its own strength; titles name what is swept, and of one state of a sweep as well."""
+    result = computed("coating", {
+        "layer": [{"material": "TiN", "thickness": ["5 µm", "20 µm"], "yield_strength": "0.9 GPa"}],
+        "solid.material": "steel", "solid.yield_strength": "600 MPa", "punch.load": "100 N/mm",
+        "punch.profile": "parabolic", "punch.radius": "5 mm", "punch.half_width": None,
+        "friction.mu_c": 0.3, "motion.speed": "1 m/s", "output.quantities": ["interior"],
+        "output.map": {"X": [-2.0, 2.0, 21], "Y": [-1.6, -0.05, 32]},
+    })  # fmt: skip
+    chosen = {"quantities": ("von_mises",), "units": result.units()}
+    drawing = drawn(result, "inside", states=(0, 1), **chosen)
+    assert "white line" in drawing.caption and "Dashed" in drawing.caption
+    depths = (5.0, 20.0)
+    for panel, depth in zip(drawing.figure.panels, depths, strict=True):
+        assert panel.dashes == pytest.approx([-depth])
+        strengths = np.where(-depth > panel.map.Y, 600.0, 900.0)
+        np.testing.assert_allclose(panel.map.level, strengths, rtol=1e-12)
+        assert (panel.map.values > strengths[:, None]).any()
+    (alone,) = drawn(result, "inside", states=(1,), **chosen).figure.panels
+    assert "20" in alone.title and "V" not in alone.title
+
+
+def test_curves_that_do_not_depend_on_what_is_swept_stand_once():
+    result = computed("coating", {
+        "solid.yield_strength": [1e6, 2e6], "friction.mu_c": [0.1, 0.2, 0.4],
+    })  # fmt: skip
+    for name in ("surface", "interfaces", "parameters"):
+        drawing = drawn(result, name)
+        assert "the same for every" in drawing.caption and "3 of 6 states" in drawing.left_out
+        assert not any("Y" in panel.title for panel in drawing.figure.panels)

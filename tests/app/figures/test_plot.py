@@ -180,6 +180,20 @@ def test_contacts_of_several_widths_are_compared_in_units():
     assert not any("N/(2a)" in axis.get_ylabel() or "over $a$" in axis.get_ylabel() for axis in axes)
 
 
+def test_a_film_over_time_names_its_dashed_curve():
+    film = drawn(kept("from rest"), "film").film
+    legends = [text.get_text() for legend in film.figure.legends for text in legend.get_texts()]
+    legends += [text.get_text() for axis in film.figure.axes if axis.get_legend()
+                for text in axis.get_legend().get_texts()]  # fmt: skip
+    assert "steady" in legends
+
+
+def test_few_swept_values_are_the_ticks():
+    result = computed("cylinder", ROUND | {"motion.c": 0.1, "friction.mu_c": [0.1, 0.4, 0.6]})
+    axes = drawn(result, "parameters", size=size("85mm")).figure.axes
+    assert all(list(axis.get_xticks()) == [0.1, 0.4, 0.6] for axis in axes)
+
+
 @pytest.mark.parametrize("dimensionless, name", [(False, "stress (µm)"), (True, "stress over $a$")])
 def test_places_are_over_the_half_width_where_they_have_no_unit(dimensionless, name):
     result = computed("cylinder", ROUND | {"output.quantities": ["surface"]})

@@ -9,6 +9,7 @@ from support import computed, here
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.figures.measured import read
+from galinx.app.results import fitted
 from galinx.app.results.compared import Comparison
 
 PLAIN = {"solve.methods": ["closed_form"], "motion.c": 0.3}
@@ -141,7 +142,8 @@ def test_measured_points_lie_at_their_places(light, heavy, table):
 @pytest.mark.parametrize(
     "text, said",
     [
-        ("position [mm],presure [MPa]\n0,1\n", "unknown column 'presure'; did you mean pressure"),
+        ("position [mm],presure [MPa]\n0,1\n", "found position, presure in 1 rows, expected"),
+        ("position [mm],presure [MPa]\n0,1\n", "rows of numbers; did you mean pressure?"),
         ("position,pressure [MPa]\n0,1\n", "position has no unit, expected one as in position [mm]"),
         ("position [mm],pressure\n0,1\n", "pressure has no unit, expected one as in pressure [MPa]"),
         ("position [MPa],pressure [MPa]\n0,1\n", "line 1, position: found '1 MPa'"),
@@ -153,6 +155,14 @@ def test_measured_points_lie_at_their_places(light, heavy, table):
 def test_what_is_no_measured_table_is_refused(table, text, said):
     with pytest.raises(BadInput, match=re.escape(said)):
         read(table(text))
+
+
+def test_what_is_not_needed_stands_beside_what_is_measured(table):
+    """As device and spreadsheet write it: the table that a fit takes."""
+    text = "sep=;\ntime [s];position [mm];COF;note\n0;0;0;at rest\n1;0,5;0,2;\n2;0,2;-0,1;back\n"
+    slip, f = read(table(text)).points["f"]
+    assert slip.tolist() == pytest.approx([0.0, 5e-4, 2e-4]) and f.tolist() == [0.0, 0.2, -0.1]
+    assert fitted.read(table(text)).measured.f.tolist() == f.tolist()
 
 
 def test_the_swapped_order_is_the_mirror(light, heavy):

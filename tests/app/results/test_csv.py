@@ -120,7 +120,7 @@ def test_the_command_prints_a_table_or_writes_it(path, tmp_path):
 
 @pytest.mark.parametrize("load", ["100 N/mm", ["10 N/mm", "100 N/mm"]])
 def test_histories_tell_their_laws(load, tmp_path):
-    """A loop is that of all speeds, and of all loads: it names neither where there are several."""
+    """A loop is that of all speeds, and of all loads: of several it names that of its energy alone."""
     alone = {"solve.methods": [], "output.quantities": ["friction"], "motion.c": [0.1, 0.3]}
     result = computed("tables4_5", alone | {"friction.mu_c": [0.2, 0.4], "punch.load": load})
     result.save(tmp_path / "a.h5")
@@ -129,5 +129,7 @@ def test_histories_tell_their_laws(load, tmp_path):
         [μ] * loops.shape[1] for μ in (0.2, 0.4)
     ]
     assert not any(head.startswith("speed") for head in found)
-    assert ("load [N/mm]" in found) == isinstance(load, str)
+    head, first = ("load", 100.0) if isinstance(load, str) else ("cycle_dissipated_load", 10.0)
+    assert {*numbers(found[f"{head} [N/mm]"])} == {first}
+    assert len([head for head in found if "load" in head]) == 2  # the other is sigma0_over_load
     np.testing.assert_allclose(numbers(found["f [1]"]), loops.ravel(), rtol=1e-14)

@@ -130,6 +130,8 @@ def test_a_report_has_every_state_and_its_curves(page, map_run):
     X, half = map_run.data["surface/X_over_a"], 1e3 * map_run.scene.body.half_width
     stress = 1e-6 * map_run.scene.body.stress
     assert len(large["states"]) == len(map_run.data["states/f"]) and len(large["maps"]) == 3
+    assert "_" not in str([*large["states"], *(one["label"] for one in large["maps"])])
+    assert large["maps"][0]["charts"][0]["layout"]["yaxis"]["constrain"] == "domain"
     for charts, (name, sign) in zip(large["surface"], (("sigma_YY", -1.0), ("sigma_XX", 1.0))):
         for state, chart in enumerate(charts):
             assert chart["layout"]["yaxis"]["title"]["text"].replace("<br>", " ").endswith("(MPa)")

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from support import here
+from support import SCENE, here
 
-from galinx import load
+from galinx import compute, load, read_scene
 from galinx.app.errors import BadInput
 from galinx.app.results.check import faults
 from galinx.postprocess.errors import Occupied
@@ -34,6 +34,15 @@ def test_saved_and_loaded_is_the_same(map_run, tmp_path):
     assert here("check", tmp_path / "a.h5").returncode == 0
     with pytest.raises(Occupied, match="exists"):
         map_run.save(tmp_path / "a.h5")
+
+
+def test_a_scene_is_computed_by_its_file_too(tmp_path):
+    scene = read_scene(SCENE, {"output.quantities": ["friction"], "solve.methods": []})
+    (tmp_path / "a.toml").write_text(scene.text, encoding="utf-8")
+    one, other = compute(scene), compute(tmp_path / "a.toml")
+    np.testing.assert_array_equal(one.data["states/f"], other.data["states/f"])
+    with pytest.raises(BadInput, match="cannot read b"):
+        compute("b.toml")
 
 
 def test_plot_gives_a_figure_that_notebooks_show(exact_run, tmp_path, monkeypatch):

@@ -52,6 +52,13 @@ def test_without_friction_every_number_is_hertz_to_a_per_cent():
     share = 100.0 * (mises / YIELD) ** 2
     assert row["yields"].values[0].startswith("no, ")
     assert float(row["yields"].values[0][4:-2]) == pytest.approx(share, rel=2e-2)
+    nearly = 0.999999e3 * row["load at first yield"].values[0]
+    (told,) = (
+        c
+        for c in computed("tables4_5", SCENE | {"friction.mu_c": 1e-4, "punch.load": nearly}).table()
+        if c.head == "yields"
+    )
+    assert told.texts() == ["no, 99.9999 %"]
 
 
 def test_screen_csv_and_notebook_show_the_same_row(result, tmp_path):

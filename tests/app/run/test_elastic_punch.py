@@ -23,6 +23,10 @@ def test_a_scene_says_which_body_yields_first():
     result = compute(template("elastic_punch", changes))
     columns = {column.name: column.texts() for column in result.table()}
     assert columns["yields_first"] == ["punch", "plate"]
+    names = [*columns]
+    assert names[names.index("yields") + 1] == "punch_yields"
+    first = result.data["states/closed_form/punch_first_yield_load"]
+    assert [text[:2] for text in columns["punch_yields"]] == ["ye" if N <= 5e4 else "no" for N in first]
     own = "punch_von_mises", "punch_von_mises_Y", "punch_first_yield_load"
     assert {f"closed_form_{name}" for name in own} <= columns.keys()
     assert json.loads(result.attributes["solid"])["punch yield_strength"] == 235e6

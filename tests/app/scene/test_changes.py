@@ -3,6 +3,7 @@
 import re
 import tomllib
 
+import numpy as np
 import pytest
 from support import SCENE, scene_of
 
@@ -19,6 +20,34 @@ def test_a_change_stands_in_the_text_and_comments_stay():
     assert "mu_c = [0.3, 0.5]" in result and "tolerance = 0.0001" in result
     assert result.count("#") == text.count("#") and "# σ₀ l/N" in result
     assert parse(result).friction.parameters["mu_c"] == (0.3, 0.5)
+
+
+DOTTED = """\
+solid.material = "steel"
+punch.profile = "parabolic"
+punch.radius = "5 mm"
+{}punch.load = "100 N/mm"
+friction.mu = 0.15
+motion.speed = "1 m/s"
+"""
+PARTS = {
+    "punch.solid.material": "aluminium", "punch.solid.yield_strength": "50 MPa",
+    "solve.tolerance": 1e-4, "output.quantities": ["sif"], "title": "A",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("there", ["", "punch.solid.nu = 0.3\n", 'punch.solid = {material = "steel"}\n'])
+def test_parts_that_are_missing_stand_below_dotted_keys(there):
+    scene = parse(changed(DOTTED.format(there), PARTS))
+    assert scene.solid.punch_strength == 50e6 and scene.punch.load == 1e5
+    assert scene.solve.tolerance == 1e-4 and scene.title == "A" and scene.punch.profile.radius == 5e-3
+
+
+@pytest.mark.parametrize(
+    "value, read", [(np.linspace(0.0, 0.3, 3), (0.0, 0.15, 0.3)), (np.float64(0.3), (0.3,))]
+)
+def test_values_may_be_of_numpy(value, read):
+    assert parse(changed(DOTTED.format(""), {"friction.mu": value})).friction.parameters["mu_c"] == read
 
 
 @pytest.mark.parametrize("key", ["friction", "a.b.c", "mu_c"])

@@ -53,6 +53,10 @@ FAULTS = {
     "tables4_5": [
         ({"solid.nu": None, "solid.nuu": 0.25}, "did you mean nu"),
         ({"solid.nu_": 1}, "solid.nu_: no such key"),
+        ({"friction.nu": 0.1}, "friction.nu: no such key; did you mean mu?"),
+        ({"punch.load": "100 N"}, "which is a force, expected a force per depth, such as 100 N/mm"),
+        ({"solid.E": "210 Gpa"}, "unknown unit 'Gpa' (did you mean GPa?), expected"),
+        (_SPEED | {"motion.speed": 1, "solid.E": 210}, "as meant?…motion.speed = 1 m/s: expected less"),
         ({"sloid.nu": 0.25}, "did you mean solid"),
         ({"solid.nu": None}, "solid.nu: missing"),
         ({"solid.nu": 0.51}, "0.51"),

@@ -31,7 +31,7 @@ from galinx.solvers.contact.fem_plan import (
     requirements,
     swept,
 )
-from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, Places
+from galinx.solvers.contact.solution import FLAT, FREE, ONE_FREE, PRESCRIBED, SHARP, Places
 from galinx.solvers.errors import SolveError
 from galinx.solvers.profiles import radius
 from galinx.solvers.rays import NEAR
@@ -202,6 +202,8 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
 _OF_SHAPES = (FREE_ENDS, VARYING_FREE)
 #: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
 _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
+    # Splines follow the pressure only where cells resolve it.
+    (SHARP, True): lambda required, *_: replace(required, nearest=min(required.nearest or NEAR, NEAR)),
     (PRESCRIBED, False): lambda required, scene, *_: required_of_pieces(
         required, np.array(scene.body.knots)
     ),

@@ -246,6 +246,8 @@ class SharpLevel(PunchLevel):
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
 _NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
+#: Factor of the first of these, over the uppermost layer's thickness, where there are no logarithms.
+_ANALYTIC = 100.0
 #: The first of these for splines that show what the others leave out, and factor of what they show.
 COARSE, _SURE = 4.0 * _NEXT, 1.5
 #: Places over a at which a pressure between sharp edges is measured, and least stress over the mean to
@@ -290,7 +292,7 @@ class SplineLevel(PunchLevel):
         Args:
             g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
             tested: normal forces times tests (nodes, n), (states, n).
-            nearest: distance over a of knots from ends and kinks, over the root of a length.
+            nearest: distance over a of knots from ends and kinks, over the length that it is measured by.
             free: True where the left and the right end are free, broadcast to (states, 2).
         """
         body, degree, kinks = self.task.body, self.space.degree, self.kinks
@@ -300,9 +302,10 @@ class SplineLevel(PunchLevel):
         steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
+        first = nearest * (self._analytic or np.sqrt(length))
         of_knots = [places]
         within = (ends_of_cells[:-1, None] + np.diff(ends_of_cells)[:, None] * _INSIDE).ravel()
-        for candidates, least in ((ends_of_cells, nearest * np.sqrt(length)), (within, _WIDE * length)):
+        for candidates, least in ((ends_of_cells, first), (within, _WIDE * length)):
             of_knots.append(candidates[np.abs(candidates[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
@@ -312,6 +315,17 @@ class SplineLevel(PunchLevel):
         return splines.fitted(
             tested(at_nodes), local.α, local.β, lambda r: self.facets.interpolated(at_nodes.T, r).T
         )
+
+    @cached_property
+    def _analytic(self) -> float:
+        """Length over which the pressure less its weight is analytic at the ends, over that of `_NEXT`.
+
+        It is 0 where friction varies or the solid is graded from the surface on: then it has logarithms.
+        """
+        body, response = self.task.body, self.task.response
+        if body.along or not len(response.depths) or np.isfinite(response.solid.changes[0]):
+            return 0.0
+        return _ANALYTIC * min(1.0, float(response.depths[0]))
 
     def intensities(
         self, parts: NDArray, g: Any, half_width: float, nearest: float = _NEXT

@@ -100,9 +100,9 @@ class Levels:
 #: each over the one below it, and factor by which a largest one between two of them may be higher.
 _THINNEST, _NEXT_ABOVE, _BETWEEN_LEVELS = 1e-4, 0.5**0.25, 1.01
 #: Places along X at a depth: distance of the nearest from a turn over the depth, of the farthest over a
-#: or the depth, and of each over the next nearer one; places all along; and how many of the largest
-#: stresses between two places are refined.
-_CLOSE, _REACH, _APART_BESIDE, _ALL_ALONG, _REFINED = 0.3, 3.0, 1.5, np.linspace(-1.5, 1.5, 31), 3
+#: or the depth, and their number on either side; places all along; and how many of the largest stresses
+#: between two places are refined.
+_CLOSE, _REACH, _BESIDE_TURN, _ALL_ALONG, _REFINED = 0.3, 3.0, 18, np.linspace(-1.5, 1.5, 31), 3
 #: Trials of a depth between two others.
 _TRIALS = 8
 
@@ -170,8 +170,7 @@ def _largest_at(stress: Stress, y: NDArray, turns: NDArray) -> NDArray[np.float6
     y = np.nan_to_num(y, nan=_DEEPEST)[:, None]
     wide = np.maximum(y, 1.0)
     near, far = _CLOSE * np.maximum(y, _THINNEST), _REACH * wide
-    count = int(np.ceil(np.log((far / near).max()) / np.log(_APART_BESIDE))) + 1
-    beside = near * (far / near) ** np.linspace(0.0, 1.0, count)
+    beside = near * (far / near) ** np.linspace(0.0, 1.0, _BESIDE_TURN)
     offsets = np.concatenate([-beside, np.zeros_like(y), beside], axis=1)
     around = (turns[..., None] + offsets[:, None]).reshape(len(y), -1)
     X = np.sort(np.concatenate([around, wide * _ALL_ALONG], axis=1))

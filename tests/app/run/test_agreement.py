@@ -325,6 +325,30 @@ def coated_along(seed):
     return cylinder_along(seed, layer=[layer], solve={"methods": ["sie", "fem"], "tolerance": 1e-4})
 
 
+def kinked_along(seed, **more):
+    """A punch with kinks, friction that varies along its contact without any."""
+    rng = np.random.default_rng(seed)
+    friction = _along(rng, 0 if seed % 2 else 2 * int(rng.integers(0, 2)))
+    if seed % 3 == 2:
+        friction = {"along": [[-1, rng.uniform(0.0, 0.8)], [1, rng.uniform(0.0, 0.8)]]}
+    punch = KINKED[list(KINKED)[seed % 4]] | {"load": 5e4}
+    return along(seed, punch, friction=friction, output={"quantities": ["sif", "surface"]}, **more)
+
+
+def kinked_on_layers(seed):
+    """The same on a layer, and every other with one friction."""
+    rng = np.random.default_rng(seed)
+    layer = LAYER | {"thickness": f"{10.0 ** rng.uniform(-1.0, 0.5)} mm"}
+    if seed % 4 == 3:
+        layer["to"] = {"E": "40 GPa"}
+    sections = {"layer": [layer], "solve": {"methods": ["sie", "fem"], "tolerance": 1e-4}}
+    scene = kinked_along(seed, **sections)
+    if seed % 2:
+        return scene
+    sections |= {"motion": {"c": 0.3}, "friction": {"mu": rng.uniform(0.0, 0.8)}}
+    return of_sections(solid=PLATE, punch=KINKED[list(KINKED)[seed // 2 % 4]] | {"load": 5e4}, **sections)
+
+
 #: Seeds by which each is tried every day, and those of a release.
 RANDOM = {
     isotropic: (range(4), range(40)), orthotropic: ((3, 9), range(24)),
@@ -332,6 +356,7 @@ RANDOM = {
     smooth: ((1, 2), range(3)), tilted: (range(4), range(4)), pressure: (range(3), range(6)),
     elastic: ((1,), range(20)), elastic_along: ((2, 3), range(20)), along: ((1, 2), range(20)),
     cylinder_along: ((0, 2), range(20)), coated_along: ((0,), range(20)),
+    kinked_along: ((1, 2), range(20)), kinked_on_layers: ((0, 1), range(20)),
 }  # fmt: skip
 #: Whose estimates may say that rounding leaves no more digits, or that stresses next to kinks have fewer.
 HONEST = (orthotropic_inside, kinked)

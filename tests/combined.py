@@ -148,12 +148,11 @@ class Case:
     def by_finite_elements(self):
         """Do these solve it?
 
-        Over layers their meshes follow no kink, and no edge that may lift; and no layer is nearly
-        incompressible.
+        Over layers their meshes follow no edge that may lift; and no layer is nearly incompressible.
         """
         if self.layered and self.solid.startswith("nearly incompressible"):
             return False
-        return not self.layered or self.punch in ("flat", "parabolic", *PRESSURE)
+        return not self.layered or self.punch not in ("tilted", "lifted")
 
     def text(self):
         """The scene in TOML."""

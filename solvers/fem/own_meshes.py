@@ -506,7 +506,7 @@ class OverLayers(OwnMeshes):
         self._sought, self._g, self._lean = task, g, 0.0
         drawn = self._half_width(float(min(near)[-1] if near else task.body.half_width))
         state, lean, h = self._contact(drawn)
-        if self._off(h / drawn, lean - self._lean) > _ERROR * self._work.plan.tolerance:
+        if self._off(h / drawn, lean - self._lean) > self._closeness * self._work.plan.tolerance:
             state.level.close()
             drawn, self._lean = h, lean
             state, lean, h = self._contact(drawn)
@@ -523,9 +523,13 @@ class OverLayers(OwnMeshes):
             wider: its half-width over that of the mesh.
             moved: distance of their middles over the half-width.
         """
-        if not kinks(self._sought.body.profile):
-            return max(abs(wider - 1.0), moved**2)  # heights are linear in the middle
-        return max(abs(wider - 1.0), abs(moved)) / NEAR_TIP  # kinks are elsewhere than those of the mesh
+        # Heights are linear in the middle; but kinks are elsewhere than those of the mesh.
+        return max(abs(wider - 1.0), abs(moved) if kinks(self._sought.body.profile) else moved**2)
+
+    @property
+    def _closeness(self) -> float:
+        """Distance of a mesh from its contact over the tolerance: next to tips stresses are steep."""
+        return _ERROR * (NEAR_TIP if kinks(self._sought.body.profile) else 1.0)
 
     def _contact(self, h: float) -> tuple[SolvedStates, float, float]:
         """Contact on a mesh drawn for a half-width [m]; its middle over its half-width, and this [m]."""
@@ -575,7 +579,7 @@ class OverLayers(OwnMeshes):
             error: relative error that is allowed.
         """
         moved = np.inf
-        while self._off(1.0, moved) > error:
+        while self._off(1.0, moved) > error * self._closeness / _ERROR:
             mesh, task, solve = self._drawn(h, frozenset())
             degree = max(mesh.plan.degrees[task.number] - lower, DEGREES[0])
             with closing(solve(mesh.space(degree), self._g)) as level:

@@ -1,8 +1,8 @@
 """Rigid punches by finite elements at one speed, their pressure unknown, to the measured error.
 
 A :class:`PunchLevel` solves contacts at one degree. Its kinds differ in the ends of the contact: sharp
-(:class:`SharpLevel`, :class:`SharpSplineLevel`), free (:class:`FreeLevel`), or those of one contact on a
-mesh drawn for it (:mod:`galinx.solvers.fem.own_meshes`).
+(:class:`SharpLevel`, :class:`VaryingLevel`, :class:`OnLayersLevel`), free (:class:`FreeLevel`), or those
+of one contact on a mesh drawn for it (:mod:`galinx.solvers.fem.own_meshes`).
 
 With free ends: the half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its
 width is, and the displacement prescribed under the punch is a combination of few shapes: 1 and s for a
@@ -339,20 +339,30 @@ class SplineLevel(PunchLevel):
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
         off = np.abs(self.pressure(contact, COARSE).σ_YY(ACROSS) - σ) / size
-        return self.gauge_of_free(states, σ, size, _SURE * off.max(axis=1))
+        return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
-class SharpSplineLevel(SplineLevel, SharpLevel):
-    """Sharp edges of a flat punch over layers, or with friction that varies along the contact."""
+class VaryingLevel(SplineLevel, SharpLevel):
+    """Sharp edges of a flat punch with friction that varies along the contact."""
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, COARSE)
+        # Without knots next to ends and kinks, splines of all degrees are off alike.
+        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
+        return replace(gauge, unresolved=gauge.unresolved + off)
+
+
+class OnLayersLevel(SplineLevel, SharpLevel):
+    """Sharp edges of a flat punch over layers, whose pressure may change within their thickness."""
 
     def gauge(self, states: SolvedStates) -> Gauge:
         contact = states.contact
-        # Without knots next to ends and kinks, splines of all degrees are off alike.
         (K, σ), (coarse_K, coarse_σ) = (
             (pressure.series(ENDS), pressure.σ_YY(_ALL_ACROSS))
             for pressure in (states.pressure, self.pressure(contact, COARSE))
         )
         size = np.maximum(np.abs(σ), _SMALL)
+        # Without the nearest knots splines show less of the error of the innermost cells.
         off = np.abs(np.column_stack([coarse_K / K - 1.0, (coarse_σ - σ) / size])).max(axis=1)
         groups = (K, np.abs(K)), (σ, size), (contact.tested(self.moments[:, 1:6]), 2.0)
         return joined(INTENSITIES, groups, _SURE * off)
@@ -575,8 +585,8 @@ _LINEAR = {1: _tilted, 2: _parabola}
 #: Levels of punches on the mesh of all contacts, by the plan's mode.
 PUNCHES: dict[str, type[PunchLevel]] = {
     "contact": SharpLevel,
-    SHARP_ON_LAYERS: SharpSplineLevel,
+    SHARP_ON_LAYERS: OnLayersLevel,
     FREE_ENDS: FreeLevel,
-    VARYING: SharpSplineLevel,
+    VARYING: VaryingLevel,
     VARYING_FREE: VaryingFreeLevel,
 }

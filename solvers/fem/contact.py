@@ -323,7 +323,7 @@ class SplineLevel(PunchLevel):
         It is 0 where friction varies or the solid is graded from the surface on: then it has logarithms.
         """
         body, response = self.task.body, self.task.response
-        if body.along or not len(response.depths) or np.isfinite(response.solid.changes[0]):
+        if body.along or not len(response.depths) or np.isfinite(response.solid.changes[0]):  # type: ignore[attr-defined]
             return 0.0
         return _ANALYTIC * min(1.0, float(response.depths[0]))
 

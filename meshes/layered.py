@@ -102,7 +102,6 @@ class OnLayers(MeshKind):
 
     Attributes:
         depths: of the interfaces over a.
-        drawn_together: smallest Im p of the uppermost solid, factor of depths in its fields.
         wide: geometric mean Im p of the uppermost solid, width over height of a rectangle that its fields
             see as a square.
         far_length: length over a of the layers' effect far away.
@@ -123,7 +122,6 @@ class OnLayers(MeshKind):
     gentle: float = 1.0
     smallest: float = 5e-6
     depths: tuple[float, ...] = ()
-    drawn_together: float = 1.0
     wide: float = 1.0
     far_length: float = 1.0
     left: float = 1.0

@@ -85,10 +85,6 @@ def _pull(by: str, method: str, **limits: Any) -> Rule:
     return Rule(text, (pressure,), measure, own_pressure=True, **limits)
 
 
-#: Padding and cut by which samples have those of their left and of their right neighbour.
-_NEIGHBOURS = ((1, 0), slice(None, -1)), ((0, 1), slice(1, None))
-
-
 def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
     """False next to tips, where the pressure is infinite, by states and positions, (states, n).
 
@@ -98,15 +94,14 @@ def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]
             count.
     """
     X = data[at.SURFACE_X.path]
-    rows = ((of.LARGEST[method], at.PRESSURE[method]) for method in (CLOSED_FORM, SIE))
-    each = (row for row in rows if all(of_row.path in data for of_row in row))
-    for largest_pressure, pressure in each:
-        infinite = np.isnan(data[largest_pressure.path])[:, None] & (np.abs(X) < inside)
-        σ_YY = np.where(under_punch(X), np.abs(data[pressure.path]), 0.0)
-        before, after = (np.pad(σ_YY, ((0, 0), pad))[:, cut] for pad, cut in _NEIGHBOURS)
-        tips = infinite & (σ_YY >= before) & (σ_YY >= after)
-        return ~(tips @ (np.abs(X[:, None] - X) < stresses.NEAR_TIP))
-    return np.ones((1, len(X)), dtype=bool)
+    rows = ((of.LARGEST[method].path, at.PRESSURE[method].path) for method in (CLOSED_FORM, SIE))
+    largest_pressure, pressure = next((row for row in rows if data.keys() >= {*row}), ("", ""))
+    if not pressure:
+        return np.ones((1, len(X)), dtype=bool)
+    infinite = np.isnan(data[largest_pressure])[:, None] & (np.abs(X) < inside)
+    σ_YY = np.pad(np.where(under_punch(X), np.abs(data[pressure]), 0.0), ((0, 0), (1, 1)))
+    tips = infinite & (σ_YY[:, 1:-1] >= np.maximum(σ_YY[:, :-2], σ_YY[:, 2:]))
+    return ~(tips @ (np.abs(X[:, None] - X) < stresses.NEAR_TIP))
 
 
 def not_finite(data: dict[str, Any]) -> list[str]:

@@ -62,7 +62,6 @@ def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] =
     apart = max(response.spread for response in responses) > _APART
     return OnLayers(
         depths=tuple(depths.tolist()),
-        drawn_together=float(np.min(roots)),
         wide=1.0 if apart else float(np.exp(np.mean(np.log(roots)))),
         far_length=max(response.far_length for response in responses),
         left=max(min(response.left_below for response in responses), _LEAST_LEFT),

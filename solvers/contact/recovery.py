@@ -204,21 +204,17 @@ class ContactRecovery(ContactFacets):
         farthest: distance from an edge over a of the facets to which an exponent is fitted. The fit uses
             the outer half of them, two at least: the innermost cannot follow the singularity and disturb
             their neighbours, and beyond this distance the pressure's second term biases the exponent.
-        tests: smooth functions of r, (points, moments), with which forces are tested.
 
     Attributes:
-        moments: map to ∫ σ_YY T_k dr, or to moments with other test functions, (nodes, moments).
+        moments: map to ∫ σ_YY T_k dr, (nodes, moments).
         raw: map to the raw pressure at chosen positions, NaN outside the contact, (nodes, points).
         edges: for X = a and X = -a: distances from it over a, (q,), and the map to the raw pressure
             there, (nodes, q).
     """
 
-    def __init__(
-        self, s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3,
-        tests: Callable[[NDArray], NDArray] = chebyshev,
-    ) -> None:  # fmt: skip
+    def __init__(self, s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3) -> None:
         super().__init__(s, degree, chart)
-        self.moments = tests(chart.surface_position(s))
+        self.moments = chebyshev(chart.surface_position(s))
         density, start, length = self.density(np.eye(len(s))), self.start, self.length  # symmetric
         inside = under_punch(r)
         self.raw = np.full((len(s), len(r)), np.nan)
@@ -436,7 +432,7 @@ class KinkedPressure(Pressure):
 
     @cached_property
     def _ends(self) -> list[tuple[float, Callable[[NDArray], NDArray]]]:
-        """Distance of the nearest sample from each end, and the pressure nearer, by its distance."""
+        """Distance from each end nearer than which the pressure is continued, and that, by distance."""
         t, each = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES)), []
         for side, gap, a in zip((-1.0, 1.0), gaps_of(self.kinks), (self.β, self.α)):
             near, far = (share * min(gap, 1.0) for share in _SAMPLED_AT_END)

@@ -305,7 +305,7 @@ _HALVINGS, _NEARER = 20, 0.7
 def _farthest(
     log_stress: Callable[[NDArray, NDArray], NDArray],
     inner: NDArray, outer: NDArray, s: NDArray, apart: NDArray,
-    bounds: Callable[[NDArray], Any] = lambda t: (-np.inf, np.inf),
+    bounds: Callable[[NDArray], Any],
 ) -> NDArray[np.float64]:  # fmt: skip
     """Largest t at which the largest stress along s reaches 1, by bisection, (states, k).
 

@@ -196,9 +196,9 @@ class PunchLevel(Level):
 
         In a solid without mirror symmetry it is the difference of K_I at the two ends, which are equal
         under a flat punch all the same. Where they differ, or a single state has no flat punch beside it,
-        what the solve leaves of its forces stands for rounding. Stresses are relative to
-        those of the states themselves: beside a flat punch's sharp edges they are large, beside free ends
-        they are not, and their rounding is as large.
+        what the solve leaves of its forces stands for rounding. Stresses are relative to those of the
+        states themselves: beside a flat punch's sharp edges they are large, beside free ends they are
+        not, and their rounding is as large.
         """
         own = self.fields_of(self.states(g, load))
         if not self.twins:
@@ -246,7 +246,7 @@ class SharpLevel(PunchLevel):
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
 _NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
-#: Factor of the first of these, over the uppermost layer's thickness, where there are no logarithms.
+#: Unit of the first of these over the thickness of the uppermost layer, where there are no logarithms.
 _ANALYTIC = 100.0
 #: The first of these for splines that show what the others leave out, and factor of what they show.
 COARSE, _SURE = 4.0 * _NEXT, 1.5
@@ -292,7 +292,7 @@ class SplineLevel(PunchLevel):
         Args:
             g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
             tested: normal forces times tests (nodes, n), (states, n).
-            nearest: distance over a of knots from ends and kinks, over the length that it is measured by.
+            nearest: distance over a of knots from ends and kinks, over its unit.
             free: True where the left and the right end are free, broadcast to (states, 2).
         """
         body, degree, kinks = self.task.body, self.space.degree, self.kinks
@@ -318,9 +318,9 @@ class SplineLevel(PunchLevel):
 
     @cached_property
     def _analytic(self) -> float:
-        """Length over which the pressure less its weight is analytic at the ends, over that of `_NEXT`.
+        """Unit over a of the nearest knots' distances where the pressure less its weight is analytic.
 
-        It is 0 where friction varies or the solid is graded from the surface on: then it has logarithms.
+        It is 0 where friction varies or the solid is graded from the surface on: there are logarithms.
         """
         body, response = self.task.body, self.task.response
         if body.along or not len(response.depths) or np.isfinite(response.solid.changes[0]):  # type: ignore[attr-defined]

@@ -166,7 +166,8 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
         ends = (body.loaded(of(scene.punch.loads)) for of in (min, max))
         crowded = [crowded_kinks(under.kinks_at_rest) for under in ends]  # type: ignore[attr-defined]
         if all(crowded):
-            return f"the punch has {crowded[0]}; closed_form takes it"
+            other = SIE if body.no_closed_form else CLOSED_FORM
+            return f"the punch has {crowded[0]}; {other} takes it"
     return _refusal(quantity, body, lacks)
 
 

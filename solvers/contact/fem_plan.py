@@ -170,6 +170,12 @@ def crowded_kinks(places: Sequence[float] | NDArray) -> str:
     )
 
 
+def uncrowded_kinks(places: NDArray) -> NDArray[np.float64]:
+    """Kinks towards which a mesh can be graded, of rising positions over the half-width, (n,)."""
+    inner = places[np.abs(places) <= _NEXT_TO_END]
+    return np.asarray(inner[np.diff(inner, prepend=-np.inf) >= _NEXT_TO_KINK][:_MOST])
+
+
 #: Size of the innermost cells at a kink of friction over the tolerance, and at most: the pressure is
 #: d log d next to it, times the change of the slope of f. Smaller cells lose digits of derivatives.
 _OF_FRICTION, _LARGEST = 500.0, 0.1

@@ -42,6 +42,7 @@ from ..contact.fem_plan import (
     kind_of,
     no_nearer,
     requirements,
+    uncrowded_kinks,
 )
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task, make_contact
@@ -207,6 +208,7 @@ class EndsBetweenKinks:
         body: the sliding contact, under its load.
         lengths: middle and half-width [m].
         tolerance: of the scene.
+        trial: True in a search, where kinks towards which cells cannot be graded are left out.
 
     Raises:
         SolveError: cells cannot be graded towards the kinks.
@@ -215,15 +217,18 @@ class EndsBetweenKinks:
     body: Contact
     lengths: Lengths
     tolerance: float
+    trial: bool = False
 
     def __post_init__(self) -> None:
         if crowded := crowded_kinks(self.places):
-            raise SolveError(f'the punch has {crowded}; take methods = ["closed_form"]')
+            other = "sie" if self.body.no_closed_form else "closed_form"
+            raise SolveError(f'the punch has {crowded}; take methods = ["{other}"]')
 
     @property
     def places(self) -> NDArray[np.float64]:
         """Positions of the kinks over the half-width."""
-        return kinks_between(self.body.profile, *self.lengths)
+        places = kinks_between(self.body.profile, *self.lengths)
+        return uncrowded_kinks(places) if self.trial else places
 
     @property
     def tips(self) -> NDArray[np.float64]:
@@ -581,7 +586,7 @@ class OverLayers(OwnMeshes):
         """
         moved = np.inf
         while self._off(1.0, moved) > error * self._closeness / _ERROR:
-            mesh, task, solve = self._drawn(h, frozenset())
+            mesh, task, solve = self._drawn(h, frozenset(), trial=True)
             degree = max(mesh.plan.degrees[task.number] - lower, DEGREES[0])
             with closing(solve(mesh.space(degree), self._g)) as level:
                 self._done.count(level.factor)
@@ -589,7 +594,7 @@ class OverLayers(OwnMeshes):
         return level.off
 
     def _drawn(
-        self, h: float, words: frozenset[str]
+        self, h: float, words: frozenset[str], trial: bool = False
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
         sought, plan = self._sought, self._work.plan
@@ -600,7 +605,7 @@ class OverLayers(OwnMeshes):
             response=replace(sought.response, a=h),  # type: ignore[type-var]
             places=replace(sought.places, interfaces=depths),
         )
-        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
+        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance, trial)
         mesh = replace(self._work, plan=drawn_for(task, plan, words, base.places), stresses=words)
         kind = KinkedSplineLevel if len(base.places) else BalancedLevel
         return mesh, task, partial(kind, mesh, task, base=base)
@@ -610,10 +615,10 @@ class FollowedKinks(OverLayers):
     """Contacts with kinks and friction that varies along them, on meshes that follow both."""
 
     def _drawn(
-        self, h: float, words: frozenset[str]
+        self, h: float, words: frozenset[str], trial: bool = False
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         sought, plan = self._sought, self._work.plan
-        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance)
+        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance, trial)
         body = make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along)
         task, mesh = (
             replace(sought, body=body),

@@ -13,6 +13,7 @@ from galinx.meshes.rings import (
     Refinement,
     with_kinks,
 )
+from galinx.solvers.contact.fem_plan import crowded_kinks, uncrowded_kinks
 from galinx.solvers.fem.cells import Contracted
 
 TOLERANCES = [1e-2, 1e-6, 1e-9]
@@ -113,3 +114,13 @@ def test_distances_from_the_edges_are_those_of_positions(chart):
     np.testing.assert_allclose(from_left, 1.0 + X, rtol=1e-9)
     np.testing.assert_allclose(from_right, 1.0 - X, rtol=1e-9)
     np.testing.assert_allclose(stretch, chart.surface_stretch(s), rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_kinks_that_crowd_are_left_out_where_ends_are_tried(seed):
+    """Those that stay have a mesh, and one that has a mesh stays."""
+    rng = np.random.default_rng(seed)
+    few = np.sort(rng.uniform(-0.9, 0.9, 3))
+    many = np.sort(np.concatenate([few, few + 1e-4, [-0.995, 0.9999], rng.uniform(-1.0, 1.0, 20)]))
+    assert crowded_kinks(many) and not crowded_kinks(uncrowded_kinks(many))
+    np.testing.assert_array_equal(uncrowded_kinks(few), few)

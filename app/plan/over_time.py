@@ -403,7 +403,27 @@ def starts(scene: Scene, states: States) -> Starts | None:
                 f"as waves come that are back by then, expected at most {LARGEST}: take an earlier "
                 "end, a larger solve.tolerance, or a smaller Poisson's ratio"
             )
+    _check_flutter(planned, states)
     return planned
+
+
+def _check_flutter(planned: Starts, states: States) -> None:
+    """Refuse frictions under which short waves grow without bound: no motion in time exists.
+
+    Raises:
+        BadInput: a friction reaches the flutter threshold of its sign.
+    """
+    columns = states.columns
+    for c, drives in planned.drives.items():
+        g = np.concatenate([drive(planned.times()) for drive in drives])
+        for sign, way in (("positive", 1.0), ("negative", -1.0)):
+            threshold = np.nan_to_num(columns[f"flutter_{sign}"], nan=np.inf)[columns["c"] == c].min()
+            if (largest := float((way * g).max())) >= threshold:
+                raise BadInput(
+                    f"time: |σ_XY/σ_YY| reaches {largest:.4g} at c = {c:g} (over c_s), and from "
+                    f"{threshold:.4g} on, the flutter threshold, short waves along the interface grow "
+                    "without bound: no motion in time exists; expected less friction"
+                )
 
 
 def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:

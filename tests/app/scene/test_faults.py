@@ -214,6 +214,7 @@ FAULTS = {
         ({"solve.tolerance": 1e-7}, "found 1e-07, expected 1e-05 to 0.01"),
         (CLOSED, "neither fem nor sie"),
         ({"motion.c": 0.95}, "is not below the Rayleigh speed"),
+        ({"friction.mu_c": [0.4, 1.2]}, "reaches 1.2 at c = 0.6 (over c_s), and from 1 on"),
         ({"time.end": 200.0, "solve.tolerance": 1e-5}, "unknowns"),
         ({"solid.nu": 0.495}, "ν is not near 1/2"),
         ({"friction.mu_c": [0.01 * i for i in range(1, 30)]}, "expected at most 24"),

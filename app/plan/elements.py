@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.meshes import MESHES, Requirements
+from galinx.meshes.kind import DEGREES
 from galinx.solvers.contact import FREE_ENDS, VARYING_FREE
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.edges import EdgeExponents
@@ -49,7 +50,9 @@ _NARROWEST = 1e-9
 SMALL = 200_000
 #: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
 #: that is rounding.
-_MOST_SHAPES, _ROUNDED = 48, 1e-13
+_MOST_SHAPES, _ROUNDED = 48, 1e-12
+#: Twice the least degree of cells less the number of shapes.
+_BESIDE = 4
 
 
 def free_memory() -> float:
@@ -178,8 +181,11 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     if required_of_kind := _REQUIRED.get((scene.body.ends, bool(scene.layers))):
         required = required_of_kind(required, scene, mode)
     refinement = kind.refinement(required)
+    shapes = _shapes(scene, responses, g) if mode in _OF_SHAPES else 0
+    # Few cells lie across the contact: their degree has to follow the pressure under all shapes.
+    least = max(4 + mixed, min((shapes + _BESIDE) // 2, DEGREES[1]))
     degrees = tuple(
-        solve.degree or max(kind.degree(required, response.margin), 4 + mixed) for response in responses
+        solve.degree or max(kind.degree(required, response.margin), least) for response in responses
     )
     kinks = scene.body.friction_kinks
     plan = FemPlan(
@@ -189,7 +195,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         graded=partial(at_friction_kinks, kinks=kinks) if kinks else None,
         rate=SLOWER if scene.layers else of_degrees(2),
         sweep=swept(solve.sweep, responses, g) if mode in FITTED else None,
-        shapes=_shapes(scene, responses, g) if mode in _OF_SHAPES else 0,
+        shapes=shapes,
     )  # fmt: skip
     shared, solver = shares_speeds(plan.size, len(responses)), solve.solver
     if mixed or solver == "auto":

@@ -27,7 +27,6 @@ smooth function, and a smooth function times a power of the distance or its loga
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -42,9 +41,10 @@ from .extremes import between, largest
 from .panels import panels_of_slope
 from .pressure import Expansion, Functions, Pressure
 
-#: Number of moments. The pressure under a flat punch has a single one; the mesh, the truncation or
-#: another profile add further moments, and the highest measure how well these are resolved.
-MOMENTS = 9
+#: Number of moments. The pressure under a flat punch has a single one, and that under a polynomial one
+#: more than its degree; the mesh and the truncation add further moments, and the highest measure how well
+#: these are resolved.
+MOMENTS, _HIGHEST = 9, 2
 
 
 @dataclass(frozen=True)
@@ -62,28 +62,29 @@ class Polynomials(Functions):
             moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, functions).
             α, β: exponents of the weight at X = a and X = -a, (states,); α + β = -1.
         """
-        each = np.moveaxis(products(α, β), -1, 0)
+        each = np.moveaxis(products(α, β, moments.shape[-1]), -1, 0)
         return np.asarray(np.linalg.solve(each, moments[..., None])[..., 0])
 
     def unresolved(self, c: NDArray) -> NDArray[np.float64]:
-        """Relative error of smooth factors measured on the last functions: 0, as these suffice."""
-        return np.zeros(len(c))
+        """Relative error of smooth factors measured on the last functions, (states,)."""
+        size = np.abs(c)
+        return np.asarray(size[:, -_HIGHEST:].sum(axis=1) / size.max(axis=1))
 
 
 def without_zeros(p: NDArray, zeros: NDArray) -> NDArray[np.float64]:
     """Chebyshev coefficients of smooth factors divided by 1 + r or 1 - r where they vanish at an end.
 
     Args:
-        p: Chebyshev coefficients of the factors, (states, ``MOMENTS``).
+        p: Chebyshev coefficients of the factors, (states, functions).
         zeros: True where a factor vanishes at r = -1 and at r = 1, (states, 2).
 
     Returns:
-        Coefficients of the quotients, (states, ``MOMENTS``).
+        Coefficients of the quotients, (states, functions).
     """
-    chebyshev, coefficients = np.polynomial.chebyshev, np.array(p)
+    chebyshev, coefficients, count = np.polynomial.chebyshev, np.array(p), p.shape[-1]
     for end, divisor in ((0, [1.0, 1.0]), (1, [1.0, -1.0])):  # 1 + r and 1 - r
-        quotient = np.zeros((MOMENTS, MOMENTS))
-        for k in range(1, MOMENTS):
+        quotient = np.zeros((count, count))
+        for k in range(1, count):
             quotient[k, :k] = chebyshev.chebdiv(np.eye(k + 1)[k], divisor)[0]
         coefficients = np.where(zeros[:, [end]], coefficients @ quotient, coefficients)
     return coefficients
@@ -94,7 +95,7 @@ def chebyshev(r: NDArray, count: int = MOMENTS) -> NDArray[np.float64]:
     return np.polynomial.chebyshev.chebvander(np.clip(r, -1.0, 1.0), count - 1)
 
 
-def products(α: Any, β: Any, count: int = MOMENTS) -> NDArray[np.float64]:
+def products(α: Any, β: Any, count: int) -> NDArray[np.float64]:
     """Integrals ∫ (1-r)^α (1+r)^β T_m T_n dr, (count, count, ...), in the shape of the exponents.
 
     The products are halves of T_{m+n} + T_{|m-n|}, whose integrals follow from a three-term recurrence.
@@ -192,7 +193,7 @@ class ContactFacets:
 
 
 class ContactRecovery(ContactFacets):
-    """Linear maps from nodal forces at the contact nodes of a mesh to moments and raw pressure.
+    """Linear maps from nodal forces at the contact nodes of a mesh to raw pressure and its exponents.
 
     The raw pressure is the piecewise polynomial with these nodal forces: the mass matrix of the contact
     is solved, and no exponent is assumed. Exponents are fitted at its Gauss points, where a polynomial
@@ -206,7 +207,6 @@ class ContactRecovery(ContactFacets):
             their neighbours, and beyond this distance the pressure's second term biases the exponent.
 
     Attributes:
-        moments: map to ∫ σ_YY T_k dr, (nodes, moments).
         raw: map to the raw pressure at chosen positions, NaN outside the contact, (nodes, points).
         edges: for X = a and X = -a: distances from it over a, (q,), and the map to the raw pressure
             there, (nodes, q).
@@ -214,7 +214,6 @@ class ContactRecovery(ContactFacets):
 
     def __init__(self, s: NDArray, degree: int, chart: Any, r: NDArray, farthest: float = 1e-3) -> None:
         super().__init__(s, degree, chart)
-        self.moments = chebyshev(chart.surface_position(s))
         density, start, length = self.density(np.eye(len(s))), self.start, self.length  # symmetric
         inside = under_punch(r)
         self.raw = np.full((len(s), len(r)), np.nan)
@@ -236,9 +235,8 @@ class ContactRecovery(ContactFacets):
         return np.column_stack([fitted_exponent(d, forces @ to_σ) for d, to_σ in self.edges])
 
 
-#: Distances from an end, over that of the nearest kink, between which the pressure is sampled to continue
-#: it; number of samples, and degree of the polynomial fitted to them.
-_SAMPLED_AT_END, _PLACES, _DEGREE = (0.02, 0.25), 12, 5
+#: Distance from an end, over that of the nearest kink, nearer than which the pressure is continued.
+_NEXT_TO_END = 0.02
 #: Distances from an end, over that of the nearest kink, between which a function A(d) + d^a B(d), A and B
 #: smooth, is sampled on either side: slopes next to an end, the pressure next to a cusp. Number of
 #: samples, Chebyshev's in the root of d; terms of each of the two series.
@@ -390,12 +388,11 @@ class KinkedPressure(Pressure):
         forces: consistent nodal forces over N/2, (F p + 1,).
         kinks: rising positions of the kinks over a, (k,).
         exponents: exponents of the pressure at the left and the right end, positive.
+        at_ends: pressure that holds next to the ends.
         exponent: power of the distance d with which the pressure departs from its value at a kink, see
             :func:`towards_kink`; 0 where it is infinite there.
         tolerance: relative error allowed for the limit at a kink.
         infinite: the pressure is infinite at its kinks.
-        at_ends: pressure that holds next to the ends; None where its power of the distance times a
-            polynomial does.
     """
 
     kinks: NDArray[np.float64]
@@ -405,8 +402,8 @@ class KinkedPressure(Pressure):
 
     def __init__(
         self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
-        exponents: tuple[float, float], exponent: float = 0.0, tolerance: float = 1e-6,
-        infinite: bool = False, at_ends: Pressure | None = None,
+        exponents: tuple[float, float], at_ends: Pressure, exponent: float = 0.0,
+        tolerance: float = 1e-6, infinite: bool = False,
     ) -> None:  # fmt: skip
         self._infinite, self._chart, self._exponent, self._at_ends = infinite, chart, exponent, at_ends
         self.kinks, (self.β, self.α) = kinks, exponents
@@ -430,23 +427,12 @@ class KinkedPressure(Pressure):
         i = np.abs(edges[:, None] - places).argmin(axis=0)
         return lengths[[i, i + 1]]
 
-    @cached_property
-    def _ends(self) -> list[tuple[float, Callable[[NDArray], NDArray]]]:
-        """Distance from each end nearer than which the pressure is continued, and that, by distance."""
-        t, each = np.cos(np.pi * (2.0 * np.arange(_PLACES)[::-1] + 1.0) / (2.0 * _PLACES)), []
-        for side, gap, a in zip((-1.0, 1.0), gaps_of(self.kinks), (self.β, self.α)):
-            near, far = (share * min(gap, 1.0) for share in _SAMPLED_AT_END)
-            d = (near + far) / 2.0 + (far - near) / 2.0 * t
-            factor = np.polynomial.Chebyshev.fit(d, self._piecewise(side * (1.0 - d)) / d**a, _DEGREE)
-            each.append((float(d[0]), lambda d, a=a, factor=factor: d**a * factor(d)))
-        return each
-
     def series(self, r: NDArray) -> NDArray[np.float64]:
         σ, inside = np.full(len(r), np.nan), under_punch(r)
         σ[inside] = self._piecewise(r[inside])
-        for d, (nearest, pressure) in zip((1.0 + r, 1.0 - r), self._ends):
-            near = (d > 0.0) & (d < nearest)
-            σ[near] = self._at_ends.σ_YY(r[near])[0] if self._at_ends else pressure(d[near])
+        for d, gap in zip((1.0 + r, 1.0 - r), gaps_of(self.kinks)):
+            near = (d > 0.0) & (d < _NEXT_TO_END * min(gap, 1.0))
+            σ[near] = self._at_ends.σ_YY(r[near])[0]
         for number, at in enumerate(self.kinks if self._exponent else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)

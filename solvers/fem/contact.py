@@ -29,6 +29,7 @@ from ..contact.ends import SHAPES, end_conditions, heights_of_shapes, slopes_of_
 from ..contact.fem_plan import SHARP_ON_LAYERS
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
+    MOMENTS,
     ContactFacets,
     ContactRecovery,
     chebyshev,
@@ -76,7 +77,7 @@ class PunchLevel(Level):
         super().__init__(work, task, space, g)
         self.plan = work.plan
         if recovery:
-            self.recovery, self.moments = recovery, recovery.moments
+            self.recovery = recovery
         self.punch = fitted or self._solved()
         self.fields = self.punch.fields
 
@@ -133,10 +134,15 @@ class PunchLevel(Level):
         """Positions over a of the contact nodes, (nodes,)."""
         return self.space.chart.surface_position(self.space.contact.s)
 
+    @property
+    def count(self) -> int:
+        """Number of moments of the pressure."""
+        return MOMENTS
+
     @cached_property
     def moments(self) -> NDArray[np.float64]:
         """Map from nodal forces to moments of the pressure, (nodes, moments)."""
-        return chebyshev(self.r)
+        return chebyshev(self.r, self.count)
 
     @cached_property
     def recovery(self) -> ContactRecovery:  # type: ignore[override]
@@ -245,11 +251,11 @@ class SharpLevel(PunchLevel):
 #: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
-_NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
+NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
 #: Unit of the first of these over the thickness of the uppermost layer, where there are no logarithms.
 _ANALYTIC = 100.0
 #: The first of these for splines that show what the others leave out, and factor of what they show.
-COARSE, _SURE = 4.0 * _NEXT, 1.5
+COARSE, _SURE = 4.0 * NEXT, 1.5
 #: Places over a at which a pressure between sharp edges is measured, and least stress over the mean to
 #: which its error is relative.
 _ALL_ACROSS, _SMALL = np.cos(np.pi * (np.arange(64) + 0.5) / 64.0), 0.1
@@ -279,13 +285,13 @@ class SplineLevel(PunchLevel):
         """Half-widths [m] on which frictions of contacts depend, (states,)."""
         return np.asarray(contact.half_width)
 
-    def pressure(self, contact: ContactStates, nearest: float = _NEXT) -> Expansion:
+    def pressure(self, contact: ContactStates, nearest: float = NEXT) -> Expansion:
         lengths = self.half_widths(contact)
         return self.splines(contact.g, lengths, contact.tested, nearest, contact.free)
 
     def splines(
         self, g: NDArray, half_width: NDArray, tested: Callable[[NDArray], NDArray],
-        nearest: float = _NEXT, free: Any = False,
+        nearest: float = NEXT, free: Any = False,
     ) -> Expansion:  # fmt: skip
         """Pressure of contacts, by splines without knots within a distance of ends and kinks.
 
@@ -323,12 +329,12 @@ class SplineLevel(PunchLevel):
         It is 0 where friction varies or the solid is graded from the surface on: there are logarithms.
         """
         body, response = self.task.body, self.task.response
-        if body.along or not len(response.depths) or np.isfinite(response.solid.changes[0]):  # type: ignore[attr-defined]
+        if body.along or (len(response.depths) and np.isfinite(response.solid.changes[0])):  # type: ignore[attr-defined]
             return 0.0
-        return _ANALYTIC * min(1.0, float(response.depths[0]))
+        return _ANALYTIC * min([1.0, *response.depths[:1]])
 
     def intensities(
-        self, parts: NDArray, g: Any, half_width: float, nearest: float = _NEXT
+        self, parts: NDArray, g: Any, half_width: float, nearest: float = NEXT
     ) -> NDArray[np.float64]:
         """Intensities of the parts (1, parts, fields) of one state at both ends, (parts, 2)."""
         each, lengths = np.multiply.outer([g, half_width], np.ones(parts.shape[1]))
@@ -373,6 +379,10 @@ class OnLayersLevel(SplineLevel, SharpLevel):
 _Solved = tuple[NDArray, NDArray, dict[str, Any]]
 
 
+#: Moments of a pressure more than shapes of its punch: one for each, and some to measure what is left.
+_MORE = 4
+
+
 class FreeLevel(PunchLevel):
     """Free ends of smooth punches and of lifted bases, on the mesh of all contacts."""
 
@@ -380,6 +390,10 @@ class FreeLevel(PunchLevel):
     def shapes(self) -> int:
         """Number of polynomials whose sum is the punch under every contact."""
         return self.plan.shapes
+
+    @property
+    def count(self) -> int:
+        return max(MOMENTS, self.shapes + _MORE)
 
     def heights(self) -> NDArray[np.float64]:
         return heights_of_shapes(self.r, self.shapes)
@@ -448,8 +462,9 @@ class FreeLevel(PunchLevel):
 
 #: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left.
 _KEPT, _BALANCED, _OF_INTENSITIES = 32, 1e-12, 1e-7
-#: Places over the half-width at which the pressure between free ends is measured.
-ACROSS = np.cos(np.pi * (np.arange(24) + 0.5) / 24.0)
+#: Places over the half-width at which the pressure between free ends is measured, some next to them.
+NEXT_TO_ENDS = np.outer(ENDS, [0.985, 0.99, 0.995, 0.999, 0.9999, 1.0 - 1e-6]).ravel()
+ACROSS = np.append(np.cos(np.pi * (np.arange(24) + 0.5) / 24.0), NEXT_TO_ENDS)
 
 
 class VaryingFreeLevel(SplineLevel, FreeLevel):

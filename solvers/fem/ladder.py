@@ -20,7 +20,7 @@ from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, VARYING, YI
 from ..contact.edges import from_edge
 from ..contact.estimate import AT_DEPTHS, SAFETY, SLOWEST, Rate, before, of_degrees, remaining
 from ..contact.fem_plan import levels
-from ..contact.pressure import Expansion
+from ..contact.pressure import ENDS, Expansion
 from ..contact.solution import Task
 from ..contact.stresses import Surface, Turns, turns_at_ends
 from .discretisation import Discretisation
@@ -33,7 +33,7 @@ from .space import Space
 _POINTS = 400
 
 #: Positions r under the punch at which the pressure's smooth factor is measured, both edges among them.
-_ACROSS = np.cos(np.pi * np.arange(9) / 8.0)
+_ACROSS = np.append(np.cos(np.pi * np.arange(9) / 8.0), np.outer(ENDS, [0.99, 0.997, 0.999]))
 
 #: Effect of rounding on stresses over that of the last digits of the displacements alone, times the root
 #: of the response's margin: 0.2 to 2.8 times the difference of mirror images where solids have them.

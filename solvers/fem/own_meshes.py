@@ -44,13 +44,23 @@ from ..contact.fem_plan import (
     requirements,
     uncrowded_kinks,
 )
+from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import Contact, Task, make_contact
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
 from ..profiles.punches import Flat
-from .contact import ACROSS, COARSE, FreeLevel, PunchLevel, SplineLevel, without_intensity
+from .contact import (
+    ACROSS,
+    COARSE,
+    NEXT,
+    NEXT_TO_ENDS,
+    FreeLevel,
+    PunchLevel,
+    SplineLevel,
+    without_intensity,
+)
 from .discretisation import Discretisation
 from .ladder import Gauge, WorkDone, climb, joined, to_tolerance
 from .punch import ContactStates
@@ -264,15 +274,25 @@ class EndsBetweenKinks:
         return with_kinks(rings, self.places, more)
 
 
-class KinkedLevel(SingleLevel):
+#: Step over the half-width of a derivative at an end; relative rate of the slope of a cube there.
+_STEP, _CUBE = 1e-6, 2.0
+
+
+class KinkedLevel(SplineLevel, SingleLevel):
     """Contact between ends that were solved for before, on cells graded towards kinks of the punch."""
 
-    #: Pressure next to the ends where that is no power of the distance times a polynomial.
-    next_to_ends: Any = None
+    @property
+    def kinks(self) -> NDArray[np.float64]:
+        return self.base.places
 
     @property
     def gaps(self) -> tuple[float, float]:  # type: ignore[override]
-        return gaps_of(self.base.places)
+        # Where a steep punch's slope changes faster than that of a cube, the pressure does, too.
+        beside = ENDS[:, None] * [1.0, 1.0 - _STEP]
+        of_ends, next_to_them = self.base.body.slope(beside, *self.base.lengths).T
+        rates = np.abs(1.0 - next_to_them / of_ends) / _STEP
+        left, right = np.minimum(gaps_of(self.base.places), _CUBE / np.maximum(rates, _CUBE / 2.0))
+        return float(left), float(right)
 
     def heights(self) -> NDArray[np.float64]:
         return self.base.body.height(self.r, *self.base.lengths)
@@ -281,12 +301,15 @@ class KinkedLevel(SingleLevel):
         m, h = self.base.lengths
         return self.punch.states(g).between(h, m, True)
 
+    def at_ends(self, contact: ContactStates, nearest: float = NEXT) -> Expansion:
+        """Pressure that holds next to the ends, see :meth:`splines`."""
+        return self.splines(contact.g, self.half_widths(contact), contact.tested, nearest, True)
+
     def pressure(self, contact: ContactStates) -> KinkedPressure:
-        space, profile = self.space, self.base.body.profile
+        space, profile, at_ends = self.space, self.base.body.profile, self.at_ends(contact)
         return KinkedPressure(
             space.contact.s, space.degree, space.chart, contact.normal[0], self.base.places,
-            self.end_exponents, leaving(profile), self.base.tolerance, bool(jumps(profile)),
-            self.next_to_ends,
+            self.end_exponents, at_ends, leaving(profile), self.base.tolerance, bool(jumps(profile)),
         )  # fmt: skip
 
     def nearest(self, states: SolvedStates) -> float:
@@ -317,8 +340,12 @@ class KinkedLevel(SingleLevel):
         at_kinks = [pressure.at_kink(i) for i in range(len(self.base.kinks))]
         σ = np.append(pressure.σ_YY(across), at_kinks)[None]
         size = np.abs(σ).max(keepdims=True)
-        unresolved = pressure.left_at_kinks / float(size[0, 0]) if at_kinks else 0.0
-        return self.gauge_of_free(states, σ, size, unresolved)
+        # Splines of all degrees are off alike next to ends.
+        coarse, now = (
+            self.at_ends(states.contact, nearest).σ_YY(NEXT_TO_ENDS) for nearest in (COARSE, NEXT)
+        )
+        left = np.abs(coarse - now).max() + pressure.left_at_kinks
+        return self.gauge_of_free(states, σ, size, float(left / size[0, 0]))
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns:
         """Limits of stresses at both ends, and under kinks where they are finite."""
@@ -425,11 +452,7 @@ class BalancedLevel(SplineLevel, SingleLevel):
 class KinkedSplineLevel(BalancedLevel, KinkedLevel):
     """Contact under a punch with kinks, on a mesh graded towards these, with any friction along it."""
 
-    gaps, nearest = KinkedLevel.gaps, KinkedLevel.nearest  # type: ignore[assignment]
-
-    @property
-    def kinks(self) -> NDArray[np.float64]:
-        return self.base.places
+    gaps, nearest, kinks = KinkedLevel.gaps, KinkedLevel.nearest, KinkedLevel.kinks  # type: ignore[assignment]
 
     @property
     def end_exponents(self) -> tuple[float, float]:
@@ -442,7 +465,6 @@ class KinkedSplineLevel(BalancedLevel, KinkedLevel):
         half_width, centre = self.lengths(without_intensity(self.punch.loads(parts), K))
         #: Change of the ends over the half-width where splines have no knots next to ends and kinks.
         self.moved = max(abs(half_width - contact.half_width[0]), abs(centre - contact.centre[0])) / h
-        self.next_to_ends = self.splines(g, np.array([h]), contact.tested, free=True)
         return contact
 
     def pressure(self, contact: ContactStates) -> KinkedPressure:  # type: ignore[override]
@@ -602,7 +624,7 @@ class OverLayers(OwnMeshes):
         task = replace(
             sought,
             body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along),
-            response=replace(sought.response, a=h),  # type: ignore[type-var]
+            response=sought.body.solid.response(sought.response.c, h),
             places=replace(sought.places, interfaces=depths),
         )
         base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance, trial)

@@ -82,11 +82,12 @@ class Scene:
 
     @cached_property
     def solid(self) -> Solid:
-        """The elastic solid, with its layers, or with that of an elastic punch."""
+        """The elastic solid, with its layers, and with that of an elastic punch."""
         below = self.half_plane.solid
+        plate: Solid = Layered(self.layers, below) if self.layers else below
         if punch := self.elastic_punch:
-            return Pair(below, punch.solid, punch.speed, punch.yield_strength)
-        return Layered(self.layers, below) if self.layers else below
+            return Pair(plate, punch.solid, punch.speed, punch.yield_strength)
+        return plate
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
@@ -271,12 +272,11 @@ def _of_elastic_punch(scene: Scene) -> Iterator[str]:
         yield f'punch.solid.plane: found "{solid.plane}", expected that of [solid], "{scene.solid.plane}"'
     if scene.solve.mode == "traction":
         yield 'solve.mode: found "traction" with an elastic punch, expected "contact"'
-    for name, other in (("layer", scene.layers), ("time", scene.time)):
-        if other:
-            yield (
-                f"punch.solid: found an elastic punch beside [{name}], expected a rigid one: two elastic "
-                "bodies are solved in steady motion, both uniform"
-            )
+    if scene.time:
+        yield (
+            "punch.solid: found an elastic punch beside [time], expected a rigid one: two elastic bodies "
+            "are solved in steady motion"
+        )
 
 
 def _of_motion(scene: Scene) -> Iterator[str]:

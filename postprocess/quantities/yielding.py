@@ -96,11 +96,12 @@ def _in_punch(s: Any) -> Peak:
 
 PUNCH_VON_MISES, PUNCH_VON_MISES_X, PUNCH_VON_MISES_Y = _largest(
     "punch_von_mises", "von Mises stress in the elastic punch", _in_punch, heights=NOT_NEGATIVE,
-    requires=(IN_PUNCH,),
+    requires=(IN_PUNCH,), own=(CLOSED_FORM, SIE, FEM),
 )  # fmt: skip
 PUNCH_FIRST_LOAD = _both(
     "punch_first_yield_load", "N/m", "load at first yield of the elastic punch, N per depth",
-    lambda s, _: s.strength_of_punch.first_load, mode=FINITE, requires=(POWER, IN_PUNCH, PUNCH_STRENGTH),
+    lambda s, _: s.strength_of_punch.first_load, mode=FINITE, 
+    requires=(POWER, IN_PUNCH, PUNCH_STRENGTH, UNIFORM),
 )  # fmt: skip
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",

@@ -87,6 +87,10 @@ class Jacobi(Functions):
     def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
         return jacobi(count, self.α, self.β, r)
 
+    def cauchy(self, c: NDArray, y: NDArray) -> NDArray[Any]:
+        panels = Panels(self.α, self.β, finest(len(c)))
+        return panels.cauchy(self.sum(c, panels.t), y)
+
     def _rule(self, c: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         t, w = gauss(max(_FINE, 2 * c.shape[-1]), self.α, self.β)
         return t, w, self.sum(c, t)
@@ -338,20 +342,21 @@ def converged(
             f"the pressure's exponent at an edge is -1 + {least:.2g}, expected at least -1 + "
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
-    before, error = None, np.inf
+    before, error, allowed = None, np.inf, max(tolerance / 4.0, _ROUNDING)
     for resolution in _PANELS if equation.rough else _TERMS:
         now = at_resolution(resolution)
         if before is not None:
             error = max(now.moved(before), now.change)
-            if error <= max(tolerance / 4.0, _ROUNDING):
+            if error <= allowed:
                 return replace(now, before=before.pressure, change=error)
         before = now
-    short = (
-        "the uppermost layer is very thin" if equation.kernel is not UNIFORM else "friction varies much"
-    )
+    short, units = "friction varies much over the contact's width", ""
+    if equation.kernel is not UNIFORM:
+        short = "the uppermost layer is very thin beside the contact's width"
+        units = ", and look at the units of the punch and the layers"
     raise SolveError(
-        f"with the most unknowns the pressure still changes by {error:.2g}, expected {tolerance:g}: "
-        f"{short} over the contact's width; take a larger tolerance"
+        f"with the most unknowns the pressure still changes by {error:.2g}, expected {allowed:.2g}: "
+        f"{short}; take a larger tolerance{units}"
     )
 
 
@@ -442,6 +447,9 @@ class Kinked(Pressure):
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         return self.more.integral(kernel, r) + self.on_panels.integral(kernel, r)
+
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        return self.alone.at(z) + self.more.at(z)
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         panels: Panels = self.on_panels.functions

@@ -422,6 +422,9 @@ class Interpolated(Pressure):
             None, ("rest", r.tobytes(), near), lambda node: node.pressure.rest(r, near)[None]
         )
 
+    def at(self, z: NDArray) -> NDArray[np.complex128]:
+        return self.read(None, ("at", z.tobytes()), lambda node: np.atleast_2d(node.pressure.at(z)))
+
     def states(self) -> Iterator[Pressure]:
         rows = zip(self.weights, self.α[:, 0].tolist(), self.β[:, 0].tolist())
         return (replace(self, weights=row, α=α, β=β) for row, α, β in rows)

@@ -368,7 +368,10 @@ class Contacts:
         There σ_XY has the other sign, and so has the friction.
         """
         return Contacts(
-            tuple(replace(of, response=of.response.punch, g=-of.g) for of in self.groups)  # type: ignore[attr-defined]
+            tuple(
+                Group(of.response.punch, of.rows, -of.g, of.pressure, of.half_width, of.centre)
+                for of in self.groups
+            )
         )
 
     def on_surface(self, r: NDArray) -> NDArray[np.float64]:

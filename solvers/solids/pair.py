@@ -8,12 +8,16 @@ profile, and so do their compliances, with n₁₂' of the mirrored punch:
 
 Like bodies at the same speed over the contact, rest among them, are not coupled (Dundurs, 1969). The
 pressure and its ends are those of a rigid punch on a solid with these constants. Stresses in each body
-follow from the pressure and that body's own constants.
+follow from the pressure and that body's own constants. A plate may have layers.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .flutter import Side, thresholds
 from .half_plane import HalfPlane, UniformHalfPlane
@@ -21,28 +25,25 @@ from .solid import Composite, Solid
 
 
 @dataclass(frozen=True)
-class PairAtSpeed(HalfPlane):
+class PairAtSpeed:
     """A plate at its speed under an elastic punch at its own; n, n₁₂ and q are those of both together.
 
-    Stresses and displacements are those of the plate.
+    All else, as stresses, displacements and layers, is that of the plate.
 
     Attributes:
         plate: half-plane of the plate.
         punch: half-plane of the punch, mirrored at Y = 0.
-        ratio: shear modulus of the plate over that of the punch.
+        ratio: shear modulus of the plate's surface over that of the punch.
     """
 
-    plate: UniformHalfPlane
+    plate: HalfPlane
     punch: UniformHalfPlane
     ratio: float
 
-    @property
-    def c(self) -> float:  # type: ignore[override]
-        return self.plate.c
-
-    @property
-    def surface(self) -> UniformHalfPlane:
-        return self.plate
+    def __getattr__(self, name: str) -> Any:
+        if name in ("plate", "punch", "ratio"):  # not set yet, as in a copy
+            raise AttributeError(name)
+        return getattr(self.plate, name)
 
     @cached_property
     def n(self) -> float:
@@ -70,7 +71,7 @@ class Pair(Composite):
     """A plate and the solid of a punch; modulus, density and wave speed are those of the plate.
 
     Attributes:
-        plate: uniform solid.
+        plate: uniform solid, or one with layers.
         punch: uniform solid, in the frame of the scene.
         speed: of the punch's solid over the contact [m/s]; 0 slides, a speed near the plate's rolls.
         punch_strength: uniaxial yield strength of the punch's solid [Pa]; None where it is not given.
@@ -85,7 +86,25 @@ class Pair(Composite):
 
     @property
     def surface(self) -> Solid:
-        return self.plate
+        return self.plate.surface
+
+    @property
+    def layers(self) -> Sequence[Any]:  # type: ignore[override]
+        return self.plate.layers
+
+    @property
+    def depths(self) -> NDArray[np.float64]:
+        return self.plate.depths
+
+    @property
+    def solids(self) -> Sequence[Solid]:
+        return self.plate.solids
+
+    def __getattr__(self, name: str) -> Any:
+        # What plates with layers have besides.
+        if name == "plate":  # not set yet, as in a copy
+            raise AttributeError(name)
+        return getattr(self.plate, name)
 
     @property
     def above(self) -> Solid:  # type: ignore[override]
@@ -105,7 +124,7 @@ class Pair(Composite):
 
     @cached_property
     def _sides(self) -> tuple[Side, Side]:
-        return Side.of(self.plate), Side.of(self.punch, self.speed, below=False)
+        return Side.of(self.surface), Side.of(self.punch, self.speed, below=False)
 
     def flutter(self, c: float = 0.0) -> tuple[float, float]:
         plate, punch = self._sides
@@ -118,9 +137,9 @@ class Pair(Composite):
     def _punch(self) -> UniformHalfPlane:
         return self.punch.response(self.speed / self.punch.c_s).surface.mirror_image
 
-    def response(self, c: float, a: float = 1.0) -> PairAtSpeed:
+    def response(self, c: float, a: float = 1.0) -> PairAtSpeed:  # type: ignore[override]
         """Both half-planes, the plate's at a speed over its wave speed."""
-        return PairAtSpeed(self.plate.response(c).surface, self._punch, self.μ / self.punch.μ)
+        return PairAtSpeed(self.plate.response(c, a), self._punch, self.μ / self.punch.μ)
 
     def words(self) -> str:
         motion = f"at {self.speed:g} m/s over the contact" if self.speed else "at rest"

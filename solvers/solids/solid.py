@@ -46,6 +46,11 @@ class Solid(Protocol):
         check(self)
 
     @property
+    def surface(self) -> "Solid":
+        """The solid at the surface."""
+        return self
+
+    @property
     def depths(self) -> NDArray[np.float64]:
         """Depths of the interfaces between solids [m], (layers,); none in a uniform solid."""
         return np.empty(0)

@@ -171,6 +171,8 @@ SMOOTH = (
     ({"profile": "skew", "length": 0.02, "way": 1}, 0.3),
     ({"profile": "skew", "length": 1e-4, "way": 1}, 0.85),
     ({"profile": "power", "exponent": 4, "coefficient": 1e6}, 0.6),
+    ({"profile": "power", "exponent": 12, "coefficient": 3e30}, 0.4),
+    ({"profile": "power", "exponent": 20, "coefficient": 3e54}, 0.4),
 )
 
 
@@ -285,6 +287,20 @@ def elastic_along(seed):
     return of_sections(solid=plate, punch=punch, **sections)
 
 
+def elastic_on_layers(seed):
+    """An elastic punch over a coated plate."""
+    rng = np.random.default_rng(seed)
+    plate, coating, solid = _body(rng), _body(rng), _body(rng)
+    slowest = min(_limit(plate)[1], _limit(coating)[1])
+    speed = rng.choice([0.0, 0.7]) * rng.uniform() * _limit(solid)[1]
+    punch = ELASTIC[2 * (seed % 2)] | {"load": "50 N/mm", "solid": solid | {"speed": float(speed)}}
+    return of_sections(
+        solid=plate, layer=[coating | {"thickness": 10.0 ** rng.uniform(-4.5, -3.0)}], punch=punch,
+        friction={"mu": rng.uniform(0.0, 0.7)}, motion={"speed": float(rng.uniform(0.0, 0.6) * slowest)},
+        solve={"methods": ["sie", "fem"], "tolerance": 1e-4},
+    )  # fmt: skip
+
+
 def _along(rng, seed):
     """Friction along the contact: of bristles, or a table."""
     laws = [
@@ -354,8 +370,9 @@ def kinked_on_layers(seed):
 RANDOM = {
     isotropic: (range(4), range(40)), orthotropic: ((3, 9), range(24)),
     orthotropic_inside: ((5,), range(36)), parabola: ((0, 1), range(60)), kinked: ((1, 2), range(60)),
-    smooth: ((1, 2), range(3)), tilted: (range(4), range(4)), pressure: (range(3), range(6)),
-    elastic: ((1,), range(20)), elastic_along: ((2, 3), range(20)), along: ((1, 2), range(20)),
+    smooth: ((1, 2, 3), range(5)), tilted: (range(4), range(4)), pressure: (range(3), range(6)),
+    elastic: ((1,), range(20)), elastic_on_layers: ((1,), range(20)),
+    elastic_along: ((2, 3), range(20)), along: ((1, 2), range(20)),
     cylinder_along: ((0, 2), range(20)), coated_along: ((0,), range(20)),
     kinked_along: ((1,), range(20)), kinked_on_layers: ((1,), range(20)),
 }  # fmt: skip
@@ -438,6 +455,7 @@ NAMED = {
     "hump": prescribed(HUMP, 1e-3),
     **{f"{name}, fine": profile(name, 1e-6) for name in KINKED if THOROUGH},
     "a table's ends": profile("table"),
+    "a steep power between kinks": profile("power", 1e-6, exponent=15, coefficient=3e39),
     "a cusp's largest pressure": profile("power", 1e-5, exponent=1.2, coefficient=0.02),
     **{f"{name} over a layer": scene_of("coating", punch | {
         "friction.mu_c": 0.4, "motion.speed": "447 m/s", "solve.methods": ["sie", "fem"],

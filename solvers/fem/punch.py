@@ -201,9 +201,9 @@ class SlidingPunch(Punch):
         #: Rows of the contact nodes, along X and Y in turn.
         self._rows = A.createSubMatrix(PETSc.IS().createGeneral(both, comm=A.comm))
         self._first = A.getOwnershipRange()[0]
-        rigid = space.rigid_motions(response)
         #: Motions of the whole body along X and Y, at this rank's rows, (rows, 2).
-        self._motions, moved = rigid[:, :2], np.zeros((len(rigid), 2))
+        self._motions = space.translations
+        moved = np.zeros_like(self._motions)
         far = space.far_dofs - self._first
         moved[far] = self._motions[far]
         #: Forces that a motion of the far boundary alone causes, (rows, 2).
@@ -212,7 +212,7 @@ class SlidingPunch(Punch):
         shaped = held_forces(A, space, nodes.dofs(1), shapes[:, nodes.owned].T)
         self._boundary = FarBoundary(space, response, A)
         A = space.held(A, response, ("contact", "far"))
-        self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
+        self.factor = LinearSolver(A, space.clock, solver, not space.mixed, space.places(response))
         #: Relative residual that may remain; number of parts; true where solutions are refined.
         self._left, self._parts, self._refines = least, len(shapes), False
         self.fields, self.forces = self._frictionless(shaped, negligible)

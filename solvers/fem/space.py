@@ -233,14 +233,15 @@ class Space:
         """The chart as the plane is contracted at a response's speed."""
         return Contracted(self.chart, response.contraction if self.chart.contracts else 1j)
 
-    def rigid_motions(self, response: HalfPlane) -> NDArray[np.float64]:
-        """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
-        mine, owned = self._owned_nodes, len(self._owned_nodes)
-        X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
-        modes = np.zeros((self._range[1] - self._range[0], 3))
-        modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
-        modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
-        return modes
+    @cached_property
+    def translations(self) -> NDArray[np.float64]:
+        """Both translations of the body at this rank's rows of a matrix, (rows, 2)."""
+        owned, rows = len(self._owned_nodes), self._range[1] - self._range[0]
+        return np.pad(np.tile(np.eye(2), (owned, 1)), [(0, rows - 2 * owned), (0, 0)])
+
+    def places(self, response: HalfPlane) -> NDArray[np.float64]:
+        """X and Y over a of this rank's nodes, as the rows of their unknowns, (2 nodes,)."""
+        return self.contracted(response).to_physical(self.coordinates[self._owned_nodes]).ravel()
 
     @cached_property
     def far_nodes(self) -> NDArray[np.int32]:

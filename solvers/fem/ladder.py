@@ -84,25 +84,6 @@ def of_pressure(pressure: Expansion, moments: NDArray) -> Gauge:
     return joined(INTENSITIES, groups, pressure.unresolved)
 
 
-def of_components(word: str, σ: NDArray, size: NDArray) -> Gauge:
-    """Gauge of stresses, (components, states, ...), of sizes that may be those of all components."""
-    values, scale = (
-        np.moveaxis(each, 1, 0).reshape(σ.shape[1], -1) for each in (σ, np.broadcast_to(size, σ.shape))
-    )
-    return Gauge(word, values, scale)
-
-
-def gauged(task: Task) -> Task:
-    """Task at fewer points inside, picked at all distances from the edges, from nearest to farthest."""
-    few = {}
-    for name in ("points", "around"):
-        points = getattr(task.places, name)
-        if len(points) > _POINTS:
-            order = np.argsort(_from_edges(points), kind="stable")
-            few[name] = points[np.sort(spread(order, _POINTS))]
-    return replace(task, places=replace(task.places, **few)) if few else task
-
-
 def _from_edges(points: NDArray) -> NDArray[np.float64]:
     """Distances over a of points (n, 2) from the nearer edge."""
     return np.hypot(from_edge(points[:, 0]), points[:, 1])
@@ -143,8 +124,14 @@ class Level:
 
     @cached_property
     def gauged_task(self) -> Task:
-        """Task with no more places than the error is measured at."""
-        return gauged(self.measured_task)
+        """Task with no more points inside than the error is measured at, at all distances from edges."""
+        task, few = self.measured_task, {}
+        for name in ("points", "around"):
+            points = getattr(task.places, name)
+            if len(points) > _POINTS:
+                order = np.argsort(_from_edges(points), kind="stable")
+                few[name] = points[np.sort(spread(order, _POINTS))]
+        return replace(task, places=replace(task.places, **few)) if few else task
 
     @cached_property
     def gauged_displacement(self) -> Displacement:
@@ -191,12 +178,13 @@ class Level:
         for word, (evaluate, size) in by_word.items():
             if word in self.work.stresses:
                 σ = evaluate(states.contact.weights)
-                gauges.append(of_components(word, σ, size(σ)))
+                by_state = [np.moveaxis(of, 1, 0) for of in (σ, np.broadcast_to(size(σ), σ.shape))]
+                gauges.append(Gauge(word, *(of.reshape(len(of), -1) for of in by_state)))
         return gauges
 
     def _on_surface(self, states: SolvedStates) -> Gauge:
         """Gauge of σ_XX on the surface, and of its limits at free ends, its extremes there."""
-        places, σ_XX = self.measured_task.places, self.σ_XX(*self.fields_of(states))
+        places, σ_XX = self.measured_task.places, self.in_plane(states)
         groups = [(σ_XX, stresses.of_in_plane(σ_XX, places.X))]
         if states.contact.free.any():
             surface = Surface(places, np.full(σ_XX.shape, np.nan), σ_XX)
@@ -205,29 +193,23 @@ class Level:
             groups.append((np.nan_to_num(at_ends), largest))
         return joined(ON_SURFACE, groups)
 
-    def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
-        """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
-        X = self.measured_task.places.X
-        return states.ratio(X), states.contact.weights, states.pressure.σ_YY(X)
-
-    def σ_XX(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
-        """In-plane stress on the surface, (states, n), by what :meth:`fields_of` gives."""
-        return self.gauged_displacement.surface(g, weights, σ_YY).σ_XX
+    def in_plane(self, states: SolvedStates) -> NDArray[np.float64]:
+        """σ_XX over N/(2a) where stresses on the surface are measured, (states, n)."""
+        X, weights = self.measured_task.places.X, states.contact.weights
+        return self.gauged_displacement.surface(states.ratio(X), weights, states.pressure.σ_YY(X)).σ_XX
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding alone on each gauge, relative; arguments as of :meth:`states`."""
         raise NotImplementedError
 
-    def rounding_of_stresses(
-        self, own: tuple[NDArray, NDArray, NDArray], noise: NDArray | None = None
-    ) -> list[float]:
+    def rounding_of_stresses(self, states: SolvedStates, noise: NDArray | None = None) -> list[float]:
         """Effect of rounding on stresses, relative, by word.
 
         Points inside have no mirror image, those on the surface have: σ_XX there stands for all stresses,
         no nearer to an edge than the word's points are.
 
         Args:
-            own: σ_XY/σ_YY, weights and σ_YY of the states, as of :meth:`fields_of`.
+            states: the states.
             noise: effect of rounding on σ_XX, (states, n); a bound by the last digits of the fields, if
                 it is None.
         """
@@ -241,9 +223,11 @@ class Level:
         words = [word for word in nearest if word in self.work.stresses]
         if not words:
             return []  # no derivative is taken that is not requested
-        size = stresses.of_in_plane(self.σ_XX(*own), places.X)
+        size = stresses.of_in_plane(self.in_plane(states), places.X)
         if noise is None:
-            noise = _SOLVED / response.margin**0.5 * self.gauged_displacement.rounding(own[1])
+            noise = (
+                _SOLVED / response.margin**0.5 * self.gauged_displacement.rounding(states.contact.weights)
+            )
         on_surface = from_edge(places.X)
         least = [min(nearest[word]().min(initial=np.inf), on_surface.max()) for word in words]
         return [float((noise / size)[:, on_surface >= distance].max()) for distance in least]

@@ -12,7 +12,6 @@ from mpi4py import MPI
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import TAGS
-from galinx.meshes.store import obtain
 
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, on_finer_cells
 from .dolfinx_space import DolfinxSpace
@@ -86,10 +85,7 @@ class Discretisation:
             with self.clock("mesh"):
                 check_cells(plan.pattern)
                 if comm.rank == 0:
-                    if cuts > 1 and plan.drawn is None:  # Gmsh's copy of a cut mesh would only be large
-                        mesh = plan.kind.build(plan.refinement, cuts)
-                    else:  # no other run has the same that is drawn
-                        mesh = plan.drawn or obtain(plan.pattern)
+                    mesh = plan.drawn or plan.kind.build(plan.refinement, cuts)
                 self._meshes[cuts] = distribute(mesh, comm)
         return self._meshes[cuts]
 

@@ -407,7 +407,8 @@ def climb(
                 measured.append((p, level.gauges(*stand_ins(task, probes)[:2])))
             error = MeasuredError(work, level, probes, measured, share)
             if plan.fixed or p == DEGREES[1] or not error.of_degree or error.stalls:
-                return Solved(level, error, size_of(level.space) | vars(done) | error.record())
+                changes = {"change_by_degree": error.change_by_degree}
+                return Solved(level, error, size_of(level.space) | vars(done) | changes)
             to_solve = [(p + 1, plan.cuts)]
     except BaseException:
         if level:
@@ -459,7 +460,10 @@ class MeasuredError(Estimate):
         self.floor, self.excessive, enough, mended = 0.0, False, False, False
         for gauges, rounding in zip(each, level.rounding(probes, loads)):
             word = gauges[-1].word
-            unseen, own = self._unseen(gauges[-1], probes), self._own(gauges)
+            unseen = self._unseen(gauges[-1], probes)
+            earlier, last = (gauge.unresolved for gauge in gauges[-2:])
+            # What a level shows by itself where the level before showed hardly more.
+            own = np.where(last > _LASTS * earlier, last, 0.0)
             changes = [late.change(early) for early, late in pairwise(gauges)]
             rounding, bound = self._rounding(word, rounding, float(changes[-1].max()))
             rate = self._rate(word)
@@ -510,10 +514,11 @@ class MeasuredError(Estimate):
                 f"{self._degree}, {rest}"
             )
 
-    def record(self) -> dict[str, list[float]]:
-        """Changes by degree, as they are archived."""
+    @property
+    def change_by_degree(self) -> list[float]:
+        """Largest changes from the degree before, by degree; empty where nothing changed."""
         changes = [self._change(degree) for degree in range(DEGREES[1] + 1)]
-        return {"change_by_degree": changes if any(changes) else []}
+        return changes if any(changes) else []
 
     def _rounding(self, word: str, rounding: float, last: float) -> tuple[float, float]:
         """Rounding that shows in a gauge, and what it may be at most, by the last change."""
@@ -530,11 +535,6 @@ class MeasuredError(Estimate):
         *earlier, change = (float(of.max()) for of in changes)
         earlier.append(self._changes.get(self._degree - _DECAY, {}).get(word, np.inf))
         return _LASTS * max(earlier) <= change <= bound
-
-    def _own(self, gauges: Sequence[Gauge]) -> Any:
-        """Errors that a level shows by itself where the level before showed hardly more."""
-        earlier, last = (gauge.unresolved for gauge in gauges[-2:])
-        return np.where(last > _LASTS * earlier, last, 0.0)
 
     def _rate(self, word: str) -> Rate:
         """Usual rate of convergence, or a slower one by the decay over two degrees; one may be luck."""

@@ -285,7 +285,11 @@ class Fit:
         tolerance = self._work.plan.tolerance
         worst: list[int] = []
         while self._pays and len(self.speeds) < self._most:
-            numbers = self._next(worst)
+            numbers = list(worst)  # and speeds far from all solved ones
+            while len(numbers) < AT_ONCE:
+                if (number := leja(self._sweep.z, [*self.speeds, *numbers])) is None:
+                    break
+                numbers.append(number)
             if not numbers:
                 return
             before, worst = self.rational, []
@@ -312,16 +316,6 @@ class Fit:
                     self.error = error
                     return
                 worst = [max(changes, key=lambda number: self._excess(changes[number]))]
-
-    def _next(self, worst: list[int]) -> list[int]:
-        """Numbers of the speeds to solve next: the worst one, and speeds far from all solved ones."""
-        numbers = list(worst)
-        while len(numbers) < AT_ONCE:
-            number = leja(self._sweep.z, [*self.speeds, *numbers])
-            if number is None:
-                break
-            numbers.append(number)
-        return numbers
 
     @property
     def _pays(self) -> bool:

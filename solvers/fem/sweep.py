@@ -183,7 +183,7 @@ class Fit:
         self.estimates: dict[float, Estimate] = {}
         self.rational: Barycentric | None = None
         first = int(np.argmin([task.response.margin for task in self._tasks]))
-        self._take([self._solve(first, True)])
+        self._take([self._solve([first], first)])
 
     @property
     def samples(self) -> list[Sample]:
@@ -294,10 +294,8 @@ class Fit:
                 return
             before, worst = self.rational, []
             measured = numbers[: max(LADDERS - len(self.estimates), 0)]
-            speeds = by_turns(
-                numbers, lambda number, of=measured: self._solve(number, number in of),
-                not self._work.plan.shared_speeds,
-            )  # fmt: skip
+            together = not self._work.plan.shared_speeds
+            speeds = by_turns(numbers, partial(self._solve, measured), together)
             degree = max(speed.degree for speed in speeds)
             if degree > self.space.degree:
                 self._begin(degree)
@@ -343,14 +341,14 @@ class Fit:
             if np.abs(self.rational.shares(self._sweep.z)).sum(axis=1).max() >= _LARGEST:
                 self.rational = polynomial_through(z)
 
-    def _solve(self, number: int, measures: bool) -> Speed:
-        """Solve a speed, with or without the measurement of its error; the first one sets the space."""
+    def _solve(self, measured: list[int], number: int) -> Speed:
+        """Solve a speed, whose error is measured if its number is among some; the first sets the space."""
         work, task, expected = self._work, self._tasks[number], list[Gauge]()
         work.progress.say(f"finite elements at c = {task.response.c:g}, of the fit")
         if self.rational:
             with self.level(task) as predicted:
                 expected = predicted.gauges(*self._probes)
-        if measures:
+        if number in measured:
             solve = partial(self._kind, work, task)
             solved = climb(work, task, self._all, solve, self._degree, DISCRETISATION)
         else:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS
 from galinx.postprocess import over_time
 from galinx.postprocess.over_time import COMPARED, contact_numbers, largest_change
 from galinx.postprocess.quantities import over_time as rows
@@ -211,7 +210,7 @@ def _at_level(
     response = starts.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, starts.scene.solid.form, clock=clock)
+    space = Space(*mesh, Physical(), level.degree, starts.scene.solid.form, clock=clock)
     motion, motions = Motion(space, response, starts.sharp), []
     solver = SlidingInTime(motion, clock)
     surface = SurfaceInTime(motion, np.append(_ENDS, ON_SURFACE) if starts.time.every else _ENDS)

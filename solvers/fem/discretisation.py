@@ -11,7 +11,6 @@ from mpi4py import MPI
 
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
-from galinx.meshes.rings import TAGS
 
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, on_finer_cells
 from .dolfinx_space import DolfinxSpace
@@ -73,7 +72,7 @@ class Discretisation:
         if (degree, cuts) not in self._spaces:
             with quiet_compiler():
                 self._spaces[degree, cuts] = SPACES[self.plan.assembler](
-                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
+                    *self.mesh(cuts), self.plan.kind.chart, degree, self.plan.form,
                     self.plan.terms, self.clock,
                 )  # fmt: skip
         return self._spaces[degree, cuts]

@@ -18,7 +18,7 @@ from petsc4py import PETSc
 
 from galinx.clock import Clock
 from galinx.meshes.charts import Chart
-from galinx.meshes.rings import QuadMesh
+from galinx.meshes.rings import TAGS, QuadMesh
 
 from ..approximation import interpolation, lagrange
 from ..errors import MeshError
@@ -164,8 +164,7 @@ class Space:
     """Continuous vector Lagrange elements of one degree on one mesh.
 
     Args:
-        mesh, facet_tags: dolfinx mesh and tags of its boundary facets.
-        tags: number of the tag of each of the parts "contact", "free surface" and "far".
+        mesh, facet_tags: dolfinx mesh and tags of its boundary facets, by :data:`.rings.TAGS`.
         chart: the chart that the mesh is drawn in.
         degree: polynomial degree, at least 1.
         form: name of the solid's weak form.
@@ -180,7 +179,6 @@ class Space:
         self,
         mesh: Any,
         facet_tags: Any,
-        tags: dict[str, int],
         chart: Chart,
         degree: int,
         form: str = "isotropic",
@@ -196,9 +194,9 @@ class Space:
         mesh.topology.create_connectivity(2, 1)
         with self.clock("forms"):
             self.V = versions.space(mesh, versions.vector_element(degree))
-        self.facet_tags, self.tags = facet_tags, tags
-        self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
-        for name, tag in tags.items():
+        self.facet_tags = facet_tags
+        self.facets = {name: facet_tags.find(tag) for name, tag in TAGS.items()}
+        for name, tag in TAGS.items():
             if not self.comm.allreduce(len(self.facets[name])):
                 raise MeshError(f'no facet of the mesh carries tag {tag}, the part "{name}"')
 

@@ -342,7 +342,7 @@ class Fit:
                 self.rational = polynomial_through(z)
 
     def _solve(self, measured: list[int], number: int) -> Speed:
-        """Solve a speed, whose error is measured if its number is among some; the first sets the space."""
+        """Solve a speed, its error measured if its number is among some; the first one sets the space."""
         work, task, expected = self._work, self._tasks[number], list[Gauge]()
         work.progress.say(f"finite elements at c = {task.response.c:g}, of the fit")
         if self.rational:

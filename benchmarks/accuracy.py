@@ -23,7 +23,7 @@ from mpi4py import MPI
 import galinx
 from galinx.meshes import MESHES
 from galinx.meshes.kind import Requirements
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.postprocess.compare import RULES
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.recovery import ContactRecovery, from_moments
@@ -128,7 +128,7 @@ def of_boundary(terms: int, R: float, count: int) -> float:
     levels = int(np.ceil(np.log(np.sqrt(1e-8 / 3.0) / (np.pi / 2.0)) / np.log(kind.ratio)))
     widths = ((np.arccosh(R) - np.pi / 2.0) / count,) * count
     cells = distribute(kind.build(Refinement(levels, kind.ratio, 2, widths)), MPI.COMM_SELF)
-    space = Space(*cells, TAGS, kind.chart, 10, terms=terms)
+    space = Space(*cells, kind.chart, 10, terms=terms)
     pressure, local = recovered(space, response, g)
     return float(np.abs(pressure.K_I / local.K_I[:, None] - 1.0).max())
 
@@ -149,7 +149,7 @@ def of_planes(E1: float, angle: float, share: float, more: int, pieces: int) -> 
     kind, response, g = MESHES["confocal"], solid.response(share * solid.limit()), -0.3
     even = kind.refinement(Requirements(1e-6))
     pattern = kind.build(replace(even, sectors=even.sectors + more, pieces=pieces))
-    space = Space(*distribute(pattern, MPI.COMM_SELF), TAGS, kind.chart, 8, form=solid.form, terms=8)
+    space = Space(*distribute(pattern, MPI.COMM_SELF), kind.chart, 8, form=solid.form, terms=8)
     pressure, local = recovered(space, response, g)
     X = np.cos(np.pi * np.arange(1, 8) / 8.0)
     return float(np.abs(pressure.σ_YY(X) / local.σ_YY(X) - 1.0).max())

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from galinx.meshes import MESHES
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
@@ -58,7 +58,7 @@ def main() -> None:
     for degree in DEGREES:
         of_each = []
         for space in (Space, DolfinxSpace):
-            made = space(*mesh, TAGS, kind.chart, degree, terms=8)
+            made = space(*mesh, kind.chart, degree, terms=8)
             of_each.append(measured(made))
         (fast, few, own), (slow, many, ordinary) = of_each
         change = np.abs(ordinary / own - 1.0).max()

@@ -12,7 +12,6 @@ from mpi4py import MPI
 
 from galinx.clock import Clock
 from galinx.meshes import MESHES, Requirements
-from galinx.meshes.rings import TAGS
 from galinx.solvers.fem.boundary import held_forces
 from galinx.solvers.fem.linear import LinearSolver, available
 from galinx.solvers.fem.space import Space, distribute
@@ -42,8 +41,8 @@ def measure(space: Space, c: float, kind: str) -> tuple[int, float, float]:
     b = held_forces(A, space, space.contact.dofs(1), v)
     A = space.held(A, response, ("contact", "far"))
     start = time.perf_counter()
-    method, rigid = ("direct", None) if kind == "mumps" else (kind, space.rigid_motions(response))
-    solver = LinearSolver(A, Clock(), method, rigid=rigid)
+    method = "direct" if kind == "mumps" else kind
+    solver = LinearSolver(A, Clock(), method, places=space.places(response))
     ready = time.perf_counter()
     solver.solve(b)
     done = time.perf_counter()
@@ -61,7 +60,7 @@ def main() -> None:
         for cuts in all_cuts:
             kind = MESHES[name]
             cells = None if comm.rank else kind.build(kind.refinement(Requirements(1e-6)), cuts)
-            space = Space(*distribute(cells, comm), TAGS, kind.chart, degree)
+            space = Space(*distribute(cells, comm), kind.chart, degree)
             if space.size > most:
                 continue
             for c in (0.0, 0.9):

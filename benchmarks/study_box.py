@@ -14,7 +14,7 @@ from mpi4py import MPI
 import galinx
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import check_cells
-from galinx.meshes.rings import TAGS, QuadMesh, Refinement
+from galinx.meshes.rings import QuadMesh, Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
@@ -49,7 +49,7 @@ def study() -> tuple[float, int, int]:
     """Error of K_I, cells and unknowns of the study's size."""
     pattern, chart = block(), MESHES["box"].chart
     check_cells(pattern)
-    space = Space(*distribute(pattern, MPI.COMM_SELF), TAGS, chart, 2)
+    space = Space(*distribute(pattern, MPI.COMM_SELF), chart, 2)
     response = MovingFrame(2.0, 0.0)
     punch = SlidingPunch(space, response)
     recovery = ContactRecovery(space.contact.s, 2, chart, np.array([0.0]))

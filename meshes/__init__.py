@@ -2,7 +2,4 @@
 
 from .kind import MESHES, MeshKind, Requirements
 
-#: The mesh of scenes that name none.
-CONFOCAL = MESHES["confocal"]
-
-__all__ = ["CONFOCAL", "MESHES", "MeshKind", "Requirements"]
+__all__ = ["MESHES", "MeshKind", "Requirements"]

@@ -189,10 +189,6 @@ class OnLayers(MeshKind):
         long = _LONG * max(1.0, _LONGER * (self.depths[-1] / _THICK) ** 2)
         return _CUBED * min(1.0, long / at_rest) / self.left**0.5
 
-    def innermost_size(self, required: Requirements) -> float:
-        """Size over a of the cells at the edges."""
-        return max(self._innermost(required) ** 2, 1e-11)
-
     def _innermost(self, required: Requirements) -> float:
         if required.nearest is None:
             return super()._innermost(required)
@@ -204,11 +200,7 @@ class OnLayers(MeshKind):
         degree = super().degree(required, margin)
         if required.nearest is None:
             return max(degree - 1, DEGREES[0] + 1)
-        return min(degree + self._one_more(required), DEGREES[1])
-
-    def _one_more(self, required: Requirements) -> bool:
-        """True where the degree is one more from the first, with its moments."""
-        return required.nearest is not None and required.tolerance < _TIGHT
+        return min(degree + (required.tolerance < _TIGHT), DEGREES[1])
 
     def drawn(self, required: Requirements) -> QuadMesh:
         """The mesh."""
@@ -226,7 +218,8 @@ class OnLayers(MeshKind):
             inner = np.concatenate([self._width * in_square, between(wide, half, growth)])
             X += [X_left + inner, np.array([X_left + half]), X_right - inner]
         rows = np.concatenate([[0.0], in_square, below, [R]])
-        ratio, last = _NEAR_RATIO if near else _RATIO, self.innermost_size(required) / b
+        ratio = _NEAR_RATIO if near else _RATIO
+        last = max(self._innermost(required) ** 2, 1e-11) / b
         rings = Refinement(max(ceil(log(last) / log(ratio)), 1), ratio, legs)
         return lines_and_corners(
             np.unique(np.concatenate(X)), rows, self.places, (wide, b), corner(1.0, rings, False)[0]

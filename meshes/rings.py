@@ -15,7 +15,7 @@ on outwards.
 rectangles beside places of the surface.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, log, log2
@@ -256,24 +256,24 @@ def lines_and_corners(
 
 
 def tagged(quads: NDArray[np.float64]) -> QuadMesh:
-    """A mesh of quadrilaterals (n, 4, 2) below the surface, on which the contact is |X| < 1."""
-    points, cells = _joined(quads)
-    sides = sides_of(cells)
-    _, index, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
-    boundary = sides[index[count == 1]]
-    X, Y = points[boundary].mean(axis=1).T
-    top, under = Y == 0.0, np.abs(X) < 1.0
-    parts = {CONTACT: top & under, FREE: top & ~under, FAR: ~top}
-    return QuadMesh(points, cells, {tag: boundary[part] for tag, part in parts.items()})
+    """A mesh of quadrilaterals (n, 4, 2) that fill a rectangle below the surface, contact |X| < 1."""
+    X, Y = np.abs(quads[..., 0]).max(), quads[..., 1].min()
+    return _mesh(quads, lambda x, y: (
+        (y == 0.0) & (np.abs(x) < 1.0), (y == 0.0) & (np.abs(x) > 1.0), (np.abs(x) == X) | (y == Y)
+    ))  # fmt: skip
 
 
 def _of_rectangle(quads: NDArray[np.float64], Ξ: float) -> QuadMesh:
     """The mesh of quadrilaterals (m, 4, 2) that fill the rectangle up to ξ = Ξ."""
+    return _mesh(quads, lambda ξ, η: (ξ == 0.0, (η == 0.0) | (η == -np.pi), ξ == Ξ))
+
+
+def _mesh(quads: NDArray, parts: Callable[[NDArray, NDArray], tuple[NDArray, ...]]) -> QuadMesh:
+    """The mesh of quadrilaterals (m, 4, 2), of which sides are contact, free and far by their middles."""
     points, cells = _joined(quads)
     sides = sides_of(cells)
-    ξ, η = points[sides].mean(axis=1).T
-    parts = {CONTACT: ξ == 0.0, FREE: (η == 0.0) | (η == -np.pi), FAR: ξ == Ξ}
-    return QuadMesh(points, cells, {tag: sides[part] for tag, part in parts.items()})
+    each = parts(*points[sides].mean(axis=1).T)
+    return QuadMesh(points, cells, {tag: sides[part] for tag, part in zip(TAGS.values(), each)})
 
 
 def sides_of(cells: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -52,21 +52,20 @@ class Reached:
         square = min(_SQUARE, self.size, self.seen, *self.depths[:1])
         levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
         between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / min(self.size, self.seen)) + 1)
-        outwards = np.concatenate(
-            [between, [1.0], self._outwards(1.0 + square, self.half_width, self.around[0])]
-        )
+        outwards = np.concatenate([
+            between, [1.0], self._lines(1.0 + square, self.half_width, self.around[0]),
+            self._beyond(self.half_width),
+        ])  # fmt: skip
         X = np.concatenate([-outwards[:0:-1], outwards])
-        depths = np.concatenate([[0.0], self._downwards(square)])
+        # Rows go through all interfaces.
+        first, around = square, self.around[1]
+        rows = [first, *(depth for depth in self.depths if depth > first * (1.0 + 1e-9))]
+        rows.append(max(self.depth, rows[-1] + self.size))
+        lines = [self._lines(*ends, around, ends[0] - first) for ends in pairwise(rows)]
+        below = [of[:-1] for of in lines[:-1]]
+        depths = np.concatenate([[0.0], *below, lines[-1], self._beyond(rows[-1])])
         rings, _ = corner(1.0, Refinement(levels, self.ratio, 1), fan=True)
         return lines_and_corners(X, depths, (-1.0, 1.0), (square, square), rings)
-
-    def _downwards(self, first: float) -> NDArray[np.float64]:
-        """Depths of rows from the first one on, through all interfaces."""
-        between = [first, *(depth for depth in self.depths if depth > first * (1.0 + 1e-9))]
-        around = self.around[1]
-        lines = [self._lines(*ends, around, ends[0] - first)[:-1] for ends in pairwise(between)]
-        last = max(self.depth, between[-1] + self.size)
-        return np.concatenate([*lines, self._outwards(between[-1], last, around, between[-1] - first)])
 
     def _lines(
         self, first: float, last: float, around: float, before: float = 0.0
@@ -78,10 +77,7 @@ class Reached:
             x.append(x[-1] + (min(side, self.seen) if first + x[-1] < around else side))
         return first + np.array(x) * ((last - first) / x[-1])
 
-    def _outwards(
-        self, first: float, last: float, around: float, before: float = 0.0
-    ) -> NDArray[np.float64]:
-        """Lines from the first distance to the last, and on to where a steady field is held."""
-        lines = self._lines(first, last, around, before)
+    def _beyond(self, last: float) -> NDArray[np.float64]:
+        """Lines from the last distance that waves need on, to where a steady field is held."""
         more = max(ceil(log(max(self.beyond, last) / last) / log(_BEYOND)), 0)
-        return np.concatenate([lines, last * _BEYOND ** np.arange(1.0, more + 1.0)])
+        return np.asarray(last * _BEYOND ** np.arange(1.0, more + 1.0))

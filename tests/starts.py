@@ -7,7 +7,6 @@ import numpy as np
 from mpi4py import MPI
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS
 from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import contact_numbers
 from galinx.solvers.contact.closed_form import FlatPunch
@@ -31,7 +30,7 @@ def by_integral_equation(solid, c, g, end, steps, ramp=3.0, terms=16, **options)
 
 def motion(solid, c, mesh, degree=4, sharp=False):
     """Equations of motion of a solid on a mesh."""
-    space = Space(*distribute(mesh.drawn(), MPI.COMM_SELF), TAGS, Physical(), degree, solid.form)
+    space = Space(*distribute(mesh.drawn(), MPI.COMM_SELF), Physical(), degree, solid.form)
     return Motion(space, solid.response(c), sharp)
 
 

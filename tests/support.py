@@ -247,12 +247,11 @@ def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
     from mpi4py import MPI
 
     from galinx.meshes import MESHES
-    from galinx.meshes.rings import TAGS
     from galinx.solvers.fem.space import Space, distribute
 
     comm, kind = comm or MPI.COMM_SELF, MESHES[mesh]
     cells = None if comm.rank else kind.build(refinement)
-    return Space(*distribute(cells, comm), TAGS, kind.chart, degree, form, 0 if kind.walls else 8)
+    return Space(*distribute(cells, comm), kind.chart, degree, form, 0 if kind.walls else 8)
 
 
 def state_field(scene, number, extent=10.0, degree=None):

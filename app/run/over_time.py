@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from galinx.clock import Clock
 from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS
 from galinx.postprocess import over_time
 from galinx.postprocess.over_time import COMPARED, contact_numbers, largest_change
 from galinx.postprocess.quantities import over_time as rows
@@ -21,7 +20,6 @@ from galinx.solvers.approximation import polynomial_through
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import LayersUnderPunch
-from galinx.solvers.contact.pressure import Pressure
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.transient.history import Drive, Way
@@ -106,14 +104,11 @@ def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.flo
         punch = Punch(Flat(response.a), response.a, 1.0)
         solved, _ = LayersUnderPunch(response.surface, stack, accuracy, punch).solved(different)
         weights = polynomial_through(np.array([contact.g for contact in solved])).shares(different)
-        return np.asarray((weights @ [_centre(contact.pressure) for contact in solved])[which])
+        each = [contact.pressure.points(0.5) for contact in solved]  # the rule's length over a
+        centres = [float(forces @ t / forces.sum()) for t, forces in each]
+        return np.asarray((weights @ centres)[which])
     punches = [FlatPunch(response, ratio) for ratio in different]
     return np.array([punch.β - punch.α for punch in punches])[which]
-
-
-def _centre(pressure: Pressure) -> float:
-    t, forces = pressure.points(0.5)  # the rule's length over a
-    return float(forces @ t / forces.sum())
 
 
 def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
@@ -215,7 +210,7 @@ def _at_level(
     response = starts.response(c)
     with clock("mesh"):
         mesh = distribute(level.mesh.drawn(), MPI.COMM_SELF)
-    space = Space(*mesh, TAGS, Physical(), level.degree, starts.scene.solid.form, clock=clock)
+    space = Space(*mesh, Physical(), level.degree, starts.scene.solid.form, clock=clock)
     motion, motions = Motion(space, response, starts.sharp), []
     solver = SlidingInTime(motion, clock)
     surface = SurfaceInTime(motion, np.append(_ENDS, ON_SURFACE) if starts.time.every else _ENDS)

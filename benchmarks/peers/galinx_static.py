@@ -14,7 +14,7 @@ from static_punch import KAPPA, G, exact_moments
 
 from galinx.meshes import MESHES
 from galinx.meshes.kind import check_cells
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.recovery import ContactRecovery
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
@@ -44,7 +44,7 @@ def solve(
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, ratio, 1, widths))
     check_cells(cells)
-    space = Space(*distribute(cells, MPI.COMM_SELF), TAGS, kind.chart, degree, terms=moments)
+    space = Space(*distribute(cells, MPI.COMM_SELF), kind.chart, degree, terms=moments)
     punch = SlidingPunch(space, MovingFrame(KAPPA, 0.0), negligible=NEGLIGIBLE)
     recovery = ContactRecovery(space.contact.s, degree, space.chart, np.zeros(0))
     found = punch.states(G).normal[0] @ recovery.moments[:, :6]

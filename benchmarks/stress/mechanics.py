@@ -8,7 +8,6 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.plan import make_plan
 from galinx.app.scene.read import parse
 from galinx.meshes import MESHES
-from galinx.meshes.rings import TAGS
 from galinx.postprocess.quantities import states as of
 from galinx.postprocess.quantities import stresses as at
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
@@ -63,7 +62,7 @@ def _slope_error(κ: float, c: float, degree: int, g: float = -0.5) -> float:
     """Error of v,X for 1.1 <= |X/a| <= 5 over its largest value there; v,X knows the Rayleigh speed."""
     fem, kind = make_plan(parse(scene(c=[c]))).fem, MESHES["confocal"]
     assert fem
-    space = Space(*distribute(fem.pattern, MPI.COMM_WORLD), TAGS, kind.chart, degree, terms=fem.terms)
+    space = Space(*distribute(fem.pattern, MPI.COMM_WORLD), kind.chart, degree, terms=fem.terms)
     punch = SlidingPunch(space, MovingFrame(κ, c))
     weights = punch.states(g).weights
     X = np.concatenate([-np.linspace(1.1, 5.0, 40), np.linspace(1.1, 5.0, 40)])

@@ -7,7 +7,7 @@ from mpi4py import MPI
 from row import Row, Verdict
 
 from galinx.meshes import MESHES
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.recovery import ContactRecovery, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
@@ -27,7 +27,7 @@ def _errors(levels: int, outer: float, degree: int, c: float = 0.6) -> np.ndarra
     count = int(np.ceil(reach / 3.0))
     kind = MESHES["confocal"]
     cells = kind.build(Refinement(levels, _RATIO, 2, (reach / count,) * count))
-    space = Space(*distribute(cells, MPI.COMM_WORLD), TAGS, kind.chart, degree, terms=_MOMENTS)
+    space = Space(*distribute(cells, MPI.COMM_WORLD), kind.chart, degree, terms=_MOMENTS)
     punch, g = SlidingPunch(space, MovingFrame(2.0, c)), np.array([-0.66, 0.66])
     recovery = ContactRecovery(space.contact.s, degree, space.chart, np.array([0.0]))
     local = FlatPunch(MovingFrame(2.0, c), g)

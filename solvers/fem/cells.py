@@ -128,23 +128,6 @@ def reference_values(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float
     return np.einsum("ni,nj,ij...->n...", value_a, value_b, u, optimize=True)
 
 
-def reference_gradients(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
-    """Derivatives along the unit square's directions, at places t, of nodal values u (p+1, p+1, ...).
-
-    Returns:
-        Array (n, 2, ...).
-    """
-    (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
-    n, rest = len(nodes), u.shape[2:]
-    # Nodes along the second direction come last: the inner sum runs over contiguous memory.
-    lines = np.moveaxis(u.reshape(n, n, -1), 1, 2).reshape(n, -1)
-    along_a, along_b = (
-        np.einsum("nfj,nj->nf", (a @ lines).reshape(len(t), -1, n), b)
-        for a, b in ((slope_a, value_b), (value_a, slope_b))
-    )
-    return np.stack([along_a, along_b], axis=1).reshape(len(t), 2, *rest)
-
-
 def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
     """Derivatives along the axes of the mesh's chart, at places t (n, 2), of displacements u.
 
@@ -157,8 +140,16 @@ def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray
     Returns:
         Array (n, component, axis, fields).
     """
-    inverse = np.linalg.inv(jacobian(vertices, t))
-    return np.einsum("nrcf,nrx->ncxf", reference_gradients(nodes, t, u), inverse)
+    (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
+    n = len(nodes)
+    # Nodes along the second direction come last: the inner sum runs over contiguous memory.
+    lines = np.moveaxis(u.reshape(n, n, -1), 1, 2).reshape(n, -1)
+    along = [
+        np.einsum("nfj,nj->nf", (a @ lines).reshape(len(t), -1, n), b)
+        for a, b in ((slope_a, value_b), (value_a, slope_b))
+    ]
+    by_direction = np.stack(along, axis=1).reshape(len(t), 2, *u.shape[2:])
+    return np.einsum("nrcf,nrx->ncxf", by_direction, np.linalg.inv(jacobian(vertices, t)))
 
 
 #: Digits of a shape by which cells that may be congruent are grouped, before they are compared.

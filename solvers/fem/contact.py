@@ -206,18 +206,16 @@ class PunchLevel(Level):
         states themselves: beside a flat punch's sharp edges they are large, beside free ends they are
         not, and their rounding is as large.
         """
-        own = self.fields_of(self.states(g, load))
+        own = self.states(g, load)
         if not self.twins:
             return [self.factor.largest_residual, *self.rounding_of_stresses(own)]
-        X = self.measured_task.places.X
         K_I, σ_XX = [], []
         for sign in (1, -1) if self.mirrored else (1,):
             flat = self.punch.states(sign * g, flat=True)
             pressure = self.over_flat(flat.tested(self.moments), sign * g)
             K_I.append(pressure.K_I[:, ::sign])
             if self.work.stresses:
-                of_flat = sign * g[:, None], flat.weights, pressure.σ_YY(X)
-                σ_XX.append(self.σ_XX(*of_flat)[:, ::sign])
+                σ_XX.append(self.in_plane(replace(own, contact=flat, pressure=pressure))[:, ::sign])
         if not self.mirrored:
             K_left, K_right = K_I[0].T
             return [float(np.abs(K_left / K_right - 1.0).max()), *self.rounding_of_stresses(own)]

@@ -11,8 +11,6 @@ from mpi4py import MPI
 
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
-from galinx.meshes.rings import TAGS
-from galinx.meshes.store import obtain
 
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, on_finer_cells
 from .dolfinx_space import DolfinxSpace
@@ -74,7 +72,7 @@ class Discretisation:
         if (degree, cuts) not in self._spaces:
             with quiet_compiler():
                 self._spaces[degree, cuts] = SPACES[self.plan.assembler](
-                    *self.mesh(cuts), TAGS, self.plan.kind.chart, degree, self.plan.form,
+                    *self.mesh(cuts), self.plan.kind.chart, degree, self.plan.form,
                     self.plan.terms, self.clock,
                 )  # fmt: skip
         return self._spaces[degree, cuts]
@@ -86,10 +84,7 @@ class Discretisation:
             with self.clock("mesh"):
                 check_cells(plan.pattern)
                 if comm.rank == 0:
-                    if cuts > 1 and plan.drawn is None:  # Gmsh's copy of a cut mesh would only be large
-                        mesh = plan.kind.build(plan.refinement, cuts)
-                    else:  # no other run has the same that is drawn
-                        mesh = plan.drawn or obtain(plan.pattern)
+                    mesh = plan.drawn or plan.kind.build(plan.refinement, cuts)
                 self._meshes[cuts] = distribute(mesh, comm)
         return self._meshes[cuts]
 

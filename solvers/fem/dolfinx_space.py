@@ -15,6 +15,8 @@ from dolfinx import fem
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from galinx.meshes.rings import CONTACT
+
 from ..approximation import interpolation
 from ..contact.edges import EdgeTraction
 from ..solids.half_plane import HalfPlane
@@ -132,9 +134,7 @@ class DolfinxSpace(Space):
     def _load(self) -> tuple[Any, EdgeTraction]:
         """The compiled form of a flat punch's σ_YY, and the constants in it."""
         traction = EdgeTraction(*(fem.Constant(self.mesh, 0.0) for _ in range(3)))
-        form = traction_form(
-            self.V, traction, self.chart, self.facet_tags, self.tags["contact"], _ON_FACETS
-        )
+        form = traction_form(self.V, traction, self.chart, self.facet_tags, CONTACT, _ON_FACETS)
         return self._compiled(form), traction
 
     def nodal_forces(

@@ -37,7 +37,7 @@ from ..approximation import gauss, lagrange
 from ..transient.history import History, Way
 from .dynamic import Motion, of_both
 from .fields import SurfaceTrace, unit_facet
-from .linear import ArraySolver
+from .linear import LinearSolver, on_this_rank
 
 #: On the diagonal, so that one matrix serves all stages.
 γ = 0.25
@@ -97,7 +97,8 @@ class PunchConstraint:
         held[self._Y] = True
         held[2 * motion.far] = held[2 * motion.far + 1] = True
         self._free = np.flatnonzero(~held)
-        self._factor = ArraySolver(A[self._free][:, self._free].tocsr(), clock)
+        matrix = on_this_rank(A[self._free][:, self._free].tocsr())
+        self._factor = LinearSolver(matrix, clock, "unsymmetric")
         self._rows = A[self._Y].tocsr()
         place = np.full(motion.size, -1)
         place[self._free] = np.arange(len(self._free))
@@ -115,7 +116,8 @@ class PunchConstraint:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """x and normal reactions r with Σ r = total, for forces b and friction g."""
         x = np.zeros(len(b))
-        x[self._free] = self._factor.solve(b[self._free])
+        # The factor was checked with the loads of the contact.
+        x[self._free] = self._factor.solve(b[self._free, None], checked=False)[:, 0]
         ρ = self._rows @ x - b[self._Y]
         P, ρ_η = self._reactions[:, :-1], self._reactions[:, -1]
         reactions = lu_solve(lu_factor(np.eye(len(P)) - g * P), np.column_stack([ρ, ρ_η]))

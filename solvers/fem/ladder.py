@@ -84,25 +84,6 @@ def of_pressure(pressure: Expansion, moments: NDArray) -> Gauge:
     return joined(INTENSITIES, groups, pressure.unresolved)
 
 
-def of_components(word: str, σ: NDArray, size: NDArray) -> Gauge:
-    """Gauge of stresses, (components, states, ...), of sizes that may be those of all components."""
-    values, scale = (
-        np.moveaxis(each, 1, 0).reshape(σ.shape[1], -1) for each in (σ, np.broadcast_to(size, σ.shape))
-    )
-    return Gauge(word, values, scale)
-
-
-def gauged(task: Task) -> Task:
-    """Task at fewer points inside, picked at all distances from the edges, from nearest to farthest."""
-    few = {}
-    for name in ("points", "around"):
-        points = getattr(task.places, name)
-        if len(points) > _POINTS:
-            order = np.argsort(_from_edges(points), kind="stable")
-            few[name] = points[np.sort(spread(order, _POINTS))]
-    return replace(task, places=replace(task.places, **few)) if few else task
-
-
 def _from_edges(points: NDArray) -> NDArray[np.float64]:
     """Distances over a of points (n, 2) from the nearer edge."""
     return np.hypot(from_edge(points[:, 0]), points[:, 1])
@@ -143,8 +124,14 @@ class Level:
 
     @cached_property
     def gauged_task(self) -> Task:
-        """Task with no more places than the error is measured at."""
-        return gauged(self.measured_task)
+        """Task with no more points inside than the error is measured at, at all distances from edges."""
+        task, few = self.measured_task, {}
+        for name in ("points", "around"):
+            points = getattr(task.places, name)
+            if len(points) > _POINTS:
+                order = np.argsort(_from_edges(points), kind="stable")
+                few[name] = points[np.sort(spread(order, _POINTS))]
+        return replace(task, places=replace(task.places, **few)) if few else task
 
     @cached_property
     def gauged_displacement(self) -> Displacement:
@@ -191,12 +178,13 @@ class Level:
         for word, (evaluate, size) in by_word.items():
             if word in self.work.stresses:
                 σ = evaluate(states.contact.weights)
-                gauges.append(of_components(word, σ, size(σ)))
+                by_state = [np.moveaxis(of, 1, 0) for of in (σ, np.broadcast_to(size(σ), σ.shape))]
+                gauges.append(Gauge(word, *(of.reshape(len(of), -1) for of in by_state)))
         return gauges
 
     def _on_surface(self, states: SolvedStates) -> Gauge:
         """Gauge of σ_XX on the surface, and of its limits at free ends, its extremes there."""
-        places, σ_XX = self.measured_task.places, self.σ_XX(*self.fields_of(states))
+        places, σ_XX = self.measured_task.places, self.in_plane(states)
         groups = [(σ_XX, stresses.of_in_plane(σ_XX, places.X))]
         if states.contact.free.any():
             surface = Surface(places, np.full(σ_XX.shape, np.nan), σ_XX)
@@ -205,29 +193,23 @@ class Level:
             groups.append((np.nan_to_num(at_ends), largest))
         return joined(ON_SURFACE, groups)
 
-    def fields_of(self, states: SolvedStates) -> tuple[NDArray, NDArray, NDArray]:
-        """σ_XY/σ_YY, field weights, and σ_YY over N/(2a) where stresses are measured, of states."""
-        X = self.measured_task.places.X
-        return states.ratio(X), states.contact.weights, states.pressure.σ_YY(X)
-
-    def σ_XX(self, g: NDArray, weights: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
-        """In-plane stress on the surface, (states, n), by what :meth:`fields_of` gives."""
-        return self.gauged_displacement.surface(g, weights, σ_YY).σ_XX
+    def in_plane(self, states: SolvedStates) -> NDArray[np.float64]:
+        """σ_XX over N/(2a) where stresses on the surface are measured, (states, n)."""
+        X, weights = self.measured_task.places.X, states.contact.weights
+        return self.gauged_displacement.surface(states.ratio(X), weights, states.pressure.σ_YY(X)).σ_XX
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding alone on each gauge, relative; arguments as of :meth:`states`."""
         raise NotImplementedError
 
-    def rounding_of_stresses(
-        self, own: tuple[NDArray, NDArray, NDArray], noise: NDArray | None = None
-    ) -> list[float]:
+    def rounding_of_stresses(self, states: SolvedStates, noise: NDArray | None = None) -> list[float]:
         """Effect of rounding on stresses, relative, by word.
 
         Points inside have no mirror image, those on the surface have: σ_XX there stands for all stresses,
         no nearer to an edge than the word's points are.
 
         Args:
-            own: σ_XY/σ_YY, weights and σ_YY of the states, as of :meth:`fields_of`.
+            states: the states.
             noise: effect of rounding on σ_XX, (states, n); a bound by the last digits of the fields, if
                 it is None.
         """
@@ -241,9 +223,11 @@ class Level:
         words = [word for word in nearest if word in self.work.stresses]
         if not words:
             return []  # no derivative is taken that is not requested
-        size = stresses.of_in_plane(self.σ_XX(*own), places.X)
+        size = stresses.of_in_plane(self.in_plane(states), places.X)
         if noise is None:
-            noise = _SOLVED / response.margin**0.5 * self.gauged_displacement.rounding(own[1])
+            noise = (
+                _SOLVED / response.margin**0.5 * self.gauged_displacement.rounding(states.contact.weights)
+            )
         on_surface = from_edge(places.X)
         least = [min(nearest[word]().min(initial=np.inf), on_surface.max()) for word in words]
         return [float((noise / size)[:, on_surface >= distance].max()) for distance in least]
@@ -423,7 +407,8 @@ def climb(
                 measured.append((p, level.gauges(*stand_ins(task, probes)[:2])))
             error = MeasuredError(work, level, probes, measured, share)
             if plan.fixed or p == DEGREES[1] or not error.of_degree or error.stalls:
-                return Solved(level, error, size_of(level.space) | vars(done) | error.record())
+                changes = {"change_by_degree": error.change_by_degree}
+                return Solved(level, error, size_of(level.space) | vars(done) | changes)
             to_solve = [(p + 1, plan.cuts)]
     except BaseException:
         if level:
@@ -475,7 +460,10 @@ class MeasuredError(Estimate):
         self.floor, self.excessive, enough, mended = 0.0, False, False, False
         for gauges, rounding in zip(each, level.rounding(probes, loads)):
             word = gauges[-1].word
-            unseen, own = self._unseen(gauges[-1], probes), self._own(gauges)
+            unseen = self._unseen(gauges[-1], probes)
+            earlier, last = (gauge.unresolved for gauge in gauges[-2:])
+            # What a level shows by itself where the level before showed hardly more.
+            own = np.where(last > _LASTS * earlier, last, 0.0)
             changes = [late.change(early) for early, late in pairwise(gauges)]
             rounding, bound = self._rounding(word, rounding, float(changes[-1].max()))
             rate = self._rate(word)
@@ -526,10 +514,11 @@ class MeasuredError(Estimate):
                 f"{self._degree}, {rest}"
             )
 
-    def record(self) -> dict[str, list[float]]:
-        """Changes by degree, as they are archived."""
+    @property
+    def change_by_degree(self) -> list[float]:
+        """Largest changes from the degree before, by degree; empty where nothing changed."""
         changes = [self._change(degree) for degree in range(DEGREES[1] + 1)]
-        return {"change_by_degree": changes if any(changes) else []}
+        return changes if any(changes) else []
 
     def _rounding(self, word: str, rounding: float, last: float) -> tuple[float, float]:
         """Rounding that shows in a gauge, and what it may be at most, by the last change."""
@@ -546,11 +535,6 @@ class MeasuredError(Estimate):
         *earlier, change = (float(of.max()) for of in changes)
         earlier.append(self._changes.get(self._degree - _DECAY, {}).get(word, np.inf))
         return _LASTS * max(earlier) <= change <= bound
-
-    def _own(self, gauges: Sequence[Gauge]) -> Any:
-        """Errors that a level shows by itself where the level before showed hardly more."""
-        earlier, last = (gauge.unresolved for gauge in gauges[-2:])
-        return np.where(last > _LASTS * earlier, last, 0.0)
 
     def _rate(self, word: str) -> Rate:
         """Usual rate of convergence, or a slower one by the decay over two degrees; one may be luck."""

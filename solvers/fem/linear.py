@@ -2,7 +2,7 @@
 
 :class:`LinearSolver` keeps a factor, or conjugate gradients with algebraic multigrid for matrices whose
 factor does not fit into memory, with the checks that PETSc leaves to its caller. Both are options of
-PETSc (:data:`METHODS`). :class:`ArraySolver` is the direct solver of a SciPy matrix on one rank.
+PETSc (:data:`METHODS`).
 """
 
 from collections.abc import Iterator, Mapping
@@ -99,7 +99,8 @@ class LinearSolver:
         clock: takes the time of set-up and solves.
         method: a name of :data:`METHODS`, or ``"multigrid"`` for the best that PETSc has.
         definite: a symmetric matrix is positive definite, so that Cholesky's method needs no pivots.
-        rigid: the three rigid motions at this rank's rows, (rows, 3); a factor needs none.
+        places: coordinates of the nodes at this rank's rows, (rows,), by which multigrid knows the rigid
+            motions of the plane; a factor needs none.
 
     Attributes:
         direct: True where a factor is kept.
@@ -114,7 +115,7 @@ class LinearSolver:
 
     def __init__(
         self, A: PETSc.Mat, clock: Clock, method: str = "direct", definite: bool = True,
-        rigid: NDArray[np.float64] | None = None,
+        places: NDArray[np.float64] | None = None,
     ) -> None:  # fmt: skip
         chosen = available()[0] if method == "multigrid" else method
         self.direct = "pc_factor_mat_solver_type" in METHODS[chosen]
@@ -130,8 +131,10 @@ class LinearSolver:
         if chosen != "unsymmetric":
             operator.setOption(PETSc.Mat.Option.SYMMETRIC, True)
             operator.setOption(PETSc.Mat.Option.SPD, definite)
-        if rigid is not None and not self.direct:
-            operator.setNearNullSpace(_orthonormal(A, rigid))
+        if places is not None and not self.direct:
+            coordinates = vector(A, places)
+            coordinates.setBlockSize(2)
+            operator.setNearNullSpace(PETSc.NullSpace().createRigidBody(coordinates))
         self.A, self.solves, self.iterations = A, 0, 0
         self.condition, self.largest_residual = 0.0, 0.0
         self._norm, self._clock = A.norm(PETSc.NormType.INFINITY), clock
@@ -252,6 +255,12 @@ class LinearSolver:
                 held.destroy()
 
 
+def on_this_rank(A: csr_matrix) -> PETSc.Mat:
+    """A SciPy matrix as one of PETSc, on this rank alone."""
+    entries = (A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data)
+    return PETSc.Mat().createAIJ(A.shape, csr=entries, comm=PETSc.COMM_SELF)
+
+
 def vector(A: PETSc.Mat, values: NDArray) -> PETSc.Vec:
     """A vector with these values at this rank's rows of a matrix."""
     x = A.createVecRight()
@@ -275,58 +284,3 @@ def times(A: PETSc.Mat, columns: NDArray) -> NDArray[np.float64]:
     result = np.array(product.getDenseArray())
     B.destroy(), product.destroy()
     return result
-
-
-def _orthonormal(A: PETSc.Mat, modes: NDArray) -> PETSc.NullSpace:
-    basis: list[PETSc.Vec] = []
-    for mode in modes.T:
-        x = vector(A, mode)
-        for earlier in basis:
-            x.axpy(-x.dot(earlier), earlier)
-        x.normalize()
-        basis.append(x)
-    return PETSc.NullSpace().create(vectors=basis, comm=A.comm)
-
-
-#: Largest residual of right-hand sides of time steps, over their norm.
-_RESIDUAL = 1e-6
-
-
-class ArraySolver:
-    """Direct solver of an unsymmetric SciPy matrix on this rank, kept for many right-hand sides.
-
-    Only the first of single right-hand sides is checked: time steps have one matrix.
-
-    Args:
-        A: the matrix.
-        clock: takes the time of factorisation and back-substitutions.
-
-    Raises:
-        SolveError: the factorisation failed.
-    """
-
-    def __init__(self, A: csr_matrix, clock: Clock) -> None:
-        entries = (A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data)
-        matrix = PETSc.Mat().createAIJ(A.shape, csr=entries, comm=PETSc.COMM_SELF)
-        self._A, self._checked = A, False
-        self._solver = LinearSolver(matrix, clock, "unsymmetric")
-
-    def solve(self, b: NDArray) -> NDArray[np.float64]:
-        """Solutions for right-hand sides (n,) or (n, count).
-
-        Raises:
-            SolveError: a solution does not solve its system.
-        """
-        x = self._solver.solve(b.reshape(len(b), -1), checked=False).reshape(b.shape)
-        if np.any(b) and (b.ndim == 2 or not self._checked):
-            residual = float(np.linalg.norm(self._A @ x - b) / np.linalg.norm(b))
-            if not residual <= _RESIDUAL:
-                raise SolveError(
-                    f"a linear solve left |b - Ax|/|b| = {residual:.3g}, expected {_RESIDUAL:g}"
-                )
-            self._checked = True
-        return x
-
-    def destroy(self) -> None:
-        """Free the factors' memory now."""
-        self._solver.destroy()

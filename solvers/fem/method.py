@@ -16,7 +16,7 @@ from ..contact.solution import ContactStress, Solver, Task
 from .contact import PUNCHES
 from .discretisation import Discretisation, quiet_compiler
 from .ladder import to_tolerance
-from .own_meshes import BetweenKinks, FollowedKinks, OverLayers
+from .own_meshes import BetweenKinks, Followed
 from .space import Space
 from .sweep import Fit, train
 from .traction import FormulaLevel, PiecesLevel, WholeLevel
@@ -26,12 +26,6 @@ LEVELS: dict[str, Any] = PUNCHES | {
     "traction": FormulaLevel,
     OWN_PRESSURE: PiecesLevel,
     PRESCRIBED_ON_LAYERS: WholeLevel,
-}
-#: Solvers of states each of which has its own mesh, by the plan's mode, for one friction and for friction
-#: that varies along the contact.
-OWN: dict[str, Any] = {
-    OWN_MESHES: (BetweenKinks, FollowedKinks),
-    FREE_ON_LAYERS: (OverLayers, OverLayers),
 }
 
 
@@ -81,8 +75,10 @@ class FiniteElements:
 
     def _solved(self, task: Task, g: NDArray) -> Any:
         work, mode = self.work, self.work.plan.mode
-        if mode in OWN:
-            return OWN[mode][bool(task.body.along)](work, task, g)
+        if mode == OWN_MESHES and not task.body.along:
+            return BetweenKinks(work, task, g)
+        if mode in (OWN_MESHES, FREE_ON_LAYERS):
+            return Followed(work, task, g)
         return to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
 
     @contextmanager

@@ -7,7 +7,7 @@ has a mesh with cells graded towards its kinks (:class:`BetweenKinks`).
 
 **Layers** have a length, so each contact has a mesh drawn for its half-width. That is searched for by
 :mod:`galinx.solvers.contact.ends`, at a lower degree first: the load that makes a contact of the mesh's
-half-width is to be the load of the task (:class:`OverLayers`). Three displacements are prescribed under
+half-width is to be the load of the task (:class:`Followed`). Three displacements are prescribed under
 the punch: its height around a nearby middle, the change of that height where the middle moves, and a
 constant. Their loads and the intensities at both ends are linear in their amplitudes. So the half-width
 of a mesh has a load of its own, at which both intensities vanish, and a middle: of a parabola at once, of
@@ -32,7 +32,6 @@ from galinx.meshes.kind import DEGREES
 from galinx.meshes.rings import QuadMesh, rings_at_kinks, with_kinks
 
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE
-from ..contact.edges import EdgeExponents
 from ..contact.ends import SHAPES, Punch, half_width_of_load
 from ..contact.fem_plan import (
     NEAR_FREE_END,
@@ -157,13 +156,10 @@ class SingleLevel(PunchLevel):
         work, task, space, g: as of :class:`.contact.PunchLevel`.
         base: ends of the contact, or of one near by, and the punch between them.
 
-    Attributes:
-        gaps: distances over a from both ends within which the pressure is smooth but for the ends.
     """
 
     twins = False
     recovery = None  # type: ignore[assignment]
-    gaps: tuple[float, float]
 
     def __init__(
         self, work: Discretisation, task: Task, space: Space, g: NDArray, base: "EndsBetweenKinks"
@@ -180,16 +176,6 @@ class SingleLevel(PunchLevel):
         forces = np.tensordot(contact.weights, contact.forces, 1)
         #: The contact.
         self.contact = replace(contact, weights=np.ones((1, 1)), forces=forces)
-
-    @property
-    def end_exponents(self) -> tuple[float, float]:
-        """Exponents of the pressure at its left and its right free end."""
-        local = EdgeExponents(self.task.response, self.g)
-        return float(local.β[0]) + 1.0, float(local.α[0]) + 1.0
-
-    def continuation(self) -> Callable[[NDArray], Any] | None:
-        gaps, exponents = self.gaps, self.end_exponents
-        return lambda X: slopes_towards_ends(X, gaps, exponents)
 
     def states(self, g: NDArray, load: Any = None) -> SolvedStates:
         return SolvedStates(self, self.task.body.loaded(load), self.contact, self.pressure(self.contact))
@@ -286,13 +272,25 @@ class KinkedLevel(SplineLevel, SingleLevel):
         return self.base.places
 
     @property
-    def gaps(self) -> tuple[float, float]:  # type: ignore[override]
+    def _gaps(self) -> tuple[float, float]:
+        """Distances over a from both ends within which the pressure is smooth but for the ends."""
         # Where a steep punch's slope changes faster than that of a cube, the pressure does, too.
         beside = ENDS[:, None] * [1.0, 1.0 - _STEP]
         of_ends, next_to_them = self.base.body.slope(beside, *self.base.lengths).T
         rates = np.abs(1.0 - next_to_them / of_ends) / _STEP
         left, right = np.minimum(gaps_of(self.base.places), _CUBE / np.maximum(rates, _CUBE / 2.0))
         return float(left), float(right)
+
+    @property
+    def end_exponents(self) -> tuple[float, float]:
+        """Exponents of the pressure at its left and its right free end."""
+        base = self.base
+        local = base.body.edges(self.task.response, self.g, base.lengths[1], True)
+        return float(local.β[0]), float(local.α[0])
+
+    def continuation(self) -> Callable[[NDArray], Any] | None:
+        gaps, exponents = self._gaps, self.end_exponents
+        return lambda X: slopes_towards_ends(X, gaps, exponents)
 
     def heights(self) -> NDArray[np.float64]:
         return self.base.body.height(self.r, *self.base.lengths)
@@ -444,20 +442,13 @@ class BalancedLevel(SplineLevel, SingleLevel):
         parts, h = self.punch.parts(g), self.task.body.half_width
         return parts, self.punch.loads(parts), self.intensities(parts, g[0], h).T[None]
 
-    def continuation(self) -> None:
-        # Next to an end where friction varies slopes have logarithms, which no series of powers follows.
-        return None
-
 
 class KinkedSplineLevel(BalancedLevel, KinkedLevel):
     """Contact under a punch with kinks, on a mesh graded towards these, with any friction along it."""
 
-    gaps, nearest, kinks = KinkedLevel.gaps, KinkedLevel.nearest, KinkedLevel.kinks  # type: ignore[assignment]
-
-    @property
-    def end_exponents(self) -> tuple[float, float]:
-        local = self.task.body.edges(self.task.response, self.g, self.task.body.half_width, True)
-        return float(local.β[0]), float(local.α[0])
+    def continuation(self) -> None:
+        # Next to an end where friction varies slopes have logarithms, which no series of powers follows.
+        return None
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         contact, parts, h = super().solved(g, body), self.punch.parts(g), self.task.body.half_width
@@ -467,11 +458,8 @@ class KinkedSplineLevel(BalancedLevel, KinkedLevel):
         self.moved = max(abs(half_width - contact.half_width[0]), abs(centre - contact.centre[0])) / h
         return contact
 
-    def pressure(self, contact: ContactStates) -> KinkedPressure:  # type: ignore[override]
-        return KinkedLevel.pressure(self, contact)
-
     def gauge(self, states: SolvedStates) -> Gauge:
-        gauge = KinkedLevel.gauge(self, states)
+        gauge = super().gauge(states)
         return replace(gauge, unresolved=gauge.unresolved + self.moved)
 
 
@@ -513,8 +501,11 @@ _APART, _OF_GROWTH, _TRIALS = 1e-5, 0.05, 5
 _ERROR = 0.3
 
 
-class OverLayers(OwnMeshes):
-    """Contacts over layers, whose half-widths and middles are searched for on meshes that follow them."""
+class Followed(OwnMeshes):
+    """Contacts whose half-widths and middles are searched for on meshes that follow them.
+
+    They are those over layers, and those with kinks and friction that varies along them.
+    """
 
     #: Growth of the load's logarithm with that of the half-width, of the last contact; None before.
     _growth: float | None = None
@@ -620,30 +611,22 @@ class OverLayers(OwnMeshes):
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
         sought, plan = self._sought, self._work.plan
-        depths = sought.body.solid.depths / h  # type: ignore[attr-defined]
         task = replace(
             sought,
             body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along),
-            response=sought.body.solid.response(sought.response.c, h),
-            places=replace(sought.places, interfaces=depths),
         )
         base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance, trial)
-        mesh = replace(self._work, plan=drawn_for(task, plan, words, base.places), stresses=words)
-        kind = KinkedSplineLevel if len(base.places) else BalancedLevel
+        layered = len(sought.response.depths) > 0
+        if layered:
+            depths = sought.body.solid.depths / h  # type: ignore[attr-defined]
+            task = replace(
+                task,
+                response=sought.body.solid.response(sought.response.c, h),
+                places=replace(sought.places, interfaces=depths),
+            )
+            plan = drawn_for(task, plan, words, base.places)
+        else:
+            plan = replace(plan, graded=base.drawn)
+        mesh = replace(self._work, plan=plan, stresses=words)
+        kind = BalancedLevel if layered and not len(base.places) else KinkedSplineLevel
         return mesh, task, partial(kind, mesh, task, base=base)
-
-
-class FollowedKinks(OverLayers):
-    """Contacts with kinks and friction that varies along them, on meshes that follow both."""
-
-    def _drawn(
-        self, h: float, words: frozenset[str], trial: bool = False
-    ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
-        sought, plan = self._sought, self._work.plan
-        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance, trial)
-        body = make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along)
-        task, mesh = (
-            replace(sought, body=body),
-            replace(self._work, plan=replace(plan, graded=base.drawn), stresses=words),
-        )
-        return mesh, task, partial(KinkedSplineLevel, mesh, task, base=base)

@@ -182,15 +182,13 @@ class SlidingPunch(Punch):
             make up for; or of shapes that are combined, (shapes, nodes); None for a flat punch.
         along: gives G where friction varies along the contact, by what stands for g then, a number or an
             object; None where G is g.
-        negligible: relative change of the contact forces that needs no refinement of a solution. The
-            first solution is refined in any case, which shows whether the others need it.
         least: relative residual of the contact forces that may remain.
     """
 
     def __init__(
         self, space: Space, response: HalfPlane, solver: str = "direct",
         heights: NDArray[np.float64] | None = None, along: Callable[[Any], NDArray] | None = None,
-        negligible: float = NEGLIGIBLE, least: float = LEAST,
+        least: float = LEAST,
     ) -> None:  # fmt: skip
         self.space, self.response, self._along = space, response, along
         #: Product with G.
@@ -201,9 +199,9 @@ class SlidingPunch(Punch):
         #: Rows of the contact nodes, along X and Y in turn.
         self._rows = A.createSubMatrix(PETSc.IS().createGeneral(both, comm=A.comm))
         self._first = A.getOwnershipRange()[0]
-        rigid = space.rigid_motions(response)
         #: Motions of the whole body along X and Y, at this rank's rows, (rows, 2).
-        self._motions, moved = rigid[:, :2], np.zeros((len(rigid), 2))
+        self._motions = space.translations
+        moved = np.zeros_like(self._motions)
         far = space.far_dofs - self._first
         moved[far] = self._motions[far]
         #: Forces that a motion of the far boundary alone causes, (rows, 2).
@@ -212,10 +210,10 @@ class SlidingPunch(Punch):
         shaped = held_forces(A, space, nodes.dofs(1), shapes[:, nodes.owned].T)
         self._boundary = FarBoundary(space, response, A)
         A = space.held(A, response, ("contact", "far"))
-        self.factor = LinearSolver(A, space.clock, solver, not space.mixed, rigid)
+        self.factor = LinearSolver(A, space.clock, solver, not space.mixed, space.places(response))
         #: Relative residual that may remain; number of parts; true where solutions are refined.
         self._left, self._parts, self._refines = least, len(shapes), False
-        self.fields, self.forces = self._frictionless(shaped, negligible)
+        self.fields, self.forces = self._frictionless(shaped)
         #: Orthonormal loads, (n, loads).
         self._loads: NDArray[np.float64] = np.empty((len(nodes.s), 0))
         self._complete = False
@@ -306,14 +304,14 @@ class SlidingPunch(Punch):
             more_forces = map(self._boundary.follow, self._reactions(waiting[-1]))
             self.forces = np.concatenate([self.forces, [*more_forces]])
 
-    def _frictionless(self, shaped: NDArray, negligible: float) -> tuple[list[PETSc.Vec], NDArray]:
+    def _frictionless(self, shaped: NDArray) -> tuple[list[PETSc.Vec], NDArray]:
         """Fields and forces of the flat punch at v = -1 and of each shape, without friction.
 
-        The far boundary's fields are solved for with them.
+        The far boundary's fields are solved for with them. They are refined in any case, which shows
+        whether other solutions need it.
 
         Args:
             shaped: nodal forces of the held displacements, (rows, shapes).
-            negligible: see the class.
         """
         b = np.column_stack([self._boundary.loads, shaped])
         flat, count = self._boundary.loads.shape[1], b.shape[1]
@@ -331,7 +329,7 @@ class SlidingPunch(Punch):
             X = self.space.chart.surface_position(self.space.contact.s)
             self._boundary.take(fields[:flat], X, after[:flat])
         changes = [np.linalg.norm(a - b) / np.linalg.norm(b) for a, b in zip(after[flat:], before[flat:])]
-        self._refines = bool(max(changes) > negligible)
+        self._refines = bool(max(changes) > NEGLIGIBLE)
         return fields[flat:], self._followed(fields[flat:], after[flat:])
 
     def _refined(

@@ -18,7 +18,7 @@ from petsc4py import PETSc
 
 from galinx.clock import Clock
 from galinx.meshes.charts import Chart
-from galinx.meshes.rings import QuadMesh
+from galinx.meshes.rings import TAGS, QuadMesh
 
 from ..approximation import interpolation, lagrange
 from ..errors import MeshError
@@ -164,8 +164,7 @@ class Space:
     """Continuous vector Lagrange elements of one degree on one mesh.
 
     Args:
-        mesh, facet_tags: dolfinx mesh and tags of its boundary facets.
-        tags: number of the tag of each of the parts "contact", "free surface" and "far".
+        mesh, facet_tags: dolfinx mesh and tags of its boundary facets, by :data:`.rings.TAGS`.
         chart: the chart that the mesh is drawn in.
         degree: polynomial degree, at least 1.
         form: name of the solid's weak form.
@@ -180,7 +179,6 @@ class Space:
         self,
         mesh: Any,
         facet_tags: Any,
-        tags: dict[str, int],
         chart: Chart,
         degree: int,
         form: str = "isotropic",
@@ -196,9 +194,9 @@ class Space:
         mesh.topology.create_connectivity(2, 1)
         with self.clock("forms"):
             self.V = versions.space(mesh, versions.vector_element(degree))
-        self.facet_tags, self.tags = facet_tags, tags
-        self.facets = {name: facet_tags.find(tag) for name, tag in tags.items()}
-        for name, tag in tags.items():
+        self.facet_tags = facet_tags
+        self.facets = {name: facet_tags.find(tag) for name, tag in TAGS.items()}
+        for name, tag in TAGS.items():
             if not self.comm.allreduce(len(self.facets[name])):
                 raise MeshError(f'no facet of the mesh carries tag {tag}, the part "{name}"')
 
@@ -233,14 +231,15 @@ class Space:
         """The chart as the plane is contracted at a response's speed."""
         return Contracted(self.chart, response.contraction if self.chart.contracts else 1j)
 
-    def rigid_motions(self, response: HalfPlane) -> NDArray[np.float64]:
-        """The two translations and the rotation at this rank's rows of a matrix, (rows, 3)."""
-        mine, owned = self._owned_nodes, len(self._owned_nodes)
-        X, Y = self.contracted(response).to_physical(self.coordinates[mine]).T  # in their numbers' order
-        modes = np.zeros((self._range[1] - self._range[0], 3))
-        modes[: 2 * owned : 2, 0] = modes[1 : 2 * owned : 2, 1] = 1.0
-        modes[: 2 * owned : 2, 2], modes[1 : 2 * owned : 2, 2] = -Y, X
-        return modes
+    @cached_property
+    def translations(self) -> NDArray[np.float64]:
+        """Both translations of the body at this rank's rows of a matrix, (rows, 2)."""
+        owned, rows = len(self._owned_nodes), self._range[1] - self._range[0]
+        return np.pad(np.tile(np.eye(2), (owned, 1)), [(0, rows - 2 * owned), (0, 0)])
+
+    def places(self, response: HalfPlane) -> NDArray[np.float64]:
+        """X and Y over a of this rank's nodes, as the rows of their unknowns, (2 nodes,)."""
+        return self.contracted(response).to_physical(self.coordinates[self._owned_nodes]).ravel()
 
     @cached_property
     def far_nodes(self) -> NDArray[np.int32]:

@@ -33,6 +33,7 @@ from ..approximation import (
 from ..contact import AT_INTERFACES, BELOW, YIELD
 from ..contact.edges import EdgeExponents
 from ..contact.fem_plan import LADDERS, MOST, levels
+from ..contact.recovery import ContactRecovery
 from ..contact.solution import Task
 from ..errors import SolveError
 from ..solids.half_plane import HalfPlane
@@ -108,8 +109,8 @@ class Speed(NamedTuple):
     Attributes:
         number: number of the speed.
         degree: degree of its elements.
-        sample: sample for the fit, without the singular factors of the edges; None of a higher degree
-            than the fit's.
+        sample: sample for the fit, without the singular factors of the edges; None where the degree is
+            higher than the fit's.
         record: numbers of the work.
         estimate: errors of the discretisation, where they were measured.
         off: error of the previous fit at this speed, by word, empty where there was none.
@@ -123,29 +124,20 @@ class Speed(NamedTuple):
     off: dict[str, float]
 
 
-class HigherDegree(Exception):
-    """A speed needs a higher degree than the speeds before were solved with."""
-
-
 def train(work: Discretisation) -> "Fit | None":
     """Solve speeds until a fit through them gives the others to the tolerance.
 
     Where that may cost too much in vain, the fit serves the solved speeds alone; None for no fit.
     """
-    degree, say = None, work.progress.say
-    while True:
-        try:
-            fit = Fit(work, degree)
-            fit.train()
-        except HigherDegree as higher:
-            degree = higher.args[0]
-            continue
-        except SolveError as error:  # each speed by itself tells which, and why
-            say(f"no fit through speeds: {error}")
-            return None
-        if fit.error is None:
-            say("no fit through speeds is good enough at its cost: each is solved")
-        return fit
+    try:
+        fit = Fit(work)
+        fit.train()
+    except SolveError as error:  # each speed by itself tells which, and why
+        work.progress.say(f"no fit through speeds: {error}")
+        return None
+    if fit.error is None:
+        work.progress.say("no fit through speeds is good enough at its cost: each is solved")
+    return fit
 
 
 class Fit:
@@ -153,7 +145,6 @@ class Fit:
 
     Args:
         work: has all speeds, and gives spaces.
-        degree: degree to begin with; the plan's if None.
 
     Attributes:
         space: space of the last degree.
@@ -166,32 +157,33 @@ class Fit:
             the solved speeds alone.
     """
 
-    def __init__(self, work: Discretisation, degree: int | None) -> None:
+    space: Space
+    at: Barycentric
+    recovery: ContactRecovery
+
+    def __init__(self, work: Discretisation) -> None:
         assert work.plan.sweep
         self._sweep, self._tasks = work.plan.sweep, list(work.tasks)
         self._work, self._kind = work, PUNCHES[work.plan.mode]
-        self.speeds: dict[int, Speed] = {}
-        self.estimates: dict[float, Estimate] = {}
-        self.rational: Barycentric | None = None
         self.error: dict[str, float] | None = None
         g = self._sweep.g
         g = g if self._sweep.few else np.linspace(g[0], g[-1], PROBES)
         self._probes = stand_ins(self._tasks[0], g, 2)[:2]
         #: Most speeds that are solved for a fit.
         self._most = min(MOST, len(self._tasks) // 2)
-        # The fastest needs the highest degree: it is solved first, by every rank for itself.
-        first = int(np.argmin([task.response.margin for task in self._tasks]))
-        solved = self._climbed(self._begun(first), degree)
-        with closing(solved):
-            level: PunchLevel = solved.level
-            self.space, self.recovery, self.at = level.space, level.recovery, self._frictions(level)
-            self._take([self._speed(self._tasks[first], solved, {})])
+        self._begin(None)
 
-    def _begun(self, number: int) -> Task:
-        """Speed by its number; its solution begins."""
-        task = self._tasks[number]
-        self._work.progress.say(f"finite elements at c = {task.response.c:g}, of the fit")
-        return task
+    def _begin(self, degree: int | None) -> None:
+        """Begin from a degree on, the plan's if None, with the fastest speed.
+
+        That needs the highest degree, as a rule: it is solved first, by every rank for itself.
+        """
+        self._degree = degree
+        self.speeds: dict[int, Speed] = {}
+        self.estimates: dict[float, Estimate] = {}
+        self.rational: Barycentric | None = None
+        first = int(np.argmin([task.response.margin for task in self._tasks]))
+        self._take([self._solve([first], first)])
 
     @property
     def samples(self) -> list[Sample]:
@@ -293,11 +285,25 @@ class Fit:
         tolerance = self._work.plan.tolerance
         worst: list[int] = []
         while self._pays and len(self.speeds) < self._most:
-            numbers = self._next(worst)
+            numbers = list(worst)  # and speeds far from all solved ones
+            while len(numbers) < AT_ONCE:
+                if (number := leja(self._sweep.z, [*self.speeds, *numbers])) is None:
+                    break
+                numbers.append(number)
             if not numbers:
                 return
             before, worst = self.rational, []
-            error = self._solved(numbers)
+            measured = numbers[: max(LADDERS - len(self.estimates), 0)]
+            together = not self._work.plan.shared_speeds
+            speeds = by_turns(numbers, partial(self._solve, measured), together)
+            degree = max(speed.degree for speed in speeds)
+            if degree > self.space.degree:
+                self._begin(degree)
+                continue
+            self._take(speeds)
+            # Largest error of the previous fit at these speeds, by word, empty where there was no fit.
+            off = [speed.off for speed in speeds if speed.off]
+            error = {word: max(of[word] for of in off) for word in off[0]} if off else {}
             words = next(iter(self.estimates.values())).errors
             if len(self.estimates) > 1 and any(self._least(word) > tolerance for word in words):
                 return  # no speed can be fitted to the tolerance
@@ -308,16 +314,6 @@ class Fit:
                     self.error = error
                     return
                 worst = [max(changes, key=lambda number: self._excess(changes[number]))]
-
-    def _next(self, worst: list[int]) -> list[int]:
-        """Numbers of the speeds to solve next: the worst one, and speeds far from all solved ones."""
-        numbers = list(worst)
-        while len(numbers) < AT_ONCE:
-            number = leja(self._sweep.z, [*self.speeds, *numbers])
-            if number is None:
-                break
-            numbers.append(number)
-        return numbers
 
     @property
     def _pays(self) -> bool:
@@ -333,29 +329,8 @@ class Fit:
         spent = LADDERS * measured(degree) + (self._most - LADDERS) * degree**4
         return spent <= (self._most / len(alone) + _REGRET) * sum(alone)
 
-    def _solved(self, numbers: list[int]) -> dict[str, float]:
-        """Solve speeds, shared out over the ranks, and take them in; the first ones are measured.
-
-        Returns:
-            Largest error of the previous fit at these speeds, by word, empty where there was no fit.
-        """
-        measured = numbers[: max(LADDERS - len(self.estimates), 0)]
-        speeds = by_turns(
-            numbers, lambda number: self._solve(number, number in measured),
-            not self._work.plan.shared_speeds,
-        )  # fmt: skip
-        self._take(speeds)
-        off = [speed.off for speed in speeds if speed.off]
-        return {word: max(of[word] for of in off) for word in off[0]} if off else {}
-
     def _take(self, speeds: list[Speed]) -> None:
-        """Take in solved speeds; a rational function with a pole among the speeds is replaced.
-
-        Raises:
-            HigherDegree: one needs a higher degree than the fit's.
-        """
-        if (degree := max(speed.degree for speed in speeds)) > self.space.degree:
-            raise HigherDegree(degree)
+        """Take in solved speeds; a rational function with a pole among the speeds is replaced."""
         for speed in speeds:
             self.speeds[speed.number] = speed
             if speed.estimate:
@@ -366,34 +341,30 @@ class Fit:
             if np.abs(self.rational.shares(self._sweep.z)).sum(axis=1).max() >= _LARGEST:
                 self.rational = polynomial_through(z)
 
-    def _solve(self, number: int, measures: bool) -> Speed:
-        """Solve a speed, with or without the measurement of its error."""
-        task, expected = self._begun(number), list[Gauge]()
+    def _solve(self, measured: list[int], number: int) -> Speed:
+        """Solve a speed, its error measured if its number is among some; the first one sets the space."""
+        work, task, expected = self._work, self._tasks[number], list[Gauge]()
+        work.progress.say(f"finite elements at c = {task.response.c:g}, of the fit")
         if self.rational:
             with self.level(task) as predicted:
                 expected = predicted.gauges(*self._probes)
-        if measures:
-            solved = self._climbed(task, self.space.degree)
+        if number in measured:
+            solve = partial(self._kind, work, task)
+            solved = climb(work, task, self._all, solve, self._degree, DISCRETISATION)
         else:
-            level, done = self._kind(self._work, task, self.space, self._all), WorkDone()
+            level, done = self._kind(work, task, self.space, self._all), WorkDone()
             done.count(level.factor)
             solved = Solved(level, None, size_of(self.space) | vars(done))
         with closing(solved):
-            fits = expected and solved.level.space.degree <= self.space.degree
-            off = largest_changes(solved.level.gauges(*self._probes), expected) if fits else {}
-            return self._speed(task, solved, off)
-
-    def _climbed(self, task: Task, degree: int | None) -> Solved:
-        """Speed that is solved with the measurement of its error, from a degree on."""
-        work = self._work
-        return climb(work, task, self._all, partial(self._kind, work, task), degree, DISCRETISATION)
-
-    def _speed(self, task: Task, solved: Solved, off: dict[str, float]) -> Speed:
-        level, error = solved.level, solved.error
-        fits = level.space.degree <= self.space.degree
-        estimate = Estimate(error.g, error.loads, error.errors) if error else None
-        sample = self._sampled(task, level) if fits else None
-        return Speed(task.number, level.space.degree, sample, solved.record(), estimate, off)
+            level, error = solved.level, solved.error
+            if not self.speeds:
+                self.space, self.recovery, self.at = level.space, level.recovery, self._frictions(level)
+                self._degree = level.space.degree
+            fits = level.space.degree <= self.space.degree
+            off = largest_changes(level.gauges(*self._probes), expected) if fits and expected else {}
+            estimate = Estimate(error.g, error.loads, error.errors) if error else None
+            sample = self._sampled(task, level) if fits else None
+            return Speed(number, level.space.degree, sample, solved.record(), estimate, off)
 
     @property
     def _all(self) -> NDArray[np.float64]:

@@ -376,7 +376,7 @@ class WholeLevel(LoadsLevel):
 
     def rounding(self, g: NDArray, load: Any = None) -> list[float]:
         """Effect of rounding of the fields on each gauge of stresses, relative."""
-        return self.rounding_of_stresses(self.fields_of(self.states(g)))
+        return self.rounding_of_stresses(self.states(g))
 
 
 class PiecesLevel(LoadsLevel):

@@ -188,7 +188,7 @@ def march(
     # Tested displacements by lag, stage and test, of the polynomials of each stage and friction.
     weights = np.empty((steps, STAGES, terms, STAGES, len(forces), terms))
     for n, basis in enumerate(between.bases):
-        weights[..., n, :] = scheme.weights(transformed.sinking(basis, tests)).swapaxes(2, 3)
+        weights[..., n, :] = scheme.weights(transformed.tested(basis, tests)).swapaxes(2, 3)
     flat = weights.reshape(steps, STAGES * terms, -1)
     begun, added = np.zeros(len(forces) * terms), np.zeros((steps, STAGES, len(forces) * terms))
     if steady:
@@ -257,7 +257,7 @@ class Residual:
         # The mean of their frictions changes sign in the mirror image, as they do.
         g = float(np.mean([basis.g for basis in bases]))
         tests = Basis(self._response, g, self._terms + _MORE).tests
-        rows = np.concatenate([self._transformed.sinking(basis, tests) for basis in bases], axis=2)
+        rows = np.concatenate([self._transformed.tested(basis, tests) for basis in bases], axis=2)
         v = self._scheme.answered(rows, self._interpolated(a, self._scheme.times))
         v[:, 0] += tests.integral * self._interpolated(v0, self._scheme.times[:, -1])
         largest = float(np.linalg.norm(v, axis=1).max())
@@ -466,7 +466,8 @@ class StartingPunch:
         begun, added, a, v0 = march(transformed, scheme, between, ratio, load, steady)
         held = between.middle.pressure
         rows = [
-            np.hstack([transformed.dragging(of, held), self._along.strains(of)]) for of in between.bases
+            np.hstack([transformed.tested(of, held, True), self._along.strains(of)])
+            for of in between.bases
         ]
         u, u_X = np.split(scheme.answered(np.concatenate(rows, axis=2), added), [self._terms], axis=1)
         shared = np.hstack([basis.pressure.tested(held) for basis in between.bases])

@@ -197,7 +197,7 @@ class Transformed:
         Returns:
             Coefficients of σ_YY over N̂/(2a), then v̂₀ over N̂/(2μ), (n, count + 1), for each of ``terms``.
         """
-        matrices, solutions = self.sinking(basis, basis.tests), []
+        matrices, solutions = self.tested(basis, basis.tests), []
         for count in terms or (self._terms,):
             whole = np.zeros((len(self.s), count + 1, count + 1), dtype=complex)
             whole[:, :-1, :-1] = matrices[:, :count, :count]
@@ -208,22 +208,15 @@ class Transformed:
             solutions.append(np.asarray(np.linalg.solve(whole, load)[..., 0], dtype=complex))
         return tuple(solutions)
 
-    def sinking(self, basis: Basis, tests: Weighted) -> NDArray[np.complex128]:
-        """Tested v̂ of each polynomial of the pressure for every s, (s, tests, terms)."""
-        return self._tested(basis, tests, 0)
-
-    def dragging(self, basis: Basis, tests: Weighted) -> NDArray[np.complex128]:
-        """Tested û of each polynomial of the pressure for every s, (s, tests, terms)."""
-        return self._tested(basis, tests, 2)
-
-    def _tested(self, basis: Basis, tests: Weighted, first: int) -> NDArray[np.complex128]:
-        """Tested displacement of each polynomial of the pressure for every s, (s, tests, terms).
+    def tested(self, basis: Basis, tests: Weighted, along_X: bool = False) -> NDArray[np.complex128]:
+        """Tested v̂, or û, of each polynomial of the pressure for every s, (s, tests, terms).
 
         Args:
             basis: of the pressure.
             tests: weighted polynomials.
-            first: row of the responses to σ_YY; the next one is that to σ_XY.
+            along_X: True for û.
         """
+        first = 2 * along_X  # row of the responses to σ_YY; the next one is that to σ_XY
         both = shared(self._x, tests, basis.pressure)
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         ahead, behind = (values[:, first] + basis.g * values[:, first + 1] for values in self._values)

@@ -84,7 +84,7 @@ def test_dolfinx_assembles_the_same_on_all_ranks_together(form):
     response, loads = MovingFrame(2.0, 0.6), []
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         own = space_on("confocal", Refinement(4, 0.25, 1, (2.0,) * 3), 5, comm, form)
-        parts = own.mesh, own.facet_tags, own.tags, own.chart, 5, form, own.terms
+        parts = own.mesh, own.facet_tags, own.chart, 5, form, own.terms
         punch = SlidingPunch(DolfinxSpace(*parts), response)
         loads.append(punch.states([-0.6, 0.3]))
         punch.destroy()

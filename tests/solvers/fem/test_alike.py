@@ -7,7 +7,6 @@ from mpi4py import MPI
 from galinx.meshes.charts import Physical
 from galinx.meshes.kind import Requirements
 from galinx.meshes.layered import OnLayers
-from galinx.meshes.rings import TAGS
 from galinx.solvers.fem import space as spaces
 from galinx.solvers.fem.cells import congruent_cells, model_cells
 from galinx.solvers.fem.space import Space, distribute
@@ -48,7 +47,7 @@ def test_the_matrix_is_that_of_each_cell_by_itself(solid, fewer, monkeypatch):
     """Of a graded layer only cells below it have others that are like them."""
     response = solid.response(0.2)
     mesh = OnLayers(depths=(1.0,)).drawn(Requirements(1e-6, nearest=1e-2))
-    space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), 5, solid.form)
+    space = Space(*distribute(mesh, MPI.COMM_SELF), Physical(), 5, solid.form)
     models, members = model_cells(space.vertices, response, space.form.constants)
     assert sorted(np.concatenate(members)) == list(range(space.cells))
     assert space.cells > fewer * len(models)

@@ -28,7 +28,7 @@ RESPONSES = {
 def both(mesh, refinement, degree, form):
     """A space of either kind on one mesh."""
     tensor = space_on(mesh, refinement, degree, form=form)
-    parts = tensor.mesh, tensor.facet_tags, tensor.tags, tensor.chart, degree, form, tensor.terms
+    parts = tensor.mesh, tensor.facet_tags, tensor.chart, degree, form, tensor.terms
     return tensor, DolfinxSpace(*parts)
 
 

@@ -6,7 +6,7 @@ from mpi4py import MPI
 from support import space_on
 
 from galinx.meshes import MESHES
-from galinx.meshes.rings import TAGS, Refinement
+from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.recovery import chebyshev, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
@@ -23,7 +23,7 @@ def error(R, terms):
     count = 3
     widths = ((np.arccosh(R) - np.pi / 2.0) / count,) * count
     mesh = distribute(KIND.build(Refinement(9, 0.35, 2, widths)), MPI.COMM_SELF)
-    space, response = Space(*mesh, TAGS, KIND.chart, 8, terms=terms), MovingFrame(2.0, C)
+    space, response = Space(*mesh, KIND.chart, 8, terms=terms), MovingFrame(2.0, C)
     punch = SlidingPunch(space, response)
     moments = chebyshev(space.chart.surface_position(space.contact.s))
     local = FlatPunch(response, np.array([G]))

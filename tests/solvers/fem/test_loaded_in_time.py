@@ -12,7 +12,7 @@ from scipy.sparse.linalg import splu
 from support import THOROUGH
 
 from galinx.meshes.charts import Physical
-from galinx.meshes.rings import TAGS, tagged
+from galinx.meshes.rings import tagged
 from galinx.meshes.waves import Reached
 from galinx.solvers.fem.dynamic import Motion
 from galinx.solvers.fem.in_time import after_step, γ
@@ -77,7 +77,7 @@ def motion_under(motion, h, steps, load):
 
 def found_and_expected(mesh, c, end, steps, degree, ramp):
     """u, v on the surface within 2 a by both, (2, times, nodes, 2), over the largest of all."""
-    space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, Physical(), degree)
+    space = Space(*distribute(mesh, MPI.COMM_SELF), Physical(), degree)
     load = (lambda t: float(smooth(t, ramp))) if ramp else lambda t: 1.0
     X, found = motion_under(Motion(space, SOLID.response(c)), end / steps, steps, load)
     history = ((lambda t: smooth(t, ramp)), (0.0, ramp)) if ramp else None

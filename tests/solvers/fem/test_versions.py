@@ -29,7 +29,7 @@ def test_the_stored_mesh_has_the_same_intensities(c):
         edges = {tag: file[str(tag)] for tag in TAGS.values()}
         mesh = QuadMesh(file["points"], file["cells"], edges)
     chart = MESHES["confocal"].chart
-    space = Space(*distribute(mesh, MPI.COMM_SELF), TAGS, chart, 7)
+    space = Space(*distribute(mesh, MPI.COMM_SELF), chart, 7)
     punch = SlidingPunch(space, MovingFrame(2.0, c))
     moments = chebyshev(chart.surface_position(space.contact.s))
     local = FlatPunch(MovingFrame(2.0, c), np.array([-0.66]))

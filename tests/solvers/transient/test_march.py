@@ -97,7 +97,7 @@ def test_panels_hold_the_waves_of_short_steps():
     solid = Isotropic(200e9, 0.25, 7800.0)
     s = np.array([80.0 + 700.0j, 80.0 + 200.0j][: 2 if THOROUGH else 1])
     found, finer = (
-        punch.sinking(basis := punch.basis(-0.4), basis.tests)
+        punch.tested(basis := punch.basis(-0.4), basis.tests)
         for punch in (
             Transformed(solid.response(0.6), solid.limit(), s, 2, *finest) for finest in ((), (5e-3,))
         )

@@ -110,7 +110,7 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
 @click.command()
 @options.scene
 @options.changes
-def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
+def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> None:
     """Show what a run of SCENE would do, and what it would skip; nothing is computed.
 
     Example: ./run.sh plan scenes/tables4_5.toml
@@ -127,7 +127,6 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
         say(f"cost  {expense(*plans)}", 6)
         for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)
-    return errors.GOOD
 
 
 @click.command()

@@ -44,13 +44,7 @@ from ..figures.stresses import SHOWN, Fields, map_names, stresses_along, surface
 from ..figures.style import as_hex
 from ..plan.plan import by_reason
 from ..scene.scene import Scene
-from ..study.published import (
-    INTENSITIES,
-    has_study_digits,
-    intensities,
-    intensity_rows,
-    limit_of_steady_motion,
-)
+from ..study.published import has_study_digits, intensity_sheets
 
 #: Width of tables of few states in characters: the states stand side by side.
 _WIDE = 100
@@ -347,11 +341,8 @@ def page(
     title = "Every state" if few else None  # many have a table of their own, to search
     tables = sheets_of_archive(data, units, title, _WIDE * few, not scene.steady)
     # The study's tables that the archive has all states of, for the study's solid.
-    published = [
-        intensities(name, rows, limit_of_steady_motion(name, data, scene.body.half_width))
-        for name in (INTENSITIES if has_study_digits(scene.solid) else ())
-        if (rows := intensity_rows(name, data))
-    ]
+    own = has_study_digits(scene.solid)
+    intensities = intensity_sheets(data, scene.body.half_width) if own else []
     versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
     parts = {
         "title": attributes["title"] or "A sliding punch",
@@ -362,7 +353,7 @@ def page(
         "warnings": json.loads(attributes["warnings"]),
         "reasons": json.loads(attributes["verdict_reasons"]),
         "tables": tables,
-        "sheets": published if sheets is None else sheets,
+        "sheets": intensities if sheets is None else sheets,
         "states": None if few else states_table(data, units),
         "explorer": large,
         "pictures": shown,

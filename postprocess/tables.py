@@ -33,7 +33,6 @@ from .quantities import (
 )
 from .quantities import states as of
 from .quantities.quantity import CONTACT, FEM, OVER_A, SIE, TEXT
-from .quantities.states import LOAD, MOTION, POSITION, SPEED
 from .units import Units, as_archived, engineering, number, solved
 
 
@@ -44,7 +43,7 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
         data: datasets of the archive by path.
     """
     rows = {path: row for path, row in table().items() if row.symbol and path in data}
-    first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
+    first, last = [of.SPEED.path, *({of.LOAD.path} & rows.keys())], [of.MOTION.path, of.POSITION.path]
     swept = [path for path in rows if "." in path]
     own = [path for path in rows if path not in (*swept, *first, *last)]
     return {path: rows[path] for path in (*swept, *first, *own, *last)}
@@ -636,7 +635,11 @@ def states_of_loops(data: Mapping[str, Any]) -> NDArray[np.int64]:
 def states_of_sliders(data: dict[str, Any]) -> NDArray[np.int64]:
     """A state with the load and the law of each slider, (sliders,)."""
     apart = parameters(data)
-    law = [data[path].tolist() for path in apart if path not in (SPEED.path, MOTION.path, POSITION.path)]
+    law = [
+        data[path].tolist()
+        for path in apart
+        if path not in (of.SPEED.path, of.MOTION.path, of.POSITION.path)
+    ]
     rows = [*zip(*law)]
     each = next((i for i, row in enumerate(rows) if row != rows[0]), 0)
     return each * np.arange(len(data[runs.OUTCOME.path]))
@@ -654,7 +657,7 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the motion of the slider for the first laws, with its stick-slip."""
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
-    columns = [c for c in _parameters_of(states_of_sliders(data), data, units) if c.path != SPEED.path]
+    columns = [c for c in _parameters_of(states_of_sliders(data), data, units) if c.path != of.SPEED.path]
     columns += _columns(data, units, (
         _Spec("motion", runs.OUTCOME),
         _Spec("period", runs.PERIOD, 6), _Spec("slip per cycle", runs.SLIP, 6),

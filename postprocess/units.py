@@ -15,16 +15,7 @@ from galinx.solvers.contact.solution import Contact
 from galinx.texts import significant as number
 from galinx.texts import with_prefix
 
-from .quantities import (
-    Quantity,
-    of_any_method,
-    of_states,
-    over_time,
-    preferred,
-    states,
-    swept,
-    table,
-)
+from .quantities import Quantity, of_any_method, of_states, over_time, preferred, states, swept, table
 from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
 
 

@@ -178,8 +178,8 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
 
 def _sinusoidal(scene: Scene) -> Drawing:
     """Friction over time and position of a motion that is prescribed point by point."""
-    loop = Loops(_archive(scene)).of(0, [])
-    assert loop and scene.motion.path
+    (loop,) = Loops(_archive(scene)).of([0], [])
+    assert scene.motion.path
     times = np.array([t for t, _ in scene.motion.path])
     points = len(loop.f) // len(scene.legs)
     t = np.concatenate([np.linspace(start, end, points) for start, end in pairwise(times)])
@@ -218,7 +218,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         )
         for name_, along in _stresses(X, slow, fast).items():
             curves[name_] += along.shown([look])
-        loops += [replace(loop, label=called) for loop in (Loops(archive).of(at[0], []),) if loop]
+        loops += [replace(loop, label=called) for loop in Loops(archive).of(at[:1], [])]
         place = np.array([_AT]), np.array([states.columns["f"][at[0]]])
         dots.append(Curve(*place, look, "", MARKERS))
     left = loop_panel(loops)
@@ -239,7 +239,7 @@ def _loops(loops: Loops) -> Any:
         states = [_state(of, at | {name: value}) for value in values]
         others = [other for other in REFERENCE if other != name]
         # A panel of the archive's has every loop once; that of the speeds shows that there is but one.
-        shown = [loop for loop in (loops.of(state, [name]) for state in states) if loop]
+        shown = loops.of(states, [name])
         if name == C:
             shown = [replace(loop, label=f"$c = {number(c)}$") for loop, c in zip(shown, SPEEDS)]
         panels.append(loop_panel(shown, True, of.label(states[0], others)))

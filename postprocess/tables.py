@@ -543,27 +543,26 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"
 
 
-def sheets_of_run(data: dict[str, Any], units: Units, title: str | None, width: int) -> list[Sheet]:
-    """Tables of what was computed: states, unless the title is None, sliders and motions in time."""
-    states = [] if title is None else [states_sheet(data, units, title, width)]
-    sheets = *states, sliders_sheet(data, units, width), starts_sheet(data, units, width)
-    return [sheet for sheet in sheets if sheet.rows]
-
-
-def sheets_of_archive(
-    data: dict[str, Any], units: Units, title: str | None, width: int, strokes: bool
+def sheets(
+    data: dict[str, Any], units: Units, title: str | None, width: int, strokes: bool | None = None
 ) -> list[Sheet]:
-    """All tables, that of states first.
+    """Tables that have rows, that of states first.
 
     Args:
         data: datasets of the archive by path.
         units: of the result.
         title: of the first table, None to leave it away.
         width: characters of a line.
-        strokes: True where strokes were asked for, which have friction loops.
+        strokes: True where strokes were asked for, which have friction loops; None for results alone:
+            states, sliders and motions in time.
     """
-    more = [loops_sheet(data, units, width)] * strokes + [limits_sheet(data, units, width)]
-    return sheets_of_run(data, units, title, width) + [sheet for sheet in more if sheet.rows]
+    made = [] if title is None else [states_sheet(data, units, title, width)]
+    made += [sliders_sheet(data, units, width), starts_sheet(data, units, width)]
+    if strokes:
+        made.append(loops_sheet(data, units, width))
+    if strokes is not None:
+        made.append(limits_sheet(data, units, width))
+    return [sheet for sheet in made if sheet.rows]
 
 
 def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
@@ -628,8 +627,8 @@ def _parameters_of(states: Any, data: Mapping[str, Any], units: Units) -> list[C
 
 def states_of_loops(data: Mapping[str, Any]) -> NDArray[np.int64]:
     """The first state of each friction loop, (loops,)."""
-    _, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
-    return first[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
+    loops, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
+    return first[loops >= 0]  # states without a loop have the number -1
 
 
 def states_of_sliders(data: dict[str, Any]) -> NDArray[np.int64]:

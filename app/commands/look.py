@@ -29,7 +29,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> No
 
     Example: ./run.sh show tables.h5 --dimensionless
     """
-    from galinx.postprocess.tables import sheets_of_archive
+    from galinx.postprocess.tables import sheets
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -38,9 +38,8 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> No
         if as_json:
             print(json.dumps(_as_json(data, attributes, units), ensure_ascii=False, indent=1))
         else:
-            strokes, title = not result.scene.steady, attributes["title"]
-            sheets = sheets_of_archive(data, units, title, width(), strokes)
-            print_result(sheets, data, attributes, verbose)
+            shown = sheets(data, units, attributes["title"], width(), not result.scene.steady)
+            print_result(shown, data, attributes, verbose)
             print_warnings(attributes)
 
 

@@ -33,7 +33,7 @@ from .quantities import (
 )
 from .quantities import states as of
 from .quantities.quantity import CONTACT, FEM, OVER_A, SIE, TEXT
-from .units import Units, as_archived, engineering, number, solved
+from .units import Scaled, Units, engineering, number, solved
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -308,7 +308,7 @@ def _columns(
             owner = None
         by_method = {"": rows} if isinstance(rows, Quantity) else rows
         row = preferred(data, by_method)
-        scaled = row and (units(row) or (as_archived(row, "") if archived else None))
+        scaled = row and (units(row) or (Scaled("", row.unit) if archived else None))
         if not row or not scaled:
             continue
         values = taken(of_any_method(data, by_method, row), data)
@@ -671,7 +671,7 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
         return Sheet(title, [], [])
-    time = units(over_time.TIMES) or as_archived(over_time.TIMES, "")
+    time = units(over_time.TIMES) or Scaled("", over_time.TIMES.unit)
     end, when = float(data[over_time.TIMES.path][-1]), data[over_time.WITHIN[method].path][:, 1]
     ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]]
 

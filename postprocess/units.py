@@ -59,11 +59,6 @@ class Scaled(NamedTuple):
         return f"{number(value, digits)}{'' if self.unit in ('1', 'none') else f' {self.unit}'}"
 
 
-def as_archived(row: Quantity, name: str) -> Scaled:
-    """Scale of a quantity in its own unit."""
-    return Scaled(name, row.unit)
-
-
 #: Units with prefixes by that of SI, with their size, and the least number that one is used from.
 _PREFIXED: dict[str, tuple[tuple[str, float, float], ...]] = {
     "Pa": (("Pa", 1.0, 0.0), ("kPa", 1e3, 0.5), ("MPa", 1e6, 0.1), ("GPa", 1e9, 20.0)),

@@ -18,7 +18,7 @@ from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import parameters
-from galinx.postprocess.units import Scaled, Units, as_archived
+from galinx.postprocess.units import Scaled, Units
 from galinx.texts import in_tex, number, plain, unit
 
 from ..errors import BadInput, nearest, short
@@ -315,7 +315,7 @@ class Archive:
 
     def scaled(self, row: Quantity) -> Scaled:
         """Unit and scale of a quantity."""
-        return self.units(row, "") or as_archived(row, "")
+        return self.units(row, "") or Scaled("", row.unit)  # as archived
 
     def values(self, row: Quantity) -> NDArray[np.float64]:
         """Numbers of a quantity in the figure's units."""

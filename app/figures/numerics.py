@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from galinx.meshes.kind import edges, nodes
-from galinx.postprocess.quantities import Quantity, runs, states
+from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.quantities.quantity import FEM
 from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, FemPlan
 
@@ -45,9 +45,6 @@ def degrees(of: Archive) -> Drawing:
     first = [int(solved[i][0]) for i in shown]
     names = [name for name in of.varied(first) if name == C or "." in name]
 
-    def largest(row: Quantity, i: int) -> float:
-        return float(data[row.path][solved[i]].max())
-
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(shown)) - (len(shown) - 1) / 2.0) / max(1, len(shown) - 1)
     curves: list[Curve] = []
@@ -60,9 +57,8 @@ def degrees(of: Archive) -> Drawing:
         curves.append(Curve(computed, change[i][computed], look, label, JOINED))
         at = np.array([data[runs.RECORD["degree"].path][i] + off])
         for row, marker in errors:
-            curves.append(
-                Curve(at, np.array([largest(row, i)]), look._replace(marker=marker), "", MARKERS)
-            )
+            largest = data[row.path][solved[i]].max(keepdims=True)
+            curves.append(Curve(at, largest, look._replace(marker=marker), "", MARKERS))
     words = "estimated error", "true error"
     notes = [note(Look(GREY, "-", m), word, MARKERS) for (_, m), word in zip(errors, words)]
     panel = Panel(

@@ -356,7 +356,10 @@ def interfaces(of: Archive) -> Drawing:
     a = bodies[0].half_width
     over_a = np.max([d if unit == "1" else d / b.half_width for d, b in zip(depths, bodies)], axis=0)
     alike = np.ptp(depths, axis=0) == 0.0
-    factor, length = (1.0, "$a$") if of.units.dimensionless and unit == "1" else _length(of, a)
+    scale = of.units.scale(CONTACT)
+    factor, length = np.max(scale.factor) * a, scale.unit
+    if of.units.dimensionless:
+        factor, length = (1.0, "$a$") if unit == "1" else (1e3 * a, "mm")
     titles = [
         f"depth {number(depth * factor)} {length}" if same else f"interface {i}"
         for i, (depth, same) in enumerate(zip(over_a, alike), 1)
@@ -395,12 +398,6 @@ def interfaces(of: Archive) -> Drawing:
     missing = of.not_shown(numbers, "--figure interfaces --states")
     figure = render(panels, choice.size, across_, notes + explained(methods))
     return Drawing("interfaces", caption, figure, left_out=missing)
-
-
-def _length(of: Archive, of_m: float) -> tuple[Any, str]:
-    """Factor in a figure of lengths over so many m, and their unit."""
-    scale = of.units.scale(CONTACT)
-    return (1e3 * of_m, "mm") if of.units.dimensionless else (np.max(scale.factor) * of_m, scale.unit)
 
 
 #: Names of the stresses that maps show by default.

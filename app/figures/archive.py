@@ -14,11 +14,11 @@ from galinx.postprocess.quantities.states import FRICTION
 from galinx.postprocess.quantities.stresses import RATIO_ALONG
 from galinx.texts import number
 
-from ..errors import BadInput
+from ..errors import BadInput, require_one_of
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from . import friction, motion, numerics, stresses, sweep, waves
-from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
+from .choice import PLACE, STROKE, Archive, Choice, Drawing
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
 from .render import Film, Panel, TooSmall, with_dot

@@ -193,7 +193,7 @@ def slider(of: Archive) -> Drawing:
     """Figure of an archive's sliders, one for each load and law, of some of them where they are many."""
     data, scene, choice = of.data, of.scene, of.choice
     loops, count = Loops(of), len(data[runs.PERIOD.path])
-    laws = spread(list(range(count)), _LOOPS)
+    laws = spread(range(count), _LOOPS)
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
     states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)

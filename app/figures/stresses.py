@@ -29,6 +29,7 @@ from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, m
 from galinx.solvers.contact.stresses import maximum_shear
 from galinx.texts import number, plain
 
+from ..errors import require_one_of
 from ..plan.variants import of_state
 from .choice import (
     PLACE,
@@ -40,7 +41,6 @@ from .choice import (
     both,
     explained,
     named,
-    require_one_of,
     short_name,
     spread,
     states_for_panel,

@@ -84,3 +84,14 @@ def meant(word: str, valid: Iterable[str]) -> str:
 def nearest(key: str, valid: Collection[str]) -> str:
     """Hint at the nearest valid word for the end of a message, or else at all valid words."""
     return meant(key, valid) or f"; valid: {', '.join(valid)}"
+
+
+def require_one_of(what: str, word: str, valid: Collection[str]) -> str:
+    """A word that is one of the valid ones.
+
+    Raises:
+        BadInput: it is not; the message names the nearest, or all.
+    """
+    if word in valid:
+        return word
+    raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, valid)}")

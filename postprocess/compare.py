@@ -27,17 +27,7 @@ from .quantities import preferred, table
 from .quantities import states as of
 from .quantities import stresses as at
 from .quantities import yielding as to
-from .quantities.quantity import (
-    ANYWHERE,
-    BESIDE,
-    CLOSED_FORM,
-    FEM,
-    METHODS,
-    NEVER,
-    SIE,
-    STATE,
-    Quantity,
-)
+from .quantities.quantity import ANYWHERE, BESIDE, CLOSED_FORM, FEM, METHODS, NEVER, SIE, STATE, Quantity
 
 
 @dataclass(frozen=True)

@@ -165,18 +165,20 @@ def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
 
 
+def _over_largest(values: Any, expected: Any, axes: tuple[int, int]) -> float:
+    """Largest difference over the largest expected number along some axes, dimensionless."""
+    sizes = (np.abs(of).max(axis=axes) for of in (np.subtract(values, expected), np.asarray(expected)))
+    return float(np.divide(*sizes).max())
+
+
 def _until_turn(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
     """Largest difference of histories up to the first turn, over a motion's largest of all of them.
 
     None where the integral equation has no solution.
     """
     solved = np.isfinite(sie).all(axis=(0, 1))
-    if not solved.any():
-        return None
-    off, size = (
-        np.abs(values[..., solved]).max(axis=(0, 2)) for values in (np.subtract(fem, sie), np.array(sie))
-    )
-    return float((off / size).max())
+    fem, sie = ([y[:, solved] for y in method] for method in (fem, sie))
+    return _over_largest(fem, sie, (0, 2)) if solved.any() else None
 
 
 #: Stresses that are compared; the shear stress is proportional to the pressure.
@@ -190,11 +192,8 @@ def largest_surface_change(stresses: Any, expected: Any) -> float:
         stresses, expected: σ_XX and σ_YY by two methods, (motions, times, places) each.
     """
     far = from_edge(ON_SURFACE) > 0.01  # at the edges stresses are infinite
-    off, size = (
-        np.abs(of[..., far]).max(axis=(-2, -1))
-        for of in (np.subtract(stresses, expected), np.asarray(expected))
-    )
-    return float((off / size).max())
+    stresses, expected = ([σ[..., far] for σ in method] for method in (stresses, expected))
+    return _over_largest(stresses, expected, (-2, -1))
 
 
 def estimated(before: Mapping[str, NDArray], now: Mapping[str, NDArray]) -> dict[str, NDArray]:
@@ -221,9 +220,8 @@ def stress_datasets(method: str, stresses: NDArray) -> dict[str, NDArray]:
 def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
     """Largest difference of both methods up to the first turn; None without output before it."""
     solved = np.isfinite(sie[0]).all(axis=(0, 2))
-    if not solved.any():
-        return None
-    return largest_surface_change(*([values[:, solved] for values in method] for method in (fem, sie)))
+    fem, sie = ([σ[:, solved] for σ in method] for method in (fem, sie))
+    return largest_surface_change(fem, sie) if solved.any() else None
 
 
 _AGAINST = "over time against the integral equation, over the largest"

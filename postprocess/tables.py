@@ -33,8 +33,7 @@ from .quantities import (
 )
 from .quantities import states as of
 from .quantities.quantity import CONTACT, FEM, OVER_A, SIE, TEXT
-from .quantities.states import LOAD, MOTION, POSITION, SPEED
-from .units import Units, as_archived, engineering, number, solved
+from .units import Scaled, Units, engineering, number, solved
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -44,7 +43,7 @@ def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
         data: datasets of the archive by path.
     """
     rows = {path: row for path, row in table().items() if row.symbol and path in data}
-    first, last = [SPEED.path, *({LOAD.path} & rows.keys())], [MOTION.path, POSITION.path]
+    first, last = [of.SPEED.path, *({of.LOAD.path} & rows.keys())], [of.MOTION.path, of.POSITION.path]
     swept = [path for path in rows if "." in path]
     own = [path for path in rows if path not in (*swept, *first, *last)]
     return {path: rows[path] for path in (*swept, *first, *own, *last)}
@@ -309,7 +308,7 @@ def _columns(
             owner = None
         by_method = {"": rows} if isinstance(rows, Quantity) else rows
         row = preferred(data, by_method)
-        scaled = row and (units(row) or (as_archived(row, "") if archived else None))
+        scaled = row and (units(row) or (Scaled("", row.unit) if archived else None))
         if not row or not scaled:
             continue
         values = taken(of_any_method(data, by_method, row), data)
@@ -544,27 +543,26 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         yield f"not asked for: {', '.join(lacking)}; add these to output.quantities"
 
 
-def sheets_of_run(data: dict[str, Any], units: Units, title: str | None, width: int) -> list[Sheet]:
-    """Tables of what was computed: states, unless the title is None, sliders and motions in time."""
-    states = [] if title is None else [states_sheet(data, units, title, width)]
-    sheets = *states, sliders_sheet(data, units, width), starts_sheet(data, units, width)
-    return [sheet for sheet in sheets if sheet.rows]
-
-
-def sheets_of_archive(
-    data: dict[str, Any], units: Units, title: str | None, width: int, strokes: bool
+def sheets(
+    data: dict[str, Any], units: Units, title: str | None, width: int, strokes: bool | None = None
 ) -> list[Sheet]:
-    """All tables, that of states first.
+    """Tables that have rows, that of states first.
 
     Args:
         data: datasets of the archive by path.
         units: of the result.
         title: of the first table, None to leave it away.
         width: characters of a line.
-        strokes: True where strokes were asked for, which have friction loops.
+        strokes: True where strokes were asked for, which have friction loops; None for results alone:
+            states, sliders and motions in time.
     """
-    more = [loops_sheet(data, units, width)] * strokes + [limits_sheet(data, units, width)]
-    return sheets_of_run(data, units, title, width) + [sheet for sheet in more if sheet.rows]
+    made = [] if title is None else [states_sheet(data, units, title, width)]
+    made += [sliders_sheet(data, units, width), starts_sheet(data, units, width)]
+    if strokes:
+        made.append(loops_sheet(data, units, width))
+    if strokes is not None:
+        made.append(limits_sheet(data, units, width))
+    return [sheet for sheet in made if sheet.rows]
 
 
 def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
@@ -629,14 +627,18 @@ def _parameters_of(states: Any, data: Mapping[str, Any], units: Units) -> list[C
 
 def states_of_loops(data: Mapping[str, Any]) -> NDArray[np.int64]:
     """The first state of each friction loop, (loops,)."""
-    _, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
-    return first[-len(data[runs.LOOP_F.path]) :]  # states without a loop have the number -1
+    loops, first = np.unique(data[runs.LOOP_OF_STATE.path], return_index=True)
+    return first[loops >= 0]  # states without a loop have the number -1
 
 
 def states_of_sliders(data: dict[str, Any]) -> NDArray[np.int64]:
     """A state with the load and the law of each slider, (sliders,)."""
     apart = parameters(data)
-    law = [data[path].tolist() for path in apart if path not in (SPEED.path, MOTION.path, POSITION.path)]
+    law = [
+        data[path].tolist()
+        for path in apart
+        if path not in (of.SPEED.path, of.MOTION.path, of.POSITION.path)
+    ]
     rows = [*zip(*law)]
     each = next((i for i, row in enumerate(rows) if row != rows[0]), 0)
     return each * np.arange(len(data[runs.OUTCOME.path]))
@@ -654,7 +656,7 @@ def sliders_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of the motion of the slider for the first laws, with its stick-slip."""
     if runs.OUTCOME.path not in data:
         return Sheet("", [], [])
-    columns = [c for c in _parameters_of(states_of_sliders(data), data, units) if c.path != SPEED.path]
+    columns = [c for c in _parameters_of(states_of_sliders(data), data, units) if c.path != of.SPEED.path]
     columns += _columns(data, units, (
         _Spec("motion", runs.OUTCOME),
         _Spec("period", runs.PERIOD, 6), _Spec("slip per cycle", runs.SLIP, 6),
@@ -669,7 +671,7 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
         return Sheet(title, [], [])
-    time = units(over_time.TIMES) or as_archived(over_time.TIMES, "")
+    time = units(over_time.TIMES) or Scaled("", over_time.TIMES.unit)
     end, when = float(data[over_time.TIMES.path][-1]), data[over_time.WITHIN[method].path][:, 1]
     ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]]
 

@@ -19,14 +19,14 @@ class Kind:
 
     Attributes:
         noun: name of such a file in messages.
-        looks: pattern that the bytes of such a file match from their beginning.
+        looks: regular expression that the bytes of such a file match from their beginning.
         option: option of the command line by which the file is named.
         replaceable: True where --overwrite may replace a file of another kind.
         endings: endings that names may have, by which other programs recognise the kind; none for any.
     """
 
     noun: str
-    looks: re.Pattern[bytes]
+    looks: bytes
     option: str = "-o"
     replaceable: bool = True
     endings: tuple[str, ...] = ()
@@ -36,40 +36,35 @@ class Kind:
         files.expect_file(path)
         with open(path, "rb") as file:
             if not os.fstat(file.fileno()).st_size:  # which cannot be mapped
-                return bool(self.looks.match(b""))
+                return bool(re.match(self.looks, b"", re.DOTALL))
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-                return bool(self.looks.match(data))
-
-
-def _kind(noun: str, looks: bytes, *endings: str) -> Kind:
-    return Kind(noun, re.compile(looks, re.DOTALL), endings=endings)
+                return bool(re.match(self.looks, data, re.DOTALL))
 
 
 #: First bytes of HDF5 files, and names in the root of one whose only group is VTK's.
 _HDF5, _VTK = rb"\x89HDF\r\n\x1a\n", rb".{,2000}HEAP.{,60}\0VTKHDF\0"
 #: Archives begin with their digest, or with HDF5's own bytes.
-ARCHIVE = _kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb"(?!" + _VTK + rb").*galinx")
-FIELDS = _kind("a file of fields of galinx", _HDF5 + _VTK, ".hdf", ".vtkhdf")
-PAGE = _kind(
+ARCHIVE = Kind("an archive of galinx", rb"galinx archive\n|" + _HDF5 + rb"(?!" + _VTK + rb").*galinx")
+FIELDS = Kind("a file of fields of galinx", _HDF5 + _VTK, endings=(".hdf", ".vtkhdf"))
+PAGE = Kind(
     "a report of galinx",
     rb'<!doctype html>.{,500}<meta name="generator" content="galinx',
-    ".html",
-    ".htm",
+    endings=(".html", ".htm"),
 )
-PDF = _kind("a figure of galinx", rb"%PDF-.*galinx")
-PNG = _kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
+PDF = Kind("a figure of galinx", rb"%PDF-.*galinx")
+PNG = Kind("a figure of galinx", rb"\x89PNG\r\n\x1a\n.{,200}galinx")
 #: How heads of tables begin: of states and their points, of loops, starts and sliders.
 _OF_TABLES = (
     rb"state,(motion|interface,speed|interface,c|c \[1\]|speed \[.{1,3}/s\]),|loop,X_over_L|start,t \["
     rb"|law,time \["
 )
-SVG = _kind("a figure of galinx", rb"<\?xml .{,1500}<dc:title>galinx</dc:title>")
-GIF = _kind("a film of galinx", rb"GIF8.*galinx")
-MP4 = _kind("a film of galinx", rb".{4}ftyp.*galinx")
-TABLE = _kind("a table of galinx", _OF_TABLES, ".csv", ".txt")
-SECTION = _kind("a section fitted by galinx", rb"# Fitted by galinx", ".toml")
-TABLES = _kind("tables of galinx", rb"\s*(Table 1\. Dahl|Statements of the study)")
-LOG = Kind("a log of galinx", re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z"), "--log", False)
+SVG = Kind("a figure of galinx", rb"<\?xml .{,1500}<dc:title>galinx</dc:title>")
+GIF = Kind("a film of galinx", rb"GIF8.*galinx")
+MP4 = Kind("a film of galinx", rb".{4}ftyp.*galinx")
+TABLE = Kind("a table of galinx", _OF_TABLES, endings=(".csv", ".txt"))
+SECTION = Kind("a section fitted by galinx", rb"# Fitted by galinx", endings=(".toml",))
+TABLES = Kind("tables of galinx", rb"\s*(Table 1\. Dahl|Statements of the study)")
+LOG = Kind("a log of galinx", rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z", "--log", False)
 
 
 class Target:

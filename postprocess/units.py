@@ -15,16 +15,7 @@ from galinx.solvers.contact.solution import Contact
 from galinx.texts import significant as number
 from galinx.texts import with_prefix
 
-from .quantities import (
-    Quantity,
-    of_any_method,
-    of_states,
-    over_time,
-    preferred,
-    states,
-    swept,
-    table,
-)
+from .quantities import Quantity, of_any_method, of_states, over_time, preferred, states, swept, table
 from .quantities.quantity import CONTACT, EDGE, OVER_A, OVER_C_S, OVER_N, X_OVER_A
 
 
@@ -66,11 +57,6 @@ class Scaled(NamedTuple):
     def text(self, value: float, digits: int = 4) -> str:
         """A value in this scale with its unit: ``1206 MPa``."""
         return f"{number(value, digits)}{'' if self.unit in ('1', 'none') else f' {self.unit}'}"
-
-
-def as_archived(row: Quantity, name: str) -> Scaled:
-    """Scale of a quantity in its own unit."""
-    return Scaled(name, row.unit)
 
 
 #: Units with prefixes by that of SI, with their size, and the least number that one is used from.

@@ -9,7 +9,7 @@ import click
 
 from galinx.postprocess.target import SECTION, Folder, Target
 
-from .. import errors, ranks
+from .. import ranks
 from ..console import Progress, new_console, print_sheet, program, say
 from ..errors import BadInput
 from . import options
@@ -19,7 +19,7 @@ from . import options
 @click.argument("name", required=False)
 @click.option("-o", "output", type=options.FILE, help="Scene; default: NAME.toml.")
 @options.overwrite
-def init(name: str | None, output: Path | None, overwrite: bool) -> int:
+def init(name: str | None, output: Path | None, overwrite: bool) -> None:
     """Write a commented scene to begin with; without NAME, list them.
 
     Example: ./run.sh init own_material -o mine.toml
@@ -29,23 +29,22 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> int:
 
     available = templates()
     if not ranks.is_root():
-        return errors.GOOD
+        return
     if name is None:
         wide = max(map(len, available)) + 1
         for of_scene, text in available.items():
             say(f"{of_scene:<{wide}}{text.splitlines()[0].removeprefix('# ')}", wide)
-        return errors.GOOD
+        return
     if name not in available:
         raise BadInput(f"init {short(name)}: no such scene{nearest(name, available)}")
     target = output or Path(f"{name}.toml")
     Target(target, None, overwrite, options.inputs()).write(available[name].encode())
     print(f"scene: {target}")
     print(f"next: edit it, then {program()} plan {quote(str(target))}")
-    return errors.GOOD
 
 
 @click.command()
-def materials() -> int:
+def materials() -> None:
     """List the solids that scenes know by name, with their sources.
 
     Example: ./run.sh materials
@@ -59,11 +58,10 @@ def materials() -> int:
             say(f"  {material.source}", 4)
             if material.yield_strength:
                 say(f"  yield strength {material.yield_strength}: {material.yield_source}", 4)
-    return errors.GOOD
 
 
 @click.command()
-def schema() -> int:
+def schema() -> None:
     """Print the JSON schema of scenes, for editors that complete and check TOML.
 
     Example: ./run.sh schema > scene.schema.json
@@ -72,7 +70,6 @@ def schema() -> int:
 
     if ranks.is_root():
         print(json.dumps(made(), ensure_ascii=False, indent=1))
-    return errors.GOOD
 
 
 @click.command()
@@ -103,7 +100,7 @@ def fit(
     words: tuple[str, ...], model: str | None, fix: tuple[str, ...], start: tuple[str, ...],
     speed: tuple[str, ...], rows: int, into: Path | None, to: Path, overwrite: bool, progress: Progress,
     quiet: bool,
-) -> int:  # fmt: skip
+) -> None:  # fmt: skip
     """Find friction laws and their parameters from measured friction DATA.
 
     DATA are tables, measured on one contact. The first line names the columns, units in brackets: "slip
@@ -122,7 +119,7 @@ def fit(
     from ..scene.read import read as read_scene
 
     if not ranks.is_root():
-        return errors.GOOD
+        return
     named = [words[0]] if not model and "." not in words[0] and not os.path.exists(words[0]) else []
     data = [Path(word) for word in words[len(named) :]]
     if not data:
@@ -160,4 +157,3 @@ def fit(
         scene_name = new or "SCENE.toml"
         hint = f"{program()} run {scene_name}"
         print(f"next: {hint if new else f'put the section into a scene, with --into, then {hint}'}")
-    return errors.GOOD

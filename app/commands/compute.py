@@ -48,7 +48,7 @@ def run(
         return errors.GOOD
     from galinx.postprocess.hdf5.archive import read
     from galinx.postprocess.journal import Journal
-    from galinx.postprocess.tables import sheets_of_run
+    from galinx.postprocess.tables import sheets
     from galinx.postprocess.units import Units
 
     journal = Journal(target.place, f"{checked.sha256} {__version__}", resume, overwrite)
@@ -57,10 +57,9 @@ def run(
         verdict = _archived(checked, target, journal, progress, clock)
     data, attributes = read(path, stresses=False, just_sealed=True)
     if not quiet:
-        sheets = sheets_of_run(
-            data, Units(checked.body, data, dimensionless), attributes["title"], width()
-        )
-        print_result(sheets, data, attributes, progress.verbose)
+        units = Units(checked.body, data, dimensionless)
+        shown = sheets(data, units, attributes["title"], width())
+        print_result(shown, data, attributes, progress.verbose)
     print_warnings(attributes)
     if not quiet:
         print_times(clock)
@@ -110,7 +109,7 @@ def _archived(scene: Any, target: Target, journal: Any, progress: Progress, cloc
 @click.command()
 @options.scene
 @options.changes
-def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
+def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> None:
     """Show what a run of SCENE would do, and what it would skip; nothing is computed.
 
     Example: ./run.sh plan scenes/tables4_5.toml
@@ -127,7 +126,6 @@ def plan(scene: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> int:
         say(f"cost  {expense(*plans)}", 6)
         for text in dict.fromkeys(text for planned in plans for text in planned.warnings):
             print(f"warning: {text}", file=sys.stderr)
-    return errors.GOOD
 
 
 @click.command()

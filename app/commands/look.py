@@ -24,12 +24,12 @@ from . import options
 @click.option("--json", "as_json", is_flag=True, help="One JSON object instead of tables.")
 @options.dimensionless
 @click.option("-v", "--verbose", is_flag=True, help="All comparisons, and their limits.")
-def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> int:
+def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> None:
     """Show states, friction loops and verdict of ARCHIVE, where it yields, and where its answers hold.
 
     Example: ./run.sh show tables.h5 --dimensionless
     """
-    from galinx.postprocess.tables import sheets_of_archive
+    from galinx.postprocess.tables import sheets
 
     result = _loaded(archive, stresses=False)
     data, attributes = result.data, result.attributes
@@ -38,11 +38,9 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> in
         if as_json:
             print(json.dumps(_as_json(data, attributes, units), ensure_ascii=False, indent=1))
         else:
-            strokes, title = not result.scene.steady, attributes["title"]
-            sheets = sheets_of_archive(data, units, title, width(), strokes)
-            print_result(sheets, data, attributes, verbose)
+            shown = sheets(data, units, attributes["title"], width(), not result.scene.steady)
+            print_result(shown, data, attributes, verbose)
             print_warnings(attributes)
-    return errors.GOOD
 
 
 _MEASURED = click.option(
@@ -67,7 +65,7 @@ def _text(name: str, metavar: str, about: str, *parameter: str) -> Any:
 def compare(
     archives: tuple[Path, ...], to: Path | None, states: str, measured: Path | None,
     dimensionless: bool, overwrite: bool,
-) -> int:  # fmt: skip
+) -> None:  # fmt: skip
     """Print the numbers of ARCHIVES side by side, and the differences of all from the first.
 
     States are paired by the parameters that vary in them where these agree, else by their order. -o draws
@@ -95,7 +93,6 @@ def compare(
             written = files.write([comparison.drawing(points)])
         print_sheets(comparison.sheets(), comparison.notes())
         _print_files(written if to else ())
-    return errors.GOOD
 
 
 @click.command()
@@ -120,7 +117,7 @@ def check(archive: Path) -> int:
 @click.option("-o", "output", type=options.FILE, help="Page; default: the archive's name with .html.")
 @options.dimensionless
 @options.overwrite
-def report(archive: Path, output: Path | None, dimensionless: bool, overwrite: bool) -> int:
+def report(archive: Path, output: Path | None, dimensionless: bool, overwrite: bool) -> None:
     """Write a page that shows all of ARCHIVE: one HTML file that needs no network.
 
     Example: ./run.sh report tables.h5
@@ -130,7 +127,6 @@ def report(archive: Path, output: Path | None, dimensionless: bool, overwrite: b
         result.report(target, overwrite, dimensionless)
         print(f"report: {target}")
         print(f"next: open it in a browser, or {program()} plot {quote(str(archive))} for PDF figures")
-    return errors.GOOD
 
 
 @click.command()
@@ -146,7 +142,7 @@ def report(archive: Path, output: Path | None, dimensionless: bool, overwrite: b
 def fields(
     archive: Path, state: int | None, states: str | None, extent: float, output: Path | None,
     overwrite: bool,
-) -> int:  # fmt: skip
+) -> None:  # fmt: skip
     """Write displacement and stresses of states of ARCHIVE for ParaView (VTKHDF).
 
     The states are computed once more by finite elements, at the degree that the archive used.
@@ -164,7 +160,6 @@ def fields(
         print(f"fields: {target}")
         version = "5.12" if len(shown) > 1 else "5.11"
         print(f"next: open it in ParaView ({version} or newer), and colour by von_mises_for_colours")
-    return errors.GOOD
 
 
 def _loaded(archive: Path, stresses: bool = True) -> Any:
@@ -229,7 +224,7 @@ def _as_json(data: dict[str, Any], attributes: dict[str, Any], scaled: Any) -> d
 def plot(
     archive: Path, to: Path, dpi: int | None, formats: str, measured: Path | None, overwrite: bool,
     **chosen: Any,
-) -> int:  # fmt: skip
+) -> None:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
     Without options these are the stresses on the surface and below it, what follows from what is swept,
@@ -249,7 +244,6 @@ def plot(
     selection = result.choice(measured=measured, **chosen)
     if ranks.is_root():
         _print_files(write(result.data, result.scene, selection, files))
-    return errors.GOOD
 
 
 @click.command()
@@ -259,7 +253,7 @@ def plot(
 @options.overwrite
 def dispersion(
     scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], to: Path, overwrite: bool
-) -> int:
+) -> None:
     """Print and draw the speeds of the slowest waves along the layers of SCENE.
 
     The highest speed of a punch is that of the slowest of them; some may be slowest in between.
@@ -275,7 +269,6 @@ def dispersion(
         for note in notes:
             say(note)
         _print_files(files.write([drawing]))
-    return errors.GOOD
 
 
 def _files(name: str, scene: Path, to: Path, overwrite: bool) -> Any:
@@ -314,7 +307,7 @@ _FREQUENCY = click.FloatRange(0.0, 1e6, min_open=True)
 def response(
     scene: Path, changes: tuple[str, ...], unset: tuple[str, ...], first: float, last: float | None,
     points: int, to: Path, overwrite: bool,
-) -> int:  # fmt: skip
+) -> None:  # fmt: skip
     """Print and draw the dynamic stiffness of the flat punch of SCENE under loads that oscillate.
 
     The stiffness N/v0 is complex and per depth, for a load N e^(iωt) about that of the scene, at
@@ -332,7 +325,6 @@ def response(
             print(answer.words)
             print(*punch.table(checked, answer), sep="\n")
         _print_files(files.write([punch.response_drawing(stiffnesses)]))
-    return errors.GOOD
 
 
 @click.command()
@@ -347,7 +339,7 @@ def response(
 @options.dimensionless
 @click.option("-o", "output", type=options.FILE, help="File; default: standard output.")
 @options.overwrite
-def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool, **tables: bool) -> int:
+def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool, **tables: bool) -> None:
     """Write what ARCHIVE holds as one table of comma-separated values.
 
     Units stand in the head of each column, 1 for dimensionless. Numbers have all their digits; a cell is
@@ -362,13 +354,13 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
         raise click.UsageError(
             f"{' and '.join(f'--{name}' for name in chosen)} exclude each other; keep one"
         )
+    made = pieces(archive, chosen[0], dimensionless)
     if not ranks.is_root():
-        return errors.GOOD
+        return
     if output is None or str(output) == "-":
-        for piece in pieces(archive, chosen[0], dimensionless):
+        for piece in made:
             print(piece, end="")
-        return errors.GOOD
+        return
     target = Target(output, TABLE, overwrite, options.inputs(archive))
-    target.write(piece.encode() for piece in pieces(archive, chosen[0], dimensionless))
+    target.write(piece.encode() for piece in made)
     print(f"table: {output}")
-    return errors.GOOD

@@ -14,11 +14,11 @@ from galinx.postprocess.quantities.states import FRICTION
 from galinx.postprocess.quantities.stresses import RATIO_ALONG
 from galinx.texts import number
 
-from ..errors import BadInput
+from ..errors import BadInput, require_one_of
 from ..plan.plan import make_plan
 from ..scene.scene import Scene
 from . import friction, motion, numerics, stresses, sweep, waves
-from .choice import PLACE, STROKE, Archive, Choice, Drawing, require_one_of
+from .choice import PLACE, STROKE, Archive, Choice, Drawing
 from .files import FILM, OF_FILMS, Files, Written
 from .friction import Loops, loop_panel
 from .render import Film, Panel, TooSmall, with_dot
@@ -63,11 +63,11 @@ def film(of: Archive) -> Drawing:
         made = [fields.panels(name, frames, level=np.inf, equal=False) for name in shown]
     else:
         raise BadInput('a film needs stresses; add "surface" to output.quantities, or output.map')
-    loop = Loops(of).of(frames[0])
-    if loop is None:
+    loops = Loops(of).of(frames[:1], [])
+    if not loops:
         raise BadInput("a film needs the friction loop, which archives of more than 1 000 laws leave out")
     f, X = of.data[FRICTION.path], of.parameter(PLACE)
-    base = loop_panel([replace(loop, label="")])
+    base = loop_panel(loops)
 
     def panels(frame: int) -> list[Panel]:
         i = frames[frame]

@@ -18,10 +18,10 @@ from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
 from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
 from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import parameters
-from galinx.postprocess.units import Scaled, Units, as_archived
+from galinx.postprocess.units import Scaled, Units
 from galinx.texts import in_tex, number, plain, unit
 
-from ..errors import BadInput, nearest, short
+from ..errors import BadInput
 from ..scene.scene import Scene
 from .measured import Measured
 from .render import Curve, Film, Size, lines_and_markers
@@ -95,17 +95,6 @@ def size(text: str) -> Size | None:
     if not _LEAST <= min(inches) <= max(inches) <= _MOST:
         raise BadInput(f"--size: found {text}, expected {_LEAST:g} to {_MOST:g} in")
     return Size(*inches)
-
-
-def require_one_of(what: str, word: str, valid: Collection[str]) -> str:
-    """A word that is one of the valid ones.
-
-    Raises:
-        BadInput: it is not; the message names the nearest, or all.
-    """
-    if word in valid:
-        return word
-    raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, valid)}")
 
 
 @dataclass(frozen=True)
@@ -315,7 +304,7 @@ class Archive:
 
     def scaled(self, row: Quantity) -> Scaled:
         """Unit and scale of a quantity."""
-        return self.units(row, "") or as_archived(row, "")
+        return self.units(row, "") or Scaled("", row.unit)  # as archived
 
     def values(self, row: Quantity) -> NDArray[np.float64]:
         """Numbers of a quantity in the figure's units."""

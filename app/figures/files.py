@@ -187,17 +187,15 @@ class Files:
             Occupied: something is there that may not be replaced.
             UnwritableArchive: the file system refused.
         """
-        folder = None if self.ending else Folder(self.to, self.overwrite, self.inputs)
+        if not self.ending:
+            Folder(self.to, self.overwrite, self.inputs)
         made: list[tuple[Target, Written]] = []
         for drawing in drawings:
             noun, kinds = _KINDS[drawing.film is not None]
             for ending in self.endings(drawing.name):
                 name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
-                target = (
-                    folder.target(name, kinds[ending])
-                    if folder
-                    else Target(self.to, kinds[ending], self.overwrite, self.inputs)
-                )
+                path = self.to if self.ending else self.to / name
+                target = Target(path, kinds[ending], self.overwrite, self.inputs)
                 data = (
                     film_content(drawing.film, ending, self.dpi or FILM_DPI)
                     if drawing.film

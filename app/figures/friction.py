@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import column, preferred, runs
 from galinx.postprocess.quantities.states import RESULTANT_RATIO
-from galinx.postprocess.tables import states_of_sliders
+from galinx.postprocess.tables import states_of_loops, states_of_sliders
 from galinx.postprocess.units import prefixed
 from galinx.solvers.friction.fit import Measured
 from galinx.solvers.friction.motion import names
@@ -59,35 +59,36 @@ class Loops:
         called = names([run[0].s for run in runs_]) if path else [run[0].name for run in runs_]
         ends = np.cumsum([0, *(len(self._X) // len(legs) * len(run) for run in runs_)]).tolist()
         self._strokes = [(name, slice(*part)) for name, part in zip(called, pairwise(ends))]
-        _, first = np.unique(self.rows, return_index=True)
         #: A state on each loop.
-        self.first = np.array([state for state in first if self.rows[state] >= 0])
+        self.first = states_of_loops(of.data)
         varied = self.archive.varied(self.first)
         # Loops differ with the speed only where the law depends on it.
         self.names = [name for name in (C, *self.archive.law) if name in varied]
 
-    def of(self, state: int, called: Sequence[str] | None = None) -> Loop | None:
-        """The loop that a state lies on, None where the archive has too many to hold it.
+    def of(self, states: Sequence[int], called: Sequence[str] | None = None) -> list[Loop]:
+        """The loops that states lie on, but for those that the archive has too many to hold.
 
         Args:
-            state: which.
-            called: parameters that its label names; None for those that distinguish the loops.
+            states: which.
+            called: parameters that labels name; None for those that distinguish the loops.
         """
-        if (row := int(self.rows[state])) < 0:
-            return None
-        label = self.archive.label(state, self.names if called is None else called)
-        return Loop(label, self._X, self._f[row], self._strokes)
+        names = self.names if called is None else called
+        return [
+            Loop(self.archive.label(state, names), self._X, self._f[self.rows[state]], self._strokes)
+            for state in states if self.rows[state] >= 0
+        ]  # fmt: skip
 
     @property
     def few(self) -> list[Loop]:
         """The first loops, as many as a panel tells apart."""
-        return [loop for loop in map(self.of, self.first[:_LOOPS].tolist()) if loop]
+        return self.of(self.first[:_LOOPS].tolist())
 
     def panel(self, states: Sequence[int], called: Sequence[str], title: str = "") -> Panel:
         """A panel with the loops of some states, each once."""
         once = list({int(self.rows[state]): state for state in reversed(states)}.values())[::-1]
-        loops = [loop for loop in (self.of(state, called) for state in once) if loop]
-        return loop_panel(loops, len(called) == 1 and self.archive.numeric(called[0]), title)
+        return loop_panel(
+            self.of(once, called), len(called) == 1 and self.archive.numeric(called[0]), title
+        )
 
     def panels(self) -> tuple[list[Panel], list[int]]:
         """All loops if they are few, else a panel for each parameter of the law, the others at the middle
@@ -157,7 +158,7 @@ def friction(of: Archive) -> Drawing:
         lengths = of.data.get(column("friction.pre_sliding"), np.array([of.scene.friction.pre_sliding]))
         lengths = lengths[drawn] if len(lengths) > 1 else lengths
         shown = [choice.measured.over_loops(panel, lengths) for panel in shown]
-    figure = loops_figure(shown, [loop for loop in map(loops.of, drawn) if loop], choice.size)
+    figure = loops_figure(shown, loops.of(drawn), choice.size)
     covered = np.flatnonzero(np.isin(rows, rows[drawn])).tolist()
     missing = of.not_shown(covered, "--figure friction --states")
     caption = (
@@ -192,7 +193,7 @@ def slider(of: Archive) -> Drawing:
     """Figure of an archive's sliders, one for each load and law, of some of them where they are many."""
     data, scene, choice = of.data, of.scene, of.choice
     loops, count = Loops(of), len(data[runs.PERIOD.path])
-    laws = spread(list(range(count)), _LOOPS)
+    laws = spread(range(count), _LOOPS)
     several = len(scene.punch.loads) > 1
     called = [*[N] * several, *(name for name in loops.names if name != C)]
     states, called = states_of_sliders(data).tolist(), called * (len(laws) > 1)

@@ -135,9 +135,10 @@ def energies(of: Archive) -> Drawing:
 
 
 def _held(
-    of: Archive, X: Quantity, stresses: Mapping[str, Mapping[str, Quantity]], start: int = 0
-) -> dict[str, Along]:
-    """Stresses of a start over time, (times, places), by name, from quantities of each method."""
+    of: Archive, X: Quantity, stresses: Mapping[str, Mapping[str, Quantity]], start: int = 0,
+    steps: Any = slice(None),
+) -> dict[str, Along]:  # fmt: skip
+    """Stresses of a start at some steps, (steps, places), by name, from quantities of each method."""
     places, scale, held = of.data[X.path], of.scaled(X), {}
     position = position_name(of, "position " if X is rows.PLACES else "position on the surface ")
     place = float(np.max(scale.factor)), float(np.max(scale.offset))
@@ -145,7 +146,7 @@ def _held(
         label, sign = SHOWN[name]
         axis = named(label, of.scaled(next(iter(by_method.values()))).unit)
         shown = np.where(under_punch(places) | (name != "sigma_YY"), sign, np.nan)
-        values = {method: shown * of.values(row)[start] for method, row in by_method.items()}
+        values = {method: shown * of.values(row)[start][steps] for method, row in by_method.items()}
         times = len(next(iter(values.values())))
         held[name] = Along(places, axis, values, [place] * times, position)
     return held
@@ -178,22 +179,22 @@ def _at_chosen_times(of: Archive) -> tuple[dict[str, Along], NDArray[np.int64]]:
     return _held(of, rows.SURFACE_PLACES, by_method), steps
 
 
-def _leaning(of: Archive) -> tuple[int, dict[str, Along], tuple[float, float]]:
-    """Start whose steady pressure leans most, its pressures at all times, and limits of these."""
+def _leaning(of: Archive, steps: Any) -> tuple[int, dict[str, Along], tuple[float, float]]:
+    """Start whose steady pressure leans most, its pressures at some steps, and limits of these."""
     start = int(np.abs(of.data[rows.STEADY_CENTRE.path]).argmax())
-    held = _held(of, rows.PLACES, {"sigma_YY": {SIE: rows.PRESSURE}}, start)
+    held = _held(of, rows.PLACES, {"sigma_YY": {SIE: rows.PRESSURE}}, start, steps)
     highest = 2.5  # over N/(2a): at the ends it is infinite
     return start, held, (0.0, highest * float(np.max(of.scaled(rows.PRESSURE).factor)))
 
 
 def pressures(of: Archive) -> Drawing:
     """Figure of the pressure of the start whose steady pressure leans most, at times that double up."""
-    start, held, ylim = _leaning(of)
     t = of.data[rows.TIMES.path]
+    at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)])
+    start, held, ylim = _leaning(of, at)
     c, g = (float(of.data[row.path][start]) for row in (rows.SPEED, rows.RATIO))
-    at = np.unique([int(np.abs(t - t[-1] / 2.0**n).argmin()) for n in range(_TIMES)]).tolist()
-    (pressure,), called = held.values(), [_at_time(of, t[i]) for i in at]
-    shown = pressure.shown(looks(len(at), True), called, rows=at)
+    (pressure,) = held.values()
+    shown = pressure.shown(looks(len(at), True), [_at_time(of, when) for when in t[at].tolist()])
     for along in _steady(of, held, start, [-1]).values():
         shown += along.shown([_STEADY], ["steady"], 0.8)
     panel = surface_panel(shown, ylim)
@@ -255,12 +256,10 @@ def film(of: Archive) -> Drawing:
         start, (held, steps) = 0, _at_chosen_times(of)
         method = [*held["sigma_XX"].values][-1]
         ylims = {name: limits(along.X, along.values[method]) for name, along in held.items()}
-        frames = list(range(len(steps)))
     else:
-        start, held, ylim = _leaning(of)
-        method, ylims = SIE, {"sigma_YY": ylim}
         steps = np.array(spread(range(len(t)), _FRAMES))
-        frames = steps.tolist()
+        start, held, ylim = _leaning(of, steps)
+        method, ylims = SIE, {"sigma_YY": ylim}
     # All by one method, as lines.
     held = {name: replace(along, values={SIE: along.values[method]}) for name, along in held.items()}
     steady, row = _steady(of, held, start, [-1]), rows.CENTRE[method]
@@ -274,7 +273,7 @@ def film(of: Archive) -> Drawing:
     def panels(frame: int) -> list[Panel]:
         i, made = steps[frame], list[Panel]()
         for name, along in held.items():
-            shown = along.shown(looks(1), rows=[frames[frame]])
+            shown = along.shown(looks(1), rows=[frame])
             called = [] if made else ["steady"]
             shown += steady[name].shown([_STEADY], called, 0.8) if steady else []
             made.append(surface_panel(shown, ylims[name]))

@@ -2,12 +2,11 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from galinx.meshes.kind import edges, nodes
-from galinx.postprocess.quantities import Quantity, runs, states
+from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.quantities.quantity import FEM
-from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS
+from galinx.solvers.contact.fem_plan import FREE_ON_LAYERS, FemPlan
 
 from ..plan.plan import make_plan
 from .choice import Archive, C, Drawing, fewer, spread
@@ -22,13 +21,11 @@ def mesh(of: Archive) -> Drawing:
     """Figure of the mesh that finite elements used; it is laid out again, nothing is solved."""
     data, fem = of.data, make_plan(of.scene).fem
     assert fem
-    cells, degree = fem.drawn, int(data[runs.RECORD["degree"].path].max())
-    if cells is None:
-        cells = fem.kind.build(fem.refinement, fem.cuts)
-    figure = mesh_figure(edges(fem.kind, cells), nodes(fem.kind, cells, degree), of.choice.size)
+    degree = int(data[runs.RECORD["degree"].path].max())
+    figure, cells = mesh_figure(fem, degree, of.choice.size)
     caption = (
         f"The {fem.mesh} mesh under the punch (black) and, nearer and nearer, its edge X = a: lines are "
-        f"the {len(cells.cells)} cells, dots the nodes of degree {degree} that carry the unknowns, "
+        f"the {cells} cells, dots the nodes of degree {degree} that carry the unknowns, "
         f"{(degree + 1) ** 2} in each cell; it is their density that sets the accuracy."
     )
     if fem.mode == FREE_ON_LAYERS:
@@ -48,9 +45,6 @@ def degrees(of: Archive) -> Drawing:
     first = [int(solved[i][0]) for i in shown]
     names = [name for name in of.varied(first) if name == C or "." in name]
 
-    def largest(row: Quantity, i: int) -> float:
-        return float(data[row.path][solved[i]].max())
-
     # Speeds stand beside one another: their errors are nearly the same.
     aside = 0.16 * (np.arange(len(shown)) - (len(shown) - 1) / 2.0) / max(1, len(shown) - 1)
     curves: list[Curve] = []
@@ -63,9 +57,8 @@ def degrees(of: Archive) -> Drawing:
         curves.append(Curve(computed, change[i][computed], look, label, JOINED))
         at = np.array([data[runs.RECORD["degree"].path][i] + off])
         for row, marker in errors:
-            curves.append(
-                Curve(at, np.array([largest(row, i)]), look._replace(marker=marker), "", MARKERS)
-            )
+            largest = data[row.path][solved[i]].max(keepdims=True)
+            curves.append(Curve(at, largest, look._replace(marker=marker), "", MARKERS))
     words = "estimated error", "true error"
     notes = [note(Look(GREY, "-", m), word, MARKERS) for (_, m), word in zip(errors, words)]
     panel = Panel(
@@ -82,26 +75,29 @@ def degrees(of: Archive) -> Drawing:
 
 
 def mesh_figure(
-    edges: NDArray,
-    nodes: NDArray,
+    fem: FemPlan,
+    degree: int = 0,
     size: Size | None = None,
     zooms: tuple[float, ...] = (4.0, 0.5, 0.01),
     first: str = "under the punch",
-) -> Figure:
-    """Figure of a mesh below the punch, then nearer and nearer to the edge X = a.
+) -> tuple[Figure, int]:
+    """Figure of a mesh below the punch, then nearer and nearer to the edge X = a; and its cells' number.
 
     Args:
-        edges: polylines of the cells' edges over a, (edges, points, 2).
-        nodes: positions of its unknowns over a, (n, 2).
+        fem: plan of finite elements; the mesh is laid out again where the plan does not hold it.
+        degree: polynomial degree whose nodes are drawn; 0 for none.
         size: of the figure.
         zooms: half-widths of the panels over a; the first is centred on the punch.
         first: title of that one.
     """
+    cells = fem.kind.build(fem.refinement, fem.cuts) if fem.drawn is None else fem.drawn
+    borders = edges(fem.kind, cells)
+    unknowns = nodes(fem.kind, cells, degree) if degree else np.empty((0, 2))
 
     def panel(n: int, half: float) -> Panel:
         centre = (0.0 if n == 0 else 1.0, 0.0)
         # Coordinates from the panel's centre: far-away points would lose the picture's digits.
-        lines, dots = edges - centre, nodes - centre
+        lines, dots = borders - centre, unknowns - centre
         lines = lines[np.abs(lines).min(axis=1).max(axis=1) < 2.0 * half]
         x, y = (np.append(z, np.full((len(z), 1), np.nan), 1).ravel() for z in np.moveaxis(lines, -1, 0))
         # Nodes nearer to each other than a five-hundredth of a panel print as one.
@@ -118,4 +114,5 @@ def mesh_figure(
             title=first if n == 0 else f"{zooms[0] / half:.0f} times larger",
         )  # fmt: skip
 
-    return render([panel(n, half) for n, half in enumerate(zooms)], size, high=0.65)
+    figure = render([panel(n, half) for n, half in enumerate(zooms)], size, high=0.65)
+    return figure, len(cells.cells)

@@ -29,6 +29,7 @@ from galinx.solvers.contact.solution import FREE, ONE_FREE, PRESCRIBED, SHARP, m
 from galinx.solvers.contact.stresses import maximum_shear
 from galinx.texts import number, plain
 
+from ..errors import require_one_of
 from ..plan.variants import of_state
 from .choice import (
     PLACE,
@@ -40,7 +41,6 @@ from .choice import (
     both,
     explained,
     named,
-    require_one_of,
     short_name,
     spread,
     states_for_panel,
@@ -356,7 +356,10 @@ def interfaces(of: Archive) -> Drawing:
     a = bodies[0].half_width
     over_a = np.max([d if unit == "1" else d / b.half_width for d, b in zip(depths, bodies)], axis=0)
     alike = np.ptp(depths, axis=0) == 0.0
-    factor, length = (1.0, "$a$") if of.units.dimensionless and unit == "1" else _length(of, a)
+    scale = of.units.scale(CONTACT)
+    factor, length = np.max(scale.factor) * a, scale.unit
+    if of.units.dimensionless:
+        factor, length = (1.0, "$a$") if unit == "1" else (1e3 * a, "mm")
     titles = [
         f"depth {number(depth * factor)} {length}" if same else f"interface {i}"
         for i, (depth, same) in enumerate(zip(over_a, alike), 1)
@@ -397,12 +400,6 @@ def interfaces(of: Archive) -> Drawing:
     return Drawing("interfaces", caption, figure, left_out=missing)
 
 
-def _length(of: Archive, of_m: float) -> tuple[Any, str]:
-    """Factor in a figure of lengths over so many m, and their unit."""
-    scale = of.units.scale(CONTACT)
-    return (1e3 * of_m, "mm") if of.units.dimensionless else (np.max(scale.factor) * of_m, scale.unit)
-
-
 #: Names of the stresses that maps show by default.
 _MAPS = {
     "von_mises": r"von Mises $\sigma_{\mathrm{vM}}$",
@@ -436,7 +433,7 @@ class Fields:
         every = [*self._rows, *[_SHEAR] * (self._rows.keys() >= {*_COMPONENTS})]
         return [name for name in every if not name.startswith(_PUNCH)]
 
-    def _values(self, name: str, method: str, states: Sequence[int], body: str = "") -> NDArray | None:
+    def values(self, name: str, method: str, states: Sequence[int], body: str = "") -> NDArray | None:
         """A stress of states below the punch, or in the body "punch_", in the figure's units, (states,
         rows, columns); None where there is none."""
         of, states = self._of, list(states)
@@ -447,16 +444,9 @@ class Fields:
         each = [of.scaled(row).of(self._on_grid(of.data[row.path][states]), states) for row in rows]
         return maximum_shear(*each) if name == _SHEAR else each[0]
 
-    def of_states(self, name: str, method: str, states: Sequence[int]) -> tuple[NDArray, float]:
-        """A stress of states, (states, rows, columns), and the largest with its own colour."""
-        values = self._values(name, method, states)
-        assert values is not None
-        # The largest values, at the edges of the punch, would leave no colours for the rest.
-        return values, float(np.quantile(np.abs(values), 0.985)) or 1.0
-
     def above(self, name: str, method: str, state: int) -> tuple[NDArray, NDArray] | None:
         """A stress of a state in an elastic punch at -Y, and its strength; None without."""
-        values = self._values(name, method, [state], _PUNCH)
+        values = self.values(name, method, [state], _PUNCH)
         if values is None:
             return None
         return values[0], self._level(name, [of_state(self._of.scene, state)[0].solid.punch_strength])
@@ -484,30 +474,31 @@ class Fields:
         row = next(iter((self._rows.get(name) or self._rows[self.names[0]]).values()))
         return named(_MAPS.get(name) or short_name(row), self._of.scaled(row).unit)
 
-    def panel(self, name: str, values: NDArray, state: int, limit: float, **options: Any) -> Panel:
-        """Panel with the map of a stress of a state, and a black bar for the punch above it.
+    def panels(self, name: str, states: Sequence[int], **options: Any) -> list[Panel]:
+        """A panel for each of some states by the first method, all with the same colours, and a black bar
+        for the punch above each.
 
         Args:
             name: of the stress.
-            values: of the state, (rows, columns).
-            state: its number.
-            limit: largest number with a colour of its own.
-            options: further attributes of the map.
+            states: numbers of states.
+            options: further attributes of the maps.
         """
-        of, ((a, b),) = self._of, places_of(self._of, [state])
-        depths = _depths(of, state)
-        level = self._level(name, of_state(of.scene, state)[0].body.strengths, depths)
-        shown: dict[str, Any] = {"signed": name.startswith("sigma"), "level": level} | options
-        x = position_name(of, "")
-        drawn = Map(b + a * self.X, a * self.Y, values, limit=limit, **shown)
-        heights = (-a * depths).tolist()
-        return Panel(x, x.replace("X", "Y"), map=drawn, bar=(b - a, b + a), dashes=heights)
-
-    def panels(self, name: str, states: Sequence[int], **options: Any) -> list[Panel]:
-        """A panel for each of some states by the first method, all with the same colours."""
-        values, limit = self.of_states(name, self.methods[0], states)
-        options = {"label": self.label(name)} | options
-        return [self.panel(name, of_state, i, limit, **options) for i, of_state in zip(states, values)]
+        of, values, panels = self._of, self.values(name, self.methods[0], states), list[Panel]()
+        assert values is not None
+        # The largest values, at the edges of the punch, would leave no colours for the rest.
+        limit = float(np.quantile(np.abs(values), 0.985)) or 1.0
+        x, half_widths = position_name(of, ""), np.broadcast_to(of.units.half_width, len(of.all))
+        for i, (a, b), grid in zip(states, places_of(of, states), values):
+            body = of_state(of.scene, i)[0].body
+            depths = body.solid.depths / half_widths[i]  # of the lower faces of layers
+            shown: dict[str, Any] = {
+                "signed": name.startswith("sigma"), "label": self.label(name),
+                "level": self._level(name, body.strengths, depths),
+            }  # fmt: skip
+            drawn = Map(b + a * self.X, a * self.Y, grid, limit=limit, **shown | options)
+            heights = (-a * depths).tolist()
+            panels.append(Panel(x, x.replace("X", "Y"), map=drawn, bar=(b - a, b + a), dashes=heights))
+        return panels
 
     def _on_grid(self, values: NDArray) -> NDArray:
         return values[..., : np.prod(self._shape)].reshape(*values.shape[:-1], *self._shape)
@@ -529,26 +520,24 @@ def inside(of: Archive) -> Drawing:
     if size is None and not wide:
         size = Size(COLUMN if len(names) < 3 else PAGE)
     method, *others = fields.methods
-    panels, off = list[Panel](), 0.0
+    panels, maps, off = list[Panel](), list[Map](), 0.0
     for n, name in enumerate(names):
-        every, limit = fields.of_states(name, method, states)
-        low, high = name.startswith("sigma") and every.min() < -limit, every.max() > limit
+        every = fields.panels(name, states, lines=alone)
+        drawn = [panel.map for panel in every if panel.map]
+        values, limit = np.array([shown.values for shown in drawn]), drawn[0].limit
+        low, high = name.startswith("sigma") and values.min() < -limit, values.max() > limit
         extend = ("neither", "max", "min", "both")[2 * int(low) + int(high)]
         for other in others:
-            beside = fields.of_states(name, other, states)[0]
-            off = max(off, float(np.abs(beside - every).max() / np.abs(every).max()))
-        for k, state in enumerate(states):
-            panel = fields.panel(
-                name, every[k], state, limit, extend=extend, lines=alone,
-                above=fields.above(name, method, state),
-                label=fields.label(name) * (k == len(states) - 1),
-            )  # fmt: skip
+            beside = fields.values(name, other, states)
+            off = max(off, float(np.abs(beside - values).max() / np.abs(values).max()))
+        for k, (state, panel, shown) in enumerate(zip(states, every, drawn)):
+            label, above = shown.label * (k == len(states) - 1), fields.above(name, method, state)
+            maps.append(replace(shown, extend=extend, above=above, label=label))
             panels.append(replace(
-                panel, x=panel.x if not wide or n == len(names) - 1 else None,
+                panel, map=maps[-1], x=panel.x if not wide or n == len(names) - 1 else None,
                 y=panel.y if k == 0 else None,
                 title=of.label(state, apart) if n == 0 or not wide else "",
             ))  # fmt: skip
-    maps = [panel.map for panel in panels if panel.map]
     both = any(m.above for m in maps)
     bodies = [body for m in maps for body in ((m.values, m.level), m.above) if body]
     yields = any((values > level[:, None]).any() for values, level in bodies)
@@ -571,12 +560,6 @@ def inside(of: Archive) -> Drawing:
     how = f"--figure inside --states{'' if alone else ', single maps with --quantity'}"
     missing = of.not_shown(states, how)
     return Drawing("inside", caption, render(panels, size, columns), True, missing)
-
-
-def _depths(of: Archive, state: int) -> NDArray[np.float64]:
-    """Depths of the lower faces of layers of a state, over the half-width of its contact."""
-    half_widths = np.broadcast_to(of.units.half_width, len(of.all))
-    return np.asarray(of_state(of.scene, state)[0].solid.depths / half_widths[state])
 
 
 def map_names(of: Archive) -> list[str]:

@@ -66,11 +66,10 @@ def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(draw)
     def in_style(*arguments: Any, **options: Any) -> Any:
-        import matplotlib  # a slow import, for nothing where texts alone are typeset
+        from matplotlib import style  # a slow import, for nothing where texts alone are typeset
 
         # What somebody has set for other figures, as text by LaTeX, is not for these.
-        defaults = {k: value for k, value in matplotlib.rcParamsDefault.items() if "backend" not in k}
-        with matplotlib.rc_context(defaults | _STYLE):
+        with style.context(["default", _STYLE]):
             return draw(*arguments, **options)
 
     return in_style

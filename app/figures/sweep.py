@@ -11,20 +11,8 @@ from galinx.postprocess.quantities.quantity import FEM, STATE
 from galinx.postprocess.quantities.states import VELOCITY
 from galinx.texts import plain
 
-from ..errors import BadInput
-from .choice import (
-    PLACE,
-    Archive,
-    C,
-    Drawing,
-    N,
-    both,
-    explained,
-    named,
-    require_one_of,
-    short_name,
-    spread,
-)
+from ..errors import BadInput, require_one_of
+from .choice import PLACE, Archive, C, Drawing, N, both, explained, named, short_name, spread
 from .render import DOTS, MARKERS, Map, Panel, Size, render
 from .style import COLUMN, looks
 

@@ -196,7 +196,7 @@ def table(scene: Scene, answer: Answer) -> list[str]:
 
 def response_drawing(computed: list[Answer]) -> Drawing:
     """Figure of stiffness and damping over frequency."""
-    shown = [computed[i] for i in spread(list(range(len(computed))), _CURVES)]
+    shown = spread(computed, _CURVES)
     panels, labels = list[Panel](), (
         r"stiffness $\mathrm{Re}\,(\hat N/\hat v_0)/2\mu$",
         r"damping $\mathrm{Im}\,(\hat N/\hat v_0)/2\mu\;/\;(\omega a/c_s)$",

@@ -35,7 +35,6 @@ from galinx.postprocess.quantities import (
     yielding,
 )
 from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, LOCAL, NEVER, SIE, STATE
-from galinx.postprocess.quantities.states import LOAD, SPEED
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import SHARP_ON_LAYERS, on_finer_cells, unknowns
@@ -157,7 +156,7 @@ def _computed(
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
-    g, load = data[states.RATIO.path], data.get(LOAD.path)
+    g, load = data[states.RATIO.path], data.get(states.LOAD.path)
     work = Work(alone, g, load, made, Clock(), np.zeros(len(g), dtype=bool))
     for i, (c, runs_) in enumerate(zip(order.speeds, order.runs(plan.tasks.first))):
         rows = np.concatenate(
@@ -298,12 +297,12 @@ def faults(path: Path) -> list[str]:
 def _of_states(archive: Archive, plans: Sequence[Plan]) -> Iterator[str]:
     """States and friction that differ from those of the scene, whose friction is followed once more."""
     data, older = archive.data, archive.attributes["schema_version"] < VERSION
-    states = joined_states(plans)
-    count, held = len(states), len(data[SPEED.path])
+    expected = joined_states(plans)
+    count, held = len(expected), len(data[states.SPEED.path])
     if count != held:
         yield f"it holds {held} states, its scene has {count}"
         return
-    for name, values in states.datasets.items():
+    for name, values in expected.datasets.items():
         if name not in data:
             if not older:  # whose layout has fewer
                 yield f"{name} is missing, its scene has it"
@@ -348,9 +347,9 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
     worst: dict[str, float] = {}
     balance = compare.BALANCE.limit
     assert balance is not None
-    for start in range(0, len(archive.data[SPEED.path]), _ROWS):
+    for start in range(0, len(archive.data[states.SPEED.path]), _ROWS):
         rows = _solved(archive.rows(slice(start, start + _ROWS)), failures)
-        if not len(rows[SPEED.path]):
+        if not len(rows[states.SPEED.path]):
             continue
         yield from (f"{name} is not finite in states {start} ..." for name in compare.not_finite(rows))
         for name, row in table().items():
@@ -358,7 +357,7 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
                 continue
             if not np.allclose(rows[name], row.of_data(rows), rtol=_SAME, atol=1e-15, equal_nan=True):
                 yield f"{name} is not what {', '.join(row.needs)} give in states {start} ..."
-        load = rows.get(LOAD.path, archive.attributes["load"])
+        load = rows.get(states.LOAD.path, archive.attributes["load"])
         for name, value in compare.comparisons(rows, load, rules).items():
             rule = compare.RULES[name]
             worst[rule.text] = float(np.max([worst.get(rule.text, 0.0), value]))
@@ -376,7 +375,7 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
 
 def _solved(rows: dict[str, Any], failures: Sequence[str]) -> dict[str, Any]:
     """Rows of the states that have a solution."""
-    quantities, c = table(), rows[SPEED.path]
+    quantities, c = table(), rows[states.SPEED.path]
     failed = [x for x in np.unique(c) if any(text.startswith(f"c = {x:g}: ") for text in failures)]
     given = [
         np.isfinite(values) for name, values in rows.items()

@@ -10,24 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.hdf5 import archive as reader
-from galinx.postprocess.quantities import Quantity, over_time, preferred, runs, table
+from galinx.postprocess.quantities import Quantity, over_time, preferred, runs, states, table
 from galinx.postprocess.quantities.quantity import ALONG, FRICTION_ALONE, INSIDE, INTERFACE, POINT, STATE
-from galinx.postprocess.quantities.states import (
-    FRICTION,
-    INNER_STATE,
-    LOAD,
-    MOTION,
-    POSITION,
-    RATIO,
-    RESULTANT_RATIO,
-    SPEED,
-)
-from galinx.postprocess.tables import (
-    parameters,
-    state_columns,
-    states_of_loops,
-    states_of_sliders,
-)
+from galinx.postprocess.tables import parameters, state_columns, states_of_loops, states_of_sliders
 from galinx.postprocess.units import Units
 from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 
@@ -78,7 +63,7 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                 f"{path} holds nothing for --{which}; a scene asks for it by "
                 f'output.quantities = ["{word}"]'
             )
-        lengths = {STATE: len(archive.data[FRICTION.path])}
+        lengths = {STATE: len(archive.data[states.FRICTION.path])}
         for name, values in archive.data.items():
             lengths = dict(zip(quantities[name].over, np.shape(values))) | lengths
         sizes = [lengths[name] for name in over]
@@ -102,7 +87,13 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                     columns += _of_loops(archive.data, units, block)
                 if over[0] == runs.LAW:
                     own = states_of_sliders(archive.data)[block]
-                    columns += _parameters(archive.data, units, own, len(over), (SPEED, MOTION, POSITION))
+                    columns += _parameters(
+                        archive.data,
+                        units,
+                        own,
+                        len(over),
+                        (states.SPEED, states.MOTION, states.POSITION),
+                    )
             else:
                 columns += [(head, values[block]) for head, values in _of_states(archive.data, units)]
             if start == 0:
@@ -120,11 +111,13 @@ def _parameters(
     columns = [
         (scaled.head, scaled.of(data[path]))
         for path, row in parameters(data).items()
-        if path != LOAD.path and row not in without and (scaled := units(row))
+        if path != states.LOAD.path and row not in without and (scaled := units(row))
     ]
-    if LOAD not in without:
-        load = units.scale(LOAD.unit)
-        columns.append((f"load [{load.unit}]", load.of(np.full(len(data[FRICTION.path]), units.load))))
+    if states.LOAD not in without:
+        load = units.scale(states.LOAD.unit)
+        columns.append(
+            (f"load [{load.unit}]", load.of(np.full(len(data[states.FRICTION.path]), units.load)))
+        )
     return [(head, np.asarray(v)[block].reshape(-1, *(1,) * (axes - 1))) for head, v in columns]
 
 
@@ -136,8 +129,10 @@ def _of_loops(data: dict[str, Any], units: Units, block: slice) -> list[_Column]
         values = data.get(row.path, np.zeros(len(loop)))
         return len(np.unique(loop)) < len({*zip(loop.tolist(), values.tolist())})
 
-    columns = _parameters(data, units, own, 2, (MOTION, POSITION, *[SPEED] * differs(SPEED)))
-    if differs(LOAD):  # energies are those under the first
+    columns = _parameters(
+        data, units, own, 2, (states.MOTION, states.POSITION, *[states.SPEED] * differs(states.SPEED))
+    )
+    if differs(states.LOAD):  # energies are those under the first
         head, first = columns[-1]
         columns[-1] = f"cycle_dissipated_{head}", first
     return columns
@@ -153,8 +148,10 @@ def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
         (f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, np.asarray(c.values)) for c in first
     ]
     taken = {column.path for column in first}
-    if preferred(data, RESULTANT_RATIO):  # these stand for a friction that varies along the contact
-        taken |= {FRICTION.path, RATIO.path, INNER_STATE.path}
+    if preferred(
+        data, states.RESULTANT_RATIO
+    ):  # these stand for a friction that varies along the contact
+        taken |= {states.FRICTION.path, states.RATIO.path, states.INNER_STATE.path}
     for path, row in table().items():
         if path not in data or path.split("/")[0] not in ("states", "interfaces") or path in taken:
             continue

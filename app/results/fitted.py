@@ -25,7 +25,7 @@ from galinx.solvers.parameters import parameters
 from galinx.texts import with_prefix
 
 from ..console import Progress
-from ..errors import BadInput, excerpt, listed, nearest, short
+from ..errors import BadInput, excerpt, listed, require_one_of, short
 from ..scene import read as scenes
 from ..scene.values import Number, kind_of
 from ..text_table import read_table
@@ -230,9 +230,7 @@ def fit(
             fitted to it.
     """
     sources = [data] if isinstance(data, (str, Path, Measured)) else list(data)
-    if model != ALL and model not in LAWS:
-        raise BadInput(f"friction law {short(model)!r}: there is none{nearest(model, [*LAWS, ALL])}")
-    names = [*LAWS] if model == ALL else [model]
+    names = [*LAWS] if require_one_of("friction law", model, [*LAWS, ALL]) == ALL else [model]
     # Parameters of each law that it has, from texts and numbers.
     fixed, started = (_values(names, given or {}) for given in (fix, start))
     given_tables = [

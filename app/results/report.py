@@ -25,14 +25,7 @@ from galinx.postprocess.compare import checked, failed
 from galinx.postprocess.quantities import runs, states
 from galinx.postprocess.quantities.quantity import FEM, METHODS
 from galinx.postprocess.quantities.swept import WAVE_SPEED
-from galinx.postprocess.tables import (
-    BESIDE,
-    Sheet,
-    shared,
-    sheets_of_archive,
-    solved_speeds,
-    state_columns,
-)
+from galinx.postprocess.tables import BESIDE, Sheet, shared, sheets, solved_speeds, state_columns
 from galinx.postprocess.units import Units, engineering
 from galinx.texts import counted, folded, plain
 
@@ -44,13 +37,7 @@ from ..figures.stresses import SHOWN, Fields, map_names, stresses_along, surface
 from ..figures.style import as_hex
 from ..plan.plan import by_reason
 from ..scene.scene import Scene
-from ..study.published import (
-    INTENSITIES,
-    has_study_digits,
-    intensities,
-    intensity_rows,
-    limit_of_steady_motion,
-)
+from ..study.published import has_study_digits, intensity_sheets
 
 #: Width of tables of few states in characters: the states stand side by side.
 _WIDE = 100
@@ -322,7 +309,7 @@ def picture(drawing: Drawing, png: bytes | None = None) -> dict[str, Any]:
 
 
 def page(
-    result: Any, drawings: Iterable[Drawing], sheets: Sequence[Sheet] | None = None,
+    result: Any, drawings: Iterable[Drawing], accuracy: Sequence[Sheet] | None = None,
     dimensionless: bool = False, pixels: Mapping[str, bytes] | None = None,
 ) -> str:  # fmt: skip
     """A report as HTML.
@@ -330,7 +317,7 @@ def page(
     Args:
         result: a :class:`galinx.app.results.result.Result`.
         drawings: figures.
-        sheets: tables of accuracy; the published ones where the archive has their states.
+        accuracy: tables of accuracy; the published ones where the archive has their states.
         dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
         pixels: files of figures as PNG by their name, as :func:`picture` takes them.
     """
@@ -345,13 +332,10 @@ def page(
     ]
     few = len(data[states.FRICTION.path]) <= BESIDE
     title = "Every state" if few else None  # many have a table of their own, to search
-    tables = sheets_of_archive(data, units, title, _WIDE * few, not scene.steady)
+    tables = sheets(data, units, title, _WIDE * few, not scene.steady)
     # The study's tables that the archive has all states of, for the study's solid.
-    published = [
-        intensities(name, rows, limit_of_steady_motion(name, data, scene.body.half_width))
-        for name in (INTENSITIES if has_study_digits(scene.solid) else ())
-        if (rows := intensity_rows(name, data))
-    ]
+    own = has_study_digits(scene.solid)
+    intensities = intensity_sheets(data, scene.body.half_width) if own else []
     versions = {"galinx": attributes["version"], **json.loads(attributes["versions"])}
     parts = {
         "title": attributes["title"] or "A sliding punch",
@@ -362,7 +346,7 @@ def page(
         "warnings": json.loads(attributes["warnings"]),
         "reasons": json.loads(attributes["verdict_reasons"]),
         "tables": tables,
-        "sheets": published if sheets is None else sheets,
+        "sheets": intensities if accuracy is None else accuracy,
         "states": None if few else states_table(data, units),
         "explorer": large,
         "pictures": shown,

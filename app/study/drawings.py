@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galinx.meshes.kind import edges
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM
+from galinx.postprocess.quantities.states import FRICTION, RATIO
 from galinx.postprocess.quantities.stresses import IN_PLANE, PRESSURE, SURFACE_X
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.edges import under_punch
@@ -165,30 +165,22 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     yield Drawing("fig1", CAPTIONS["fig1"], problem_figure())
     yield Drawing("fig2", CAPTIONS["fig2"], loops_figure([Loops(of).panel([reference], [])], []))
     yield Drawing("fig3", CAPTIONS["fig3"], procedure_figure())
-    yield _block(scenes.read(SCENES / "box.toml"))
-    yield stresses_drawing("fig5", data, of)
+    block = make_plan(scenes.read(SCENES / "box.toml")).fem  # nothing is solved on it
+    assert block
+    figure, cells = mesh_figure(block, zooms=(100.0, 4.0, 0.05), first="the whole block")
+    yield Drawing("fig4", CAPTIONS["fig4"].format(cells=cells), figure, pixels=True)
+    yield stresses_drawing("fig5", of)
     yield Drawing("fig6", CAPTIONS["fig6"], _loops(Loops(_archive(fig6))))
     for name in ("fig7", "fig8", "fig9", "fig10"):
-        yield stresses_drawing(name, data, of)
+        yield stresses_drawing(name, of)
     yield _sinusoidal(scenes.read(SCENES / "sinusoidal.toml"))
     yield _laws(scene, data[SURFACE_X.path])
 
 
-def _block(scene: Scene) -> Drawing:
-    """The mesh of the study's block; nothing is solved on it."""
-    fem = make_plan(scene).fem
-    assert fem
-    cells = fem.kind.build(fem.refinement, fem.cuts)
-    figure = mesh_figure(
-        edges(fem.kind, cells), np.empty((0, 2)), zooms=(100.0, 4.0, 0.05), first="the whole block"
-    )
-    return Drawing("fig4", CAPTIONS["fig4"].format(cells=len(cells.cells)), figure, pixels=True)
-
-
 def _sinusoidal(scene: Scene) -> Drawing:
     """Friction over time and position of a motion that is prescribed point by point."""
-    loop = Loops(_archive(scene)).of(0, [])
-    assert loop and scene.motion.path
+    (loop,) = Loops(_archive(scene)).of([0], [])
+    assert scene.motion.path
     times = np.array([t for t, _ in scene.motion.path])
     points = len(loop.f) // len(scene.legs)
     t = np.concatenate([np.linspace(start, end, points) for start, end in pairwise(times)])
@@ -218,17 +210,17 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
         given = {key: (field.default,) for key, field in fields(LAWS[name]).items()} | values
         friction = replace(scene.friction, law=LAWS[name], parameters=given, vary=())
         own = replace(scene, friction=friction, motion=motion)
-        states = enumerate_states(own)
-        archive = Archive(states.datasets, own, Choice())
+        archive = _archive(own)
         at = [_state(archive, {STROKE: FM2, C: c}) for c in (SLOW, FAST)]
-        punches = [FlatPunch(scene.solid.response(states.columns["c"][i]), states.g[i]) for i in at]
+        g = archive.data[RATIO.path]
+        punches = [FlatPunch(scene.solid.response(c), g[i]) for c, i in zip((SLOW, FAST), at)]
         slow, fast = (
             [[np.where(under_punch(X), punch.σ_YY(X), np.nan)], [punch.σ_XX(X)]] for punch in punches
         )
         for name_, along in _stresses(X, slow, fast).items():
             curves[name_] += along.shown([look])
-        loops += [replace(loop, label=called) for loop in (Loops(archive).of(at[0], []),) if loop]
-        place = np.array([_AT]), np.array([states.columns["f"][at[0]]])
+        loops += [replace(loop, label=called) for loop in Loops(archive).of(at[:1], [])]
+        place = np.array([_AT]), archive.data[FRICTION.path][at[:1]]
         dots.append(Curve(*place, look, "", MARKERS))
     left = loop_panel(loops)
     panels = [replace(left, curves=[*left.curves, *dots], title="loops, and the place shown")]
@@ -248,7 +240,7 @@ def _loops(loops: Loops) -> Any:
         states = [_state(of, at | {name: value}) for value in values]
         others = [other for other in REFERENCE if other != name]
         # A panel of the archive's has every loop once; that of the speeds shows that there is but one.
-        shown = [loop for loop in (loops.of(state, [name]) for state in states) if loop]
+        shown = loops.of(states, [name])
         if name == C:
             shown = [replace(loop, label=f"$c = {number(c)}$") for loop, c in zip(shown, SPEEDS)]
         panels.append(loop_panel(shown, True, of.label(states[0], others)))
@@ -285,9 +277,9 @@ def _stress_panels(rows: Sequence[tuple[str, Mapping[str, list[Shown]]]]) -> lis
     ]
 
 
-def stresses_drawing(name: str, data: dict[str, Any], of: Archive) -> Drawing:
+def stresses_drawing(name: str, of: Archive) -> Drawing:
     """A figure of stresses by its name: row by row, and below them the differences of both methods."""
-    figure, X = STRESSES[name], data[SURFACE_X.path]
+    figure, data, X = STRESSES[name], of.data, of.data[SURFACE_X.path]
     single = len(figure.speeds) == 1
     marked = FEM if single else CLOSED_FORM
     solved = {method: PRESSURE[method].path in data for method in (CLOSED_FORM, FEM)}

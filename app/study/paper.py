@@ -36,9 +36,8 @@ from .published import (
     dimensions_sheet,
     frame_sheet,
     friction_sheet,
-    intensities,
     intensity_rows,
-    limit_of_steady_motion,
+    intensity_sheets,
     not_as_printed,
     state_of,
     table1,
@@ -186,9 +185,8 @@ def _print(sheets: Sequence[Sheet], console: Any) -> None:
 def _tables(study: Result) -> list[Sheet]:
     """The study's tables."""
     data, solid, L = study.data, study.scene.solid, study.scene.friction.pre_sliding
-    notes = [limit_of_steady_motion(name, data, study.scene.body.half_width) for name in INTENSITIES]
-    rows = [intensity_rows(name, data) for name in INTENSITIES]
-    return [table1(), table2(solid), table3(solid, L), *map(intensities, INTENSITIES, rows, notes)]
+    own = intensity_sheets(data, study.scene.body.half_width)
+    return [table1(), table2(solid), table3(solid, L), *own]
 
 
 def _details(study: Result) -> list[Sheet]:

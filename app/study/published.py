@@ -215,12 +215,16 @@ def _places(value: float) -> int:
     return len(f"{value!r}".partition(".")[2])
 
 
-def intensities(name: str, rows: list[IntensityRow], note: str = "") -> Sheet:
-    """Table 4 or 5 with all values beside what is printed."""
-    return Sheet(
-        f"{INTENSITIES[name]}: K_I (dimensionless), Diff % (D%); FE: finite elements",
-        ("", "X/L", "K_I", "exact", "FE -a", "FE a", "D%", "rounded", "exact", "FE", "agree"),
-        [
+def intensity_sheets(data: dict[str, Any], half_width: float) -> list[Sheet]:
+    """Tables 4 and 5 with all values beside what is printed, those whose states an archive has.
+
+    Args:
+        data: the archive.
+        half_width: a [m].
+    """
+    sheets = []
+    for name, title in INTENSITIES.items():
+        rows = [
             (
                 row.motion,
                 f"{row.X_over_L:g}",
@@ -230,17 +234,21 @@ def intensities(name: str, rows: list[IntensityRow], note: str = "") -> Sheet:
                 *(f"{value:.3f}" for value in row.diff_percent[1:3]),
                 "yes" if row.agrees else "NO",
             )
-            for row in rows
-        ],
-        (
+            for row in intensity_rows(name, data)
+        ]
+        notes = (
             "K_I, D%: published. rounded: D% as the study has it, of K_I with four digits; "
             "exact, FE: D% of all digits.",
-            *[note] * bool(note),
-        ),
-    )
+            _limit_of_steady_motion(name, data, half_width),
+        )
+        if rows:
+            title += ": K_I (dimensionless), Diff % (D%); FE: finite elements"
+            heads = "", "X/L", "K_I", "exact", "FE -a", "FE a", "D%", "rounded", "exact", "FE", "agree"
+            sheets.append(Sheet(title, heads, rows, [*filter(None, notes)]))
+    return sheets
 
 
-def limit_of_steady_motion(name: str, data: dict[str, Any], half_width: float) -> str:
+def _limit_of_steady_motion(name: str, data: dict[str, Any], half_width: float) -> str:
     """A note on Table 4 or 5 where its strokes are too short for steady motion; "" elsewhere.
 
     Args:

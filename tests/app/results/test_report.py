@@ -15,7 +15,7 @@ from support import THOROUGH, computed, kept
 from galinx import compute, template
 from galinx.app.errors import BadInput
 from galinx.app.results.report import markup
-from galinx.postprocess.tables import BESIDE, sheets_of_archive, state_columns
+from galinx.postprocess.tables import BESIDE, sheets, state_columns
 
 CHROMIUM = shutil.which("chromium")
 CLOSED = {"solve.methods": ["closed_form"]}
@@ -73,7 +73,7 @@ def test_a_report_has_all_tables_and_no_heading_without_text(name, tmp_path):
     result = kept(name)
     result.report(tmp_path / "a.html")
     text = (tmp_path / "a.html").read_text(encoding="utf-8")
-    shown = sheets_of_archive(result.data, result.units(), "", 0, strokes=True)
+    shown = sheets(result.data, result.units(), "", 0, strokes=True)
     assert "Friction loops" in {sheet.title for sheet in shown}
     for sheet in shown[1:]:
         assert sheet.title in text and all(str(markup(cell)) in text for cell in sheet.rows[0])

@@ -3,14 +3,13 @@
 import re
 import runpy
 import shutil
-import subprocess
 from html.parser import HTMLParser
 from types import SimpleNamespace
 from urllib.parse import unquote, urlsplit
 
 import pytest
 from examples import DOCS
-from support import HOME, clean_environment
+from support import HOME, finished
 
 
 def test_made_pages_are_up_to_date():
@@ -71,10 +70,7 @@ def test_the_site_is_built_and_its_links_hold(tmp_path):
     if not mkdocs:
         pytest.skip("mkdocs is not installed")
     site = tmp_path / "site"
-    done = subprocess.run(
-        [mkdocs, "build", "--strict", "-f", HOME / "mkdocs.yml", "-d", site],
-        cwd=tmp_path, capture_output=True, text=True, env=clean_environment(),
-    )  # fmt: skip
+    done = finished([mkdocs, "build", "--strict", "-f", HOME / "mkdocs.yml", "-d", site], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "WARNING" not in done.stderr, done.stderr
     assert not [path for path in site.rglob("*.py*")]

@@ -1,11 +1,10 @@
 """Commands that begin and compute: what they write, refuse and leave undone."""
 
-import subprocess
 import sys
 
 import h5py
 import numpy as np
-from support import HOME, SCENE, clean_environment, command, here
+from support import HOME, SCENE, command, finished, here
 
 from galinx.app.scene.library import templates
 from galinx.app.scene.read import read
@@ -42,9 +41,7 @@ def test_friction_alone_imports_nothing_slow(tmp_path):
         "assert done.exception is None, done.exception\n"
         f"print([name for name in {SLOW} if name in sys.modules])"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=HOME, env=clean_environment(), capture_output=True, text=True
-    )
+    done = finished([sys.executable, "-c", script])
     assert done.stdout.strip() == "[]", done.stderr
 
 

@@ -246,14 +246,14 @@ def cases(first=None):
     """Every solid under every punch, for all that both can be asked for, by both methods.
 
     Args:
-        first: only one case of every solid, and every punch in turn from this one: one under which no
-            layers come to tractions of the closed form, which has none.
+        first: only one case of every solid, and every punch in turn from this one, then quick ones: one
+            under which no layers come to tractions of the closed form, which has none.
     """
     solids, punches = (*SOLID, *LAYERS), (*PROFILE, *PRESSURE)
     pairs = itertools.product(solids, punches)
     if first:
         start = punches.index(first)
-        pairs = zip(solids, itertools.islice(itertools.cycle(punches), start, None))
+        pairs = zip(solids, (*punches[start:], *punches[:start], "parabolic", "flat", "own pressure"))
     for solid, punch in pairs:
         if solid not in LAYERS or punch != "tractions":
             yield Case(solid, punch, words_of(solid, punch), METHODS[solid in LAYERS])

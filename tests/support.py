@@ -67,6 +67,12 @@ def scene_of(name="tables4_5", changes=None):
     return parse(changed(tomlkit.dumps(document) if sections else text, keys))
 
 
+def of_sections(**sections):
+    """A scene of these sections alone."""
+    empty = dict.fromkeys(("solid", "punch", "friction", "motion", "solve", "output"))
+    return scene_of("tables4_5", empty | sections)
+
+
 def computed(name="tables4_5", changes=None):
     """The result of such a scene."""
     import galinx

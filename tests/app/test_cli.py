@@ -13,7 +13,6 @@ BAD = [
     (("frobnicate",), "No such command 'frobnicate'; "),
     (("run", "bad.toml"), "solid.nu"),
     (("shwo",), "No such command 'shwo'; did you mean show?"),
-    (("reprot", "a.h5"), "did you mean report?"),
     (("init", "tabel1"), "init tabel1: no such scene; did you mean table1?"),
     (("init", "quite something else"), "no such scene; valid: along, box, "),
     (("paper", "-o", "figures.pdf"), "ends with .pdf, expected a folder"),

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from agreement import check
 from random_solids import random_solid
-from support import THOROUGH, scene_of, section_of
+from support import THOROUGH, of_sections, scene_of, section_of
 
 import galinx
 from galinx import PROFILES, parameter
@@ -28,13 +28,6 @@ LAYER = {"E": "120 GPa", "nu": 0.3, "rho": 2400}
 STRESSES = {"quantities": ["sif", "surface", "interior"]}
 INSIDE = STRESSES | {"points": [[0.0, -0.5], [-1.0, -0.1], [0.3, -1.5]]}
 ENDS = {"quantities": ["sif"]}
-#: What the sections of scenes/tables4_5.toml are that a scene says nothing of.
-EMPTY = dict.fromkeys(("solid", "punch", "friction", "motion", "solve", "output"))
-
-
-def of_sections(**sections):
-    """A scene of these sections alone."""
-    return scene_of("tables4_5", EMPTY | sections)
 
 
 def once(c, **more):

@@ -88,7 +88,6 @@ def test_kinks_with_no_room_for_cells_between_them_are_refused():
 @pytest.mark.parametrize(
     ("punch", "frictions"),
     [
-        ("half_width = 1e-3", 2),
         ("half_width = 1e-3", 30),  # more than are solved one by one
         ("half_width = 1e-3\ntilt = 0.05", 2),
         ('profile = "parabolic"\nradius = 0.02', 2),

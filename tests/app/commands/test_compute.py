@@ -46,13 +46,9 @@ def test_friction_alone_imports_nothing_slow(tmp_path):
 
 
 def test_a_verdict_has_its_status(tmp_path):
-    pulls = (
-        "--set",
-        "solve.pressure=[[-1, -2], [0, 1], [1, -2]]",
-        "--set",
-        'solve.methods=["closed_form"]',
-    )
-    done = command("-n", 2, "run", HOME / "scenes" / "traction.toml", "-o", tmp_path / "a.h5", *pulls)
+    pulls = "solve.pressure=[[-1, -2], [0, 1], [1, -2]]", 'solve.methods=["closed_form"]'
+    words = [HOME / "scenes" / "traction.toml", *(f"--set={change}" for change in pulls)]
+    done = command("-n", 2, "run", *words, "-o", tmp_path / "a.h5")
     assert done.returncode == 1 and "verdict: FAIL" in done.stdout
     assert "the punch would have to pull" in done.stderr
     assert all(line.startswith("warning: ") for line in done.stderr.splitlines())  # none is mpirun's

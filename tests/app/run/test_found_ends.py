@@ -16,14 +16,13 @@ from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 CYLINDER = {"profile": "parabolic", "radius": 0.02}
 
 
-def scene(
-    punch, quantities=("sif",), points=None, c=0.4, mu=0.6, X_over_L=(0.1, 0.7), solve=None, **solid
-):
-    """A punch on steel."""
+def scene(punch, words=("sif",), points=None, c=0.4, mu=0.6, X_over_L=(0.1, 0.7), solve=None, **solid):
+    """A punch on steel, and words of what is asked for."""
     return of_sections(
         solid={"E": "200 GPa", "nu": 0.3, "rho": 7850} | solid, punch={"load": 5e4} | punch, solve=solve,
-        friction={"mu_c": mu, "sigma0_over_load": 6e4}, motion={"c": c, "X_over_L": np.asarray(X_over_L).tolist()},
-        output={"quantities": list(quantities)} | ({"points": points} if points else {}),
+        friction={"mu_c": mu, "sigma0_over_load": 6e4},
+        motion={"c": c, "X_over_L": [*map(float, X_over_L)]},
+        output={"quantities": list(words)} | ({"points": points} if points else {}),
     )  # fmt: skip
 
 
@@ -83,10 +82,7 @@ def test_kinks_with_no_room_for_cells_between_them_are_refused():
     ],
 )
 def test_the_integral_equation_alone_solves_uniform_solids(punch, frictions):
-    places, at = (
-        (("sif", "surface", "interior"), [[0.0, -0.5]]),
-        np.linspace(0.1, 0.7, frictions).tolist(),
-    )
+    places, at = (("sif", "surface", "interior"), [[0.0, -0.5]]), np.linspace(0.1, 0.7, frictions)
     by = {
         method: galinx.compute(scene(punch, *places, X_over_L=at, solve={"methods": [method]}))
         for method in ("sie", "closed_form")

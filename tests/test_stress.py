@@ -18,10 +18,8 @@ def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(
         matrix, "ROWS", (friction_law.exact_law, friction_law.runge_kutta_steps, resolution.degrees)
     )
-    # The first scene of this seed is solved in a moment, and so are others to loose tolerances.
+    # The first scene of this seed is solved in a moment.
     monkeypatch.setattr(matrix, "all_kinds", lambda *_: all_kinds.all_kinds(2, 1))
-    drawn = random_scenes._drawn
-    monkeypatch.setattr(random_scenes, "_drawn", lambda *of: drawn(*of) | {"tolerance": 1e-3})
     assert matrix.stress(Folder(tmp_path), scenes=2)
     printed = capsys.readouterr().out
     assert "verdict: PASS" in printed and "FAILS" not in printed

@@ -145,7 +145,7 @@ def test_layers_of_the_solid_itself_are_a_uniform_solid(thickness):
         assert np.allclose(held, expected, rtol=0.0, atol=tolerance), rows["sie"].path
 
 
-@pytest.mark.parametrize("thickness", ["5 um", "100 um"])
+@pytest.mark.parametrize("thickness", ["5 um", *["100 um"] * THOROUGH])
 def test_no_sample_is_larger_and_some_come_near(thickness):
     changes = {
         "solve.tolerance": 1e-5,

@@ -62,19 +62,18 @@ def differences(one, other, data):
     return found
 
 
-def check(data, tolerance, exact="sie", share=1.0):
+def check(data, tolerance, exact="sie"):
     """Finite elements are within what both methods say, and both within the tolerance; the differences.
 
     Args:
         data: of a result.
         tolerance: of its scene; infinite where its verdict may be FAIL.
         exact: name of the other method.
-        share: of the estimates that covers the differences.
     """
     found = differences(of_method(data, "fem"), of_method(data, exact), data)
     assert found
     for what, off in found.items():
         estimates = [data.get(f"states/{by}/estimate{what}", 0.0) for by in ("fem", exact)]
-        assert np.all(off <= share * sum(estimates)), what
+        assert np.all(off <= sum(estimates)), what
         assert 0.0 < off.max() <= tolerance and np.max(estimates[0]) <= tolerance, what
     return found

@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass, replace
 
 import numpy as np
+from support import THOROUGH
 
 from galinx.postprocess.quantities import WORDS, declared
 from galinx.postprocess.quantities.over_time import TIME
@@ -81,6 +82,8 @@ PRESSURE = {
 
 #: Words of output.quantities that speak of steady contact.
 QUANTITIES = tuple(word for word in WORDS if word not in (FRICTION_ALONE, SLIDER, TIME))
+#: Punches with kinks, under which what yields takes seconds to find: that is asked before a release.
+_SLOW = () if THOROUGH else ("cubic", "cusp", "rounded flat", "table")
 #: What a uniform solid, and layers, are solved by.
 METHODS = {False: ("closed_form", "fem"), True: ("sie", "fem")}
 
@@ -225,11 +228,17 @@ def _toml(value):
     return json.dumps(value)
 
 
-def words_of(solid, method="fem"):
-    """Words that a solid, with or without layers, can be asked."""
+def words_of(solid, punch, method="fem"):
+    """Words that a solid, with or without layers, can be asked under a punch.
+
+    Integral equations take long below layers, which finite elements say every day.
+    """
     not_for = {YIELD} if solid in LAYERS else {AT_INTERFACES}
+    not_for |= {YIELD} if punch in _SLOW else set()
     if method == "fem" and solid == "nearly incompressible":
         not_for |= {BELOW, YIELD}  # refused, see the test of that
+    if method == "exact" and solid in LAYERS and not THOROUGH:
+        not_for |= {BELOW}
     return tuple(word for word in QUANTITIES if word not in not_for)
 
 
@@ -237,17 +246,17 @@ def cases(first=None):
     """Every solid under every punch, for all that both can be asked for, by both methods.
 
     Args:
-        first: only one case of every solid, and every punch in turn from this one: one under which no
-            layers come to tractions of the closed form, which has none.
+        first: only one case of every solid, and every punch in turn from this one, then quick ones: one
+            under which no layers come to tractions of the closed form, which has none.
     """
     solids, punches = (*SOLID, *LAYERS), (*PROFILE, *PRESSURE)
     pairs = itertools.product(solids, punches)
     if first:
         start = punches.index(first)
-        pairs = zip(solids, itertools.islice(itertools.cycle(punches), start, None))
+        pairs = zip(solids, (*punches[start:], *punches[:start], "parabolic", "flat", "own pressure"))
     for solid, punch in pairs:
         if solid not in LAYERS or punch != "tractions":
-            yield Case(solid, punch, words_of(solid), METHODS[solid in LAYERS])
+            yield Case(solid, punch, words_of(solid, punch), METHODS[solid in LAYERS])
 
 
 def mirrored(name):

@@ -71,11 +71,11 @@ class Lamb:
         both = (self.F(of_φ) * slopes).sum(axis=-1)
         return np.array([np.sign(C) * (v + both[0]), u + both[1]])
 
-    def strip(self, X, t, c=0.0, history=None, σ_YY=-1.0):
+    def strip(self, X, t, c=0.0, history=None):
         """v and u at X (n,) and a time, (2, n); ``history`` is the load's share over time, with the times
         between which it is smooth, or None for one that is suddenly there."""
         load, knots = history or (np.ones_like, ())
-        return np.array([self._at(float(x), t, c, load, knots) for x in X]).T * σ_YY / np.pi
+        return np.array([self._at(float(x), t, c, load, knots) for x in X]).T / -np.pi
 
     def _at(self, X, t, c, load, knots):
         speeds = np.array([-self.fast, -1.0, -self.c_R, self.c_R, 1.0, self.fast])

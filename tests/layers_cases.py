@@ -12,14 +12,10 @@ from galinx.solvers.solids.isotropic import Isotropic
 COAT, SUBSTRATE = Isotropic(7.5, 0.3, 1.2), Isotropic(2.5, 0.25, 1.0)
 
 
-def flat(r):
-    return np.zeros_like(r)
-
-
-def equation(solid, V2, g, slope=flat, tolerance=1e-13):
-    """Of a punch of half-width 1 at the speed √V2."""
+def equation(solid, V2, g, tolerance=1e-13):
+    """Of a flat punch of half-width 1 at the speed √V2."""
     response = solid.response(V2**0.5 / solid.c_s)
-    return Equation(response, Kernel(response.stack(1.0), tolerance), g, slope)
+    return Equation(response, Kernel(response.stack(1.0), tolerance), g, np.zeros_like)
 
 
 def converged_pressure(equation, tolerance):

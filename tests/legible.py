@@ -18,6 +18,11 @@ def drawn(run, name, **options):
     return drawing
 
 
+def curves(axis):
+    """Lines of a panel that are drawn through more than two places."""
+    return [line for line in axis.lines if len(np.unique(line.get_xdata())) > 2]
+
+
 def faults(figure):
     """What a reader of the printed figure could not read, in words."""
     canvas = figure.canvas

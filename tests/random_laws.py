@@ -79,12 +79,12 @@ def slip_of(given):
     )
 
 
-def strokes(rng, count=4, one_speed=False):
+def strokes(rng, count=4):
     """Random strokes: (direction, speed [m/s], length [m], rest before it [s])."""
     V = 10.0 ** rng.uniform(-4, -2.5, count)
     return [
         (
-            int(rng.choice([-1, 1])), float(V[0] if one_speed else V[i]),
+            int(rng.choice([-1, 1])), float(V[i]),
             float(LENGTH * rng.uniform(0.2, 1.0)), float(rng.choice([0.0, rng.uniform(0.0, 5.0)])),
         )
         for i in range(count)

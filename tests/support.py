@@ -67,6 +67,12 @@ def scene_of(name="tables4_5", changes=None):
     return parse(changed(tomlkit.dumps(document) if sections else text, keys))
 
 
+def of_sections(**sections):
+    """A scene of these sections alone."""
+    empty = dict.fromkeys(("solid", "punch", "friction", "motion", "solve", "output"))
+    return scene_of("tables4_5", empty | sections)
+
+
 def computed(name="tables4_5", changes=None):
     """The result of such a scene."""
     import galinx
@@ -148,15 +154,21 @@ def paper_run():
     return folder / "results", (folder / "said").read_text(encoding="utf-8")
 
 
-def command(*arguments, cwd=HOME, **variables):
-    """Run ``./run.sh ARGUMENTS``; returns the finished process with its output as text.
+def command(*arguments, script=HOME / "run.sh", **options):
+    """Run ``./run.sh ARGUMENTS``; options are those of :func:`finished`."""
+    return finished([script, *arguments], **options)
 
-    ``variables`` are added to the environment.
+
+def finished(words, cwd=HOME, without=(), text=True, given=None, **variables):
+    """A process that has ended, and its output; what it reads is ``given``, or nothing.
+
+    ``variables`` are added to the environment, those of the names ``without`` taken away.
     """
+    environment = clean_environment() | variables
     return subprocess.run(
-        [str(HOME / "run.sh"), *map(str, arguments)],
-        cwd=cwd, env=clean_environment() | variables, capture_output=True, text=True, timeout=300,
-        stdin=subprocess.DEVNULL,
+        [*map(str, words)], cwd=cwd, capture_output=True, text=text, timeout=300,
+        env={name: value for name, value in environment.items() if name not in without},
+        **({"stdin": subprocess.DEVNULL} if given is None else {"input": given}),
     )  # fmt: skip
 
 

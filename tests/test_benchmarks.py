@@ -2,23 +2,18 @@
 
 import importlib
 import re
-import subprocess
 import sys
 
 import pytest
-from support import HOME, clean_environment
+from support import HOME, command
 
 from galinx import template
 from galinx.app.plan.plan import make_plan
 
 
-@pytest.fixture
-def measure(monkeypatch):
+def test_each_case_can_be_computed(monkeypatch):
     monkeypatch.syspath_prepend(HOME / "benchmarks")
-    return importlib.import_module("measure")
-
-
-def test_each_case_can_be_computed(measure):
+    measure = importlib.import_module("measure")
     for case in measure.CASES + measure.OTHERS:
         make_plan(template(case.scene, case.changes))
 
@@ -66,8 +61,5 @@ def test_the_page_has_the_accuracy_of_tables_4_and_5(accuracy, tables_run, monke
     "words", ["bench", "bench accuracy", "bench assemblers", "bench big", "bench scaling", "stress"]
 )
 def test_every_benchmark_starts_by_its_command(words):
-    done = subprocess.run(
-        [str(HOME / "run.sh"), *words.split(), "--help"],
-        env=clean_environment(), capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+    done = command(*words.split(), "--help")
     assert done.returncode == 0 and "usage" in done.stdout.lower(), done.stderr

@@ -1,9 +1,8 @@
 """What importing galinx leaves of the process that does: its variables and its signals."""
 
-import subprocess
 import sys
 
-from support import clean_environment
+from support import finished
 
 #: Imports every module but those that run a program, and prints what that changed.
 SCRIPT = """
@@ -30,10 +29,6 @@ print({name for name, _ in before.items() ^ os.environ.items()}, caught() - sign
 
 def test_importing_galinx_changes_no_variable_and_takes_no_signal():
     """PETSc would take SIGTERM for a crash; options that a user gives it are read all the same."""
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT],
-        env=clean_environment() | {"PETSC_OPTIONS": "-galinx_word given"},
-        capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    done = finished([sys.executable, "-c", SCRIPT], PETSC_OPTIONS="-galinx_word given")
     assert done.returncode == 0, done.stderr
     assert done.stdout == "set() set() given\n"

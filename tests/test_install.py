@@ -2,14 +2,13 @@
 
 import re
 import shutil
-import subprocess
 import sys
 import tomllib
 import zipfile
 from importlib.util import find_spec
 
 import pytest
-from support import HOME, clean_environment
+from support import HOME, finished
 
 #: What a wheel is made of.
 SOURCES = (
@@ -33,13 +32,8 @@ def names_and_site(tmp_path_factory):
             shutil.copytree(HOME / name, source / name, symlinks=True, ignore=ignored)
         else:
             shutil.copy(HOME / name, source)
-    made = subprocess.run(
-        [
-            sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index",
-            "-w", str(folder), str(source),
-        ],
-        env=clean_environment(), capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+    offline = ("--no-deps", "--no-build-isolation", "--no-index")
+    made = finished([sys.executable, "-m", "pip", "wheel", *offline, "-w", folder, source])
     assert made.returncode == 0, made.stderr
     with zipfile.ZipFile(next(folder.glob("*.whl"))) as wheel:
         wheel.extractall(site)
@@ -48,12 +42,8 @@ def names_and_site(tmp_path_factory):
 
 def installed(site, *arguments, **variables):
     """Python with what is installed and without the source tree, in another folder."""
-    environment = clean_environment() | {"PYTHONPATH": str(site)} | variables
-    environment.pop("GALINX_COMMAND", None)
-    return subprocess.run(
-        [sys.executable, "-P", *arguments], cwd=site.parent, env=environment,
-        capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    words, variables = [sys.executable, "-P", *arguments], {"PYTHONPATH": str(site)} | variables
+    return finished(words, cwd=site.parent, without=("GALINX_COMMAND",), **variables)
 
 
 def test_every_file_of_a_room_is_installed_once(names_and_site):
@@ -140,5 +130,4 @@ def test_a_container_gets_what_the_command_needs(tmp_path):
         f"PATH={home}/bin:$PATH galinx run {home}/scenes/table1.toml",
     ):
         line = line.replace(home, str(tmp_path))
-        done = subprocess.run(["bash", "-c", line], cwd=tmp_path, env=clean_environment(), timeout=60)
-        assert done.returncode == 0
+        assert finished(["bash", "-c", line], cwd=tmp_path).returncode == 0

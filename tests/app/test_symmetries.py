@@ -4,42 +4,21 @@ from functools import cache
 
 import numpy as np
 import pytest
-from combined import (
-    METHODS,
-    UNITS,
-    answers,
-    cases,
-    check_same,
-    mirrored,
-    words_of,
-)
+from combined import METHODS, UNITS, answers, cases, check_same, mirrored, words_of
 from support import THOROUGH
 
 import galinx
 from galinx.app.scene.read import parse
 from galinx.postprocess.quantities import declared
 from galinx.postprocess.quantities.quantity import ALONG, POINT, STATE
-from galinx.solvers.contact import BELOW, YIELD
-
-#: Punches with kinks, under which what yields takes seconds to find.
-_SLOW = () if THOROUGH else ("cubic", "cusp", "rounded flat", "table")
-
-
-def _quick(case, method):
-    """Words that a case can be asked and are found in a moment; below layers finite elements say it."""
-    slow = {YIELD} if case.punch in _SLOW else set()
-    if method == "exact" and case.layered and not THOROUGH:
-        slow |= {BELOW}
-    return tuple(word for word in words_of(case.solid, method) if word not in slow)
-
 
 #: By integral equations alone, which takes a moment, and by finite elements.
 EXACT = [
-    case.but(methods=METHODS[case.layered][:1], words=_quick(case, "exact"))
+    case.but(methods=METHODS[case.layered][:1], words=words_of(case.solid, case.punch, "exact"))
     for case in cases(None if THOROUGH else "cubic")
 ]
 FEM = [
-    case.but(methods=("fem",), tolerance=1e-2, words=_quick(case, "fem"))
+    case.but(methods=("fem",), tolerance=1e-2)
     for case in cases(None if THOROUGH else "parabolic")
     if case.by_finite_elements
 ][:: 1 if THOROUGH else 4]

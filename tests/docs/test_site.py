@@ -3,14 +3,13 @@
 import re
 import runpy
 import shutil
-import subprocess
-from html.parser import HTMLParser
 from types import SimpleNamespace
 from urllib.parse import unquote, urlsplit
 
 import pytest
 from examples import DOCS
-from support import HOME, clean_environment
+from pages_parsed import Page
+from support import HOME, finished
 
 
 def test_made_pages_are_up_to_date():
@@ -18,23 +17,6 @@ def test_made_pages_are_up_to_date():
         assert path.read_text(encoding="utf-8") == text, (
             f"{path.relative_to(HOME)} is out of date: PYTHONPATH=. /usr/bin/python3 docs/make.py"
         )
-
-
-class Page(HTMLParser):
-    """Links, what is loaded, and anchors of a page."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.links, self.loaded, self.anchors = [], [], set()
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        given = dict(attributes)
-        self.anchors |= {given[key] for key in ("id", "name") if given.get(key)}
-        if tag == "a" and given.get("href"):
-            self.links.append(given["href"])
-        elif tag in ("img", "script", "link") and (target := given.get("src") or given.get("href")):
-            self.loaded.append(target)
 
 
 #: What prose writes with one letter, by page; the glossary has each once.
@@ -71,10 +53,7 @@ def test_the_site_is_built_and_its_links_hold(tmp_path):
     if not mkdocs:
         pytest.skip("mkdocs is not installed")
     site = tmp_path / "site"
-    done = subprocess.run(
-        [mkdocs, "build", "--strict", "-f", HOME / "mkdocs.yml", "-d", site],
-        cwd=tmp_path, capture_output=True, text=True, env=clean_environment(),
-    )  # fmt: skip
+    done = finished([mkdocs, "build", "--strict", "-f", HOME / "mkdocs.yml", "-d", site], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "WARNING" not in done.stderr, done.stderr
     assert not [path for path in site.rglob("*.py*")]

@@ -12,14 +12,21 @@ from galinx.app.run.flow import Memory, compute
 from galinx.app.scene.library import templates
 from galinx.solvers.fem.ladder import ROUNDING
 
-#: What ranks agree on they agree on at every tolerance.
-ROUGH = {"solve.tolerance": 1e-3}
+#: What ranks agree on they agree on at every tolerance, but for the block, whose boundary leaves more
+#: than the rough one, and friction along the contact, whose estimates low degrees leave a percent apart.
+#: Largest stresses below a cylinder are compared in scenes of one body.
+ROUGH = {"solve.tolerance": 1e-2}
+OWN = {
+    "box": {}, "along": {"solve.tolerance": 1e-3},
+    "elastic_punch": ROUGH | {"output.quantities": ["friction", "sif", "surface"]},
+}  # fmt: skip
 
 
 def of_two_speeds(name):
     """A scene at the first and the last of its speeds: the mesh of each is decomposed alike."""
     speeds = template(name).motion.c or ()
-    return template(name, ROUGH | ({"motion.c": [speeds[0], speeds[-1]]} if len(speeds) > 2 else {}))
+    rough = OWN.get(name, ROUGH)
+    return template(name, rough | ({"motion.c": [speeds[0], speeds[-1]]} if len(speeds) > 2 else {}))
 
 
 SCENES = {name: of_two_speeds(name) for name in templates()}
@@ -34,16 +41,15 @@ PLACES = 1e-6
 
 #: A hard coating that is graded, by finite elements alone, with stresses at its interface.
 SCENES["graded coating"] = scene_of("coating", {
-    "layer[0].to": {"E": "3 GPa"}, "solve.methods": ["fem"], "solve.tolerance": 1e-3,
-    "output.quantities": ["sif", "interfaces"],
-})  # fmt: skip
+    "layer[0].to": {"E": "3 GPa"}, "solve.methods": ["fem"], "output.quantities": ["sif", "interfaces"],
+} | ROUGH)  # fmt: skip
 
 #: A wedge, and friction that develops along its contact.
 SCENES["wedge"] = scene_of("along", {
     "friction.sigma0_over_load": 2500.0, "solve.methods": ["fem"],
     "punch": {"profile": "wedge", "slope": 0.005, "load": "500 N/mm"},
-    "solve.tolerance": 1e-4, "output.quantities": ["sif"],
-})  # fmt: skip
+    "output.quantities": ["sif"],
+} | ROUGH)  # fmt: skip
 
 #: So many speeds that few are solved, and the others fitted.
 SCENES["many speeds"] = scene_of("tables4_5", {

@@ -2,11 +2,10 @@
 
 import os
 import shutil
-import subprocess
 from contextlib import contextmanager, nullcontext
 
 import pytest
-from support import HOME, SCENE, at_most, clean_environment, full_disk, here
+from support import HOME, SCENE, at_most, finished, full_disk, here
 
 from galinx.app.run import flow
 
@@ -123,10 +122,7 @@ def test_what_is_no_place_is_said(place, tmp_path, words, message):
 @pytest.mark.parametrize("scene", ["/dev/stdin", "<(cat)"])
 def test_a_scene_may_come_from_a_pipe(inputs, scene):
     text = (inputs / "scene.toml").read_text(encoding="utf-8")
-    done = subprocess.run(
-        ["bash", "-c", f'"{HOME}/run.sh" plan {scene}'], env=clean_environment(), capture_output=True,
-        text=True, input=text, timeout=300,
-    )  # fmt: skip
+    done = finished(["bash", "-c", f'"{HOME}/run.sh" plan {scene}'], given=text)
     assert done.returncode == 0 and "friction" in done.stdout, done.stderr
 
 

@@ -6,7 +6,7 @@ import re
 import subprocess
 
 import pytest
-from support import HOME, SCENE, clean_environment, command, here, widest
+from support import HOME, SCENE, clean_environment, command, finished, here, widest
 
 from galinx.app.console import Progress
 
@@ -74,10 +74,8 @@ def test_verbose_and_log_tell_every_step(tmp_path):
 
 def test_a_reader_that_goes_away_ends_the_output_quietly(archive):
     # More output than a pipe holds, so that the program meets the closed end.
-    done = subprocess.run(
-        ["bash", "-c", f"{HOME / 'run.sh'} show {archive} --json | head -c 10; echo ${{PIPESTATUS[0]}}"],
-        env=clean_environment(), capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    line = f"{HOME / 'run.sh'} show {archive} --json | head -c 10; echo ${{PIPESTATUS[0]}}"
+    done = finished(["bash", "-c", line])
     assert done.stderr == "" and done.stdout.endswith(("0\n", "141\n"))
 
 

@@ -53,8 +53,8 @@ def test_every_figure_shows_what_it_says(map_run, drawings):
 #: Scenes of all kinds of figures, by the quickest methods; the first three are drawn over a page, too.
 KINDS = (
     "map", "high_speed", "laws", "cylinder", "coating", "slider", "from rest", "fibres", "shoulders",
-    "minor_loops", "velocity_steps", "fig6", "sinusoidal", "own_material", "cylinder_on_steel",
-    "parameter_study",
+    "minor_loops", "velocity_steps", "parameter_study",
+    *("fig6", "sinusoidal", "own_material", "cylinder_on_steel") * THOROUGH,
 )  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from legible import drawn
+from legible import curves, drawn
 from support import computed
 
 from galinx.app.figures import waves
@@ -16,10 +16,6 @@ QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
 def coated():
     """Three frictions on one coating."""
     return computed("coating", MAP | QUANTITIES)
-
-
-def curves(axis):
-    return [line for line in axis.lines if len(line.get_xdata()) > 2]
 
 
 def test_curves_are_what_the_archive_holds_on_both_sides(coated):

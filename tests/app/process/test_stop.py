@@ -1,10 +1,9 @@
 """A signal that comes while a process ends changes neither its status nor what it says."""
 
-import subprocess
 import sys
 
 import pytest
-from support import SCENE, clean_environment
+from support import SCENE, finished
 
 #: With a signal when a function is entered: a job ends its ranks as soon as one says that it has failed.
 SCRIPT = """
@@ -29,10 +28,7 @@ INTERRUPTED = "error: interrupted; nothing was written\n"
 
 def ended(function, *words):
     """Status and messages of a command that gets a signal when a function of ``app`` is entered."""
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, function, *words],
-        env=clean_environment(), capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    done = finished([sys.executable, "-c", SCRIPT, function, *words])
     return done.returncode, done.stderr
 
 
@@ -43,6 +39,9 @@ def test_a_failure_is_said_to_its_end():
 @pytest.mark.parametrize(
     "function", ["process._check_machine", "cli._run", "scene.read.read", "process.too_late"]
 )
-@pytest.mark.parametrize("scene", [str(SCENE), "no.toml"])
-def test_before_that_it_is_interrupted_wherever_it_is(function, scene):
-    assert ended(function, "plan", scene) == (3, INTERRUPTED)
+def test_before_that_it_is_interrupted_wherever_it_is(function):
+    assert ended(function, "plan", str(SCENE)) == (3, INTERRUPTED)
+
+
+def test_a_failure_that_is_not_said_yet_is_interrupted():
+    assert ended("process.too_late", "plan", "no.toml") == (3, INTERRUPTED)

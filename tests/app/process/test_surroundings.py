@@ -1,11 +1,10 @@
 """What a command meets before it can do anything: closed streams, encodings, limits, variables."""
 
 import stat
-import subprocess
 import sys
 
 import pytest
-from support import HOME, SCENE, clean_environment, here
+from support import HOME, SCENE, finished, here
 
 from galinx.postprocess.hdf5 import archive
 
@@ -15,15 +14,10 @@ PLAN = ("plan", str(SCENE))
 on_ranks = pytest.mark.parametrize("count", [(), ("-n", "2")], ids=["alone", "two ranks"])
 
 
-def galinx(folder, *arguments, shell='"$@"', text=None, without=(), **variables):
+def galinx(folder, *arguments, shell='"$@"', **options):
     """``./run.sh ARGUMENTS`` as a line of bash starts it, with other variables; its output as bytes."""
-    environment = clean_environment() | variables
-    for name in without:
-        environment.pop(name, None)
-    return subprocess.run(
-        ["bash", "-c", shell, "bash", str(HOME / "run.sh"), *arguments],
-        cwd=folder, env=environment, capture_output=True, timeout=120, input=text,
-    )  # fmt: skip
+    words = ["bash", "-c", shell, "bash", HOME / "run.sh", *arguments]
+    return finished(words, cwd=folder, text=False, **options)
 
 
 def is_refused(done, status, *words):
@@ -67,7 +61,7 @@ def test_what_an_encoding_lacks_is_replaced(tmp_path, count, encoding):
 
 
 def test_a_scene_for_several_ranks_is_a_file(tmp_path):
-    done = galinx(tmp_path, "-n", "2", "plan", "/dev/stdin", text=SCENE.read_bytes())
+    done = galinx(tmp_path, "-n", "2", "plan", "/dev/stdin", given=SCENE.read_bytes())
     is_refused(done, 2, "only one of several ranks could read /dev/stdin; expected a file")
 
 
@@ -82,19 +76,13 @@ def test_a_scene_for_several_ranks_is_a_file(tmp_path):
 def test_what_another_mpirun_left_is_no_rank(tmp_path, variables):
     scripts = [HOME / "run.sh"], [sys.executable, "-m", "galinx"]  # which asks MPI
     for start in scripts:
-        done = subprocess.run(
-            [*start, *PLAN],
-            cwd=tmp_path,
-            env=clean_environment() | variables,
-            capture_output=True,
-            timeout=60,
-        )
+        done = finished([*start, *PLAN], tmp_path, text=False, **variables)
         assert done.returncode == 0 and done.stdout.startswith(b"do    friction"), done.stderr
 
 
-@pytest.mark.parametrize("count, megabytes", [((), 30), ((), 400)])
-def test_little_address_space_is_refused(tmp_path, count, megabytes):
-    done = galinx(tmp_path, *count, *RUN, shell=f'ulimit -v {megabytes}000; "$@"')
+@pytest.mark.parametrize("megabytes", [30, 400])
+def test_little_address_space_is_refused(tmp_path, megabytes):
+    done = galinx(tmp_path, *RUN, shell=f'ulimit -v {megabytes}000; "$@"')
     is_refused(done, 3, "the address space is limited", "ulimit -v")
     assert not list(tmp_path.iterdir())
 

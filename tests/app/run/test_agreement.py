@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from agreement import check
 from random_solids import random_solid
-from support import THOROUGH, scene_of, section_of
+from support import THOROUGH, of_sections, scene_of, section_of
 
 import galinx
 from galinx import PROFILES, parameter
@@ -28,13 +28,6 @@ LAYER = {"E": "120 GPa", "nu": 0.3, "rho": 2400}
 STRESSES = {"quantities": ["sif", "surface", "interior"]}
 INSIDE = STRESSES | {"points": [[0.0, -0.5], [-1.0, -0.1], [0.3, -1.5]]}
 ENDS = {"quantities": ["sif"]}
-#: What the sections of scenes/tables4_5.toml are that a scene says nothing of.
-EMPTY = dict.fromkeys(("solid", "punch", "friction", "motion", "solve", "output"))
-
-
-def of_sections(**sections):
-    """A scene of these sections alone."""
-    return scene_of("tables4_5", EMPTY | sections)
 
 
 def once(c, **more):
@@ -368,12 +361,11 @@ def kinked_on_layers(seed):
 
 #: Seeds by which each is tried every day, and those of a release.
 RANDOM = {
-    isotropic: (range(4), range(40)), orthotropic: ((3, 9), range(24)),
-    orthotropic_inside: ((5,), range(36)), parabola: ((0, 1), range(60)), kinked: ((1, 2), range(60)),
-    smooth: ((1, 2, 3), range(5)), tilted: (range(4), range(4)), pressure: (range(3), range(6)),
-    elastic: ((1,), range(20)), elastic_on_layers: ((1,), range(20)),
-    elastic_along: ((2, 3), range(20)), along: ((1, 2), range(20)),
-    cylinder_along: ((0, 2), range(20)), coated_along: ((0,), range(20)),
+    isotropic: (range(4), range(40)), orthotropic: ((3,), range(24)),
+    orthotropic_inside: ((5,), range(36)), parabola: ((0, 1), range(60)), kinked: ((1,), range(60)),
+    smooth: ((1, 3), range(5)), tilted: (range(4), range(4)), pressure: (range(2), range(6)),
+    elastic: ((1,), range(20)), elastic_on_layers: ((1,), range(20)), elastic_along: ((3,), range(20)),
+    along: ((1, 2), range(20)), cylinder_along: ((0,), range(20)), coated_along: ((0,), range(20)),
     kinked_along: ((1,), range(20)), kinked_on_layers: ((1,), range(20)),
 }  # fmt: skip
 #: Whose estimates may say that rounding leaves no more digits, or that stresses next to kinks have fewer.

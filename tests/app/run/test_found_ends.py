@@ -4,45 +4,37 @@ import itertools
 
 import numpy as np
 import pytest
-from support import computed
+from agreement import of_method
+from support import computed, of_sections
 
 import galinx
-from galinx.app.scene.read import parse
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import Refinement, with_kinks
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 
+CYLINDER = {"profile": "parabolic", "radius": 0.02}
 
-def scene(
-    punch, solid='E = "200 GPa"\nnu = 0.3\nrho = 7850', c="0.4", solve="", output='["sif"]', mu=0.6,
-    X_over_L=(0.1, 0.7),
-):  # fmt: skip
-    return parse(
-        f"[solid]\n{solid}\n[punch]\nload = 5e4\n{punch}\n"
-        f"[friction]\nmu_c = {mu}\nsigma0_over_load = 6e4\n"
-        f"[motion]\nc = {c}\nX_over_L = {list(X_over_L)}\n[solve]\n{solve}\n"
-        f"[output]\nquantities = {output}\n"
-    )
+
+def scene(punch, words=("sif",), points=None, c=0.4, mu=0.6, X_over_L=(0.1, 0.7), solve=None, **solid):
+    """A punch on steel, and words of what is asked for."""
+    return of_sections(
+        solid={"E": "200 GPa", "nu": 0.3, "rho": 7850} | solid, punch={"load": 5e4} | punch, solve=solve,
+        friction={"mu_c": mu, "sigma0_over_load": 6e4},
+        motion={"c": c, "X_over_L": [*map(float, X_over_L)]},
+        output={"quantities": list(words)} | ({"points": points} if points else {}),
+    )  # fmt: skip
 
 
 def test_hertz_and_where_the_solid_yields_below():
     """τ_max 0.300283 p₀ at 0.786151 a, von Mises 0.557516 p₀ at 0.704290 a below the middle."""
-    punch = 'profile = "parabolic"\nradius = 0.02'
-    solid = 'E = "200 GPa"\nnu = 0.3\nrho = 7850\nyield_strength = "300 MPa"'
-    result = galinx.compute(scene(punch, solid, "0", output='["sif", "yield"]', mu=1e-9))
+    result = galinx.compute(scene(CYLINDER, ("sif", "yield"), c=0.0, mu=1e-9, yield_strength="300 MPa"))
     assert result.verdict == "PASS", result.attributes["verdict_reasons"]
     h0 = np.sqrt(4.0 * 5e4 * 0.02 * (1.0 - 0.3**2) / (np.pi * 200e9))
     for method, digits in (("closed_form", 1e-6), ("fem", 1e-5)):
-        of = {
-            name.removeprefix(f"states/{method}/"): v[0]
-            for name, v in result.data.items()
-            if method in name
-        }
+        of = {path.partition("/")[2]: v[0] for path, v in of_method(result.data, method).items()}
         p0 = of["largest_pressure"]
-        assert of["half_width"] == pytest.approx(h0, rel=1e-7) and p0 == pytest.approx(
-            4.0 / np.pi, rel=1e-7
-        )
+        assert (of["half_width"], p0) == pytest.approx((h0, 4.0 / np.pi), rel=1e-7)
         assert of["max_shear"] / p0 == pytest.approx(0.300283, rel=digits, abs=6e-7)
         assert of["von_mises"] / p0 == pytest.approx(0.557516, rel=digits, abs=6e-7)
         assert of["max_shear_Y_over_a"] == pytest.approx(-0.786151, abs=1e-4)
@@ -54,10 +46,8 @@ def test_hertz_and_where_the_solid_yields_below():
 
 def test_a_tolerance_below_the_rounding_at_free_ends_is_given_up_at_once():
     """Stresses a millionth of the half-width from an end are rounded; those inside keep their digits."""
-    points = "[[1.0009, -0.0024], [0.0446, -0.0018], [2.1, -0.2]]"
-    output = f'["sif", "surface", "interior"]\npoints = {points}'
-    punch = 'profile = "parabolic"\nradius = 0.1'
-    result = galinx.compute(scene(punch, solve="tolerance = 1.3e-9", output=output))
+    places = ("sif", "surface", "interior"), [[1.0009, -0.0024], [0.0446, -0.0018], [2.1, -0.2]]
+    result = galinx.compute(scene(CYLINDER | {"radius": 0.1}, *places, solve={"tolerance": 1.3e-9}))
     data = result.data
     σ_XX, exact = (data[f"surface/{method}/sigma_XX"] for method in ("fem", "closed_form"))
     error = np.abs(σ_XX - exact).max() / np.abs(exact).max()
@@ -75,11 +65,8 @@ def test_kinks_with_no_room_for_cells_between_them_are_refused():
             places = np.array([at, at + 1e-3])
             check_cells(with_kinks(Refinement(rings, 0.35, sectors, (1.0,)), places, more))
     flat = 1e-6
-    body = parse(
-        "[solid]\nE = 2e11\nnu = 0.3\nrho = 7800\n[punch]\nload = 1e5\nprofile = 'rounded_flat'\n"
-        f"flat_half_width = {flat}\nradius = 0.02\n[friction]\nmodel = 'coulomb'\nmu_c = 0.1\n"
-        "[motion]\nc = 0\nstrokes = ['forward']\nX_over_L = [0.5]\n"
-    ).body
+    punch = {"profile": "rounded_flat", "flat_half_width": flat, "radius": 0.02, "load": 1e5}
+    body = scene(punch, c=0.0).body
     EndsBetweenKinks(body, (0.0, flat * 2.0 / 1.1e-3), 1e-6)
     with pytest.raises(SolveError, match=r"or 0\.001 of another"):
         EndsBetweenKinks(body, (0.0, flat * 2.0 / 0.9e-3), 1e-6)
@@ -88,18 +75,16 @@ def test_kinks_with_no_room_for_cells_between_them_are_refused():
 @pytest.mark.parametrize(
     ("punch", "frictions"),
     [
-        ("half_width = 1e-3", 2),
-        ("half_width = 1e-3", 30),  # more than are solved one by one
-        ("half_width = 1e-3\ntilt = 0.05", 2),
-        ('profile = "parabolic"\nradius = 0.02', 2),
-        ('profile = "wedge"\nslope = 0.01', 2),
+        ({"half_width": 1e-3}, 30),  # more than are solved one by one
+        ({"half_width": 1e-3, "tilt": 0.05}, 2),
+        (CYLINDER, 2),
+        ({"profile": "wedge", "slope": 0.01}, 2),
     ],
 )
 def test_the_integral_equation_alone_solves_uniform_solids(punch, frictions):
-    output = '["sif", "surface", "interior"]\npoints = [[0.0, -0.5]]'
-    at = np.linspace(0.1, 0.7, frictions).tolist()
+    places, at = (("sif", "surface", "interior"), [[0.0, -0.5]]), np.linspace(0.1, 0.7, frictions)
     by = {
-        method: galinx.compute(scene(punch, solve=f'methods = ["{method}"]', output=output, X_over_L=at))
+        method: galinx.compute(scene(punch, *places, X_over_L=at, solve={"methods": [method]}))
         for method in ("sie", "closed_form")
     }
     assert by["sie"].verdict == by["closed_form"].verdict == "PASS"

@@ -5,24 +5,15 @@ import json
 import numpy as np
 import pytest
 import random_laws as random
-from support import here
+from support import here, of_sections
 
 import galinx
 from galinx.app.results.check import faults
-from galinx.app.scene.read import parse
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.motion import Partial, friction_along
 from galinx.solvers.parameters import build_model
 
-STROKES = '["forward", {to = 0.2}, {to = 0.6}, {to = 0.2}, {to = 1.0}]'
-SCENE = """
-solid = {{material = "steel"}}
-punch = {{load = 2e4}}
-friction = {{model = "{model}", {friction}}}
-motion = {{{motion}}}
-solve = {{methods = ["closed_form"]}}
-output = {{quantities = {quantities}}}
-"""
+MOTION = {"speed": 2e-3, "strokes": ["forward", {"to": 0.2}, {"to": 0.6}, {"to": 0.2}, {"to": 1.0}]}
 
 #: Parameters of the law by that name.
 RATE_AND_STATE = {
@@ -30,18 +21,18 @@ RATE_AND_STATE = {
 }  # fmt: skip
 
 
-def toml(values):
-    return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items())
-
-
-def scene(model, friction, motion=f"speed = 2e-3, strokes = {STROKES}", quantities='["friction"]'):
-    return parse(SCENE.format(model=model, friction=toml(friction), motion=motion, quantities=quantities))
+def scene(model, friction, motion=MOTION, quantities=("friction",), **sections):
+    return of_sections(
+        solid={"material": "steel"}, punch={"load": 2e4}, motion=motion,
+        friction={"model": model} | json.loads(json.dumps(friction)),
+        solve={"methods": ["closed_form"]}, output={"quantities": list(quantities)}, **sections,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("name", sorted(LAWS))
 def test_every_law_goes_from_the_scene_to_the_contact(name, tmp_path):
     parameters = random.parameters(name, np.random.default_rng(5))
-    result = galinx.compute(scene(name, parameters, quantities='["friction", "sif"]'))
+    result = galinx.compute(scene(name, parameters, quantities=("friction", "sif")))
     law = build_model(LAWS[name], parameters)
     strokes = ["forward", Partial(0.2), Partial(0.6), Partial(0.2), Partial(1.0)]
     known = friction_along(law, strokes, 1e-4, (0.2, 0.8), 2e-3)
@@ -76,10 +67,8 @@ def test_loops_and_what_strokes_take_are_those_of_the_drawn_friction(name):
 
 
 def test_strokes_may_have_speeds_and_rests_of_their_own():
-    motion = (
-        "speed = 1e-6, X_over_L = [0.5, 1], rest = 5, strokes = [{to = 0.5}, {to = 1, speed = 1e-5}, "
-    )
-    motion += "{to = 0.5, rest = 0}, {to = 1, rest = 90}]"
+    strokes = [{"to": 0.5}, {"to": 1, "speed": 1e-5}, {"to": 0.5, "rest": 0}, {"to": 1, "rest": 90}]
+    motion = {"speed": 1e-6, "X_over_L": [0.5, 1], "rest": 5, "strokes": strokes}
     data = galinx.compute(scene("rate_and_state", RATE_AND_STATE, motion)).data
     steady = 0.6 + (0.01 - 0.015) * np.log(10.0)
     np.testing.assert_allclose(data["states/speed"], [1e-6, 1e-5, 1e-5, 1e-6, 1e-6, 1e-6, 1e-6])
@@ -92,17 +81,10 @@ def test_strokes_may_have_speeds_and_rests_of_their_own():
     assert data["states/f"][2] == pytest.approx(steady, rel=1e-12)
 
 
-SLIDER = """
-slider = {mass = 2, stiffness = "8 N/m^2", drive_speed = "0.1 m/s", duration = "20 s"}
-"""
-
-
 def test_a_slider_is_archived_and_drawn_for_every_law(tmp_path):
-    quantities = '["friction", "slider"]'
-    text = SCENE.format(
-        model="coulomb", friction="mu_c = [2e-5, 4e-5]", motion="speed = 2e-3", quantities=quantities
-    )
-    (tmp_path / "s.toml").write_text(text + SLIDER, encoding="utf-8")
+    slider = {"mass": 2, "stiffness": "8 N/m^2", "drive_speed": "0.1 m/s", "duration": "20 s"}
+    given = "coulomb", {"mu_c": [2e-5, 4e-5]}, {"speed": 2e-3}, ("friction", "slider")
+    (tmp_path / "s.toml").write_text(scene(*given, slider=slider).text, encoding="utf-8")
     done = here("run", "s.toml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert faults(tmp_path / "s.h5") == []

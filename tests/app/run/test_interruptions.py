@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import HOME, THOROUGH, clean_environment, command, computed, here
+from support import HOME, THOROUGH, clean_environment, command, computed, finished, here
 
 from galinx import template
 from galinx.app.results import check
@@ -36,6 +36,7 @@ SWEEP = {
     "motion.c": [0.0, 0.2, 0.4, 0.6],
     "motion.X_over_L": [round(n / 339, 6) for n in range(340)],
     "solve.tolerance": 1e-2,
+    "output.quantities": ["friction", "sif"],
 }
 
 
@@ -198,13 +199,8 @@ def test_what_is_ignored_already_stays_ignored(tmp_path):
         "import signal; from galinx.app import process; process.listen()\n"
         "print([signal.getsignal(number) == signal.SIG_IGN for number in process.SIGNALS])"
     )
-    done = subprocess.run(
-        [
-            "env", "--default-signal=INT,TERM", "bash", "-c", "trap '' HUP; exec \"$@\"", "bash",
-            sys.executable, "-c", script,
-        ],
-        env=clean_environment(), capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    shell = ("env", "--default-signal=INT,TERM", "bash", "-c", "trap '' HUP; exec \"$@\"", "bash")
+    done = finished([*shell, sys.executable, "-c", script])
     assert done.stdout == "[False, False, True]\n", done.stderr
 
 

@@ -138,7 +138,7 @@ def test_a_turn(time, sign, tmp_path):
 KINDS = [kind for kind in SOLID if kind != "nearly incompressible"]
 
 
-@pytest.mark.parametrize("kind", KINDS if THOROUGH else ("isotropic", "anisotropic"))
+@pytest.mark.parametrize("kind", KINDS if THOROUGH else ("anisotropic",))
 def test_response(kind, tmp_path):
     """Over moduli and frequencies of both units a load that oscillates meets the same stiffness."""
     found = []

@@ -88,7 +88,7 @@ def test_a_wrong_answer_of_one_method_fails(friction, monkeypatch):
     law = {"friction.model": "dahl", "friction.sigma0_over_load": "600 1/m", "punch.half_width": "1 mm",
            "friction.pre_sliding": "1 mm", "motion.strokes": ["forward", "forward"],
            "time.friction": "law"}  # fmt: skip
-    changes = QUICK | {"solve.methods": ["sie"], "time.end": 1.5} | (law if friction == "law" else {})
+    changes = QUICK | {"solve.methods": ["sie"], "time.end": 0.5} | (law if friction == "law" else {})
     assert computed("start_from_rest", changes).attributes["verdict"] == "FAIL"
 
 
@@ -107,7 +107,7 @@ def test_unloading_from_steady_motion_by_both_methods():
 def test_steady_motion_goes_on_and_the_estimate_covers_its_error(method):
     """Nothing changes: the error is that of the far boundary alone."""
     scene = {
-        "time": {"start": "steady", "end": 1.0}, "motion.c": 0.8, "friction.mu_c": 0.6,
+        "time": {"start": "steady", "end": 0.5}, "motion.c": 0.8, "friction.mu_c": 0.6,
         "solve.tolerance": 1e-2, "solve.methods": [method],
     }  # fmt: skip
     result = computed("start_from_rest", scene)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import computed
+from support import THOROUGH, computed
 
 from galinx.app.errors import BadInput
 from galinx.app.results import check
@@ -72,7 +72,7 @@ def test_a_number_of_one_variant_that_is_changed_is_a_fault(tmp_path):
 SHARP = {"punch": {"half_width": "1 mm", "load": "10 N/mm"}, "motion": {"c": 0.2}}
 
 
-@pytest.mark.parametrize("scene, thin", [(COATED, 10), (COATED | SHARP, 20)])
+@pytest.mark.parametrize("scene, thin", [(COATED, 10), *[(COATED | SHARP, 20)] * THOROUGH])
 def test_thicknesses_of_a_layer(scene, thin):
     """Largest stresses at interfaces do not depend on which places they are sampled at."""
     result = swept_by(scene, f"layer[0].thickness=[{thin}, {2 * thin}] um")

@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from support import computed
+from support import THOROUGH, computed
 
 from galinx.postprocess.quantities import layers as of_layers
 from galinx.postprocess.quantities import stresses, yielding
@@ -134,7 +134,7 @@ def coated(layer, thickness, changes=None):
     return computed("coating", LINE | {"solve": {"methods": ["sie"]}, "layer": layers} | (changes or {}))
 
 
-@pytest.mark.parametrize("thickness", ["4 um", "300 um"])
+@pytest.mark.parametrize("thickness", ["4 um", *["300 um"] * THOROUGH])
 def test_layers_of_the_solid_itself_are_a_uniform_solid(thickness):
     layered = coated(STEEL, thickness).data
     exact = computed("coating", LINE | {"layer": None, "solve": {"methods": ["closed_form"]}}).data
@@ -145,7 +145,7 @@ def test_layers_of_the_solid_itself_are_a_uniform_solid(thickness):
         assert np.allclose(held, expected, rtol=0.0, atol=tolerance), rows["sie"].path
 
 
-@pytest.mark.parametrize("thickness", ["5 um", "100 um"])
+@pytest.mark.parametrize("thickness", ["5 um", *["100 um"] * THOROUGH])
 def test_no_sample_is_larger_and_some_come_near(thickness):
     changes = {
         "solve.tolerance": 1e-5,

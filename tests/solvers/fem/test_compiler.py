@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from mpi4py import MPI
-from support import HOME, SCENE, clean_environment, command, space_on
+from support import SCENE, clean_environment, command, space_on
 
 from galinx.meshes.rings import Refinement
 from galinx.solvers.errors import CompilerError
@@ -71,10 +71,7 @@ def test_no_compiler(cache, compiles):
         for folder in ("/bin", "/usr/bin"):
             if os.path.exists(f"{folder}/{name}") and not (tools / name).exists():
                 (tools / name).symlink_to(f"{folder}/{name}")
-    done = subprocess.run(
-        [str(HOME / "run.sh"), "run", str(SCENE), "-o", str(cache / "out.h5")],
-        env=clean_environment() | {"PATH": str(tools)}, capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+    done = command("run", SCENE, "-o", cache / "out.h5", PATH=str(tools))
     assert done.returncode == 3 and "there is no C compiler" in done.stderr
     assert "Traceback" not in done.stderr and not (cache / "out.h5").exists()
 

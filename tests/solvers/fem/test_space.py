@@ -1,12 +1,11 @@
 """Spaces on meshes: parts, sizes, ranks without cells, values along the surface."""
 
-import subprocess
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import clean_environment, mpirun, small_punch, space_on
+from support import finished, mpirun, small_punch, space_on
 
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.rings import TAGS, Refinement
@@ -73,10 +72,7 @@ def test_more_ranks_than_cells():
         "assert space.cells == 2 < MPI.COMM_WORLD.size\n"
         "np.testing.assert_allclose(v0[1], v0[0], rtol=1e-9)\n"
     )
-    done = subprocess.run(
-        mpirun(3, "-m", "mpi4py", "-c", script), env=clean_environment(),
-        capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+    done = finished(mpirun(3, "-m", "mpi4py", "-c", script))
     assert done.returncode == 0, done.stderr
 
 

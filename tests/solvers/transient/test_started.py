@@ -90,8 +90,7 @@ def test_integral_equation_knows_the_mirror_image():
 
 def test_quadrature_has_its_order():
     """Steps of a half leave a 2⁵th at least, up to what K_I and rounding leave."""
-    runs = (by_integral_equation(SOLID, 0.6, -0.4, 4.0, n).v0 for n in (20, 5, 10))
-    best, coarse, fine = runs
+    best, coarse, fine = (by_integral_equation(SOLID, 0.6, -0.4, 4.0, n, 3.0, 16).v0 for n in (20, 5, 10))
     errors = [np.abs(one - best[k - 1 :: k]).max() for one, k in ((coarse, 4), (fine, 2))]
     assert errors[0] / errors[1] > 2.0**3.5
 

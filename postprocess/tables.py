@@ -85,6 +85,7 @@ class Column:
         digits: that are shown.
         owner: of a place, the column of what is there.
         least: size up to which a number is rounding, and shown as 0.
+        said: gives a number in words; None where it is shown as a number.
     """
 
     head: str
@@ -95,6 +96,7 @@ class Column:
     digits: int = 4
     owner: "Column | None" = None
     least: float = 0.0
+    said: Callable[[float], str] | None = None
 
     @property
     def label(self) -> str:
@@ -131,7 +133,9 @@ class Column:
         return [self._text(cell) for cell in self.shown(count)]
 
     def _text(self, cell: Any) -> str:
-        return cell if isinstance(cell, str) else number(float(cell), self.digits)
+        if isinstance(cell, str):
+            return cell
+        return self.said(cell) if self.said else number(float(cell), self.digits)
 
     def words(self, i: int) -> str:
         """Cell of state ``i`` with its unit."""
@@ -226,13 +230,11 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         columns(_Spec("pull under the punch", validity.TENSION), _Spec("at X", validity.TENSION_X))
     )
     results += _shear_at_interfaces(data, units)
-    results += _of_layers(data, units) or [
-        *columns(
-            _Spec("largest von Mises", yielding.VON_MISES), _Spec("at X", yielding.VON_MISES_X),
-            _Spec("at Y", yielding.VON_MISES_Y),
-        ),
-        *_yields(data, units),
-    ]  # fmt: skip
+    results += _of_layers(data, units) or columns(
+        _Spec("largest von Mises", yielding.VON_MISES), _Spec("at X", yielding.VON_MISES_X),
+        _Spec("at Y", yielding.VON_MISES_Y),
+    )  # fmt: skip
+    results += _yields(data, units)
     results += _occurring(columns(_Spec("depth of yield", yielding.DEPTH)))
     results += columns(
         _Spec("von Mises in the punch", yielding.PUNCH_VON_MISES),
@@ -370,10 +372,8 @@ def _of_layers(data: Mapping[str, Any], units: Units) -> list[Column]:
             )
         ])  # fmt: skip
         if np.isfinite(share).any():
-            words = [_share(of_state) for of_state in share]
-            columns.append(
-                Column(f"yields {where}", words, "of the yield strength", f"von_mises_{name}_yields")
-            )
+            unit, name = "of the yield strength", f"von_mises_{name}_yields"
+            columns.append(Column(f"yields {where}", share, unit, name, said=_share))
     return columns
 
 
@@ -407,10 +407,12 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
         else:
             return []
         name = "_".join(head.split())
-        return [Column(head, [_share(share) for share in shares], unit, name)]
+        return [Column(head, shares, unit, name, said=_share)]
 
+    # Layers have columns of their own.
+    strength = None if contact.solid.layers else contact.yield_strength
     of_solid = column_of(
-        "yields", yielding.FIRST_LOAD, yielding.VON_MISES, "solid.yield_strength", contact.yield_strength
+        "yields", yielding.FIRST_LOAD, yielding.VON_MISES, "solid.yield_strength", strength
     )
     asked = f'"{YIELD}"' in str(data.get(runs.SCENE.path, ""))
     words = "yes, at the sharp edges" * (preferred(data, yielding.REACH_LEFT) is not None)
@@ -428,11 +430,16 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
 
 def _yields_first(data: Mapping[str, Any], units: Units) -> list[Column]:
     """Column of the body that yields first of two elastic ones; none where that was not computed."""
+    over = preferred(data, yielding.OVER_STRENGTH)
     of_plate, of_punch = (preferred(data, row) for row in (yielding.VON_MISES, yielding.PUNCH_VON_MISES))
     strengths = units.contact.yield_strength, units.contact.solid.punch_strength
-    if not of_plate or not of_punch or not all(strengths):
+    if not of_plate or not of_punch or not strengths[1] or not (over or strengths[0]):
         return []
-    plate = data[of_plate.path] / data.get(column("solid.yield_strength"), strengths[0])
+    unit = units.load / (2.0 * units.half_width)
+    if over:  # of the layer, or of the solid below, that yields first
+        plate = np.nanmax(data[over.path], axis=1) / unit
+    else:
+        plate = data[of_plate.path] / data.get(column("solid.yield_strength"), strengths[0])
     punch = data[of_punch.path] / data.get(column("punch.solid.yield_strength"), strengths[1])
     words = ["" if isnan(a) else "plate" if a > b else "punch" for a, b in zip(plate, punch)]
     return [Column("yields first", words, "none", "yields_first")]

@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
@@ -428,10 +429,13 @@ def _draw_map(axis: Axes, shown: Map) -> None:
     lowest, colours = (-shown.limit, "RdBu_r") if shown.signed else (0.0, "viridis")
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
-        axis.imshow(
+        image = axis.imshow(
             values, extent=(*along, *side * heights), origin="lower", interpolation="bilinear",
             aspect="auto", cmap=colours, vmin=lowest, vmax=shown.limit,
         )  # fmt: skip
+        # A colour reaches half a cell farther than its point; none is shown beyond the outermost points.
+        corner, tall = (X[0], min(side * Y[0], side * Y[-1])), abs(Y[-1] - Y[0])
+        image.set_clip_path(Rectangle(corner, X[-1] - X[0], tall, transform=axis.transData))
         if shown.lines:
             levels = MaxNLocator(9).tick_values(lowest, shown.limit)
             axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)

@@ -371,20 +371,21 @@ def interfaces(of: Archive) -> Drawing:
     panels: list[Panel] = []
     notes, methods = list[Any](), set[str]()
     for of_sides, words in _AT_INTERFACES.items():
+        sides = [name.rpartition("_")[2] for name in of_sides if name in shown]
         rows = [available[name] for name in of_sides if name in shown]
         values = [{method: of.values(row) for method, row in by_method.items()} for by_method in rows]
         methods.update(*rows)
-        if len(rows) > 1:
-            notes = [note(Look(GREY, line, ""), f"{side} the interface") for side, line in _SIDES.items()]
+        if rows and len(of_sides) > 1:
+            notes = [note(Look(GREY, _SIDES[side], ""), f"{side} the interface") for side in sides]
         for i in columns if rows else ():
             drawn: list[Shown] = []
             axis = named(words, of.scaled(next(iter(rows[0].values()))).unit) if i == columns[0] else ""
             half = max(2.0, 2.5 * float(over_a[i]))  # stresses spread with the depth
-            for (side, line), by_method in zip(_SIDES.items(), values):
+            for side, by_method in zip(sides, values):
                 own = {method: y[:, i] for method, y in by_method.items()}
                 along = Along(X, axis, own, places, position, half)
-                on_side = [look._replace(line=line) for look in styles]
-                drawn += along.shown(on_side, called if side == "above" else (), rows=numbers)
+                on_side = [look._replace(line=_SIDES.get(side, "-")) for look in styles]
+                drawn += along.shown(on_side, called if side == sides[0] else (), rows=numbers)
             title = titles[i] if len(panels) < len(columns) else ""
             panels.append(replace(surface_panel(drawn, title=title), ylim=None))
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)

@@ -407,15 +407,15 @@ def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
     solved = plan.states // (len(loads) if plan.body.alike else 1)
     if fem.mode == OWN_MESHES:
         return [
-            f"finite elements: {solved} states, each on a confocal mesh of its own, graded "
+            f"finite elements: {counted(solved, 'state')}, each on a confocal mesh of its own, graded "
             f"towards the kinks of the punch, degree {max(fem.degrees)} or what the measured error "
             "requires; free ends are computed once for each speed"
         ]
     if fem.mode == FREE_ON_LAYERS:
         return [
-            f"finite elements: {solved} states, each on meshes along the interfaces that follow "
-            f"its contact until this carries the load, degree {max(fem.degrees)} or what the measured "
-            "error requires"
+            f"finite elements: {counted(solved, 'state')}, each on meshes along the interfaces that "
+            f"follow its contact until this carries the load, degree {max(fem.degrees)} or what the "
+            "measured error requires"
         ]
     pattern = fem.pattern
     cells = len(pattern.cells) * fem.cuts**2

@@ -148,9 +148,9 @@ def _refuse(scene: Scene, degrees: Sequence[int | None]) -> None:
     """
     if GIVEN_ENDS in scene.body.lacks:
         raise BadInput(
-            f"states: found a {scene.punch.profile.words()}, whose contact has another half-width in "
-            "every state; fields of single states are there for a given half-width only. Stresses "
-            'inside are archived by output.map and the quantity "interior"'
+            f"fields: found a {scene.punch.profile.words()}, whose contact ends where the pressure says, "
+            "expected ends that are given, as of a flat punch. Stresses inside are archived by "
+            'output.map and the quantity "interior"'
         )
     if scene.layers:
         raise BadInput(

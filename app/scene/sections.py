@@ -111,7 +111,7 @@ class GivenSolid:
     solid: Solid
     material: str | None = key(
         Choice(LIBRARY),
-        "name of a solid of the library, gives `kind`, constants and, of metals, yield_strength", None,
+        "name of a solid of the library, gives kind, constants and, of metals, yield_strength", None,
         "what is written beside it replaces the material's",
     )  # fmt: skip
     yield_strength: float | None = key(

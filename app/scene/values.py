@@ -413,4 +413,4 @@ class _Stroke:
 
 
 #: Strokes one after the other.
-STROKES = List(_Stroke(), 'a list of `"forward"`, `"backward"` and `{to = X/L, speed = …, rest = …}`')
+STROKES = List(_Stroke(), 'a list of "forward", "backward" and {to = X/L, speed = …, rest = …}')

@@ -200,7 +200,7 @@ STRESSES_IN_PUNCH = {
         )
         for name, about, of in _IN_PUNCH
     )
-    for method in (CLOSED_FORM, FEM)
+    for method in (CLOSED_FORM, SIE, FEM)
 }  # fmt: skip
 
 QUANTITIES.add_all(globals())

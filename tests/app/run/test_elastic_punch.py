@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from support import computed
+from support import computed, of_sections
 
 from galinx.app.errors import BadInput
 from galinx.app.results.result import compute, template
@@ -50,3 +50,58 @@ def test_stresses_below_the_pressure_of_finite_elements_are_those_of_the_closed_
     if profile == "parabolic":
         loads = (result.data[f"states/{of}/punch_first_yield_load"] for of in ("fem", "closed_form"))
         np.testing.assert_allclose(*loads, rtol=1e-5)
+
+
+STEEL = {"material": "steel", "speed": "300 m/s"}
+#: Punches, and what a contact of each has of the bodies' stresses.
+PUNCHES = {
+    "parabolic": ({"radius": "20 mm"}, ["surface", "yield", "interior"]),
+    "power": ({"exponent": 3, "coefficient": 1000.0}, ["surface", "yield", "interior"]),
+    "flat": ({"half_width": "0.2 mm"}, ["surface"]), "wedge": ({"slope": 0.01}, ["surface"]),
+}  # fmt: skip
+
+
+def pressed(method, quantities, solid=STEEL, layers=(), **punch):
+    """Result of a punch on aluminium with layers."""
+    output = {"quantities": quantities}
+    if "interior" in quantities:
+        output["points"] = [[0.2, -0.3], [0.0, -4.0]]
+    return compute(of_sections(
+        solid={"material": "aluminium"}, layer=[*layers] or None,
+        punch={"load": "50 N/mm"} | punch | ({"solid": solid} if solid else {}),
+        friction={"mu": 0.3}, motion={"c": 0.5}, solve={"methods": [method]}, output=output,
+    ))  # fmt: skip
+
+
+@pytest.mark.parametrize("profile", PUNCHES)
+def test_a_layer_of_the_plates_own_solid_changes_nothing(profile):
+    keys, quantities = PUNCHES[profile]
+    layer = {"material": "aluminium", "thickness": "0.2 mm"}
+    layered = pressed("sie", quantities, layers=[layer], profile=profile, **keys)
+    uniform = pressed("closed_form", quantities, profile=profile, **keys)
+    assert layered.verdict == uniform.verdict == "PASS"
+    names = ["surface/M/sigma_XX", "states/M/K_I_left" if profile == "flat" else "states/M/half_width"]
+    if "yield" in quantities:
+        of_punch = "sigma_XX", "sigma_YY", "sigma_XY", "von_mises"
+        names += ["states/M/largest_pressure", "states/M/punch_von_mises", "states/M/von_mises",
+                  *(f"interior/M/punch_{name}" for name in of_punch)]  # fmt: skip
+    X = layered.data["surface/X_over_a"]
+    for name in names:
+        one, other = (
+            of.data[name.replace("/M/", f"/{method}/")]
+            for of, method in ((layered, "sie"), (uniform, "closed_form"))
+        )
+        if name.startswith("surface") and profile == "wedge":  # next to the tip it is infinite
+            one, other = (σ[:, np.abs(X) > 0.03] for σ in (one, other))
+        np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-5, err_msg=name)
+
+
+def test_a_stiff_punch_over_layers_is_a_rigid_one():
+    """What is left is the quotient of the moduli."""
+    stiff, rigid = (
+        pressed("sie", ["surface"], solid, [{"material": "TiN", "thickness": "20 µm"}],
+                profile="parabolic", radius="20 mm").data
+        for solid in ({"E": 2e18, "nu": 0.3, "rho": 7800.0}, None)
+    )  # fmt: skip
+    for name in ("states/sie/half_width", "states/sie/largest_pressure", "surface/sie/sigma_XX"):
+        np.testing.assert_allclose(stiff[name], rigid[name], rtol=1e-6, atol=1e-6, err_msg=name)

@@ -26,7 +26,7 @@ from galinx.meshes.kind import Requirements
 from galinx.meshes.rings import Refinement
 from galinx.postprocess.compare import RULES
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import ContactRecovery, from_moments
+from galinx.solvers.contact.recovery import chebyshev, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -158,8 +158,8 @@ def of_planes(E1: float, angle: float, share: float, more: int, pieces: int) -> 
 def recovered(space: Space, response: Any, g: float) -> tuple[Any, FlatPunch]:
     """The pressure by finite elements, and the exact one."""
     punch, local = SlidingPunch(space, response), FlatPunch(response, np.array([g]))
-    recovery = ContactRecovery(space.contact.s, space.degree, space.chart, np.empty(0))
-    pressure = from_moments(punch.states(g).tested(recovery.moments), local.α, local.β)
+    moments = chebyshev(space.chart.surface_position(space.contact.s))
+    pressure = from_moments(punch.states(g).tested(moments), local.α, local.β)
     punch.destroy()
     return pressure, local
 

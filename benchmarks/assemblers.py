@@ -15,7 +15,7 @@ from petsc4py import PETSc
 from galinx.meshes import MESHES
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import ContactRecovery, from_moments
+from galinx.solvers.contact.recovery import chebyshev, from_moments
 from galinx.solvers.fem.dolfinx_space import DolfinxSpace
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
@@ -41,8 +41,8 @@ def measured(space: Space) -> tuple[float, int, np.ndarray]:
 def intensities(space: Space) -> np.ndarray:
     """K_I at X = -a and X = a."""
     punch, local = SlidingPunch(space, RESPONSE), FlatPunch(RESPONSE, np.array([G]))
-    recovery = ContactRecovery(space.contact.s, space.degree, space.chart, np.zeros(0))
-    K_I = from_moments(punch.states(G).tested(recovery.moments), local.α, local.β).K_I[0]
+    moments = chebyshev(space.chart.surface_position(space.contact.s))
+    K_I = from_moments(punch.states(G).tested(moments), local.α, local.β).K_I[0]
     punch.destroy()
     return K_I
 

@@ -9,7 +9,7 @@ from row import Row, Verdict
 from galinx.meshes import MESHES
 from galinx.meshes.rings import Refinement
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.recovery import ContactRecovery, from_moments
+from galinx.solvers.contact.recovery import chebyshev, from_moments
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.fem.space import Space, distribute
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -29,9 +29,9 @@ def _errors(levels: int, outer: float, degree: int, c: float = 0.6) -> np.ndarra
     cells = kind.build(Refinement(levels, _RATIO, 2, (reach / count,) * count))
     space = Space(*distribute(cells, MPI.COMM_WORLD), kind.chart, degree, terms=_MOMENTS)
     punch, g = SlidingPunch(space, MovingFrame(2.0, c)), np.array([-0.66, 0.66])
-    recovery = ContactRecovery(space.contact.s, degree, space.chart, np.array([0.0]))
+    moments = chebyshev(space.chart.surface_position(space.contact.s))
     local = FlatPunch(MovingFrame(2.0, c), g)
-    pressure = from_moments(punch.states(g).tested(recovery.moments), local.α, local.β)
+    pressure = from_moments(punch.states(g).tested(moments), local.α, local.β)
     punch.destroy()
     return np.abs(pressure.K_I / local.K_I[:, None] - 1.0).max(axis=1)
 

@@ -112,7 +112,8 @@ def test_it_has_a_page_and_fields_or_says_why_not(case, archived):
     done = here("fields", path.name, "--overwrite", "--extent", 2, cwd=path.parent)
     scene = galinx.load(path).scene
     refusals = {
-        "layers": scene.layers, "half-width": scene.body.found, "ν": scene.solid.nearly_incompressible
+        "layers": scene.layers, "ends that are given": scene.body.found,
+        "ν": scene.solid.nearly_incompressible,
     }  # fmt: skip
     reasons = [word for word, holds in refusals.items() if holds]
     assert done.returncode == (2 if reasons else 0), done.stderr

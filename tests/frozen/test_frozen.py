@@ -19,8 +19,9 @@ SCENES = {path.stem: path for path in sorted(Path(__file__).parent.glob("*.toml"
 TREES = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in SCENES.items()}
 #: Scenes that are planned in a moment, and whose solutions give every quantity.
 PLANNED = (
-    "along", "along_a_cylinder", "coating", "cylinder", "elastic_punch", "flat", "own_pressure",
-    "pressure_on_coating", "speeds_of_a_cylinder", "steady", "third_power", "tilted_on_coating",
+    "along", "along_a_cylinder", "coating", "cylinder", "elastic_punch", "elastic_punch_on_coating",
+    "flat", "own_pressure", "pressure_on_coating", "speeds_of_a_cylinder", "steady", "third_power",
+    "tilted_on_coating",
 )  # fmt: skip
 #: Known solids are constants, and no code of their own.
 CONSTANTS = ("solid.material", "layer.material")

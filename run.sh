@@ -30,7 +30,7 @@ mpirun=mpirun
 [ ! -x "$(dirname "$python")/mpirun" ] || mpirun=$(dirname "$python")/mpirun
 
 # The programs, then what only the tests need.
-packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-h5py python3-numpy
+packages=(python3-dolfinx python3-petsc4py python3-mpi4py python3-gmsh python3-h5py python3-numpy
   python3-scipy python3-matplotlib python3-pint python3-click python3-rich
   python3-jinja2 python3-tomlkit python3-xarray python3-plotly
   libopenblas0-serial openmpi-bin gcc libc6-dev)

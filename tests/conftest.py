@@ -29,7 +29,7 @@ SLOW = {"tables_run", "map_run", "inside_run", "archives"}
 #: of scene on one rank and on two (mpi/). What a result is made of then does not depend on their version.
 FEM = (
     "app/commands/test_compute.py::test_one_and_two_ranks", "app/results/test_paraview.py::test_stresses",
-    "app/run/test_fixed_degree.py::test_multigrid", "mpi/",
+    "app/run/test_fixed_degree.py::test_multigrid", "meshes/test_store.py", "mpi/",
     *(f"solvers/fem/test_{name}.py" for name in (
         "compiler", "direct", "dolfinx_space", "element", "punch", "space", "versions",
     )),

@@ -10,6 +10,7 @@ from support import HOME
 ROOMS = ("app", "meshes", "solvers", "postprocess")
 #: Libraries that are met in one place only.
 ONE_PLACE = {
+    "gmsh": {"meshes/store.py"},
     "h5py": {"postprocess/hdf5/"},
     "ufl": {"solvers/fem/forms.py", "solvers/fem/versions.py"},
     "matplotlib": {"app/figures/"},

@@ -91,7 +91,7 @@ def test_an_installed_command_calls_itself_galinx(names_and_site, arguments, sai
 
 
 #: What conda-forge calls otherwise than PyPI.
-CONDA = {"matplotlib": "matplotlib-base", "dolfinx-solver-real": "fenics-dolfinx"}
+CONDA = {"matplotlib": "matplotlib-base", "dolfinx-solver-real": "fenics-dolfinx", "gmsh": "python-gmsh"}
 
 
 def test_the_conda_environment_has_what_the_package_needs():

@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 from galinx.clock import Clock
 from galinx.meshes.kind import check_cells
+from galinx.meshes.store import obtain
 
 from ..contact.fem_plan import DOLFINX, TENSOR, FemPlan, Messages, on_finer_cells
 from .dolfinx_space import DolfinxSpace
@@ -84,7 +85,10 @@ class Discretisation:
             with self.clock("mesh"):
                 check_cells(plan.pattern)
                 if comm.rank == 0:
-                    mesh = plan.drawn or plan.kind.build(plan.refinement, cuts)
+                    if cuts > 1 and plan.drawn is None:  # Gmsh's copy of a cut mesh would only be large
+                        mesh = plan.kind.build(plan.refinement, cuts)
+                    else:  # no other run has the same that is drawn
+                        mesh = plan.drawn or obtain(plan.pattern)
                 self._meshes[cuts] = distribute(mesh, comm)
         return self._meshes[cuts]
 

@@ -391,7 +391,7 @@ def interfaces(of: Archive) -> Drawing:
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
     caption = (
         "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
-        "sides share, and in-plane stress, which jumps."
+        "sides share, and in-plane stress, which jumps: above solid, below dashed."
     )
     if len(columns) < len(over_a):
         caption += f" {len(columns)} of {len(over_a)} interfaces are shown; a wider --size shows more."

@@ -89,7 +89,7 @@ addEventListener("load", async () => {
   const style = getComputedStyle(document.body), COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"];
   const axis = { gridcolor: "rgba(128,128,128,0.25)", zerolinecolor: "rgba(128,128,128,0.6)", automargin: true };
   const common = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: style.color, size: 13 },
-    margin: { l: 60, r: 16, t: 36, b: 46 }, legend: { orientation: "h", x: 0, y: 1, yanchor: "bottom" }, modebar: { bgcolor: "rgba(0,0,0,0)" }, hovermode: "closest", dragmode: innerWidth < 600 ? false : "zoom" };
+    margin: { l: 60, r: 16, t: 36, b: 46 }, legend: { orientation: "h", x: 0, y: -0.34, yanchor: "top" }, modebar: { bgcolor: "rgba(0,0,0,0)" }, hovermode: "closest", dragmode: innerWidth < 600 ? false : "zoom" };
   const draw = (box, data, layout) => Plotly.react(box, data, { ...common, ...layout,
     xaxis: { ...axis, ...layout.xaxis }, yaxis: { ...axis, ...layout.yaxis } }, { responsive: true, displaylogo: false, displayModeBar: "hover" });
 

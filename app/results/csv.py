@@ -87,13 +87,8 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
                     columns += _of_loops(archive.data, units, block)
                 if over[0] == runs.LAW:
                     own = states_of_sliders(archive.data)[block]
-                    columns += _parameters(
-                        archive.data,
-                        units,
-                        own,
-                        len(over),
-                        (states.SPEED, states.MOTION, states.POSITION),
-                    )
+                    without = states.SPEED, states.MOTION, states.POSITION
+                    columns += _parameters(archive.data, units, own, len(over), without)
             else:
                 columns += [(head, values[block]) for head, values in _of_states(archive.data, units)]
             if start == 0:
@@ -148,9 +143,8 @@ def _of_states(data: dict[str, Any], units: Units) -> list[_Column]:
         (f"{c.name} [{c.unit}]" if c.unit != "none" else c.name, np.asarray(c.values)) for c in first
     ]
     taken = {column.path for column in first}
-    if preferred(
-        data, states.RESULTANT_RATIO
-    ):  # these stand for a friction that varies along the contact
+    if preferred(data, states.RESULTANT_RATIO):
+        # These stand for a friction that varies along the contact.
         taken |= {states.FRICTION.path, states.RATIO.path, states.INNER_STATE.path}
     for path, row in table().items():
         if path not in data or path.split("/")[0] not in ("states", "interfaces") or path in taken:

@@ -25,8 +25,7 @@ from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, from_edge, under_punch
 from .panels import stretched
-from .pressure import ENDS, Expansion, Pressure
-from .recovery import Polynomials
+from .pressure import ENDS, Expansion, Functions, Pressure
 from .residual import Rule
 
 #: Distance from an end within which the pressure less its power is that of the end; distance of places,
@@ -208,7 +207,7 @@ class ExpansionAlong(BentExpansion):
 
 
 @dataclass(frozen=True)
-class Splines(Polynomials):
+class Splines(Functions):
     """Splines that follow a pressure without its weight where friction varies along the contact.
 
     Next to ends and kinks the pressure less its weight has terms like x log x, so knots gather there; at
@@ -239,10 +238,6 @@ class Splines(Polynomials):
 
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
         return c @ self.values(np.ravel(r)).T
-
-    def unresolved(self, c: NDArray) -> NDArray[np.float64]:
-        """Relative error measured on splines themselves: 0, as their moved knots show it."""
-        return np.zeros(len(c))
 
     def fitted(
         self, moments: NDArray, α: NDArray, β: NDArray, tests: Callable[[NDArray], NDArray]

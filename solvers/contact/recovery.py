@@ -405,7 +405,7 @@ class KinkedPressure(Pressure):
         exponents: tuple[float, float], at_ends: Pressure, exponent: float = 0.0,
         tolerance: float = 1e-6, infinite: bool = False,
     ) -> None:  # fmt: skip
-        self._infinite, self._chart, self._exponent, self._at_ends = infinite, chart, exponent, at_ends
+        self._infinite, self._chart, self._exponent, self.at_ends = infinite, chart, exponent, at_ends
         self.kinks, (self.β, self.α) = kinks, exponents
         self._farthest = farthest_at_kink(tolerance)
         self._facets = ContactFacets(s, degree, chart)
@@ -432,7 +432,7 @@ class KinkedPressure(Pressure):
         σ[inside] = self._piecewise(r[inside])
         for d, gap in zip((1.0 + r, 1.0 - r), gaps_of(self.kinks)):
             near = (d > 0.0) & (d < _NEXT_TO_END * min(gap, 1.0))
-            σ[near] = self._at_ends.σ_YY(r[near])[0]
+            σ[near] = self.at_ends.σ_YY(r[near])[0]
         for number, at in enumerate(self.kinks if self._exponent else ()):
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)

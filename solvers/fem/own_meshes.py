@@ -339,9 +339,8 @@ class KinkedLevel(SplineLevel, SingleLevel):
         σ = np.append(pressure.σ_YY(across), at_kinks)[None]
         size = np.abs(σ).max(keepdims=True)
         # Splines of all degrees are off alike next to ends.
-        coarse, now = (
-            self.at_ends(states.contact, nearest).σ_YY(NEXT_TO_ENDS) for nearest in (COARSE, NEXT)
-        )
+        each = pressure.at_ends, self.at_ends(states.contact, COARSE)
+        now, coarse = (of.σ_YY(NEXT_TO_ENDS) for of in each)
         left = np.abs(coarse - now).max() + pressure.left_at_kinks
         return self.gauge_of_free(states, σ, size, float(left / size[0, 0]))
 

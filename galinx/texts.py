@@ -2,7 +2,7 @@
 
 import re
 import unicodedata
-from math import floor, log10
+from math import floor, isfinite, isnan, log10
 from textwrap import fill
 
 #: Control characters, what breaks lines or changes the direction of writing, and halves of characters,
@@ -41,6 +41,8 @@ _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 def number(value: float, digits: int = 4) -> str:
     """A number in TeX, without dollars: ``4.786 \\times 10^{-7}``."""
+    if not isfinite(value):
+        return r"\mathrm{NaN}" if isnan(value) else r"\infty" if value > 0 else r"-\infty"
     shown = f"{value:.{digits - 1}e}"
     mantissa, exponent = shown.split("e")
     if float(shown) == 0.0 or _SMALL <= abs(float(shown)) < _LARGE:

@@ -6,12 +6,17 @@ digest shows; what is checked here is that this program knows all that is in it.
 
 import hashlib
 import json
-from collections.abc import Collection, Mapping
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from . import over_time  # noqa: F401 - it adds its rules
 from .quantities import table
-from .quantities.runs import SCENE
+from .quantities.quantity import NUMBER, TEXT, WHOLE
+from .quantities.runs import LINE, SCENE
 
 #: Version of the layout, and the first version that is read: earlier archives had no digest.
 VERSION, FIRST = 4, 2
@@ -64,32 +69,98 @@ ATTRIBUTES = {
 }  # fmt: skip
 
 
-def faults(attributes: Mapping[str, Any], datasets: Collection[str], scene: str) -> list[str]:
-    """Faults of an archive's attributes and paths of datasets, one sentence each.
+class Layout(NamedTuple):
+    """Kind of numbers that a dataset holds, as NumPy has it, its shape, and its unit."""
+
+    kind: str
+    shape: tuple[int, ...]
+    unit: Any
+
+
+#: Kinds of NumPy by type of a quantity, and types in words.
+_KINDS = {TEXT: "O", WHOLE: "iu", NUMBER: "f"}
+_IN_WORDS = {TEXT: "texts", WHOLE: "whole numbers", NUMBER: "numbers"}
+
+
+def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Layout], scene: Any) -> list[str]:
+    """Faults of an archive's attributes and of its datasets' paths, types and shapes, one sentence each.
 
     Args:
         attributes: attributes of the root, ``schema_version`` among them.
-        datasets: paths of the datasets.
+        datasets: layouts of the datasets by path.
         scene: text of the scene.
     """
     version, known = attributes["schema_version"], table()
-    listed = json.loads(attributes.get("datasets", "[]"))
+    rows = {name: row for name, row in ATTRIBUTES.items() if row.since <= version}
     sentences = [
         f"attribute {name}: missing, expected {row.expected}"
-        for name, row in ATTRIBUTES.items()
-        if row.since <= version and name not in attributes
+        for name, row in rows.items()
+        if name not in attributes
+    ]
+    sentences += [
+        f"attribute {name}: found {attributes[name]!r}, expected {row.expected}"
+        for name, row in rows.items()
+        if name in attributes and not _holds(attributes[name], row.expected)
     ]
     sentences += [
         f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         for name in datasets
         if name not in known
     ]
-    sentences += [f"{name!r}: missing" for name in listed if name not in datasets]
-    if unlisted := [name for name in datasets if name in known and name not in listed]:
-        sentences.append(f"attribute datasets: {', '.join(unlisted)} not listed, expected all")
-    if attributes.get("complete", True) not in (True,):
-        sentences.append(f"attribute complete: found {attributes['complete']}, expected true")
-    digest = hashlib.sha256(scene.encode()).hexdigest()
+    sentences += _misshapen({name: layout for name, layout in datasets.items() if name in known})
+    if _holds(attributes.get("datasets"), _LIST):
+        listed = json.loads(attributes["datasets"])
+        sentences += [f"{name!r}: missing" for name in listed if name not in datasets]
+        if unlisted := [name for name in datasets if name in known and name not in listed]:
+            sentences.append(f"attribute datasets: {', '.join(unlisted)} not listed, expected all")
+    digest = hashlib.sha256(str(scene).encode()).hexdigest()
     if attributes.get("scene_sha256", digest) != digest:
         sentences.append(f"{SCENE.path}: found a text of hash {digest}, expected that of scene_sha256")
+    return sentences
+
+
+def _holds(value: Any, expected: str) -> bool:
+    """True where an attribute is what is expected, in words of the table above."""
+    if "JSON" in expected:
+        held = None
+        with suppress(TypeError, ValueError):
+            held = json.loads(value)
+        if expected == _LIST:
+            return isinstance(held, list) and all(isinstance(each, str) for each in held)
+        of = expected.partition("object ")[2]
+        kinds = {"of numbers": (int, float), "of texts": str}.get(of, object)
+        return isinstance(held, dict) and all(isinstance(each, kinds) for each in held.values())
+    if expected == "true":
+        return isinstance(value, (bool, np.bool_)) and bool(value)
+    if "number" in expected:
+        return isinstance(value, (np.floating, np.integer)) and (
+            "finite" not in expected or bool(np.isfinite(value))
+        )
+    return isinstance(value, str)
+
+
+def _misshapen(datasets: Mapping[str, Layout]) -> list[str]:
+    """Faults of units, types, numbers of axes, and of axes of one dimension that differ in length."""
+    sentences, lengths = [], dict[str, list[tuple[int, str]]]()
+    for name, (kind, shape, unit) in datasets.items():
+        row = table()[name]
+        if not isinstance(unit, str) or unit != row.unit:
+            sentences.append(f"{name!r}: found unit {unit!r}, expected {row.unit!r}")
+        if kind not in _KINDS[row.type] or len(shape) != len(row.over):
+            axes = " x ".join(row.over) or "a single value"
+            sentences.append(
+                f"{name!r}: found numbers of kind {kind!r} and shape {shape}, expected "
+                f"{_IN_WORDS[row.type]}, {axes}"
+            )
+            continue
+        for dimension, length in zip(row.over, shape):
+            if dimension != LINE:
+                lengths.setdefault(dimension, []).append((length, name))
+    for dimension, found in lengths.items():
+        usual = Counter(length for length, _ in found).most_common(1)[0][0]
+        sentences += [
+            f"{name!r}: found {length} {dimension}, expected {usual} as other datasets have"
+            for length, name in found
+            if length != usual
+        ]
     return sentences

@@ -46,3 +46,22 @@ def gone(name):
 
 def renamed(old, new):
     return lambda file: file.move(old, new)
+
+
+def another(name, made):
+    """Another dataset in the place of one, of what it held."""
+
+    def apply(file):
+        held, about = file[name][()], dict(file[name].attrs)
+        del file[name]
+        file[name] = made(held)
+        file[name].attrs.update(about)
+
+    return apply
+
+
+def unit(name, found):
+    def apply(file):
+        file[name].attrs["units"] = found
+
+    return apply

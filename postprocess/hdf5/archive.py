@@ -279,15 +279,19 @@ class Archive:
 
     def __init__(self, path: Path, file: h5py.File) -> None:
         self._path, self._file = path, file
-        self.names: list[str] = []
+        layouts: dict[str, schema.Layout] = {}
+
+        def note(name: str, item: Any) -> None:
+            if isinstance(item, h5py.Dataset):
+                layouts[name] = schema.Layout(item.dtype.kind, item.shape, item.attrs.get("units"))
+
         with _reading(path):
             self.attributes = dict(file.attrs)
             _check_kind(path, self.attributes)
-            file.visititems(
-                lambda name, item: self.names.append(name) if isinstance(item, h5py.Dataset) else None
-            )
-        scene = self._read(SCENE.path) if SCENE.path in self.names else ""
-        if faults := schema.faults(self.attributes, self.names, scene):
+            file.visititems(note)
+        self.names = [*layouts]
+        scene = self._read(SCENE.path) if SCENE.path in layouts else ""
+        if faults := schema.faults(self.attributes, layouts, scene):
             more = f"\n  and {len(faults) - _LISTED} more" if len(faults) > _LISTED else ""
             lines = "".join(f"\n  {fault}" for fault in faults[:_LISTED])
             raise UnreadableArchive(

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from tampering import archived, attribute, gone, opened, renamed
+from tampering import another, archived, attribute, gone, opened, renamed, unit
 
 from galinx.postprocess import schema
 from galinx.postprocess.errors import UnreadableArchive
@@ -88,6 +88,12 @@ UNKNOWN = {
     "section renamed": (renamed("run", "ruN"), "'run/seconds': missing"),
     "dataset lost": (gone("states/alpha"), "'states/alpha': missing"),
     "attribute lost": (gone("verdict"), "attribute verdict: missing, expected PASS"),
+    "a row less": (another("states/f", lambda found: found[:-1]), "found 11 states, expected 12"),
+    "an axis more": (another("states/f", lambda found: found[None]), r"\(1, 12\), expected numbers, states"),
+    "texts": (another("states/f", lambda _: "texts"), "'states/f': found numbers of kind 'O'"),
+    "another unit": (unit("states/speed", "km/s"), "found unit 'km/s', expected 'm/s'"),
+    "an attribute of another kind": (attribute("load", "{}"), "found '{}', expected a finite number"),
+    "a list of numbers": (attribute("warnings", "[1]"), "warnings: found .* expected a JSON list of"),
     "layout of words": (attribute("schema_version", "2"), "schema_version: found '2', expected 2 to 4"),
     "layout before the first": (attribute("schema_version", 1), "schema_version: found 1"),
     "newer": (attribute("schema_version", 99), "install a newer one"),

@@ -89,7 +89,7 @@ UNKNOWN = {
     "dataset lost": (gone("states/alpha"), "'states/alpha': missing"),
     "attribute lost": (gone("verdict"), "attribute verdict: missing, expected PASS"),
     "a row less": (another("states/f", lambda found: found[:-1]), "found 11 states, expected 12"),
-    "an axis more": (another("states/f", lambda found: found[None]), r"\(1, 12\), expected numbers, states"),
+    "an axis more": (another("states/f", lambda found: found[None]), r"\(1, 12\), expected numbers"),
     "texts": (another("states/f", lambda _: "texts"), "'states/f': found numbers of kind 'O'"),
     "another unit": (unit("states/speed", "km/s"), "found unit 'km/s', expected 'm/s'"),
     "an attribute of another kind": (attribute("load", "{}"), "found '{}', expected a finite number"),

@@ -43,8 +43,6 @@ LIMIT = 120
 _SPREAD, _TOGETHER = 33, 33
 #: Share of the largest residual from which on one is about as large.
 _ABOUT = 0.9
-#: Loads of single nodes that are solved for at once.
-_AT_ONCE = 64
 
 
 def spread(values: NDArray, count: int) -> NDArray:
@@ -336,11 +334,12 @@ class SlidingPunch(Punch):
         self, b: NDArray, x: NDArray, refines: bool, checked: bool = True
     ) -> tuple[list[PETSc.Vec], NDArray[np.float64]]:
         """Fields and forces of displacements x under loads b, both (rows, k), checked and refined."""
-        residuals = self._residuals(x, b, np.zeros(b.shape[1]))
-        if checked:
-            self.factor.check(b, x, residuals)
-        if refines:
-            x += self._corrections(residuals)
+        if checked or refines:
+            residuals = self._residuals(x, b, np.zeros(b.shape[1]))
+            if checked:
+                self.factor.check(b, x, residuals)
+            if refines:
+                x += self._corrections(residuals)
         fields = [vector(self.factor.A, column) for column in x.T]
         return fields, self._followed(fields, self._reactions(x))
 
@@ -348,13 +347,46 @@ class SlidingPunch(Punch):
         """Forces (fields, 2, n) once the far boundary moves with the fields, which it moves."""
         return np.array([self._boundary.follow(force, field) for force, field in zip(forces, fields)])
 
-    def by_nodes(self) -> NDArray[np.float64]:
-        """Forces that a tangential load at each contact node causes, (n, 2, n)."""
-        loads, forces = np.eye(len(self.space.contact.s)), []
-        for start in range(0, len(loads), _AT_ONCE):
-            x = self._displacements(self._tangential(loads[:, start : start + _AT_ONCE]))
-            forces += [self._boundary.follow(force) for force in self._reactions(x)]
-        return np.array(forces)
+    def by_units(self) -> tuple[list[PETSc.Vec], NDArray, NDArray]:
+        """Forces that displacements and tangential loads at each contact node cause.
+
+        Displacements are those of all nodes by -1, which the flat punch has, and of each but the first.
+        By the theorem of Maxwell and Betti a tangential load causes normal forces that are less the
+        tangential displacements where it acts, by normal displacements where they act: one solution a
+        node gives both.
+
+        Returns:
+            Fields of the displacements after the first; forces of the displacements and of the loads,
+            (n, 2, n) each.
+        """
+        nodes = self.space.contact
+        n = len(nodes.s)
+        units = np.eye(n)
+        units[0] = -1.0
+        b = self._normal(units)
+        x = self._displacements(b)
+        moved = np.zeros((n, n))
+        moved[:, nodes.owned] = x[nodes.dofs(0) - self._first].T
+        self.space.comm.Allreduce(MPI.IN_PLACE, moved)
+        normal = -moved
+        normal[0] = -normal.sum(axis=0)
+        loaded = [self._boundary.follow(np.array(pair)) for pair in zip(np.eye(n), normal.T)]
+        fields, forces = self._refined(b[:, 1:], x[:, 1:], self._refines, checked=False)
+        return fields, np.concatenate([self.forces[:1], forces]), np.array(loaded)
+
+    def _normal(self, displacements: NDArray) -> NDArray[np.float64]:
+        """Nodal forces (rows, k) of normal displacements held at the contact nodes, (k, n)."""
+        nodes = self.space.contact
+        moved, total = self._rows.createVecLeft(), self._rows.createVecRight()
+        b = np.empty((len(self._motions), len(displacements)))
+        for column, each in zip(b.T, displacements[:, nodes.owned]):
+            moved.setArray(np.column_stack([np.zeros_like(each), each]).ravel())
+            self._rows.multTranspose(moved, total)
+            column[:] = -total.array_r
+        moved.destroy(), total.destroy()
+        b[self._held] = 0.0
+        b[nodes.dofs(1) - self._first] = displacements[:, nodes.owned].T
+        return b
 
     def _tangential(self, forces: NDArray) -> NDArray[np.float64]:
         """Loads (rows, k) of tangential forces at the contact nodes, (n, k)."""
@@ -448,24 +480,24 @@ class ElasticPunch(SlidingPunch):
         heights: NDArray[np.float64] | None = None, along: Callable[[Any], NDArray] | None = None,
         least: float = LEAST,
     ) -> None:  # fmt: skip
-        unit = np.eye(len(space.contact.s))
+        punch = SlidingPunch(space, response.punch, solver)
+        super().__init__(space, response.plate, solver, heights, along, least)
+        self.response = response
         # v' is that of the first node and, of the others, what they move farther. So the contact's common
         # motion, which is large, spoils no digits of the rest.
-        others = unit[1:]
-        punch = SlidingPunch(space, response.punch, solver, others)
-        each = others if heights is None else np.vstack([heights, others])
-        super().__init__(space, response.plate, solver, each, along, least)
-        self.response, self._parts = response, self._parts - len(others)
-        self._moving_fields = self.fields[self._parts :]
+        signs = np.where(np.arange(len(space.contact.s)), 1.0, -1.0)[:, None, None]
+        self._moving_fields, moving, by_loads = self.by_units()
         #: Forces in the plate by each unit of v', (n, 2, n).
-        self._moving = np.concatenate([-self.forces[:1], self.forces[self._parts :]])
-        self.fields, self.forces = self.fields[: self._parts], self.forces[: self._parts]
+        self._moving = signs * moving
         #: Combinations of displacements and tangential forces, orthonormal, (basis, 2 n).
-        self._basis: NDArray[np.float64] = np.empty((0, 2 * len(unit)))
-        S = self._moving[:, 1].T
-        S_punch = np.concatenate([-punch.forces[:1], punch.forces[1:]])[:, 1].T
-        T, T_punch = (of.by_nodes()[:, 1].T for of in (self, punch))
-        punch.destroy()
+        self._basis: NDArray[np.float64] = np.empty((0, 2 * len(signs)))
+        fields, moving_punch, by_loads_punch = punch.by_units()
+        S, T, S_punch, T_punch = (
+            forces[:, 1].T for forces in (self._moving, by_loads, signs * moving_punch, by_loads_punch)
+        )
+        for held in (*fields, punch):
+            held.destroy()
+        unit = np.eye(len(signs))
         #: -v' by R, and by g R; and matrices of the equations of R, likewise.
         self._moved = -response.ratio * np.linalg.solve(S_punch, [unit, T_punch])
         self._equations = unit - S @ self._moved[0], -S @ self._moved[1] - T

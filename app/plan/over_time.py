@@ -328,8 +328,8 @@ class Starts:
         size = 2.0 * slow * min(1.0, self.shortest / long)
         seen = min(size, 2.0 / 3.0 * slow) if self.time.every else size  # short waves ahead are output
         # A cell further out is longer by a share of its distance from the innermost ones, 1.75 times as
-        # much where the error is measured.
-        growth = 0.15 * 0.4 ** (digits - 3.0)
+        # much where the error is measured; all the less where short waves follow a faster change.
+        growth = 0.15 * 0.4 ** (digits - 3.0) * min(1.0, self.shortest / 2.0) ** 2
         # Distance over a of the boundary at which steady motion is held.
         beyond = 5.0 / self.scene.solve.tolerance if self.time.steady else 0.0
         ratio = 0.5 if self.sharp else 0.25  # of a ring of cells at the edges over the one outside it

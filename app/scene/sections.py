@@ -743,7 +743,7 @@ class LayerSections(Section):
             return []
 
     def _tabulated(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:
-        if others := sorted(given.keys() - {"properties", "kind", "plane"}):
+        if others := sorted(given.keys() - {"properties", "kind", "plane", "yield_strength"}):
             faults.append(f"{name}: properties gives {', '.join(others)}, too; take one of them away")
             return []
         if given.get("kind", "isotropic") != "isotropic":
@@ -760,8 +760,14 @@ class LayerSections(Section):
         except ValueError as error:
             faults.append(f"{name}.properties: {error}")
             return []
+        strength = given.get("yield_strength")
+        try:
+            strength = strength if strength is None else self.own["yield_strength"][1].kind(strength)
+        except ValueError as error:
+            faults.append(f"{name}.yield_strength: {error}")
+            return []
         return [
-            Layer(lower[0] - upper[0], top, None if top == bottom else bottom)
+            Layer(lower[0] - upper[0], top, None if top == bottom else bottom, yield_strength=strength)
             for (upper, lower), (top, bottom) in zip(pairwise(rows), pairwise(solids))
         ]
 

@@ -10,9 +10,9 @@ the punch, the higher Legendre polynomials of each cell lose energy (spectral vi
 
     w·D w = Σ_cells rate Σ_ij (d_i + d_j) w_ij²,      d_j = exp(-((p - j)/(j - m))²) for j > m
 
-What a cell resolves well is not damped, and neither is steady motion. Near the punch nothing is damped,
-but where it turns round: waves that begin at the edges then, suddenly, are sharp, and no cell resolves
-them.
+What a cell resolves well is not damped, and neither is steady motion. Under the punch friction feeds what
+no cell resolves, which would grow the faster the shorter the steps are. Where the punch turns round more
+is damped: waves that begin at the edges then, suddenly, are sharp.
 
 **Energies** are those of the whole solid, and of a box round the punch that goes with it. With u̇ as seen
 from the punch, whose velocity is C, the solid moves at u̇ - C u,X (lengths over a, times over a/c_s). Its
@@ -42,8 +42,6 @@ from .space import Space
 _RATE, _KEPT = 5.0, 0.6
 #: Rate and share for all cells where the punch turns round.
 _SHARP_RATE, _SHARP_KEPT = 20.0, 0.4
-#: Distance from the punch, over a, at which damping begins.
-_FROM = 1.0
 
 
 class Quadrature:
@@ -138,11 +136,11 @@ class Motion:
 
     @cached_property
     def D(self) -> csr_matrix:
-        """Damping of waves that far cells are too large for, for one component."""
-        dofs, legendre, rates = self._damping
+        """Damping of waves that cells are too large for, for one component."""
+        legendre, rates = self._damping
         both = np.kron(legendre, legendre)
-        matrices = both.T @ (rates.reshape(len(dofs), both.shape[1], 1) * both)
-        return self._sum(matrices, dofs[:, 0].reshape(len(dofs), both.shape[1]) // 2)
+        matrices = both.T @ (rates.reshape(len(rates), both.shape[1], 1) * both)
+        return self._sum(matrices, self._nodes)
 
     @property
     def impedance(self) -> NDArray[np.float64]:
@@ -183,13 +181,12 @@ class Motion:
         return versions.cell_nodes(self.space.V)[:, grid.ravel()].astype(np.int64)
 
     @cached_property
-    def _damping(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-        """Damping of waves that no cell resolves, in cells where there are such waves.
+    def _damping(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Damping of waves that no cell resolves.
 
         Returns:
-            Unknowns of the damped cells, (k, 2, n, n); coefficients of orthonormal Legendre polynomials
-            from values at a cell's nodes, (n, n); and rates d_i + d_j of pairs of these, times the area
-            and the rate of each cell, (k, 1, n, n).
+            Coefficients of orthonormal Legendre polynomials from values at a cell's nodes, (n, n); and
+            rates d_i + d_j of pairs of these, times the area and the rate of each cell, (cells, 1, n, n).
         """
         _, nodes = cells.tensor_order(self.space.reference_nodes)
         points, weights = leggauss(len(nodes) + 1)
@@ -200,12 +197,10 @@ class Motion:
         d = np.exp(-(((p - orders) / high) ** 2))
         corners = self.space.vertices[:, :, :2]
         J = cells.jacobian(corners, np.full((len(corners), 2), 0.5))
-        middle = corners.mean(axis=1)
-        far = np.maximum(np.abs(middle[:, 0]) - 1.0, -middle[:, 1]) > _FROM
-        rates = _SHARP_RATE if self.sharp else np.where(far, _RATE, 0.0)
-        rates = np.abs(np.linalg.det(J)) * rates / np.linalg.norm(J, axis=1).min(axis=1) * self.impedance
-        of_pairs = rates[rates > 0.0, None, None, None] * np.add.outer(d, d)
-        return self.dofs[rates > 0.0], normed.T @ (weights[:, None] / 2.0 * values), of_pairs
+        rates = np.abs(np.linalg.det(J)) / np.linalg.norm(J, axis=1).min(axis=1) * self.impedance
+        rates *= _SHARP_RATE if self.sharp else _RATE
+        of_pairs = rates[:, None, None, None] * np.add.outer(d, d)
+        return normed.T @ (weights[:, None] / 2.0 * values), of_pairs
 
     @cached_property
     def contact(self) -> NDArray[np.int64]:
@@ -264,8 +259,8 @@ class Motion:
 
     def dissipation(self, w: NDArray) -> float:
         """w·D w of velocities (unknowns,)."""
-        dofs, legendre, rates = self._damping
-        coefficients = legendre @ (w[dofs] @ legendre.T)
+        legendre, rates = self._damping
+        coefficients = legendre @ (w[self.dofs] @ legendre.T)
         return float(np.vdot(coefficients, rates * coefficients))
 
     def _summed(self, by_cell: NDArray) -> NDArray[np.float64]:

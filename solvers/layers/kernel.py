@@ -381,9 +381,10 @@ class Level:
         """Transforms of u,X times the modulus, σ_YY and σ_XY under σ_XY and σ_YY on top, (n, 6)."""
         stack, above = self._parts
         under = stack.below(k)
-        carried = inverse(stack.top.down + stack.layers[0].excess(k, under[0]))
-        for layer, Z in zip(stack.layers[:above], under):
-            carried = layer.carried(k, Z) @ carried
+        excess, carried = stack.layers[0].carried(k, under[0])
+        carried = carried @ inverse(stack.top.down + excess)
+        for layer, Z in zip(stack.layers[1:above], under[1:]):
+            carried = layer.carried(k, Z)[1] @ carried
         tractions = under[above - 1] @ carried
         return np.stack(
             [*(1j * self._modulus * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1

@@ -159,14 +159,16 @@ class Uniform:
         held = 1.0 / (kH * np.linalg.eigvalsh(self.medium.T_inverse)[-1])
         return np.where(kH < _THIN, held, least(below + own))
 
-    def carried(self, k: NDArray, below: NDArray) -> NDArray[Any]:
-        """Displacement of the lower face by that of the upper one, (n, 2, 2).
+    def carried(self, k: NDArray, below: NDArray) -> tuple[NDArray, NDArray]:
+        """δ on top, and the displacement of the lower face by that of the upper one, (n, 2, 2) each.
 
         Args:
             k, below: see :meth:`excess`.
         """
         (up, down), r = self.medium.exponentials(k * self.H), self._reflected(below)
-        return np.asarray((_ONE + r) @ down @ inverse(_ONE + up @ r @ down))
+        W = up @ r @ down
+        turned = inverse(_ONE + W)
+        return (self.medium.up - self.medium.down) @ W @ turned, (_ONE + r) @ down @ turned
 
     def cut(self, depth: float) -> tuple["Uniform", "Uniform"]:
         """The parts of the layer above and below a depth over a."""
@@ -284,11 +286,18 @@ class Graded:
     def _properties(self, depth: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """N, T⁻¹ and dZ₋/dY at depths, (n, 2, 2) each."""
         relative = np.maximum((self.offset + depth) / self._whole, 0.0)
-        angle = np.arccos(np.clip(2.0 * relative**self.power - 1.0, -1.0, 1.0))
-        values = np.cos(np.outer(angle, np.arange(len(self._packed)))) @ self._packed
-        rate = self.power * relative ** (self.power - 1.0) / self._whole
+        share = relative if self.power == 1.0 else relative**self.power
+        angle = np.arccos(np.minimum(2.0 * share - 1.0, 1.0))
+        values = np.cos(angle[:, None] * self._orders) @ self._packed
+        rate = np.full_like(relative, 1.0 / self._whole)
+        if self.power != 1.0:
+            rate *= self.power * relative ** (self.power - 1.0)
         G, T, slope = values.view(complex).reshape(-1, 3, 2, 2).swapaxes(0, 1)
         return -1j * G, T.real, -rate[:, None, None] * slope
+
+    @cached_property
+    def _orders(self) -> NDArray[np.float64]:
+        return np.arange(len(self._packed), dtype=float)
 
     @cached_property
     def _packed(self) -> NDArray[np.float64]:
@@ -342,12 +351,15 @@ class Graded:
         solution = self._swept(k, below, dense=False)
         return np.asarray(solution.y[:, -1].reshape(-1, 2, 2) / (1.0 + k * self.H)[:, None, None])
 
-    def carried(self, k: NDArray, below: NDArray) -> NDArray[Any]:
-        """Displacement of the lower face by that of the upper one, (n, 2, 2); 0 where it has decayed."""
+    def carried(self, k: NDArray, below: NDArray) -> tuple[NDArray, NDArray]:
+        """δ on top, and the displacement of the lower face by that of the upper one, (n, 2, 2) each.
+
+        It is 0 where it has decayed.
+        """
         from scipy.integrate import solve_ivp
 
-        dense, size = self._swept(k, below, dense=True).sol, (1.0 + k * self.H)[:, None, None]
-        reach = self._reach(k)
+        swept, size = self._swept(k, below, dense=True), (1.0 + k * self.H)[:, None, None]
+        reach, dense = self._reach(k), swept.sol
 
         def rate(fallen: float, flat: NDArray) -> NDArray[Any]:
             N, T, _ = self._properties(reach * fallen)
@@ -358,7 +370,8 @@ class Graded:
         solution = solve_ivp(rate, (0.0, 1.0), start, method="DOP853", rtol=self.rtol, atol=1e-14)
         if not solution.success:
             raise SolveError(f"the field in a graded layer was not found: {solution.message}")
-        return np.where((reach >= self.H)[:, None, None], solution.y[:, -1].reshape(-1, 2, 2), 0.0)
+        by_top = np.where((reach >= self.H)[:, None, None], solution.y[:, -1].reshape(-1, 2, 2), 0.0)
+        return swept.y[:, -1].reshape(-1, 2, 2) / size, by_top
 
     def first_order(self) -> NDArray[Any]:
         """Limit of k δ on top for large k, (2, 2)."""

@@ -58,7 +58,8 @@ def test_the_example_from_scene_to_archive(tmp_path):
 
 def test_rows_by_depth_are_linear_grading():
     rows = [[0, "7.5 GPa", 0.3, 1200], ["0.4 mm", "5.5 GPa", 0.28, 1120], ["1 mm", "2.5 GPa", 0.25, 1000]]
-    of_rows = {"layer": [{"properties": rows}]}
+    of_rows = {"layer": [{"properties": rows, "yield_strength": "30 MPa"}]}
+    assert [layer.yield_strength for layer in scene_of("coating", ONE | of_rows).layers] == [30e6] * 2
     solids = [scene_of("coating", ONE | layers).body.solid for layers in (GRADED, of_rows)]
     for depth in (0.0, 0.1e-3, 0.4e-3, 0.7e-3, 0.999e-3, 2e-3):
         one, other = (solid.at(depth) for solid in solids)

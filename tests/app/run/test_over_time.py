@@ -92,6 +92,12 @@ def test_a_wrong_answer_of_one_method_fails(friction, monkeypatch):
     assert computed("start_from_rest", changes).attributes["verdict"] == "FAIL"
 
 
+def test_short_steps_and_ramps_let_no_wave_grow_under_friction():
+    changes = {"time.load_ramp": 1.0, "time.step": 0.04, "friction.mu_c": 0.8, "solve.methods": ["fem"]}
+    result = computed("start_from_rest", QUICK | changes)
+    assert result.comparisons[ESTIMATE] < 1e-2, result.comparisons
+
+
 def test_unloading_from_steady_motion_by_both_methods():
     changes = QUICK | {"time.start": "steady", "time.load": [[0.0, 1.0], [2.0, 0.5]]}
     result = computed("start_from_rest", changes)

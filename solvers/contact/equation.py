@@ -87,6 +87,21 @@ class Jacobi(Functions):
     def values(self, r: NDArray, count: int) -> NDArray[np.float64]:
         return jacobi(count, self.α, self.β, r)
 
+    def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
+        """Σ c_k P_k at r; of one state by Clenshaw's recurrence, without values of all polynomials."""
+        if c.ndim > 1 or len(c) < 2:
+            return super().sum(c, r)
+        r, s, later, last = np.asarray(r, dtype=float), self.α + self.β, 0.0, 0.0
+        for n in range(len(c) - 1, 0, -1):  # P_(n+1) = (a r + b) P_n - d P_(n-1), d of the next n
+            m = 2.0 * n + s
+            size = 2.0 * (n + 1.0) * (n + s + 1.0)
+            a, b = (m + 1.0) * (m + 2.0) / size, (m + 1.0) * (self.α - self.β) * s / (size * m)
+            d = (n + 1.0 + self.α) * (n + 1.0 + self.β) * (m + 4.0) / ((n + 2.0) * (n + s + 2.0) * (m + 2.0))
+            later, last = last, c[n] + (a * r + b) * last - d * later
+        first = self.α + 1.0 + (s + 2.0) * (r - 1.0) / 2.0
+        d = (1.0 + self.α) * (1.0 + self.β) * (4.0 + s) / (2.0 * (2.0 + s) * (2.0 + s))
+        return np.asarray(c[0] + first * last - d * later)
+
     def cauchy(self, c: NDArray, y: NDArray) -> NDArray[Any]:
         panels = Panels(self.α, self.β, finest(len(c)))
         return panels.cauchy(self.sum(c, panels.t), y)

@@ -620,6 +620,8 @@ _SHALLOWEST = 0.05
 #: Least distance from the surface, and from an interface, over that of the next depth of sampling, at
 #: which stresses inside are evaluated.
 _LEAST_DEPTH, _NEXT_TO_FACE = 0.3, 1e-6
+#: Share of the way from a face to the nearest sample at which it shows whether stresses fall.
+_FROM_FACE = 0.1
 
 
 def sampled_depths(interfaces: NDArray) -> list[NDArray[np.float64]]:
@@ -722,6 +724,13 @@ class StrengthOfLayers:
             depths[best + 1] if best + 1 < len(depths) else bottom - _NEXT_TO_FACE * (bottom - depths[-1])
         )
         upper = depths[best - 1] if best else above
+        # Stresses that fall from a face on, to all samples, have their largest value there.
+        for at_face, face in ((best == 0, upper), (best + 1 == len(depths), lower)):
+            if not at_face:
+                continue
+            inside, _ = self._at_depth(state, face + _FROM_FACE * (depths[best] - face))
+            if inside >= values[best] and (there := self._at_depth(state, face))[0] >= inside:
+                return *there, -float(face)
         found = minimize_scalar(
             lambda depth: -self._at_depth(state, depth)[0], bounds=(upper, lower), method="bounded",
             options={"xatol": _ACCURACY * (lower - upper), "maxiter": 25},

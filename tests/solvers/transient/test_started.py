@@ -134,6 +134,8 @@ def test_the_way_back_is_the_mirror_image(small):
 def test_what_cells_hold_is_not_damped(small):
     """Polynomials of a low degree are left alone in every cell, and higher ones lose energy."""
     space = small.motion.space
+    _, rates = small.motion._damping
+    assert len(rates) == space.cells and (rates >= 0.0).all()
     X, Y = space.coordinates.T[:2]
     low, high = X**2 - X * Y, np.cos(4.0 * X) * np.sin(3.0 * Y)
     D, M = small.motion.D, small.motion.M

@@ -96,7 +96,8 @@ class Jacobi(Functions):
             m = 2.0 * n + s
             size = 2.0 * (n + 1.0) * (n + s + 1.0)
             a, b = (m + 1.0) * (m + 2.0) / size, (m + 1.0) * (self.α - self.β) * s / (size * m)
-            d = (n + 1.0 + self.α) * (n + 1.0 + self.β) * (m + 4.0) / ((n + 2.0) * (n + s + 2.0) * (m + 2.0))
+            d = (n + 1.0 + self.α) * (n + 1.0 + self.β) * (m + 4.0)
+            d /= (n + 2.0) * (n + s + 2.0) * (m + 2.0)
             later, last = last, c[n] + (a * r + b) * last - d * later
         first = self.α + 1.0 + (s + 2.0) * (r - 1.0) / 2.0
         d = (1.0 + self.α) * (1.0 + self.β) * (4.0 + s) / (2.0 * (2.0 + s) * (2.0 + s))

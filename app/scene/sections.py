@@ -29,7 +29,7 @@ from galinx.solvers.friction.motion import Partial
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import GRADINGS, Layer
 from galinx.solvers.parameters import Parameter, Range, build_model, fields, parameters
-from galinx.solvers.profiles import PROFILES, Profile
+from galinx.solvers.profiles import PROFILES, Profile, has_free_end
 from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
@@ -191,17 +191,23 @@ class LayerTable(GivenSolid):
 
 @dataclass(frozen=True, kw_only=True)
 class Punch:
-    """[punch]: a profile, pressed on by each of ``loads`` [N/m]."""
+    """[punch]: a profile, pressed on by each of ``loads`` [N/m].
+
+    Raises:
+        ValueError: there is no load, and the contact is as wide as the load makes it.
+    """
 
     profile: Profile
     loads: tuple[float, ...] = key(
-        Numbers("N/m", _POSITIVE), "normal load N per depth", (55.3e3,),
+        Numbers("N/m", _POSITIVE), "normal load N per depth", None,
         "dimensionless results do not depend on it where the contact is that of a flat punch",
-        name="load",
+        name="load", without="needed; of a flat punch the study's 55.3 N/mm",
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "loads", tuple(dict.fromkeys(self.loads)))
+        if not self.loads and has_free_end(self.profile):
+            raise ValueError('missing load, as in load = "100 N/mm": it sets the width of the contact')
+        object.__setattr__(self, "loads", tuple(dict.fromkeys(self.loads or (55.3e3,))))
 
     @property
     def load(self) -> float:
@@ -785,7 +791,9 @@ SECTIONS: dict[str, Section] = {
     "punch.solid": Section(
         ElasticPunch, SOLIDS, "kind", "isotropic", or_else=", or punch.solid.material", optional=True
     ),
-    "friction": Section(Friction, LAWS, "model", "dahl", several=True),
+    "friction": Section(
+        Friction, LAWS, "model", "dahl", or_else=", or friction.mu alone, of Coulomb's law", several=True
+    ),
     "motion": Section(Motion),
     "slider": Section(Slider, optional=True, defaults={"damping": 0.0}),
     "time": Section(Time, optional=True),

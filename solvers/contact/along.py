@@ -251,7 +251,9 @@ class Splines(Functions):
         """
         rule = Rule(self.knots, 1.0)
         f, f_test, c = self.values(rule.t), tests(rule.t), np.empty_like(moments)
-        for i, w in enumerate(rule.weights(α, β)):
-            size = np.sqrt(w @ f**2)
-            c[i] = np.linalg.solve((f_test / size).T @ (w[:, None] * f / size), moments[i] / size) / size
+        exponents, which = np.unique(np.column_stack([α, β]), axis=0, return_inverse=True)
+        for i, w in enumerate(rule.weights(*exponents.T)):
+            size, states = np.sqrt(w @ f**2), which == i
+            gram = (f_test / size).T @ (w[:, None] * f / size)
+            c[states] = np.linalg.solve(gram, (moments[states] / size).T).T / size
         return BentExpansion(α[:, None], β[:, None], c, self)

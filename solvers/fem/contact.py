@@ -248,8 +248,8 @@ class SharpLevel(PunchLevel):
 
 #: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
-#: four in a cell, over that length; degree of the cells less that of its splines; places in a cell.
-NEXT, _WIDE, _LESS, _INSIDE = 1e-5, 1e-2, 2, np.array([0.25, 0.5, 0.75])
+#: several in a cell, over that length; how many; degree of the cells less that of its splines.
+NEXT, _WIDE, _IN_A_CELL, _LESS = 1e-5, 1e-2, 4, 2
 #: Unit of the first of these over the thickness of the uppermost layer, where there are no logarithms.
 _ANALYTIC = 100.0
 #: The first of these for splines that show what the others leave out, and factor of what they show.
@@ -308,7 +308,10 @@ class SplineLevel(PunchLevel):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
         first = nearest * (self._analytic or np.sqrt(length))
         of_knots = [places]
-        within = (ends_of_cells[:-1, None] + np.diff(ends_of_cells)[:, None] * _INSIDE).ravel()
+        # Nodes have to tell all splines apart: no more of these than nodes, and a node in each step.
+        count = min(_IN_A_CELL, degree) if degree > _LESS else 1
+        shares = np.arange(1, count) / count
+        within = (ends_of_cells[:-1, None] + np.diff(ends_of_cells)[:, None] * shares).ravel()
         for candidates, least in ((ends_of_cells, first), (within, _WIDE * length)):
             of_knots.append(candidates[np.abs(candidates[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))

@@ -62,14 +62,18 @@ PROFILE = {
     "flat": {"profile": "flat", "half_width": 1e-3},
     "tilted": {"profile": "flat", "half_width": 1e-3, "tilt": 0.1},
     "lifted": {"profile": "flat", "half_width": 1e-3, "tilt": -1.0},
-    "parabolic": {"profile": "parabolic", "radius": 0.1},
     "cubic": {"profile": "power", "exponent": 3.0, "coefficient": 5e3},
+    "parabolic": {"profile": "parabolic", "radius": 0.1},
     "cusp": {"profile": "power", "exponent": 1.5, "coefficient": 0.17},
     "rounded flat": {"profile": "rounded_flat", "flat_half_width": 0.5e-3, "radius": 0.05},
     "wedge": {"profile": "wedge", "slope": 7e-3},
     "table": {
         "profile": "table",
         "shape": [[-5e-3, 2e-4], [-2e-3, 3e-5], [-1e-3, 5e-6], [0.0, 0.0], [2e-3, 2e-5], [6e-3, 3e-4]],
+    },
+    "rolling": {
+        "profile": "parabolic", "radius": 0.1,
+        "solid": {"kind": "isotropic", "E": 2e9, "nu": 0.35, "rho": 1200.0, "speed": 40.0},
     },
 }  # fmt: skip
 
@@ -100,7 +104,9 @@ _SIDES = (
 )
 _OTHER = {one: other for pair in _SIDES for one, other in (pair, pair[::-1])}
 _SIDE = re.compile("|".join(_OTHER))
-_ODD = re.compile(r"/(f|g|centre|tangential_force|sigma_XY(_max|_min)?|\w+_position|\w*X_over_a)$")
+_ODD = re.compile(
+    r"/(f|g|centre|tangential_force|(punch_)?sigma_XY(_max|_min)?|\w+_position|\w*X_over_a)$"
+)
 
 #: Factors of units in the scaled scene: all dimensionless numbers stay.
 _LENGTH, _MODULUS, _DENSITY = 1e-3, 70.0, 3.0
@@ -190,8 +196,10 @@ class Case:
             if key == "to":
                 value = self.of({"kind": given["kind"]} | value)
                 del value["kind"]
-            elif key == "thickness":
-                value *= self._unit("m")
+            elif key == "solid":
+                value = self.of(value)
+            elif key in ("thickness", "speed"):
+                value *= self._unit("m" if key == "thickness" else "m/s")
             elif key in known:
                 value = self._of_parameter(key, known[key], value, given)
             found[key] = value

@@ -22,8 +22,7 @@ from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, hig
 from galinx.texts import plain
 
 from ..errors import BadInput
-from ..plan.over_time import headings
-from ..plan.states import enumerate_states
+from ..plan.states import enumerate_states, headings
 from ..scene.scene import Scene
 from .choice import Archive, Drawing, drive_label, fewer, spread
 from .render import JOINED, MARKERS, Curve, Panel, Size, note, render
@@ -283,9 +282,10 @@ def _thresholds(scene: Scene) -> tuple[NDArray, NDArray, str, str]:
         )
         return _LENGTHS, values, "wavelength over thickness of the layers", words
     if scene.elastic_punch:
-        c = np.linspace(0.0, 0.99 * solid.limit(), _SPEEDS)
-        values = np.array([solid.flutter(speed) for speed in c.tolist()]).T
-        return c, values, "speed of the plate $c = V/c_s$", "over the speed of the plate"
+        c, (way,) = np.linspace(0.0, 0.99 * solid.limit(), _SPEEDS), headings(scene, [scene.legs[0].s])
+        values = np.array([solid.flutter(speed) for speed in np.copysign(c, way).tolist()]).T
+        words = f"over the speed of the plate, the punch moving to {'+' if way > 0 else '-'}X"
+        return c, values, "speed of the plate $c = V/c_s$", words
     plate: Solid = scene.half_plane.solid
     each = [replace(plate, angle=angle).flutter() for angle in _ANGLES.tolist()]  # type: ignore[type-var]
     return _ANGLES, np.array(each).T, "angle from X to the axis (°)", "over the angle of the solid"

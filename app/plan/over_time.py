@@ -11,7 +11,7 @@ from itertools import groupby
 from math import ceil, log10, sqrt
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from galinx.meshes.waves import Reached
 from galinx.postprocess.over_time import IN_TIME, OF_SURFACE
@@ -29,19 +29,7 @@ from galinx.texts import counted
 from ..errors import BadInput
 from ..scene.scene import Scene
 from ..scene.sections import Time
-from .states import States
-
-
-def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
-    """Directions ±1 of strokes along X.
-
-    By the study's Eq 25 friction under a forward stroke is that of a punch that moves towards -X.
-
-    Args:
-        scene: gives the sign of friction.
-        directions: of the strokes, 1 forward, -1 backward.
-    """
-    return np.asarray(directions, dtype=np.int64) * round(-scene.friction.stress_ratio)
+from .states import States, headings
 
 
 def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:

@@ -10,7 +10,7 @@ from functools import cached_property
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
@@ -242,6 +242,18 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     )  # fmt: skip
 
 
+def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
+    """Directions ±1 of strokes along X.
+
+    By the study's Eq 25 friction under a forward stroke is that of a punch that moves towards -X.
+
+    Args:
+        scene: gives the sign of friction.
+        directions: of the strokes, 1 forward, -1 backward.
+    """
+    return np.asarray(directions, dtype=np.int64) * round(-scene.friction.stress_ratio)
+
+
 def _of_all(order: Order, values: NDArray) -> NDArray:
     """Values of all states, (states, …), the same under every load, and at every speed if laws have none.
 
@@ -261,6 +273,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     legs = np.repeat(np.arange(len(scene.legs)), [len(X) for X in scene.places])[place]
     own = np.array([np.nan if leg.speed is None else leg.speed for leg in scene.legs])[legs]
     lengths, N = np.array([leg.length for leg in scene.legs])[legs], np.array(order.loads)
+    ways = headings(scene, [leg.s for leg in scene.legs])[legs]
     half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
     return {
         "motion": np.array([leg.name for leg in scene.legs])[legs],
@@ -270,7 +283,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         **{key: np.full(f.size, value) for key, value in scene.swept.items()},
         **{key: column[law] for key, column in friction.columns().items()},
         "speed": np.where(np.isnan(own), np.multiply(order.given, scene.solid.c_s)[speed], own),
-        **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c))},
+        **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c, ways))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": _crossings(scene, lengths, half_widths[load], c),
         "f": f,
@@ -278,12 +291,18 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     }
 
 
-def _flutter(solid: Solid, c: NDArray) -> NDArray[np.float64]:
+def _flutter(solid: Solid, c: NDArray, ways: NDArray) -> NDArray[np.float64]:
     """Flutter thresholds of both signs of σ_XY/σ_YY, (2, states); NaN for none, or for a solid without
-    ``flutter``."""
+    ``flutter``.
+
+    Args:
+        solid: the solid.
+        c: speeds over c_s, (states,).
+        ways: 1.0 where the punch moves to positive X, -1.0 to negative, (states,).
+    """
     flutter = getattr(solid, "flutter", lambda c: (nan, nan))
-    speeds, of = np.unique(c, return_inverse=True)
-    each = np.array([flutter(speed) for speed in speeds.tolist()])
+    motions, of = np.unique([c, ways], axis=1, return_inverse=True)
+    each = np.array([flutter(speed) for speed in np.copysign(*motions).tolist()])
     return np.where(np.isfinite(each), each, nan)[of].T
 
 

@@ -3,7 +3,7 @@
 A solid slides on a rigid or an elastic one, under Coulomb friction: both stay in contact, and σ_XY =
 g σ_YY on an infinite surface. Waves e^(ik(X - Ct)) obey the steady equations of each solid at the speed C
 over it, so that with (u,X, v,X) = 𝐘 (σ_XY, σ_YY) below the interface and 𝐘' of the mirror image of the
-solid above it, whose surface moves at V' where that below moves at V,
+solid above it, over whose surface the interface moves at V' where it moves at V over that below,
 
     A(C) + g B(C) = 0,   A = Y₂₂(C) + Y'₂₂(C - V + V'),   B = Y₂₁(C) - Y'₂₁(C - V + V').
 
@@ -53,7 +53,7 @@ class Side:
         side: 1 for the body below the interface, -1 for the one above.
         compliance: 1/μ in the unit of both bodies.
         c_s: √(μ/ρ) in the unit of speeds.
-        speed: of its surface over the interface's frame, in the unit of speeds.
+        speed: of the interface over its surface, in the unit of speeds; below 0 to negative X.
     """
 
     admittance: Admittance
@@ -64,7 +64,7 @@ class Side:
 
     @classmethod
     def of(cls, solid: Solid, speed: float = 0.0, below: bool = True) -> "Side":
-        """Body of a uniform solid whose surface moves at a speed [m/s]; units are those of SI."""
+        """Uniform solid, over which the interface moves at a speed [m/s]; units are those of SI."""
         surface = Admittance.of(solid.response(0.0))
         if below:
             return cls(surface, 1, 1.0 / solid.μ, solid.c_s, speed)

@@ -14,6 +14,7 @@ follow from the pressure and that body's own constants. A plate may have layers.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import copysign
 from typing import Any, ClassVar
 
 import numpy as np
@@ -124,11 +125,12 @@ class Pair(Composite):
 
     @cached_property
     def _sides(self) -> tuple[Side, Side]:
-        return Side.of(self.surface), Side.of(self.punch, self.speed, below=False)
+        return Side.of(self.surface), Side.of(self.punch, below=False)
 
     def flutter(self, c: float = 0.0) -> tuple[float, float]:
         plate, punch = self._sides
-        return thresholds(replace(plate, speed=c * self.plate.c_s), punch)
+        own = copysign(self.speed, c)
+        return thresholds(replace(plate, speed=c * self.plate.c_s), replace(punch, speed=own))
 
     def limit(self) -> float:
         return self.plate.limit()

@@ -81,7 +81,8 @@ class Solid(Protocol):
         See :mod:`galinx.solvers.solids.flutter`.
 
         Args:
-            c: speed of the surface over ``c_s``; it matters to two elastic bodies alone.
+            c: speed of the punch over ``c_s``, below 0 (or -0.0) where it moves to negative X; it matters
+                to two elastic bodies alone.
         """
 
     @property

@@ -15,7 +15,7 @@ from galinx.postprocess.quantities.quantity import ALONG, POINT, STATE
 #: By integral equations alone, which takes a moment, and by finite elements.
 EXACT = [
     case.but(methods=METHODS[case.layered][:1], words=words_of(case.solid, case.punch, "exact"))
-    for case in cases(None if THOROUGH else "cubic")
+    for case in cases(None if THOROUGH else "cusp")
 ]
 FEM = [
     case.but(methods=("fem",), tolerance=1e-2)

@@ -8,9 +8,9 @@ where an answer costs accuracy. :func:`lines` are the plan's steps in words, wit
 import json
 from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -333,25 +333,11 @@ def _near_limit(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]
         BadInput: the form of finite elements is indefinite at a speed, or a wave inside the solid is not
             faster than the punch.
     """
-
-    def margin(c: float) -> float:
-        try:
-            return scene.solid.response(c).margin
-        except ValueError:  # a wave in the solid is not faster
-            return -inf
-
-    # All speeds above a limit are beyond it: of a million speeds some twenty are evaluated.
-    ordered = sorted(speeds)
-    first = bisect_left(ordered, True, key=lambda c: margin(c) <= 0.0)
-    almost = bisect_left(ordered[:first], True, key=lambda c: margin(c / 0.99) <= 0.0)
-    formal = bisect_left(ordered, True, lo=first, key=lambda c: margin(c) == -inf)
-    if almost == len(ordered):
-        return []
-    near, beyond, none = (
-        listed([f"{c:g}" for c in part])
-        for part in (ordered[almost:first], ordered[first:], ordered[formal:])
-    )
-    c_R, name = scene.solid.limit(), "speed limit of the layers" if scene.layers else "Rayleigh speed"
+    c_R = scene.solid.limit()
+    near = listed([f"{c:g}" for c in sorted(speeds) if 0.99 * c_R <= c < c_R])
+    above = [c for c in sorted(speeds) if c >= c_R]
+    beyond = listed([f"{c:g}" for c in above])
+    name = "speed limit of the layers" if scene.layers else "Rayleigh speed"
     limit = f"the {name} c_R = {c_R:.6g} (over c_s), {c_R * scene.solid.c_s:.6g} m/s"
     reason = ""
     if scene.elastic_punch:
@@ -365,9 +351,17 @@ def _near_limit(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]
         )
     if beyond and reason:
         raise BadInput(f"motion: c = {beyond} is not below {limit}: {reason}")
-    if none:
+
+    def formless(c: float) -> bool:
+        """True where a wave in the solid is not faster."""
+        with suppress(ValueError):
+            return not scene.solid.response(c)
+        return True
+
+    # Of a million speeds some twenty are evaluated.
+    if none := [f"{c:g}" for c in above[bisect_left(above, True, key=formless) :]]:
         raise BadInput(
-            f"motion: c = {none} is not below {limit}, and some wave inside the solid is not "
+            f"motion: c = {listed(none)} is not below {limit}, and some wave inside the solid is not "
             "faster: nothing decays with depth there; take lower speeds"
         )
     warnings = []

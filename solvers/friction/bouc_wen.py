@@ -81,7 +81,7 @@ class BoucWen(FrictionLaw):
         """∫ w dx = w²/2 ₂F₁(1, 2/n; 1+2/n; k|w|ⁿ) of both parts."""
         ends = s * np.append(z[:1], self.exact(z, s, V, np.asarray(slip))[:, 0])
         k, x = 2.0 * self.γ - 1.0, np.asarray(slip, dtype=float) / self.x_y
-        down = _moment(np.maximum(-ends, 0.0), k, self.n)
+        down = _slip(np.maximum(-ends, 0.0), k, self.n, 2.0)
         begun = _slip(np.maximum(-ends[0], 0.0), k, self.n)
         loading = np.maximum(x - begun, 0.0)
         short = _short(np.maximum(ends, 0.0), self.n)
@@ -94,24 +94,17 @@ class BoucWen(FrictionLaw):
         return self.n * max(1.0, abs(float(z[0]))) ** (self.n - 1.0) / self.x_y
 
 
-def _slip(w: float | NDArray, k: float, n: float) -> NDArray[np.float64]:
-    """∫ dw/(1 - k wⁿ) from 0 to w >= 0."""
+def _slip(w: float | NDArray, k: float, n: float, power: float = 1.0) -> NDArray[np.float64]:
+    """∫ w^(power - 1) dw/(1 - k wⁿ) from 0 to w >= 0: slip, and its moment for the power 2."""
     from scipy.special import hyp2f1  # slow to import
 
-    return w * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, k * np.power(w, n))
-
-
-def _moment(w: NDArray, k: float, n: float) -> NDArray[np.float64]:
-    """∫ w dw/(1 - k wⁿ) from 0 to w >= 0."""
-    from scipy.special import hyp2f1  # slow to import
-
-    return 0.5 * w**2 * hyp2f1(1.0, 2.0 / n, 1.0 + 2.0 / n, k * np.power(w, n))
+    return w**power / power * hyp2f1(1.0, power / n, 1.0 + power / n, k * np.power(w, n))
 
 
 def _short(w: NDArray, n: float) -> NDArray[np.float64]:
     """∫ (1 - w)/(1 - wⁿ) dw from 0 to w: work of full slip less that of loading, over μ_C x_y."""
     near = np.minimum(w, -np.expm1(-_FAR))
-    return _slip(near, 1.0, n) - _moment(near, 1.0, n) + (w - near) / n
+    return _slip(near, 1.0, n) - _slip(near, 1.0, n, 2.0) + (w - near) / n
 
 
 def _slip_of(y: NDArray, n: float) -> NDArray[np.float64]:

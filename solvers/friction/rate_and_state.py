@@ -63,9 +63,8 @@ class RateAndState(FrictionLaw):
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Slope by the state's rate: s ∂f/∂ϑ = b/ϑ e^u/√(1 + e^2u)."""
-        u, ϑ, steady = self._exponent(z, V), z[..., 0], self._steady(V)
-        turned = np.where(self.evolution == "ageing", steady - ϑ, -ϑ * np.log(ϑ / steady)) / self.D_c
-        return self.b / ϑ * np.exp(u - 0.5 * np.logaddexp(2.0 * u, 0.0)) * turned
+        u, ϑ = self._exponent(z, V), z[..., 0]
+        return self.b / ϑ * np.exp(u - 0.5 * np.logaddexp(2.0 * u, 0.0)) * self.rate(ϑ, s, V)
 
     def _exponent(self, z: NDArray, V: float) -> NDArray[np.float64]:
         """Exponent u."""

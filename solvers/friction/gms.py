@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from ..parameters import parameter
 from .law import LAWS, MeasuredFriction
-from .maxwell_slip import check_elements, elements, spread
+from .maxwell_slip import Elements
 from .stribeck import StribeckCurve
 
 
 @dataclass(frozen=True, kw_only=True)
-class GeneralisedMaxwellSlip(StribeckCurve):
+class GeneralisedMaxwellSlip(Elements, StribeckCurve):
     """Generalised Maxwell slip: elements that stick as springs, and slip towards Stribeck's curve::
 
         stick: df_i = k_i dx, until |f_i| = α_i g(v)
@@ -32,31 +32,20 @@ class GeneralisedMaxwellSlip(StribeckCurve):
     batched: ClassVar[bool] = True
     conventions: ClassVar[tuple[str, ...]] = ("elements[0, 1]",)  # only the ratios of limits matter
 
-    elements: tuple[tuple[float, float], ...] = elements()
     C: float = parameter(
         "attraction_rate", "attraction rate C/N", "1/s", symbol="C/N", above=0.0,
         note="how fast slipping elements come to Stribeck's curve",
     )  # fmt: skip
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_elements(self.elements)
-
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
         rate = 10.0 * seen.speed / seen.length
-        return {**super().guess(seen), "elements": spread(seen), "attraction_rate": rate}
-
-    @property
-    def k(self) -> NDArray[np.float64]:
-        """Stiffnesses over N [1/m], (n,)."""
-        return np.asarray(self.elements)[..., 0]
+        return super().guess(seen) | {"attraction_rate": rate}
 
     @property
     def α(self) -> NDArray[np.float64]:
         """Shares of the elements in steady sliding, (n,)."""
-        μ = np.asarray(self.elements)[..., 1]
-        return μ / μ.sum(axis=-1, keepdims=True)
+        return self.μ / self.μ.sum(axis=-1, keepdims=True)
 
     def rest(self) -> NDArray[np.float64]:
         return np.zeros(2 * self.k.shape[-1])

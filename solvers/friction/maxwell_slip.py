@@ -10,33 +10,44 @@ from ..parameters import rows
 from .law import LAWS, FrictionLaw, MeasuredFriction
 
 
-def elements() -> tuple[tuple[float, float], ...]:
-    """Field of springs and their limits."""
-    return rows(
-        "elements", "springs and their limits", ("1/m", ""), measured=(0, 1),
-        note="a row of k/N and μ for each; the slope of f over slip at its start is the sum of all k/N",
-    )  # fmt: skip
-
-
-def spread(seen: MeasuredFriction) -> tuple[tuple[float, float], ...]:
-    """Elements that slide one after the other, each after twice the slip of the one before."""
-    μ = seen.level / seen.rows
-    slips = 0.5 * seen.length * 0.5 ** np.arange(seen.rows)
-    return tuple((float(μ / slip), μ) for slip in slips[::-1])
-
-
-def check_elements(rows: tuple[tuple[float, float], ...]) -> None:
-    """Check the rows of springs and limits.
+@dataclass(frozen=True)
+class Elements(FrictionLaw):
+    """Base of laws with springs that each have a limit, side by side.
 
     Raises:
         ValueError: a stiffness or a limit is not above zero.
     """
-    if np.min(rows) <= 0.0:
-        raise ValueError(f"elements = {rows!r}: expected stiffnesses and limits above 0")
+
+    elements: tuple[tuple[float, float], ...] = rows(
+        "elements", "springs and their limits", ("1/m", ""), measured=(0, 1),
+        note="a row of k/N and μ for each; the slope of f over slip at its start is the sum of all k/N",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if np.min(self.elements) <= 0.0:
+            raise ValueError(f"elements = {self.elements!r}: expected stiffnesses and limits above 0")
+
+    @classmethod
+    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+        """Elements that slide one after the other, each after twice the slip of the one before."""
+        μ = seen.level / seen.rows
+        slips = 0.5 * seen.length * 0.5 ** np.arange(seen.rows)
+        return super().guess(seen) | {"elements": tuple((float(μ / slip), μ) for slip in slips[::-1])}
+
+    @property
+    def k(self) -> NDArray[np.float64]:
+        """Stiffnesses over N [1/m], (n,)."""
+        return np.asarray(self.elements)[..., 0]
+
+    @property
+    def μ(self) -> NDArray[np.float64]:
+        """Limits over N, (n,)."""
+        return np.asarray(self.elements)[..., 1]
 
 
 @dataclass(frozen=True)
-class MaxwellSlip(FrictionLaw):
+class MaxwellSlip(Elements):
     """Maxwell slip: springs that each slide at a limit of their own, side by side::
 
         df_i = k_i dx where |f_i| < μ_i or |f_i| falls, else 0;   f = Σ f_i
@@ -51,26 +62,6 @@ class MaxwellSlip(FrictionLaw):
 
     about: ClassVar[str] = "Maxwell slip"
     depends_on_speed: ClassVar[bool] = False
-
-    elements: tuple[tuple[float, float], ...] = elements()
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_elements(self.elements)
-
-    @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        return {"elements": spread(seen)}
-
-    @property
-    def k(self) -> NDArray[np.float64]:
-        """Stiffnesses over N [1/m], (n,)."""
-        return np.array(self.elements)[:, 0]
-
-    @property
-    def μ(self) -> NDArray[np.float64]:
-        """Limits over N, (n,)."""
-        return np.array(self.elements)[:, 1]
 
     def rest(self) -> NDArray[np.float64]:
         return np.zeros(len(self.elements))

@@ -78,7 +78,7 @@ class Move:
 
 @dataclass(frozen=True, repr=False)
 class FittedLaw:
-    """Fitted law, with the covariance of its parameters.
+    """Fitted law, with the deviations of its parameters.
 
     Attributes:
         law: the law.
@@ -86,8 +86,9 @@ class FittedLaw:
             other values of these the rest would be others, too.
         names: names of the fitted numbers, as ``"mu_c"`` and ``"elements[2, 1]"``, (m,).
         best: fitted numbers, (m,).
-        covariance: covariance of the fitted numbers, (m, m); NaN where the data do not determine them.
-        sizes: deviation of each number from which on the data do not determine it, (m,).
+        deviations: standard deviations in SI by the names of the fitted numbers; NaN, or larger than the
+            number, where the data do not determine it.
+        not_determined: names of numbers that the data do not determine.
         f: friction of the law at the samples of each measurement, NaN before the first motion.
         samples: number of samples in motion.
         rms: root mean square of measured less fitted f at these, dimensionless.
@@ -98,24 +99,12 @@ class FittedLaw:
     parameters: dict[str, Any]
     names: tuple[str, ...]
     best: NDArray[np.float64]
-    covariance: NDArray[np.float64]
-    sizes: NDArray[np.float64]
+    deviations: dict[str, float]
+    not_determined: tuple[str, ...]
     f: list[NDArray[np.float64]]
     samples: int
     rms: float
     every: int
-
-    @property
-    def deviations(self) -> dict[str, float]:
-        """Standard deviations in SI by the names of the fitted numbers; NaN, or larger than the number,
-        where the data do not determine it."""
-        return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist()))
-
-    @property
-    def not_determined(self) -> tuple[str, ...]:
-        """Names of numbers that the data do not determine: their deviations are not below their sizes."""
-        errors = zip(self.deviations.items(), self.sizes.tolist())
-        return tuple(name for (name, error), size in errors if not error < size)
 
     @property
     def aic(self) -> float:
@@ -234,14 +223,15 @@ def fit(
     residuals = fitted.residuals(search, θ[None])[0]
     if np.abs(residuals).max() >= _REJECTED:
         raise ValueError("no start of the search leads to a law; fix or start other parameters")
-    law, stretch = search.law(θ), search.stretch(θ)
+    law, names = search.law(θ), search.names
     spread = float(residuals @ residuals) / (len(residuals) - len(θ))
-    covariance = spread * _inverse(J) * np.outer(stretch, stretch)
+    deviations = search.stretch(θ) * np.sqrt(spread * _variances(J))
+    vague = tuple(np.array(names)[~(deviations < search.sizes(θ))].tolist())
     with np.errstate(all="ignore"):
         f = friction(law, whole.motion, len(whole.f))
     rms = float(np.sqrt(np.mean((f - whole.f)[whole.used] ** 2)))
     return FittedLaw(
-        law, search.values(θ), search.names, search.numbers(θ), covariance, search.sizes(θ),
+        law, search.values(θ), names, search.numbers(θ), dict(zip(names, deviations.tolist())), vague,
         np.split(f, np.cumsum([len(one.t) for one in measured])[:-1]), used, rms, every,
     )  # fmt: skip
 
@@ -325,17 +315,15 @@ def _least(data: _Fitted, search: "_Search", θ: NDArray, tolerance: float, step
     )  # fmt: skip
 
 
-def _inverse(J: NDArray) -> NDArray[np.float64]:
-    """Inverse of JᵀJ, (m, m); NaN in rows and columns that J does not determine."""
+def _variances(J: NDArray) -> NDArray[np.float64]:
+    """Diagonal of the inverse of JᵀJ, (m,); NaN for what J does not determine."""
     size = np.linalg.norm(J, axis=0)
-    blind = size == 0.0
-    scaled = J / np.where(blind, 1.0, size)
-    _, singular, V = np.linalg.svd(scaled, full_matrices=False)
+    scale = np.where(size == 0.0, 1.0, size)
+    _, singular, V = np.linalg.svd(J / scale, full_matrices=False)
     weak = singular < 1e-10 * singular.max(initial=1e-300)
-    inverse = (V.T / np.where(weak, 1.0, singular) ** 2) @ V
-    lost = blind | (np.abs(V[weak]) > 1e-6).any(axis=0)
-    inverse[lost], inverse[:, lost] = np.nan, np.nan
-    return inverse / np.outer(np.where(blind, 1.0, size), np.where(blind, 1.0, size))
+    diagonal = ((V / np.where(weak, 1.0, singular)[:, None]) ** 2).sum(axis=0)
+    lost = (size == 0.0) | (np.abs(V[weak]) > 1e-6).any(axis=0)
+    return np.where(lost, np.nan, diagonal / scale**2)
 
 
 @dataclass(frozen=True)
@@ -439,7 +427,10 @@ class _Search:
         return np.where(self._logs, self.numbers(θ), 1.0)
 
     def sizes(self, θ: NDArray) -> NDArray[np.float64]:
-        """Sizes of the numbers at θ, (m,): of one without sign its own, else the largest of its key."""
+        """Deviations of the numbers at θ from which on data do not determine them, (m,).
+
+        That of a number without sign is its own size, else the largest of its key.
+        """
         size, keys = np.abs(self.numbers(θ)), np.array([one.parameter.key for one in self._numbers])
         return np.where(np.isinf(self.low), [size[keys == key].max() for key in keys], size)
 

@@ -66,31 +66,6 @@ _SLIDERS = 200
 
 
 @dataclass(frozen=True)
-class Tasks:
-    """All tasks, each made when it is its turn: there may be a million.
-
-    Attributes:
-        body: contact of punch and solid, under the first of the loads.
-        places: points where stresses are output.
-        order: of the states.
-        first: row of the first state in the archive.
-    """
-
-    body: Contact
-    places: Places
-    order: Order
-    first: int = 0
-
-    def __len__(self) -> int:
-        return len(self.order.speeds)
-
-    def __iter__(self) -> Iterator[Task]:
-        for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs(self.first))):
-            response = self.body.response(c)
-            yield Task(i, self.body, response, self.places, runs, self.order.loads)
-
-
-@dataclass(frozen=True)
 class Plan:
     """Plan of the work of a scene without swept numbers, or of a variant of one with some.
 
@@ -101,11 +76,12 @@ class Plan:
         places: points where stresses are output.
         methods: names of the methods that solve the contact, none for friction alone.
         quantities: evaluated from their solutions, in the order of the table.
-        tasks: one a speed.
+        order: of its states.
         fem: plan of the finite elements, None without.
         starts: motions in time, None for none.
         skipped: messages about work that is not done, with the reason.
         warnings: messages to the user before the work starts.
+        first: row of its first state in the archive.
         speed: number of its first speed in the archive's record.
     """
 
@@ -115,11 +91,12 @@ class Plan:
     places: Places
     methods: tuple[str, ...]
     quantities: tuple[Quantity, ...]
-    tasks: Tasks
+    order: Order
     fem: FemPlan | None
     starts: Starts | None
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
+    first: int = 0
     speed: int = 0
 
     @property
@@ -135,7 +112,13 @@ class Plan:
     @property
     def states(self) -> int:
         """Number of states."""
-        return len(self.tasks.order)
+        return len(self.order)
+
+    @property
+    def tasks(self) -> Iterator[Task]:
+        """One a speed, each made when it is its turn: there may be a million."""
+        for i, (c, runs) in enumerate(zip(self.order.speeds, self.order.runs(self.first))):
+            yield Task(i, self.body, self.body.response(c), self.places, runs, self.order.loads)
 
     @cached_property
     def friction(self) -> States:
@@ -145,7 +128,7 @@ class Plan:
     @property
     def rows(self) -> slice:
         """Rows of its states in the archive."""
-        return slice(self.tasks.first, self.tasks.first + self.states)
+        return slice(self.first, self.first + self.states)
 
     @property
     def shared(self) -> bool:
@@ -397,7 +380,7 @@ def lines(plan: Plan) -> list[str]:
 
 
 def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
-    loads = plan.tasks.order.loads  # contacts that are similar under all of them are solved once
+    loads = plan.order.loads  # contacts that are similar under all of them are solved once
     solved = plan.states // (len(loads) if plan.body.alike else 1)
     if fem.mode == OWN_MESHES:
         return [
@@ -546,8 +529,8 @@ def make_plan(
     skipped += [f"{quantity.path}: {why}" for quantity, why in refused]
     plan = Plan(
         scene=scene, done=done, followed=friction, places=places, methods=methods,
-        quantities=quantities, tasks=Tasks(body, places, order_, first[0]), fem=fem, starts=motions,
-        skipped=tuple(skipped), warnings=tuple(warnings), speed=first[1],
+        quantities=quantities, order=order_, fem=fem, starts=motions,
+        skipped=tuple(skipped), warnings=tuple(warnings), first=first[0], speed=first[1],
     )  # fmt: skip
     if lack := elements.lacking(_HELD * plan.chunk * plan.numbers):
         warnings.append(f"the stresses of a single state need {lack}: ask for fewer points")

@@ -38,7 +38,7 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
             plans.append(plan := make_plan(variant, done, along, first))
         except BadInput as error:
             raise BadInput(f"with {variant.variant}: {error}" if variant.swept else str(error)) from None
-        first = first[0] + plan.states, first[1] + len(plan.tasks)
+        first = first[0] + plan.states, first[1] + len(plan.order.speeds)
     # An archive has one set of quantities for all states.
     kinds = [({quantity.path for quantity in plan.quantities}, plan.states) for plan in plans]
     for kind, plan in zip(kinds, plans):

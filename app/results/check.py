@@ -38,7 +38,7 @@ from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, LOCA
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import SHARP_ON_LAYERS, on_finer_cells, unknowns
-from galinx.solvers.contact.solution import FLAT, Task
+from galinx.solvers.contact.solution import FLAT
 from galinx.solvers.profiles import kinks
 
 from ..console import Progress
@@ -117,7 +117,8 @@ def _without_numbers(text: str) -> str:
 
 def _of_record(data: Mapping[str, Any], plan: Plan) -> Iterator[str]:
     """Speeds, cells and unknowns of finite elements that differ from those of the scene."""
-    fem, c, own = plan.fem, plan.tasks.order.speeds, slice(plan.speed, plan.speed + len(plan.tasks))
+    fem, c = plan.fem, plan.order.speeds
+    own = slice(plan.speed, plan.speed + len(c))
     assert fem
     record = {name: data[row.path][own] for name, row in runs.RECORD.items()}
     if not np.allclose(record["c"], c, rtol=1e-12, atol=0.0):
@@ -152,19 +153,17 @@ def _computed(
     quantities: Sequence[Quantity],
 ) -> Iterator[tuple[NDArray[np.int64], dict[str, NDArray]]]:  # fmt: skip
     """Numbers and quantities of some states, speed by speed; nothing where a speed has no solution."""
-    data, order = archive.data, plan.tasks.order
+    data = archive.data
     failed = [text.partition(":")[0] for text in data.get(runs.FAILURES.path, ())]
     alone = replace(plan, quantities=tuple(quantities), methods=tuple(methods), fem=None)
     made = {name: METHODS[name].made(alone, Progress(), Clock()) for name in methods}
     g, load = data[states.RATIO.path], data.get(states.LOAD.path)
     work = Work(alone, g, load, made, Clock(), np.zeros(len(g), dtype=bool))
-    for i, (c, runs_) in enumerate(zip(order.speeds, order.runs(plan.tasks.first))):
+    for task in plan.tasks:
         rows = np.concatenate(
-            [selected[(run.start <= selected) & (selected < run.stop)] for run in runs_]
+            [selected[(run.start <= selected) & (selected < run.stop)] for run in task.runs]
         )
-        if len(rows) and f"c = {c:g}" not in failed:
-            response = plan.body.response(c)
-            task = Task(i, plan.body, response, plan.places, runs_, order.loads)
+        if len(rows) and f"c = {task.response.c:g}" not in failed:
             yield rows, work.of_states(task, rows)
 
 
@@ -200,7 +199,7 @@ def _of_finite_elements(archive: Archive, plan: Plan, selected: NDArray[np.int64
     scene, body, refusal = plan.scene, plan.body, METHODS[CLOSED_FORM].refusal
     if archive.attributes["verdict"] == "FAIL" or refusal(scene, body, None):
         return
-    if body.solid.limit() <= max(plan.tasks.order.speeds):
+    if body.solid.limit() <= max(plan.order.speeds):
         return
     assert plan.fem
     loads = [row.path for row in yielding.FIRST_LOAD.values()]
@@ -230,7 +229,7 @@ def _of_finite_elements(archive: Archive, plan: Plan, selected: NDArray[np.int64
                     f"gives {own[i]:g} m"
                 )
         computed |= archive.rows(rows, archived)
-        load = plan.tasks.order.load(rows - plan.rows.start)
+        load = plan.order.load(rows - plan.rows.start)
         for name, figure in compare.comparisons(computed, load, rules).items():
             allowed = compare.RULES[name].allowed(plan.tolerance)
             if allowed is not None and not figure <= max(_FROM_EXACT, _TOLERANCES * allowed):

@@ -394,7 +394,7 @@ def _put_records(sink: Sink, plans: Sequence[Plan], records: Sequence[dict[str, 
         SolveError: no speed could be solved.
     """
     failures = [f"c = {record['c']:g}: {record['failure']}" for record in records if "failure" in record]
-    if len(failures) == sum(len(plan.tasks) for plan in plans) and not any(
+    if len(failures) == sum(len(plan.order.speeds) for plan in plans) and not any(
         record["solved"] for record in records
     ):
         raise SolveError(failures[0])

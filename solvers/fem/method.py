@@ -45,7 +45,7 @@ class FiniteElements:
         assert plan.fem
         words = (ON_SURFACE, BELOW, YIELD, AT_INTERFACES)
         stresses = frozenset(word for word in words if plan.asks(word, FEM))
-        self.work = Discretisation(plan.fem, plan.tasks, stresses, progress, clock)
+        self.work = Discretisation(plan.fem, [*plan.tasks], stresses, progress, clock)
 
     @cached_property
     def _trained(self) -> Fit | None:

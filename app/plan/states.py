@@ -7,7 +7,7 @@ the friction of every state, which :func:`enumerate_states` computes along the s
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import nan
+from math import nan, prod
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,12 +42,7 @@ class Order:
     own: NDArray[np.float64]
 
     def __len__(self) -> int:
-        return len(self.given) * self.states
-
-    @property
-    def states(self) -> int:
-        """Number of states at each of the scene's speeds."""
-        return len(self.loads) * self.laws * len(self.own)
+        return prod(self.shape)
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
@@ -197,8 +192,8 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     fine = [leg.start + (leg.end - leg.start) * FINE for leg in legs]
     advance = INTEGRATORS[friction.integrator]
     advance_finely = closely if friction.integrator == "exact" else advance
-    f, z, loops, at = np.empty((count, len(order_.own))), list[NDArray](), list[NDArray](), 0
-    taken: dict[str, list[NDArray]] = {"dissipated": [], "breakaway": [], "slope": []}
+    f, at = np.empty((count, len(order_.own))), 0
+    z, loops, taken = list[NDArray](), list[NDArray](), list[NDArray]()
     try:
         for c, law, n, many in _laws(friction, of_laws):
             V, L = c * scene.solid.c_s, friction.pre_sliding
@@ -213,9 +208,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
                 drawn = np.concatenate([stroke.f for stroke in on_loops], axis=-1)
                 loops.append(np.broadcast_to(drawn, (n, drawn.shape[-1]))[: most - at])
                 done_on = works(law, legs, L, V, advance_finely, many)
-                for name, rows in taken.items():
-                    each = [np.broadcast_to(getattr(stroke, name), (n,)) for stroke in done_on]
-                    rows.append(np.stack(each, axis=-1)[: most - at])
+                taken.append(np.broadcast_to(done_on, (3, n, len(legs)))[:, : most - at])
             at += n
             if at % _TOGETHER == 0:
                 done(at, count)
@@ -228,7 +221,7 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     loop[len(drawn_loops) :] = -1
     along = np.repeat([leg.s for leg in legs], [len(X) for X in scene.places])
     with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
-        work, breakaway, slope = (scene.punch.load * np.concatenate(rows) for rows in taken.values())
+        work, breakaway, slope = scene.punch.load * np.concatenate(taken, axis=1)
     first = last_cycle(legs)
     cycle = np.full(len(work), np.nan) if first is None else work[:, first:].sum(axis=1)
     archived = {

@@ -155,33 +155,12 @@ class Stroke:
     """One stroke of a law, or of many at once, whose arrays then begin with (laws, …).
 
     Attributes:
-        name: FM1, BM1, FM2, ….
-        direction: ±1.
-        X_over_L: positions in the order of travel, (n,).
-        z: states of the law there, (n, states).
+        z: states of the law at places in the order of travel, (n, states).
         f: friction coefficient there, positive forward, (n,).
     """
 
-    name: str
-    direction: int
-    X_over_L: NDArray[np.float64]
     z: NDArray[np.float64]
     f: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Work:
-    """Work, largest friction and first slope of a stroke, per normal force: () for one law, (laws,).
-
-    Attributes:
-        dissipated: ∫ s f dX [m].
-        breakaway: largest s f, dimensionless.
-        slope: s df/dX at the start [1/m].
-    """
-
-    dissipated: NDArray[np.float64]
-    breakaway: NDArray[np.float64]
-    slope: NDArray[np.float64]
 
 
 def friction_along(
@@ -258,7 +237,7 @@ def follow(
                 f"parameters of {law.about} with which doubles can compute it: is one of them far from "
                 "its usual size?"
             )
-        result.append(Stroke(leg.name, leg.s, X, passed, f))
+        result.append(Stroke(passed, f))
         z = _last(states, z)
     return result
 
@@ -270,8 +249,16 @@ def works(
     V: float,
     advance: Integrator,
     many: bool = False,
-) -> list[Work]:
-    """Work of every stroke, starting from rest; arguments as of :func:`follow`."""
+) -> NDArray[np.float64]:
+    """Work, largest friction and first slope of every stroke, starting from rest, per normal force.
+
+    Args:
+        law, all_legs, length, V, advance, many: as of :func:`follow`.
+
+    Returns:
+        ∫ s f dX [m], the largest s f, dimensionless, and s df/dX at the start [1/m]: (3, laws, strokes),
+        one law without ``many``.
+    """
     result, z = [], _at_rest(law, many)
     for leg in all_legs:
         speed = V if leg.speed is None else leg.speed
@@ -285,9 +272,9 @@ def works(
             slope = leg.s * (f[..., 1] - f[..., 0]) / (_NEAR * whole)
         elif many:
             slope = slope[..., 0]
-        result.append(Work(dissipated, largest, slope))
+        result.append(np.broadcast_arrays(np.atleast_1d(dissipated), largest, slope))
         z = _last(end, z)
-    return result
+    return np.moveaxis(result, 0, -1)
 
 
 def _at_rest(law: FrictionLaw, many: bool) -> NDArray[np.float64]:

@@ -7,15 +7,15 @@ import random_laws as random
 
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.dahl import Dahl
-from galinx.solvers.friction.motion import Partial, friction_along, last_cycle, legs
+from galinx.solvers.friction.motion import Partial, friction_along, last_cycle, legs, positions
 from galinx.solvers.parameters import build_model, parameters
 
 STROKES = ["forward", "backward", "forward"]
 
 
 def test_friction_of_the_reference_states(references):
-    history = friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8])
-    found = {(s.name, X): f for s in history for X, f in zip(s.X_over_L, s.f)}
+    history = zip(legs(STROKES), friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8]))
+    found = {(leg.name, X): f for leg, s in history for X, f in zip(positions(leg, [0.2, 0.8]), s.f)}
     for state in references["states"]:
         key = state["motion"], float(state["X/L"])
         assert found[key] == pytest.approx(float(state["f"]), rel=1e-13)
@@ -23,8 +23,9 @@ def test_friction_of_the_reference_states(references):
 
 def test_backward_strokes_travel_from_L_to_0():
     forward, backward, _ = friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8])
-    assert list(forward.X_over_L) == [0.2, 0.8] and list(backward.X_over_L) == [0.8, 0.2]
-    assert backward.f[0] > backward.f[1]
+    places = [list(positions(leg, [0.2, 0.8])) for leg in legs(STROKES)]
+    assert places == [[0.2, 0.8], [0.8, 0.2], [0.2, 0.8]]
+    assert forward.f[0] < forward.f[1] and backward.f[0] > backward.f[1]
 
 
 @pytest.mark.parametrize(

@@ -102,21 +102,14 @@ class States:
             speed), the load in N/m where there are several, the law's parameters, the speed and that of
             a wave along the surface in m/s, flutter thresholds of both signs of g, number of times that a
             wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
-        inner: inner state of the law at each state, (states, n).
-        directions: of the strokes, 1 forward, -1 backward, (states,).
-        loop: row of each state in ``loops``, -1 for none, (states,).
-        travel: positions X/L along all strokes in the order of travel, (steps,).
-        loops: friction coefficient at these, (loops, steps).
-        works: work and stiffness of strokes as archived, by path, (loops, strokes) and (loops,).
+        others: further datasets by path: inner state of the law at each state, (states, n); row of each
+            state among the loops, -1 for none, (states,); positions X/L along all strokes in the order of
+            travel, (steps,), and friction there, (loops, steps); work and stiffness of strokes, (loops,
+            strokes) and (loops,).
     """
 
     columns: dict[str, NDArray]
-    inner: NDArray[np.float64]
-    directions: NDArray[np.int64]
-    loop: NDArray[np.int64]
-    travel: NDArray[np.float64]
-    loops: NDArray[np.float64]
-    works: dict[str, NDArray[np.float64]]
+    others: dict[str, NDArray]
 
     def __len__(self) -> int:
         return len(self.g)
@@ -132,15 +125,14 @@ class States:
         return self.columns.get("load")
 
     @property
+    def directions(self) -> NDArray[np.int64]:
+        """Directions of the strokes, 1 forward, -1 backward, (states,)."""
+        return np.where(np.char.startswith(self.columns["motion"], "F"), 1, -1)
+
+    @property
     def datasets(self) -> dict[str, NDArray]:
         """All arrays as archived, by path."""
-        return {column(name): values for name, values in self.columns.items()} | {
-            INNER_STATE.path: self.inner,
-            runs.LOOP_OF_STATE.path: self.loop,
-            runs.LOOP_X.path: self.travel,
-            runs.LOOP_F.path: self.loops,
-            **self.works,
-        }
+        return {column(name): values for name, values in self.columns.items()} | self.others
 
 
 def speeds(scene: Scene) -> tuple[float, ...]:
@@ -219,20 +211,17 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     drawn_loops = np.concatenate(loops)
     loop = np.arange(count)
     loop[len(drawn_loops) :] = -1
-    along = np.repeat([leg.s for leg in legs], [len(X) for X in scene.places])
     with np.errstate(over="ignore"):  # a friction of 1e308 is allowed
         work, breakaway, slope = scene.punch.load * np.concatenate(taken, axis=1)
     first = last_cycle(legs)
     cycle = np.full(len(work), np.nan) if first is None else work[:, first:].sum(axis=1)
-    archived = {
+    return States(_columns(scene, order_, _of_all(order_, f)), {
+        INNER_STATE.path: _of_all(order_, np.concatenate(z)),
+        runs.LOOP_OF_STATE.path: _of_all(order_, np.tile(loop[:, None], f.shape[1])),
+        runs.LOOP_X.path: np.concatenate(fine), runs.LOOP_F.path: drawn_loops,
         runs.LOOP_WORK.path: work, runs.LOOP_CYCLE.path: cycle,
         runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
-    }  # fmt: skip
-    return States(
-        _columns(scene, order_, _of_all(order_, f)), _of_all(order_, np.concatenate(z)),
-        _of_all(order_, np.tile(along, (count, 1))), _of_all(order_, np.tile(loop[:, None], f.shape[1])),
-        np.concatenate(fine), drawn_loops, archived,
-    )  # fmt: skip
+    })  # fmt: skip
 
 
 def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:

@@ -5,12 +5,12 @@ variant, then those of the second, and so on.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import layers
+from galinx.postprocess.quantities.runs import LOOP_F, LOOP_OF_STATE, LOOP_X
 from galinx.postprocess.quantities.swept import HALF_WIDTH, INTERFACE_DEPTHS, WAVE_SPEED
 from galinx.texts import counted
 
@@ -80,14 +80,12 @@ def joined_states(plans: Sequence[Plan]) -> States:
     for row, of_each in values.items():  # a column where an archive of a single problem has one number
         if len(set(of_each)) > 1:
             columns[row.path.partition("/")[2]] = np.repeat(of_each, counts)
-    before = np.cumsum([0, *(len(states.loops) for states in each[:-1])]).tolist()
-    loop = [np.where(states.loop < 0, -1, states.loop + n) for states, n in zip(each, before)]
-    return replace(
-        each[0], columns=columns, loop=np.concatenate(loop),
-        **{name: np.concatenate([getattr(states, name) for states in each])
-           for name in ("inner", "directions", "loops")},
-        works={path: np.concatenate([states.works[path] for states in each]) for path in each[0].works},
-    )  # fmt: skip
+    others = {path: [states.others[path] for states in each] for path in each[0].others}
+    before = np.cumsum([0, *map(len, others[LOOP_F.path][:-1])]).tolist()
+    rows = zip(others[LOOP_OF_STATE.path], before)
+    others[LOOP_OF_STATE.path] = [np.where(row < 0, -1, row + n) for row, n in rows]
+    del others[LOOP_X.path][1:]
+    return States(columns, {path: np.concatenate(values) for path, values in others.items()})
 
 
 def joined_positions(plans: Sequence[Plan]) -> dict[str, NDArray]:

@@ -78,12 +78,13 @@ def test_the_sign_of_friction_is_that_of_the_traction(sign, ratio):
 def test_every_state_lies_on_its_archived_loop():
     changes = {"friction.mu_c": [0.3, 0.7], "motion.X_over_L": [0.0, 0.5, 1.0]}
     states = enumerate_states(template("tables4_5", changes))
-    assert states.loops.shape == (2, 3 * 101) and len(states.travel) == 303
+    loops, travel, loop = (states.others[f"loops/{name}"] for name in ("f", "X_over_L", "of_state"))
+    assert loops.shape == (2, 3 * 101) and len(travel) == 303
     for i in range(len(states)):
         stroke = ["FM1", "BM1", "FM2"].index(states.columns["motion"][i])
         here = slice(101 * stroke, 101 * (stroke + 1))
-        at = np.argmin(np.abs(states.travel[here] - states.columns["X_over_L"][i]))
-        f = states.loops[states.loop[i], here][at]
+        at = np.argmin(np.abs(travel[here] - states.columns["X_over_L"][i]))
+        f = loops[loop[i], here][at]
         assert f == pytest.approx(states.columns["f"][i], rel=1e-14)
 
 

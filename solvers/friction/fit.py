@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import Parameter, Range, build_model, fields, parameters
+from ..parameters import Range, build_model, fields, parameters
 from .integrate import exactly
 from .law import FrictionLaw, MeasuredFriction
 
@@ -326,56 +326,35 @@ def _variances(J: NDArray) -> NDArray[np.float64]:
     return np.where(lost, np.nan, diagonal / scale**2)
 
 
-@dataclass(frozen=True)
-class _Number:
-    """Fitted number p of a law; its unknown θ is ln p where it has to be positive, else p.
+def _unknown(
+    name: str, bounds: Range, start: float, usual: float
+) -> tuple[bool, float, float, float, float]:
+    """Unknown θ of a number p of a law: ln p where p has to be positive, else p.
 
-    Attributes:
-        parameter: that it belongs to.
-        row, column: its place in a table, row -1 where the parameter is one number.
-        range: of p.
+    Args:
+        name: of p, for messages.
+        bounds: range of p.
         start: p with which the search begins.
+        usual: size of such a number, where it has no bounds.
+
+    Returns:
+        True where θ = ln p; θ at the start; its lowest and highest value, a little inside of open bounds;
+        and the largest distance of other starts from the first.
+
+    Raises:
+        ValueError: p has to be positive, and its start is not.
     """
-
-    parameter: Parameter
-    row: int
-    column: int
-    range: Range
-    start: float
-
-    @property
-    def name(self) -> str:
-        """Name as ``"mu_c"`` or ``"elements[2, 1]"``."""
-        key = self.parameter.key
-        return key if self.row < 0 else f"{key}[{self.row}, {self.column}]"
-
-    @property
-    def log(self) -> bool:
-        """True where θ = ln p."""
-        return self.range.above == 0.0 and self.range.below is None
-
-    @property
-    def bounds(self) -> tuple[float, float]:
-        """Lowest and highest θ; a little inside of open bounds."""
-        if self.log:
-            return log(self.start) - log(_FARTHEST), log(self.start) + log(_FARTHEST)
-        of = self.range
-        low = of.at_least if of.at_least is not None else -inf
-        high = of.at_most if of.at_most is not None else inf
-        return (
-            low if of.above is None else of.above + _INSIDE,
-            high if of.below is None else of.below - _INSIDE,
-        )
-
-    def reach(self, look: MeasuredFriction) -> float:
-        """Largest distance in θ of other starts from the first."""
-        low, high = self.bounds
-        if self.log:
-            return log(_AWAY)
-        if isfinite(high - low):
-            return 0.5 * (high - low)
-        usual = 1.0 if self.parameter.unit == "" else look.level / max(look.speed, 1e-12)
-        return max(abs(self.start), usual)
+    if bounds.above == 0.0 and bounds.below is None:
+        if start <= 0.0:
+            raise ValueError(f"found a start of {name} that is not above 0")
+        θ = log(start)
+        return True, θ, θ - log(_FARTHEST), θ + log(_FARTHEST), log(_AWAY)
+    low = -inf if bounds.at_least is None else bounds.at_least
+    low = low if bounds.above is None else bounds.above + _INSIDE
+    high = inf if bounds.at_most is None else bounds.at_most
+    high = high if bounds.below is None else bounds.below - _INSIDE
+    reach = 0.5 * (high - low) if isfinite(high - low) else max(abs(start), usual)
+    return False, start, low, high, reach
 
 
 class _Search:
@@ -394,11 +373,13 @@ class _Search:
         self, kind: type[FrictionLaw], look: MeasuredFriction, fixed: dict[str, Any],
         start: dict[str, Any],
     ) -> None:  # fmt: skip
-        self._kind, self._values, self._numbers = kind, dict[str, Any](), list[_Number]()
-        described, defaults = parameters(kind), fields(kind)
+        self._kind, self._values, described = kind, dict[str, Any](), parameters(kind)
         if unexpected := [key for key in (*fixed, *start) if key not in described]:
             raise ValueError(f"found the parameter {unexpected[0]!r}, expected {', '.join(described)}")
-        given = kind.guess(look) | start | fixed
+        given, defaults = kind.guess(look) | start | fixed, fields(kind)
+        # Of each fitted number its name, parameter and place in that, () for one number.
+        self._fitted: list[tuple[str, str, tuple[int, ...]]] = []
+        unknowns = []
         for key, parameter in described.items():
             value = given.get(key, None if parameter.columns else defaults[key].default)
             if parameter.optional and value is None:
@@ -406,17 +387,18 @@ class _Search:
             if value is None or not isinstance(value, (int, float, str, tuple)):
                 raise ValueError(f"found no start for {key}, expected --start {key}=… or --fix {key}=…")
             self._values[key] = value
-            chosen = key in kind.conventions and key not in start
-            if not (key in fixed or parameter.options or chosen):
-                numbers = _numbers(parameter, value)
-                self._numbers += [one for one in numbers if one.name not in kind.conventions]
-        self.names = tuple(one.name for one in self._numbers)
-        if below := [one.name for one in self._numbers if one.log and one.start <= 0.0]:
-            raise ValueError(f"found a start of {below[0]} that is not above 0")
-        self._logs = np.array([one.log for one in self._numbers], dtype=bool)
-        self.begin = np.array([log(one.start) if one.log else one.start for one in self._numbers])
-        self.low, self.high = np.array([one.bounds for one in self._numbers]).reshape(-1, 2).T
-        self.reach = np.array([one.reach(look) for one in self._numbers])
+            bounds = Range(above=0.0) if len(parameter.measured) > 1 else parameter.range
+            usual = look.level / max(look.speed, 1e-12) if parameter.unit else 1.0
+            known = key in fixed or parameter.options or parameter.count
+            for place, number in np.ndenumerate(() if known else np.array(value, dtype=float)):
+                name = f"{key}[{place[0]}, {place[1]}]" if place else key
+                if name in kind.conventions or (place and place[1] not in parameter.measured):
+                    continue
+                self._fitted.append((name, key, place))
+                unknowns.append(_unknown(name, bounds, float(number), usual))
+        self.names = tuple(name for name, *_ in self._fitted)
+        logs, self.begin, self.low, self.high, self.reach = np.reshape(unknowns, (-1, 5)).T
+        self._logs = logs.astype(bool)
 
     def numbers(self, θ: NDArray) -> NDArray[np.float64]:
         """Fitted numbers p at θ, (m,)."""
@@ -431,22 +413,19 @@ class _Search:
 
         That of a number without sign is its own size, else the largest of its key.
         """
-        size, keys = np.abs(self.numbers(θ)), np.array([one.parameter.key for one in self._numbers])
+        size, keys = np.abs(self.numbers(θ)), np.array([key for _, key, _ in self._fitted])
         return np.where(np.isinf(self.low), [size[keys == key].max() for key in keys], size)
 
     def values(self, θ: NDArray) -> dict[str, Any]:
         """All parameters by key at θ."""
         values = {
-            key: np.array(value).tolist() if isinstance(value, tuple) else value
+            key: np.array(value, dtype=None if isinstance(value, str) else float)
             for key, value in self._values.items()
         }
-        for one, number in zip(self._numbers, self.numbers(θ).tolist()):
-            if one.row < 0:
-                values[one.parameter.key] = number
-            else:
-                values[one.parameter.key][one.row][one.column] = number
+        for (_, key, place), number in zip(self._fitted, self.numbers(θ)):
+            values[key][place] = number
         return {
-            key: tuple(map(tuple, value)) if isinstance(value, list) else value
+            key: tuple(map(tuple, value.tolist())) if value.ndim > 1 else value.tolist()
             for key, value in values.items()
         }
 
@@ -464,15 +443,3 @@ class _Search:
             else np.reshape([values[key] for values in each], (len(θ), 1, *np.shape(value)))
             for key, value in each[0].items()
         })  # fmt: skip
-
-
-def _numbers(parameter: Parameter, value: Any) -> list[_Number]:
-    """Numbers of a parameter that a fit determines."""
-    if parameter.single:
-        return [_Number(parameter, -1, 0, parameter.range, float(value))]
-    positive = Range(above=0.0) if len(parameter.measured) > 1 else Range()
-    return [
-        _Number(parameter, row, column, positive, float(numbers[column]))
-        for row, numbers in enumerate(value if parameter.columns else ())
-        for column in parameter.measured
-    ]

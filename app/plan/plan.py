@@ -58,7 +58,7 @@ from .states import Order, States, enumerate_states, order
 #: computed.
 CHUNK_NUMBERS, _HELD = 1_200_000, 18
 #: Bytes of a state's friction.
-_FRICTION = 300.0
+FRICTION = 300.0
 #: Least and largest floating-point number.
 _LEAST, _MOST = np.finfo(float).tiny, np.finfo(float).max
 #: Most sliders of a scene.
@@ -201,15 +201,6 @@ class Plan:
         ]
 
 
-def too_many(states: int) -> Iterator[str]:
-    """Fault of a scene of so many states that memory does not hold their friction."""
-    if lack := elements.lacking(_FRICTION * states):
-        yield (
-            f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
-            "them, or make several scenes"
-        )
-
-
 def _faults(
     scene: Scene, methods: Collection[str], places: Places, refusals: dict[str, str]
 ) -> Iterator[str]:
@@ -223,7 +214,6 @@ def _faults(
             reasons why they do not solve it, "" for those that do.
     """
     states, solve, body = order(scene), scene.solve, scene.body
-    yield from too_many(len(states))
     sliders = scene.friction.count * len(states.loads)
     if SLIDER in scene.output.quantities and sliders > _SLIDERS:
         yield (
@@ -453,7 +443,7 @@ def _bytes(plan: Plan) -> float:
     """Estimated memory [B] of a plan's matrices and stresses, with finite elements of a rank."""
     held, fem = _HELD * plan.chunk * plan.numbers, plan.fem
     if not fem:
-        return held + _FRICTION * plan.states
+        return held + FRICTION * plan.states
     most = fem.size / (1 if fem.shared_speeds else ranks.size())
     return held + elements.memory(most, fem.solver == "direct")
 

@@ -16,7 +16,8 @@ from galinx.texts import counted
 
 from ..errors import BadInput, listed
 from ..scene.scene import Scene
-from .plan import Plan, interface_grid, lines, make_plan, too_many
+from .elements import lacking
+from .plan import FRICTION, Plan, interface_grid, lines, make_plan
 from .states import States, order
 
 
@@ -30,8 +31,12 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
     Raises:
         BadInput: an output has no answer by the scene's methods, or not the same answers in all variants.
     """
-    for fault in too_many(sum(len(order(variant)) for variant in scene.each)):
-        raise BadInput(fault)
+    states = sum(len(order(variant)) for variant in scene.each)
+    if lack := lacking(FRICTION * states):
+        raise BadInput(
+            f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
+            "them, or make several scenes"
+        )
     plans, along, first = list[Plan](), positions_along(scene), (0, 0)
     for variant in scene.each:
         try:

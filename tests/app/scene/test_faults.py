@@ -7,7 +7,7 @@ import pytest
 from support import scene_of
 
 from galinx.app.errors import BadInput
-from galinx.app.plan.plan import make_plan
+from galinx.app.plan.variants import make_plans
 
 CLOSED, SIE, FEM = ({"solve.methods": [method]} for method in ("closed_form", "sie", "fem"))
 _APART = {"friction.sigma0_over_load": None, "friction.sigma0": "1.5922 N/µm/mm"}
@@ -237,4 +237,4 @@ CASES = [(name, *fault) for name, faults in FAULTS.items() for fault in faults]
 def test_each_fault_has_its_message(name, changes, message):
     expected = ".*".join(map(re.escape, message.split("…")))
     with pytest.raises(BadInput, match=re.compile(expected, re.DOTALL)):
-        make_plan(scene_of(name, changes))
+        make_plans(scene_of(name, changes))

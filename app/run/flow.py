@@ -28,7 +28,7 @@ from galinx.postprocess.quantities import column, declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.errors import SolveError
-from galinx.solvers.friction.slider import cycle, outcome, pull
+from galinx.solvers.friction.slider import Ride, pull
 from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import SOLIDS
@@ -218,7 +218,7 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
     Raises:
         BadInput: a motion could not be followed.
     """
-    slider, motions, rides = scene.slider, list[dict[str, Any]](), list[Any]()
+    slider, motions, rides = scene.slider, list[dict[str, Any]](), list[Ride]()
     assert slider is not None
     of = len(scene.punch.loads) * scene.friction.count
     for n, (load, law) in enumerate(product(scene.punch.loads, scene.friction.laws())):
@@ -229,18 +229,17 @@ def slide(scene: Scene, done: Callable[[float, int], None] = lambda n, of: None)
     slips = [ride.slips(slider.duration, max(_IN_SLIPS // of, 1)) for ride in rides]
     times = np.unique(np.concatenate([np.linspace(0.0, slider.duration, _TIMES), *slips]))
     for ride in rides:
-        last, (x, v, f) = cycle(ride, slider.drive_speed), ride.at(times)
+        x, v, f = ride.at(times)
         cycle_v, cycle_f = np.full((2, _STEPS), np.nan)
-        if np.isfinite(last.period):
+        if np.isfinite(ride.period):
             t = ride.t[ride.cycle]  # dense where the integration took small steps
             steps = np.linspace(0.0, len(t) - 1.0, _STEPS)
             _, cycle_v, cycle_f = ride.at(np.interp(steps, np.arange(len(t)), t))
         motions.append({
             runs.POSITION.path: x, runs.VELOCITY.path: v, runs.FRICTION.path: f,
             runs.CYCLE_VELOCITY.path: cycle_v, runs.CYCLE_FRICTION.path: cycle_f,
-            runs.OUTCOME.path: outcome(ride, slider.drive_speed),
-            runs.PERIOD.path: last.period, runs.SLIP.path: last.slip,
-            runs.PEAK.path: last.peak, runs.LEAST.path: last.least,
+            runs.OUTCOME.path: ride.outcome, runs.PERIOD.path: ride.period,
+            runs.SLIP.path: ride.slip, runs.PEAK.path: ride.peak, runs.LEAST.path: ride.least,
         })  # fmt: skip
     return {runs.TIMES.path: times} | {
         path: np.array([motion[path] for motion in motions]) for path in motions[0]

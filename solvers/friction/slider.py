@@ -43,6 +43,14 @@ _INSTANT = 1e-16
 _CYCLES, _SAME = 8, 1e-8
 #: Share of the largest velocity from which on a mass slips, and times in a slip besides its fastest one.
 _SLIPS, _IN_A_SLIP = 1e-3, 24
+#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
+#: sticks; under laws of the logarithm of the speed it creeps, and never stops.
+_STEADY, _STOPPED = 1e-3, 1e-2
+#: Outcomes of a slider's motion.
+STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
+    "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
+    "no whole cycle yet",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -76,11 +84,13 @@ class _Piece:
     y: Callable[[NDArray], NDArray]
 
 
-@dataclass(frozen=True)
 class Ride:
     """Motion of a slider, at the steps of the integration, (n,).
 
     The integration ends where the motion is periodic; :meth:`at` repeats its last cycle.
+
+    Args:
+        motion: the motion at its end.
 
     Attributes:
         t: time [s].
@@ -88,17 +98,23 @@ class Ride:
         f: friction coefficient, that of the spring's pull where it sticks.
         crossings: times at which the slider became faster than the drive [s], (m,).
         x_crossings: positions at these times [m], (m,).
+        period, slip: duration [s] of the last cycle of stick-slip, from one crossing to the next, and
+            slip of the mass in it [m]; NaN where there is none.
+        peak, least: largest and smallest velocity in it [m/s].
     """
 
-    t: NDArray[np.float64]
-    x: NDArray[np.float64]
-    v: NDArray[np.float64]
-    f: NDArray[np.float64]
-    crossings: NDArray[np.float64]
-    x_crossings: NDArray[np.float64]
-    _pieces: tuple[_Piece, ...]
-    _rows: Callable[[_Piece, NDArray], NDArray]
-    _repeats: bool
+    def __init__(self, motion: "_Motion") -> None:
+        self._motion, self._drive = motion, motion.slider.drive_speed
+        self.t = np.concatenate([piece.start + piece.t for piece in motion.pieces])
+        self.x, self.v, self.f = np.vstack([motion.rows(piece, piece.t) for piece in motion.pieces]).T
+        self.crossings = np.array([t for t, _ in motion.crossings])
+        self.x_crossings = self._drive * self.crossings - [state[0] for _, state in motion.crossings]
+        self.period = self.slip = self.peak = self.least = np.nan
+        if (steps := self.cycle) and self.v[steps].max() >= (1.0 + _STEADY) * self._drive:
+            self.period, self.slip = (
+                float(np.diff(of[-2:])[0]) for of in (self.crossings, self.x_crossings)
+            )
+            self.peak, self.least = float(self.v[steps].max()), float(self.v[steps].min())
 
     def at(self, times: NDArray) -> NDArray[np.float64]:
         """Position [m], velocity [m/s] and friction coefficient at times [s], (3, times).
@@ -106,17 +122,18 @@ class Ride:
         Between its steps the scheme's own polynomials are evaluated, as accurate as the steps.
         """
         t, cycles = np.array(times, dtype=float), np.zeros(np.shape(times))
-        if self._repeats:
+        if self._motion.repeats:
             period, last = self.crossings[-1] - self.crossings[-2], self.crossings[-1]
             cycles = np.maximum(np.floor((t - last) / period) + 1.0, 0.0)
             t = t - cycles * period
-        starts = np.array([piece.start for piece in self._pieces])
+        starts = np.array([piece.start for piece in self._motion.pieces])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
         values = np.empty((3, len(t)))
         for n in np.unique(which):
-            piece, here = self._pieces[n], which == n
-            values[:, here] = self._rows(piece, np.clip(t[here], piece.start, piece.end) - piece.start).T
-        if self._repeats:
+            piece, here = self._motion.pieces[n], which == n
+            since = np.clip(t[here], piece.start, piece.end) - piece.start
+            values[:, here] = self._motion.rows(piece, since).T
+        if self._motion.repeats:
             values[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
         return values
 
@@ -131,7 +148,7 @@ class Ride:
             return np.empty(0)
         begun, v = self.crossings, self.v[self.cycle]
         t, period = self.t[self.cycle] - begun[-2], begun[-1] - begun[-2]
-        more = max(int((end - begun[-1]) / period), 0) if self._repeats else 0
+        more = max(int((end - begun[-1]) / period), 0) if self._motion.repeats else 0
         fast = t[v > _SLIPS * v.max()]
         inside = np.linspace(0.0, len(fast) - 1.0, _IN_A_SLIP)
         inside = np.append(np.interp(inside, np.arange(len(fast)), fast), t[v.argmax()])
@@ -151,54 +168,16 @@ class Ride:
         first, last = np.searchsorted(self.t, self.crossings[-2:])
         return slice(int(first), int(last) + 1)
 
-
-#: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
-#: sticks; under laws of the logarithm of the speed it creeps, and never stops.
-_STEADY, _STOPPED = 1e-3, 1e-2
-
-
-@dataclass(frozen=True)
-class Cycle:
-    """Last cycle of stick-slip; NaN where there is none.
-
-    Attributes:
-        period: duration of the cycle [s].
-        slip: slip of the mass in the cycle [m].
-        peak, least: largest and smallest velocity [m/s].
-    """
-
-    period: float
-    slip: float
-    peak: float
-    least: float
-
-
-def cycle(ride: Ride, drive_speed: float) -> Cycle:
-    """Last cycle of a motion, from one crossing of the drive's speed [m/s] to the next."""
-    steps = ride.cycle
-    if steps is None or ride.v[steps].max() < (1.0 + _STEADY) * drive_speed:
-        return Cycle(*[np.nan] * 4)
-    (period,), (slip,), v = np.diff(ride.crossings[-2:]), np.diff(ride.x_crossings[-2:]), ride.v[steps]
-    return Cycle(float(period), float(slip), float(v.max()), float(v.min()))
-
-
-#: Outcomes of a slider's motion.
-STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
-    "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
-    "no whole cycle yet",
-)  # fmt: skip
-
-
-def outcome(ride: Ride, drive_speed: float) -> str:
-    """Outcome of a slider's motion in words, by the drive's speed [m/s]."""
-    last = cycle(ride, drive_speed)
-    if np.isfinite(last.period):
-        return STICK_SLIP if last.least <= _STOPPED * drive_speed else SWINGS
-    if len(ride.crossings) > 1 or abs(ride.v[-1] / drive_speed - 1.0) < _STEADY:
-        return STEADY
-    if ride.v[-1] > _STOPPED * drive_speed:
-        return SHORT
-    return ONE_SLIP if len(ride.crossings) else STAYS
+    @property
+    def outcome(self) -> str:
+        """Outcome of the motion in words."""
+        if np.isfinite(self.period):
+            return STICK_SLIP if self.least <= _STOPPED * self._drive else SWINGS
+        if len(self.crossings) > 1 or abs(self.v[-1] / self._drive - 1.0) < _STEADY:
+            return STEADY
+        if self.v[-1] > _STOPPED * self._drive:
+            return SHORT
+        return ONE_SLIP if len(self.crossings) else STAYS
 
 
 def pull(
@@ -219,7 +198,7 @@ def pull(
     for _ in range(PIECES):
         if motion.t >= slider.duration or motion.repeats:
             done(1.0)
-            return motion.ride()
+            return Ride(motion)
         motion.go_on()
         done(min(motion.t / slider.duration, 1.0))
     raise ValueError(
@@ -238,9 +217,9 @@ class _Motion:
     def __init__(self, slider: Slider, law: FrictionLaw, load: float) -> None:
         self.slider, self.law, self.load = slider, law, load
         self.t, self.e, self.v, self.z, self.s = 0.0, 0.0, 0.0, law.rest(), 0
-        self._pieces: list[_Piece] = []
+        self.pieces: list[_Piece] = []
         # Times at which the drive's speed was crossed, with spring and state of the law.
-        self._crossings: list[tuple[float, NDArray[np.float64]]] = []
+        self.crossings: list[tuple[float, NDArray[np.float64]]] = []
         self._longest = self._usual = _PERIODS * 2.0 * np.pi * np.sqrt(slider.mass / slider.stiffness)
         self._slow = _AT_REST * slider.drive_speed
         # Size of the spring's extension [m].
@@ -255,27 +234,18 @@ class _Motion:
         # Rates that are smooth enough need no stop.
         self._stops = type(law).settle is not FrictionLaw.settle
 
-    def ride(self) -> Ride:
-        """Motion so far."""
-        at = np.array([t for t, _ in self._crossings])
-        e = np.array([state[0] for _, state in self._crossings])
-        t = np.concatenate([piece.start + piece.t for piece in self._pieces])
-        x, v, f = np.vstack([self._rows(piece, piece.t) for piece in self._pieces]).T
-        x_at, pieces = self.slider.drive_speed * at - e, tuple(self._pieces)
-        return Ride(t, x, v, f, at, x_at, pieces, self._rows, self.repeats)
-
     @property
     def repeats(self) -> bool:
         """True if the last cycles are equal to rounding of the integration."""
-        if len(self._crossings) <= _CYCLES:
+        if len(self.crossings) <= _CYCLES:
             return False
-        times, states = (np.array(of) for of in zip(*self._crossings[-_CYCLES - 1 :]))
+        times, states = (np.array(of) for of in zip(*self.crossings[-_CYCLES - 1 :]))
         sizes, periods = np.abs(states).max(axis=0), np.diff(times)
         sizes[0] = max(sizes[0], self._length)
         unchanged = np.ptp(states, axis=0) <= _SAME * sizes
         return bool(unchanged.all() and np.ptp(periods) <= _SAME * periods.max())
 
-    def _rows(self, piece: _Piece, since: NDArray) -> NDArray[np.float64]:
+    def rows(self, piece: _Piece, since: NDArray) -> NDArray[np.float64]:
         """Position [m], velocity [m/s] and friction coefficient at times since a piece began, (n, 3)."""
         drive, rows = self.slider.drive_speed, []
         for t, y in zip(since, piece.y(since).T):
@@ -312,7 +282,7 @@ class _Motion:
         if seconds <= 0.0:
             return
         begun, drive, z = self.e, self.slider.drive_speed, self.z
-        self._pieces.append(_Piece(
+        self.pieces.append(_Piece(
             self.t, self.t + seconds, 0, np.linspace(0.0, seconds, 20),
             lambda t: np.vstack([begun + drive * t, 0.0 * t, np.outer(z, np.ones_like(t))]),
         ))  # fmt: skip
@@ -323,8 +293,8 @@ class _Motion:
         """Slide in one direction, as long as the law does not switch."""
         piece = self._integrated()
         t = np.sort(np.append(piece.t, piece.t_events[2]))
-        self._pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, t, piece.sol))
-        self._crossings += [
+        self.pieces.append(_Piece(self.t, self.t + piece.t[-1], self.s, t, piece.sol))
+        self.crossings += [
             (self.t + t, np.delete(y, 1)) for t, y in zip(piece.t_events[1], piece.y_events[1])
         ]
         self.t, (self.e, self.v, *z) = self.t + piece.t[-1], piece.y[:, -1]

@@ -122,14 +122,14 @@ class FrictionLaw(Protocol):
 class Laws(Registry[type[FrictionLaw]]):
     """Registry of friction laws; parameters of one name are one column of archives, whatever the law."""
 
-    def register(self, name: str, model: type[FrictionLaw]) -> type[FrictionLaw]:
-        """Add a law, and return it.
+    def check(self, name: str, model: type[FrictionLaw]) -> None:
+        """Check that a law can be registered.
 
         Raises:
-            TypeError: the model is no class with the members of :class:`FrictionLaw`.
-            ValueError: the name is taken, or another law has that parameter in another unit.
+            TypeError: the name is no text, or the law no class with the members of :class:`FrictionLaw`.
+            ValueError: another law has one of its parameters in another unit.
         """
-        self.check(name, model)
+        super().check(name, model)
         for other, law in self.items():
             described = parameters(law)
             for key, own in parameters(model).items():
@@ -139,7 +139,6 @@ class Laws(Registry[type[FrictionLaw]]):
                         f"{described[key].unit or '1'!r}, {name!r} has it in {own.unit or '1'!r}: "
                         "give it another key"
                     )
-        return super().register(name, model)
 
 
 #: Laws by the name that scenes use; every law adds itself.

@@ -60,11 +60,8 @@ def runge_kutta(
         ``steps + 1`` rows; the last row's slopes belong to the step that would follow.
 
     Raises:
-        ValueError: the step is beyond the scheme's stability limit, the law has no known limit, or
-            there is less than one step.
+        ValueError: the step is beyond the scheme's stability limit, or the law has no known limit.
     """
-    if steps < 1:
-        raise ValueError(f"steps = {steps!r}: expected at least 1")
     h, stiffness = length / steps, law.stiffness(z, s, V)
     if stiffness is None:
         raise ValueError(

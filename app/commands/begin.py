@@ -53,11 +53,13 @@ def materials() -> None:
 
     if ranks.is_root():
         for name, material in LIBRARY.items():
+            constants = dict(material.constants)
+            kind, strength = constants.pop("kind"), constants.pop("yield_strength", "")
             say(f"{name}: {material.about}")
-            say(f"  {material.kind}: {material.words}", 4)
+            say(f"  {kind}: {', '.join(f'{key} = {value}' for key, value in constants.items())}", 4)
             say(f"  {material.source}", 4)
-            if material.yield_strength:
-                say(f"  yield strength {material.yield_strength}: {material.yield_source}", 4)
+            if strength:
+                say(f"  yield strength {strength}: {material.yield_source}", 4)
 
 
 @click.command()

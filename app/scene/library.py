@@ -16,37 +16,23 @@ class Material:
 
     Attributes:
         about: description of the material.
-        kind: name of the kind of solid.
-        values: constants by key, as a scene writes them.
         source: publication of the constants.
-        yield_strength, yield_source: uniaxial yield strength as a scene writes it, and its publication;
-            "" for solids that break rather than yield.
+        constants: keys and values of a scene's section [solid]: kind, constants and, of solids that yield
+            before they break, the uniaxial yield_strength.
+        yield_source: publication of that; "" for other solids.
     """
 
     about: str
-    kind: str
-    values: dict[str, Any]
     source: str
-    yield_strength: str = ""
+    constants: dict[str, Any]
     yield_source: str = ""
-
-    @property
-    def constants(self) -> dict[str, Any]:
-        """Keys and values that a scene's section [solid] takes from the material."""
-        strength = {"yield_strength": self.yield_strength} if self.yield_strength else {}
-        return {"kind": self.kind} | self.values | strength
-
-    @property
-    def words(self) -> str:
-        """Constants of the material in one line, each with its unit, if it has one."""
-        return ", ".join(f"{key} = {value}" for key, value in self.values.items())
 
 
 def _material(entry: dict[str, Any]) -> Material:
     """A material from its table, in which every key that is no attribute is a constant."""
-    names = ("about", "source", "yield_strength", "yield_source")
+    names = ("about", "source", "yield_source")
     attributes = {name: entry.pop(name) for name in names if name in entry}
-    return Material(kind=entry.pop("kind", "isotropic"), values=entry, **attributes)
+    return Material(constants={"kind": "isotropic"} | entry, **attributes)
 
 
 #: Solids by the name that scenes use.

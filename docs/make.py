@@ -214,7 +214,8 @@ def scene_page() -> str:
 
     parts = [_SCENE]
     for name, section in SECTIONS.items():
-        parts += [f"## {section.heading.format(name)}\n", *_section(section)]
+        heading = f"[[{name}]]" if name == "layer" else f"[{name}]"
+        parts += [f"## {heading}\n", *_section(section)]
     parts.append("## Materials\n\n`./run.sh materials` prints their constants and sources.\n")
     about = {name: solid.about.replace(";", ",").partition(",")[0] for name, solid in LIBRARY.items()}
     parts.append("".join(f"- `{name}`: {words}\n" for name, words in about.items()))

@@ -548,7 +548,6 @@ class Section:
         defaults: of parameters, in scenes.
         or_else: alternative to a missing key, for messages.
         optional: True where a scene may do without the section, which then is None.
-        heading: of the section in a scene.
     """
 
     made: type
@@ -559,7 +558,6 @@ class Section:
     defaults: Mapping[str, Any] = dataclasses.field(default_factory=dict)
     or_else: str = ""
     optional: bool = False
-    heading: str = "[{}]"
 
     @cached_property
     def own(self) -> dict[str, tuple[str, Key]]:
@@ -785,7 +783,7 @@ SWEPT = ("solid", "layer", "punch", "punch.solid", "friction")
 SECTIONS: dict[str, Section] = {
     "solid": Section(GivenSolid, SOLIDS, "kind", "isotropic", or_else=", or solid.material"),
     "layer": LayerSections(
-        LayerTable, SOLIDS, "kind", "isotropic", or_else=", or material, or properties", heading="[[{}]]"
+        LayerTable, SOLIDS, "kind", "isotropic", or_else=", or material, or properties"
     ),
     "punch": Section(Punch, PROFILES, "profile", "flat", defaults={"half_width": 1e-3}),
     "punch.solid": Section(

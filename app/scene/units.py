@@ -8,7 +8,6 @@ loading pint takes longer than a friction loop.
 import re
 import sys
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from typing import Any
@@ -35,20 +34,12 @@ _FACTOR = re.compile(
 Units = tuple[tuple[str, int], ...]
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """A number and the product of powers of units that it is given in; dimensionless without units."""
-
-    number: float
-    units: Units
-
-
 class _NoQuantity(ValueError):
     """A text is no quantity."""
 
 
-def quantity(text: str) -> Quantity:
-    """Read a quantity, as ``25000 1/m`` or ``7.86 g/mm^3``.
+def quantity(text: str) -> tuple[float, Units]:
+    """Number and units of a quantity, as ``25000 1/m`` or ``7.86 g/mm^3``; none where dimensionless.
 
     Raises:
         ValueError: the text is no quantity.
@@ -56,7 +47,7 @@ def quantity(text: str) -> Quantity:
     head = _NUMBER.match(text) if len(text) <= LONGEST else None
     if not head:
         raise _NoQuantity("no number")
-    return Quantity(float(head[1]), units(text[head.end() :]))
+    return float(head[1]), units(text[head.end() :])
 
 
 def units(text: str) -> Units:
@@ -90,8 +81,8 @@ _UNITS = {
 }  # fmt: skip
 
 
-def in_units(given: Quantity, target: Units) -> float | None:
-    """A quantity's number in other units; None where a unit is not in the table, or dimensions differ.
+def in_units(number: float, given: Units, target: Units) -> float | None:
+    """A number of given units in others; None where a unit is not in the table, or dimensions differ.
 
     Factors are powers of ten and are divided by where they are below one, so that "0.1 mm" is the float
     that 1e-4 is.
@@ -100,7 +91,7 @@ def in_units(given: Quantity, target: Units) -> float | None:
         OverflowError: the factor is no floating-point number.
     """
     power, dimension = 0, [0, 0, 0]
-    for units, sign in ((given.units, 1), (target, -1)):
+    for units, sign in ((given, 1), (target, -1)):
         for name, exponent in units:
             if name not in _UNITS:
                 return None
@@ -109,7 +100,7 @@ def in_units(given: Quantity, target: Units) -> float | None:
             dimension = [a + sign * exponent * b for a, b in zip(dimension, kind)]
     if any(dimension):
         return None
-    return _shifted(given.number, power)
+    return _shifted(number, power)
 
 
 def _shifted(number: float, power: int) -> float:
@@ -125,9 +116,8 @@ def in_si(value: Any) -> Any:
         return [in_si(of) for of in value]
     if isinstance(value, str):
         with suppress(ValueError, OverflowError, KeyError):
-            given = quantity(value)
-            power = sum(_UNITS[name][0] * exponent for name, exponent in given.units)
-            return _shifted(given.number, power)
+            number, given = quantity(value)
+            return _shifted(number, sum(_UNITS[name][0] * exponent for name, exponent in given))
     return value
 
 
@@ -168,12 +158,12 @@ def to_si(value: Any, unit: str) -> float:
         raise fault()
     try:
         if isinstance(value, str):
-            given, target = quantity(value), units(unit)
-            if unit == "N/m" and in_units(given, units("N")) is not None:
+            (number, given), target = quantity(value), units(unit)
+            if unit == "N/m" and in_units(number, given, units("N")) is not None:
                 expected = "a force per depth, such as 100 N/mm"
                 raise ValueError("which is a force")
-            metric = in_units(given, target)
-            number = _by_pint(given, target) if metric is None else metric
+            metric = in_units(number, given, target)
+            number = _by_pint(number, given, target) if metric is None else metric
         else:
             number = float(value)
     except OverflowError:
@@ -189,8 +179,8 @@ def to_si(value: Any, unit: str) -> float:
     return number
 
 
-def _by_pint(given: Quantity, target: Units) -> float:
-    """A quantity's number in other units, by pint's table, without pint's parser, which evaluates.
+def _by_pint(number: float, given: Units, target: Units) -> float:
+    """A number of given units in others, by pint's table, without pint's parser, which evaluates.
 
     Raises:
         ValueError: a unit is unknown, or dimensions differ; angles, counts and bits are no numbers.
@@ -198,7 +188,7 @@ def _by_pint(given: Quantity, target: Units) -> float:
     table, products = _registry(), []
     import pint  # found by _registry
 
-    for units in (given.units, target):
+    for units in (given, target):
         exponents: dict[str, int] = {}
         for name, exponent in units:
             try:
@@ -212,9 +202,9 @@ def _by_pint(given: Quantity, target: Units) -> float:
     source, goal = products
     try:
         if table.get_root_units(source)[1] == table.get_root_units(goal)[1]:
-            return float(table.Quantity(given.number, source).to(goal).magnitude)
+            return float(table.Quantity(number, source).to(goal).magnitude)
     except pint.errors.PintError:
         raise ValueError("with units that have no zero and cannot be multiplied") from None
     dimension = table.get_dimensionality(source)
-    counted = f"in {table.get_root_units(source)[1]}" if given.units else "without a unit"
+    counted = f"in {table.get_root_units(source)[1]}" if given else "without a unit"
     raise ValueError(f"of dimension {dimension}" if dimension else counted)

@@ -6,7 +6,7 @@ from math import pi
 import pytest
 
 from galinx.app.scene import units
-from galinx.app.scene.units import _UNITS, LONGEST, Quantity, in_units, quantity, to_si
+from galinx.app.scene.units import _UNITS, LONGEST, in_units, quantity, to_si
 from galinx.app.scene.units import units as units_of
 
 
@@ -24,7 +24,7 @@ from galinx.app.scene.units import units as units_of
     ],
 )
 def test_a_quantity_is_a_number_and_a_product_of_units(text, number, units):
-    assert quantity(text) == Quantity(number, units)
+    assert quantity(text) == (number, units)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_numbers_are_finite(text):
 
 
 def in_unit(text, unit):
-    return in_units(quantity(text), units_of(unit))
+    return in_units(*quantity(text), units_of(unit))
 
 
 def products(count):

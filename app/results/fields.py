@@ -9,7 +9,6 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from itertools import chain
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -268,22 +267,21 @@ COLOURED = "von_mises_for_colours"
 def write_fields(
     scene: Scene,
     numbers: Sequence[int],
-    path: Path | Target,
+    target: Target,
     extent: float = 10.0,
     degrees: Sequence[int | None] | None = None,
 ) -> None:
     """Compute states of a scene and write them for ParaView, several as a series over their numbers.
 
-    Collective over MPI's world; rank 0 writes. Nothing is replaced by a path alone.
+    Collective over MPI's world; rank 0 writes.
 
     Args:
         scene, numbers, degrees: as for :func:`solve_states`.
-        path: the file.
+        target: the file.
         extent: fields are cut at |X|, |Y| = extent, over a.
 
     Raises:
         BadInput: there is no such state, or finite elements have no answer for it.
-        Occupied: something is there that may not be replaced.
         SolveError: the equations could not be solved.
         UnwritableArchive: the file system refused.
     """
@@ -321,7 +319,7 @@ def write_fields(
         pieces = chain([in_si(solved, solved.sampled(extent))], others)
         return vtkhdf.Step(float(solved.number), pieces, attributes)
 
-    vtkhdf.write(path, map(step, states), ABOUT, COLOURED, series=len(numbers) > 1)
+    vtkhdf.write(target, map(step, states), ABOUT, COLOURED, series=len(numbers) > 1)
 
 
 def in_si(solved: Solved, sampled: Any) -> Any:

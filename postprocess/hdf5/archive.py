@@ -155,19 +155,16 @@ class Writer:
     ``finish``, or after an error, nothing is left and an earlier file of that name stays.
 
     Args:
-        path: final name; nothing is replaced where it is a path alone.
+        target: the file.
         folder: where it is written, on the same file system; beside its final name if not given.
 
     Raises:
-        Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
         KeyError: the path of a dataset is not in the table of quantities.
     """
 
-    def __init__(self, path: Path | Target, folder: Path | None = None) -> None:
-        self._target = path if isinstance(path, Target) else Target(path)
-        self.path = self._target.path
-        self._new = NewFile(self._target.place, folder)
+    def __init__(self, target: Target, folder: Path | None = None) -> None:
+        self._target, self._new = target, NewFile(target.place, folder)
         self._bytes = 0
         self._names: list[str] = []
         #: Reserved datasets: opened anew for every write, they would read and write a chunk each time.
@@ -253,9 +250,9 @@ class Writer:
         try:
             yield
         except (OSError, RuntimeError) as error:
-            raise refused(self.path, error, self._bytes) from error
+            raise refused(self._target.path, error, self._bytes) from error
         if self._disk.refusal:
-            raise refused(self.path, self._disk.refusal, self._bytes) from self._disk.refusal
+            raise refused(self._target.path, self._disk.refusal, self._bytes) from self._disk.refusal
 
     def _close(self) -> None:
         self._file.close()

@@ -6,7 +6,6 @@ when all of it is on the disk.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import h5py
@@ -60,7 +59,7 @@ class Step:
 
 
 def write(
-    path: Path | Target,
+    target: Target,
     steps: Iterable[Step],
     about: Mapping[str, tuple[str, str]],
     coloured: str = "",
@@ -69,19 +68,17 @@ def write(
     """Write unstructured grids.
 
     Args:
-        path: final name; ParaView knows the kind of file by the endings .hdf and .vtkhdf. Nothing is
-            replaced where it is a path alone.
+        target: the file; ParaView knows its kind by the endings .hdf and .vtkhdf.
         steps: one grid, or several for a series; each is made after the last is written.
         about: unit and long name of every array by name.
         coloured: the array that viewers colour by unasked.
         series: is it one, with times?
 
     Raises:
-        Occupied: something is there that may not be replaced.
         UnwritableArchive: the file system refused.
         KeyError: an array is not in ``about``.
     """
-    target, needed = path if isinstance(path, Target) else Target(path), 0
+    needed = 0
     try:
         with NewFile(target.place) as new:
             with PatientFile(new.temporary) as disk:

@@ -11,6 +11,7 @@ from support import gathered, space_on, state_field
 from galinx import template
 from galinx.app.results.fields import Solved, solve_states, write_fields
 from galinx.meshes.rings import Refinement
+from galinx.postprocess.target import Target
 from galinx.solvers.fem.export import sample
 from galinx.solvers.fem.punch import SlidingPunch
 from galinx.solvers.solids.isotropic import MovingFrame
@@ -51,7 +52,7 @@ def test_rank_0_writes_what_all_ranks_have(tmp_path, monkeypatch):
     with closing(solve_states(scene, [0], [5])) as states:
         found = next(states).sampled(2.0)
     monkeypatch.setattr(Solved, "sampled", lambda *_: found)
-    write_fields(scene, [0], path, extent=2.0, degrees=[5])
+    write_fields(scene, [0], Target(path), extent=2.0, degrees=[5])
     whole = state_field(scene, 0, extent=2.0, degree=5)
     assert path.exists() == (MPI.COMM_WORLD.rank == 0) == (whole is not None)
     if whole is None:

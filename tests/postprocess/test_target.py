@@ -45,7 +45,7 @@ def made(tmp_path_factory):
     moving = files.Film(lambda frame: [Panel(title=f"frame {frame}")], 2)
     (folder / "a.gif").write_bytes(files.film_content(moving, "gif", 30))
     square = Piece(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})
-    vtkhdf.write(folder / "a.hdf", [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
+    vtkhdf.write(Target(folder / "a.hdf"), [vtkhdf.Step(0.0, [square])], {"u": ("m", "galinx")})
     with (folder / "tables.txt").open("w") as file:
         print_sheet(new_console(file), Sheet("Table 1. Dahl's law", ("",), [("0.7",)]))
     with (folder / "a.csv").open("w") as file:

@@ -10,6 +10,7 @@ from galinx.app.errors import BadInput
 from galinx.app.plan.states import enumerate_states
 from galinx.app.results import fields
 from galinx.app.results.fields import ABOUT, write_fields
+from galinx.postprocess.target import Target
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.solids.isotropic import MovingFrame
 
@@ -40,7 +41,7 @@ def test_stresses_are_those_of_the_potentials(mode):
         assert σ_YY.max() < -0.3 if level else np.abs(σ_YY).max() < 1e-2
 
 
-def test_what_has_no_field_is_bad_input():
+def test_what_has_no_field_is_bad_input(tmp_path):
     given = template("tables4_5")
     count = len(enumerate_states(given))
     for number in (-1, count):
@@ -51,7 +52,7 @@ def test_what_has_no_field_is_bad_input():
     box = template("tables4_5", {"solve.mesh": "box"})
     for extent in (90.0, 0.0, np.nan):
         with pytest.raises(BadInput, match="at most 60 a with the box mesh"):
-            write_fields(box, [0], "none.hdf", extent)
+            write_fields(box, [0], Target(tmp_path / "none.hdf"), extent)
     with pytest.raises(BadInput, match="degree: found 40, expected 4 to 13"):
         state_field(given, 0, degree=40)
 
@@ -63,7 +64,7 @@ def test_vtk_reads_what_was_written(tmp_path):
 
     given = template("tables4_5")
     a, path = given.punch.profile.half_width, tmp_path / "state.hdf"
-    write_fields(given, [1], path, extent=3.0)
+    write_fields(given, [1], Target(path), extent=3.0)
     written = state_field(given, 1, extent=3.0)
     reader = reading.vtkHDFReader()
     assert reader.CanReadFile(str(path))
@@ -123,7 +124,7 @@ def test_several_states_are_a_series(tmp_path, monkeypatch):
 
     scene, path = template("tables4_5"), tmp_path / "series.vtkhdf"
     numbers = [0, 3, 7]
-    write_fields(scene, numbers, path, extent=3.0, degrees=[5, 5, 6])
+    write_fields(scene, numbers, Target(path), extent=3.0, degrees=[5, 5, 6])
     alone = [state_field(scene, number, 3.0, degree) for number, degree in zip(numbers, (5, 5, 6))]
     with h5py.File(path) as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from galinx.postprocess.hdf5 import archive
+from galinx.postprocess.target import Target
 
 DATA = {
     "scene/text": "title = 'σ'\n",
@@ -19,7 +20,7 @@ ATTRIBUTES = {"version": "1", "verdict": "PASS", "title": "t"}
 
 
 def write(path, data, attributes=ATTRIBUTES):
-    with archive.Writer(path) as writer:
+    with archive.Writer(Target(path)) as writer:
         for name, value in data.items():
             writer.put(name, value)
         writer.finish(attributes)
@@ -37,7 +38,7 @@ def test_anyone_can_verify_the_seal(tmp_path):
 def test_rows_come_in_any_order(tmp_path):
     path = tmp_path / "a.h5"
     rows = np.arange(12.0).reshape(4, 3)
-    with archive.Writer(path) as writer:
+    with archive.Writer(Target(path)) as writer:
         writer.reserve("surface/fem/sigma_XX", rows.shape)
         writer.write("surface/fem/sigma_XX", slice(2, 4), rows[2:])
         writer.write("surface/fem/sigma_XX", slice(0, 2), rows[:2])
@@ -47,7 +48,7 @@ def test_rows_come_in_any_order(tmp_path):
 
 
 def test_an_archive_that_is_not_finished_leaves_nothing(tmp_path):
-    with pytest.raises(ZeroDivisionError), archive.Writer(tmp_path / "a.h5") as writer:
+    with pytest.raises(ZeroDivisionError), archive.Writer(Target(tmp_path / "a.h5")) as writer:
         writer.put("states/f", np.zeros(2))
         raise ZeroDivisionError
     assert not os.listdir(tmp_path)

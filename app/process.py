@@ -143,16 +143,11 @@ def _on_signal(*_: object) -> None:
 def end_stopped(words: str) -> NoReturn:
     """End an interrupted process, and print the sentence on its finished work."""
     files.give_up()
-    erase_bar()
+    if on_terminal():  # on which a bar may have shown the progress, without a cursor
+        os.write(2, b"\r\x1b[2K\x1b[?25h")
     with suppress(OSError):  # below Python's stream, which the signal may have met at work
         os.write(2, f"error: interrupted; {words}\n".encode())
     os._exit(errors.FAILURE)
-
-
-def erase_bar() -> None:
-    """Restore a terminal on which a bar showed the progress, cursor included."""
-    if on_terminal():
-        os.write(2, b"\r\x1b[2K\x1b[?25h")
 
 
 def refuse(message: str) -> NoReturn:

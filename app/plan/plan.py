@@ -192,14 +192,6 @@ class Plan:
         around = 3 * len(self.places.around)
         return around + sum(int(np.prod(self.shape(quantity))) for quantity in self.quantities)
 
-    def chunks(self, task: Task) -> list[slice]:
-        """Rows of a task's states, at most :attr:`chunk` at a time."""
-        return [
-            slice(first, min(first + self.chunk, run.stop))
-            for run in task.runs
-            for first in range(run.start, run.stop, self.chunk)
-        ]
-
 
 def _faults(
     scene: Scene, methods: Collection[str], places: Places, refusals: dict[str, str]

@@ -58,14 +58,19 @@ class Work:
     def batches(self, task: Task) -> list[list[slice]]:
         """Rows of a task's states that are still to be computed, in batches of at most a chunk."""
         batches: list[list[slice]] = []
-        room = 0
-        for rows in self.plan.chunks(task):
+        room, most = 0, self.plan.chunk
+        pieces = (
+            slice(first, min(first + most, run.stop))
+            for run in task.runs
+            for first in range(run.start, run.stop, most)
+        )
+        for rows in pieces:
             count = rows.stop - rows.start
             if self.finished[rows].all():
                 continue
             if not batches or count > room:
                 batches.append([])
-                room = self.plan.chunk
+                room = most
             batches[-1].append(rows)
             room -= count
         return batches

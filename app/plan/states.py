@@ -257,6 +257,8 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     lengths, N = np.array([leg.length for leg in scene.legs])[legs], np.array(order.loads)
     ways = headings(scene, [leg.s for leg in scene.legs])[legs]
     half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
+    with np.errstate(divide="ignore", invalid="ignore"):  # by a wave of speed c_s: L/(2 a c)
+        crossings = lengths * friction.pre_sliding / (2.0 * half_widths[load] * c)
     return {
         "motion": np.array([leg.name for leg in scene.legs])[legs],
         "X_over_L": np.concatenate(scene.places)[place],
@@ -267,7 +269,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "speed": np.where(np.isnan(own), np.multiply(order.given, scene.solid.c_s)[speed], own),
         **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c, ways))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        "wave_crossings": _crossings(scene, lengths, half_widths[load], c),
+        "wave_crossings": np.where((c > 0.0) & (not scene.steady), crossings, np.nan),  # of strokes
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }
@@ -286,16 +288,6 @@ def _flutter(solid: Solid, c: NDArray, ways: NDArray) -> NDArray[np.float64]:
     motions, of = np.unique([c, ways], axis=1, return_inverse=True)
     each = np.array([flutter(speed) for speed in np.copysign(*motions).tolist()])
     return np.where(np.isfinite(each), each, nan)[of].T
-
-
-def _crossings(scene: Scene, lengths: NDArray, a: NDArray, c: NDArray) -> NDArray[np.float64]:
-    """Number of crossings of the contact by a wave of speed c_s in a stroke: L/(2 a c).
-
-    NaN at rest, and in steady sliding without strokes.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
-    return np.where((c > 0.0) & (not scene.steady), often, np.nan)
 
 
 def _laws(friction: Friction, of_laws: Sequence[float]) -> Iterator[tuple[float, FrictionLaw, int, bool]]:

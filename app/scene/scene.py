@@ -308,15 +308,14 @@ def oddities(scene: Scene) -> list[str]:
 def _unusual_numbers(scene: Scene) -> Iterator[str]:
     """Warnings about numbers beyond their usual range."""
     pre_sliding = Parameter("pre_sliding", "", "m", usual=(1e-10, 1.0))
-    given: list[tuple[str, dict[str, Parameter], dict[str, Any]]] = [
-        ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
-        ("friction", parameters(scene.friction.law), scene.friction.values),
-    ]
     models: dict[str, Any] = {"solid": scene.solid, "punch": scene.punch.profile}
     if punch := scene.elastic_punch:
         models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
-    given[1:1] = [(name, parameters(model), constants(model)) for name, model in models.items()]
-    for section, described, values in given:
+    for section, described, values in (
+        ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
+        *((name, parameters(model), constants(model)) for name, model in models.items()),
+        ("friction", parameters(scene.friction.law), scene.friction.values),
+    ):
         for key, parameter in described.items():
             if not parameter.usual:
                 continue

@@ -178,16 +178,6 @@ class LayerTable(GivenSolid):
                 f'found exponent with grading = "{self.grading}", expected grading = "power"'
             )
 
-    def layer(self, bottom: Solid | None) -> Layer:
-        """The layer with a solid at its lower face, None for a uniform one.
-
-        Raises:
-            ValueError: constants cannot change so.
-        """
-        assert self.thickness is not None
-        bottom = None if bottom == self.solid else bottom  # it does not change
-        return Layer(self.thickness, self.solid, bottom, self.grading, self.exponent, self.yield_strength)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Punch:
@@ -740,8 +730,13 @@ class LayerSections(Section):
             own = {key: v for key, v in given.items() if key not in self.own or key == "thickness"}
             lower = super().read(f"{name}.to", own | table.to, faults)
             table, bottom = lower and table, lower and lower.solid
+        if not table:
+            return []
+        top, bottom = table.solid, None if bottom == table.solid else bottom  # None: it does not change
         try:
-            return [table.layer(bottom)] if table else []
+            return [
+                Layer(table.thickness, top, bottom, table.grading, table.exponent, table.yield_strength)
+            ]
         except ValueError as error:
             faults.append(f"{name}: {error}")
             return []

@@ -213,10 +213,6 @@ def parse(text: str, name: str = "scene") -> Scene:
     raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
 
 
-#: Keys of a range.
-_RANGE = {"from", "to", "number"}
-
-
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers; ends of all contacts are free where some are."""
     punch = tree.get("punch")
@@ -264,7 +260,8 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
     values: dict[str, tuple[float, ...]] = {}
     for path, table, keys in _tables(tree, SWEPT):
         for key, given in table.items():
-            several = isinstance(given, list) or (isinstance(given, dict) and given.keys() & _RANGE)
+            a_range = isinstance(given, dict) and given.keys() & {"from", "to", "number"}
+            several = isinstance(given, list) or a_range
             if several and key in keys and type(number := keys[key].kind) is Number:
                 try:
                     numbers = Numbers(number.unit, number.bounds)(given)

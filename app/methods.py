@@ -79,21 +79,19 @@ def _refusal(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) ->
     return next((reasons[word] for word in words if word in reasons), "")
 
 
-#: What the closed form does not give of punches that are not flat, by the ends of the contact.
+#: What the closed form does not give of punches with two sharp edges that are not flat.
 _OF_FLAT_PUNCHES = {
-    SHARP: {
-        states.K_I_BOTH.path: "the two ends differ",
-        BELOW: "known below flat punches with one friction only",
-        YIELD: "known below flat punches with one friction only",
-        PUNCH: "known of flat punches with one friction only",
-    }
+    states.K_I_BOTH.path: "the two ends differ",
+    BELOW: "known below flat punches with one friction only",
+    YIELD: "known below flat punches with one friction only",
+    PUNCH: "known of flat punches with one friction only",
 }
 
 
 def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     if body.no_closed_form:
         return body.no_closed_form
-    lacks = _OF_FLAT_PUNCHES.get(body.ends, {}) if FLAT in body.lacks else {}
+    lacks = _OF_FLAT_PUNCHES if FLAT in body.lacks and body.ends == SHARP else {}
     if scene.elastic_punch and scene.elastic_punch.speed:
         lacks = lacks | {row.path: "the punch's surface moves, too" for row in SLIP_REVERSED}
     return _refusal(quantity, body, lacks)

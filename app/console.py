@@ -39,9 +39,6 @@ def plain(text: str) -> str:
 class Output(io.FileIO):
     """The output below Python's buffers: where it cannot be written, the message names it."""
 
-    def __init__(self, number: int) -> None:
-        super().__init__(number, "w", closefd=False)
-
     def write(self, data: Any) -> int:
         try:
             return super().write(data)

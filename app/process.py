@@ -67,7 +67,7 @@ def _open_streams() -> None:
 def _prepare_streams() -> None:
     """Encodings that lack a character write another."""
     encoding = sys.stdout.encoding if sys.stdout else "utf-8"  # there is none where it was closed
-    below = io.BufferedWriter(Output(1))
+    below = io.BufferedWriter(Output(1, "w", closefd=False))
     sys.stdout = io.TextIOWrapper(below, encoding, errors="replace", line_buffering=os.isatty(1))
     stderr: Any = sys.stderr or os.fdopen(2, "w", encoding="utf-8", closefd=False)
     stderr.reconfigure(errors="replace")

@@ -751,19 +751,16 @@ class LayerSections(Section):
             )
             return []
         plane = {key: value for key, value in given.items() if key == "plane"}
+        part, strength = "properties", given.get("yield_strength")
         try:
             rows = DEPTHS(given["properties"])
             solids = [
                 build_model(Isotropic, dict(zip(("E", "nu", "rho"), row[1:])) | plane) for row in rows
             ]
+            part = "yield_strength"
+            strength = strength if strength is None else self.own[part][1].kind(strength)
         except ValueError as error:
-            faults.append(f"{name}.properties: {error}")
-            return []
-        strength = given.get("yield_strength")
-        try:
-            strength = strength if strength is None else self.own["yield_strength"][1].kind(strength)
-        except ValueError as error:
-            faults.append(f"{name}.yield_strength: {error}")
+            faults.append(f"{name}.{part}: {error}")
             return []
         return [
             Layer(lower[0] - upper[0], top, None if top == bottom else bottom, yield_strength=strength)

@@ -99,7 +99,11 @@ def reproduce(folder: Folder, progress: Progress, quiet: bool = False) -> bool:
         for text, (value, limit) in checks.items()
     ]
     decided = statements_sheet(statements(study.data, study.scene.solid))
-    tables, details = [*_tables(study), methods], _details(study)
+    scene, details = study.scene, _details(study)
+    tables = [
+        table1(), table2(scene.solid), table3(scene.solid, scene.friction.pre_sliding),
+        *intensity_sheets(study.data, scene.body.half_width), methods,
+    ]  # fmt: skip
     reasons = [f"{text}: {value}, at most {limit}" for text, value, limit in cells]
     verdict = "PASS" if good else "FAIL"
     study.attributes |= {
@@ -180,13 +184,6 @@ def _print(sheets: Sequence[Sheet], console: Any) -> None:
     for sheet in sheets:
         print_sheet(console, sheet)
         console.print()
-
-
-def _tables(study: Result) -> list[Sheet]:
-    """The study's tables."""
-    data, solid, L = study.data, study.scene.solid, study.scene.friction.pre_sliding
-    own = intensity_sheets(data, study.scene.body.half_width)
-    return [table1(), table2(solid), table3(solid, L), *own]
 
 
 def _details(study: Result) -> list[Sheet]:

@@ -33,6 +33,7 @@ from galinx.solvers.parameters import values as constants
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import SOLIDS
 from galinx.solvers.transient.late_time import approach
+from galinx.texts import counted
 
 from .. import ranks
 from ..console import Progress
@@ -79,12 +80,6 @@ def libraries() -> dict[str, str]:
         if version:
             versions[name] = str(version)
     return versions
-
-
-def machine() -> str:
-    """Operating system, architecture and number of ranks."""
-    count = ranks.size()
-    return f"{platform.system()} {platform.machine()}, {count} rank{'s' * (count > 1)}"
 
 
 class Sink(Protocol):
@@ -317,8 +312,9 @@ def compute(
         "versions": libraries(), "rules": sorted(rules), "verdict_reasons": reasons,
         "comparisons": judge.worst, "warnings": warnings,
     }  # fmt: skip
+    machine = f"{platform.system()} {platform.machine()}, {counted(ranks.size(), 'rank')}"
     return {
-        "version": __version__, "machine": machine(), "scene_sha256": scene.sha256, "verdict": verdict,
+        "version": __version__, "machine": machine, "scene_sha256": scene.sha256, "verdict": verdict,
         **scene_attributes(scene),
         **{name: json.dumps(text, ensure_ascii=False) for name, text in texts.items()},
     }  # fmt: skip

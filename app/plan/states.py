@@ -80,10 +80,6 @@ class Order:
             by_speed.setdefault(float(c[start - row]), []).append(slice(start, stop))
         yield from map(tuple, by_speed.values())
 
-    def load(self, rows: slice | NDArray[np.int64]) -> NDArray[np.float64]:
-        """Load of the states of these rows [N/m], (rows,)."""
-        return np.array(self.loads)[self.numbers[1, rows]]
-
 
 #: Positions on a stroke at which loops are archived, and most loops that are archived.
 FINE, LOOPS = np.linspace(0.0, 1.0, 101), 1000

@@ -229,7 +229,7 @@ def _of_finite_elements(archive: Archive, plan: Plan, selected: NDArray[np.int64
                     f"gives {own[i]:g} m"
                 )
         computed |= archive.rows(rows, archived)
-        load = plan.order.load(rows - plan.rows.start)
+        load = np.array(plan.order.loads)[plan.order.numbers[1, rows - plan.rows.start]]
         for name, figure in compare.comparisons(computed, load, rules).items():
             allowed = compare.RULES[name].allowed(plan.tolerance)
             if allowed is not None and not figure <= max(_FROM_EXACT, _TOLERANCES * allowed):

@@ -120,10 +120,11 @@ def table1_rows() -> list[tuple[list[float], list[float]]]:
     table = published()["table1"]
     steps = table["steps"]
     law = Dahl(table["mu_c"], table["sigma0_l_over_N"], table["delta_D"])
-    computed = runge_kutta(law, law.rest(), 1, 0.0, table["L_m"], steps)
+    z, k = runge_kutta(law, law.rest(), 1, 0.0, table["L_m"], steps)
+    d = np.linspace(0.0, table["L_m"], steps + 1)
     stride = steps // (len(table["rows"]) - 1)
     return [
-        (row, [float(computed.z[i, 0]), float(computed.d[i]), *(computed.k[i, :, 0] / law.λ).tolist()])
+        (row, [float(z[i, 0]), float(d[i]), *(k[i, :, 0] / law.λ).tolist()])
         for row, i in zip(table["rows"], range(0, steps + 1, stride))
     ]
 

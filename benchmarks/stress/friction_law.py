@@ -56,7 +56,7 @@ def runge_kutta_steps() -> Row:
     law = Dahl(0.7, 25000.0, 1.0)
     length = (1.0 - 1e-9) * 2.0 * RK4_STABILITY_LIMIT * law.μ_C / law.λ
     errors = np.array([
-        np.abs(runge_kutta(law, law.rest(), 1, 0.0, length, int(n)).z[:, 0]
+        np.abs(runge_kutta(law, law.rest(), 1, 0.0, length, int(n))[0][:, 0]
                - _exact(law, 0.0, np.linspace(0.0, length, n + 1))).max() / law.μ_C
         for n in steps
     ])  # fmt: skip

@@ -31,18 +31,9 @@ Integrator = Callable[
 ]
 
 
-@dataclass(frozen=True)
-class RungeKuttaSteps:
-    """Steps of one stroke: slip ``d`` [m], states ``z`` (steps, n) and slopes ``k`` (steps, 4, n)."""
-
-    d: NDArray[np.float64]
-    z: NDArray[np.float64]
-    k: NDArray[np.float64]
-
-
 def runge_kutta(
     law: FrictionLaw, z: NDArray, s: int, V: float, length: float, steps: int
-) -> RungeKuttaSteps:
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Integrate one stroke with the classical Runge-Kutta scheme, as the study does (Eqs 46-50).
 
     Eq 49 prints its second intermediate value wrongly; Table 1 follows the usual scheme, as this
@@ -57,7 +48,8 @@ def runge_kutta(
         steps: number of steps, the study uses 20.
 
     Returns:
-        ``steps + 1`` rows; the last row's slopes belong to the step that would follow.
+        States, (steps + 1, n), and the scheme's four slopes there, (steps + 1, 4, n); the last slopes
+        belong to the step that would follow.
 
     Raises:
         ValueError: the step is beyond the scheme's stability limit, or the law has no known limit.
@@ -80,7 +72,7 @@ def runge_kutta(
         k4 = law.rate(z + h * k3, s, V)
         states[i], k[i] = z, (k1, k2, k3, k4)
         z = z + h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-    return RungeKuttaSteps(np.linspace(0.0, length, steps + 1), states, k)
+    return states, k
 
 
 def exactly(
@@ -224,14 +216,14 @@ def by_runge_kutta(
 
     A position between two steps is reached by a shorter last step, so no interpolation error enters.
     """
-    steps = runge_kutta(law, z, s, V, length, STEPS)
-    states = np.empty((len(slip), len(z)))
+    reached, _ = runge_kutta(law, z, s, V, length, STEPS)
+    at, states = np.linspace(0.0, length, STEPS + 1), np.empty((len(slip), len(z)))
     for i, d in enumerate(slip):
         j = min(int(np.floor(d / length * STEPS + 1e-9)), STEPS)
-        rest = max(d - steps.d[j], 0.0)
-        states[i] = steps.z[j]
+        rest = max(d - at[j], 0.0)
+        states[i] = reached[j]
         if rest > 1e-12 * length:
-            states[i] = runge_kutta(law, steps.z[j], s, V, rest, 1).z[1]
+            states[i] = runge_kutta(law, reached[j], s, V, rest, 1)[0][1]
     return states
 
 

@@ -13,7 +13,7 @@ def exact(law, f0, s, d):
 
 
 def by_steps(law, f0, s, length, steps):
-    return runge_kutta(law, np.array([f0]), s, 0.0, length, steps).z[:, 0]
+    return runge_kutta(law, np.array([f0]), s, 0.0, length, steps)[0][:, 0]
 
 
 @pytest.mark.parametrize("δ", [0.5, 1.0, 1.0 + 1e-12, 1.5, 3.0])

@@ -351,26 +351,27 @@ class Level:
     tolerance: float
 
     @cached_property
-    def _parts(self) -> tuple[LayersAtSpeed, int]:
-        """Layers with an interface at the depth, and the number of layers above it."""
-        layers, top = list(self.stack.layers), 0.0
-        for i, layer in enumerate(layers):
+    def _parts(self) -> tuple[int, list[Any]]:
+        """Number of whole layers above the depth, and the parts above and below it of what it cuts.
+
+        There are none of an interface, and of the substrate that above alone.
+        """
+        top = 0.0
+        for i, layer in enumerate(self.stack.layers):
             bottom = top + layer.H
             if abs(bottom - self.depth) <= _AT * bottom:
-                return self.stack, i + 1
+                return i + 1, []
             if self.depth < bottom:
-                return LayersAtSpeed([*layers[:i], *layer.cut(self.depth - top), *layers[i + 1 :]],
-                             self.stack.substrate), i + 1  # fmt: skip
+                return i, [*layer.cut(self.depth - top)]
             top = bottom
-        more = Uniform(self.stack.substrate, self.depth - top)
-        return LayersAtSpeed([*layers, more], self.stack.substrate), len(layers) + 1
+        return len(self.stack.layers), [Uniform(self.stack.substrate, self.depth - top)]
 
     @property
     def media(self) -> tuple[Medium, Medium]:
         """The solids above and below the depth; the same one inside a layer."""
-        stack, above = self._parts
-        under = stack.layers[above].top if above < len(stack.layers) else stack.substrate
-        return stack.layers[above - 1].bottom, under
+        (whole, parts), layers = self._parts, self.stack.layers
+        above, *below = parts or layers[whole - 1 : whole + 1]
+        return above.bottom, below[0].top if below else self.stack.substrate
 
     @cached_property
     def _modulus(self) -> float:
@@ -379,13 +380,19 @@ class Level:
 
     def _of(self, k: NDArray) -> NDArray:
         """Transforms of u,X times the modulus, σ_YY and σ_XY under σ_XY and σ_YY on top, (n, 6)."""
-        stack, above = self._parts
-        under = stack.below(k)
-        excess, carried = stack.layers[0].carried(k, under[0])
-        carried = carried @ inverse(stack.top.down + excess)
-        for layer, Z in zip(stack.layers[1:above], under[1:]):
-            carried = layer.carried(k, Z)[1] @ carried
-        tractions = under[above - 1] @ carried
+        whole, parts = self._parts
+        surface, under, moved = self.stack.crossed(k)
+        carried = inverse(surface)
+        for by_top in moved[:whole]:
+            carried = by_top @ carried
+        # Under the layer that the depth cuts, or that ends there.
+        reached = min(whole, len(under) - 1) if parts else whole - 1
+        Z = under[reached]
+        if parts:
+            upper, *lower = parts
+            Z = lower[0].top.down + lower[0].excess(k, Z) if lower else Z
+            carried = upper.carried(k, Z)[1] @ carried
+        tractions = Z @ carried
         return np.stack(
             [*(1j * self._modulus * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1
         )  # fmt: skip

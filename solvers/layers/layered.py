@@ -76,6 +76,31 @@ class LayersAtSpeed:
             stiffnesses.append(Z)
         return stiffnesses[::-1]
 
+    def crossed(self, k: NDArray) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Stiffness of the surface, (n, 2, 2); those under every layer, and displacements of its lower
+        face by those of its upper one, (layers, n, 2, 2) each, from the top down.
+
+        They are kept by wavenumber: fields at all depths go through the same layers.
+        """
+        new = np.setdiff1d(k, self._crossed[0])
+        if len(new):
+            Z, found = np.broadcast_to(self.substrate.down, (len(new), 2, 2)), []
+            for layer in self.layers[::-1]:
+                δ, moved = layer.carried(new, Z)
+                found += [moved, Z]
+                Z = layer.top.down + δ
+            known = np.concatenate([self._crossed[0], new])
+            values = np.concatenate([self._crossed[1], np.array([Z, *found[::-1]]).swapaxes(0, 1)])
+            order = np.argsort(known)
+            self._crossed[:] = known[order], values[order]
+        surface, *each = self._crossed[1][np.searchsorted(self._crossed[0], k)].swapaxes(0, 1)
+        return surface, np.array(each[0::2]), np.array(each[1::2])
+
+    @cached_property
+    def _crossed(self) -> list[NDArray[Any]]:
+        """Wavenumbers, rising, and what :meth:`crossed` has for them, (n, 1 + 2 layers, 2, 2)."""
+        return [np.empty(0), np.empty((0, 1 + 2 * len(self.layers), 2, 2), dtype=complex)]
+
     def excess(self, k: NDArray) -> NDArray[Any]:
         """Stiffness of the surface less that of a half-plane of the solid there, (n, 2, 2)."""
         if not self.layers:

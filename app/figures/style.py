@@ -1,10 +1,10 @@
 """Style of all figures: type, sizes, colours and line styles."""
 
-from collections.abc import Callable, Sequence
-from functools import wraps
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib import colormaps, style
+from matplotlib.colors import to_hex
 
 #: Widths of a column and of a page of most journals, and the height of a page [in].
 COLUMN, PAGE, TALLEST = 85.0 / 25.4, 170.0 / 25.4, 230.0 / 25.4
@@ -61,31 +61,15 @@ _STYLE = {
 }
 
 
-def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
-    """Decorator of what draws or saves: in this style, and none of it is left to whoever draws next."""
-
-    @wraps(draw)
-    def in_style(*arguments: Any, **options: Any) -> Any:
-        from matplotlib import style  # a slow import, for nothing where texts alone are typeset
-
-        # What somebody has set for other figures, as text by LaTeX, is not for these.
-        with style.context(["default", _STYLE]):
-            return draw(*arguments, **options)
-
-    return in_style
-
-
-def as_hex(colour: Any) -> str:
-    """Colour as pages write it: ``#0072b2``."""
-    from matplotlib.colors import to_hex
-
-    return to_hex(colour)
+#: Decorator of what draws or saves: in this style, and none of it is left to whoever draws next. What
+#: somebody has set for other figures, as text by LaTeX, is not for these.
+styled = style.context(["default", _STYLE])
 
 
 class Look(NamedTuple):
-    """Look of one of several curves: colour, line and marker."""
+    """Look of one of several curves: colour by its name or as ``#0072B2``, line and marker."""
 
-    colour: Any
+    colour: str
     line: Any
     marker: str
 
@@ -97,11 +81,9 @@ def looks(count: int, ordered: bool = False) -> list[Look]:
         count: how many.
         ordered: they follow a number, and so do their colours.
     """
-    colours: Sequence[Any] = COLOURS
+    colours = COLOURS
     if ordered and count > 3:
-        from matplotlib import colormaps
-
-        colours = colormaps["viridis"](np.linspace(0.0, 0.88, count)).tolist()
+        colours = tuple(map(to_hex, colormaps["viridis"](np.linspace(0.0, 0.88, count))))
     return [
         Look(colours[n % len(colours)], LINES[n % len(LINES)], MARKERS[n % len(MARKERS)])
         for n in range(count)

@@ -34,7 +34,6 @@ from ..figures.choice import Archive, Choice, Drawing, spread
 from ..figures.files import content, embedded
 from ..figures.render import DOTS, JOINED, LINE, MARKERS, Curve, Panel, point_along
 from ..figures.stresses import SHOWN, Fields, map_names, stresses_along, surface_panels
-from ..figures.style import as_hex
 from ..plan.plan import by_reason
 from ..scene.scene import Scene
 from ..study.published import has_study_digits, intensity_sheets
@@ -128,7 +127,7 @@ def _label(text: str) -> str:
 
 
 def _trace(curve: Curve) -> dict[str, Any]:
-    dash, colour = curve.look.line, as_hex(curve.look.colour)
+    dash, colour = curve.look.line, curve.look.colour
     dash = dash if isinstance(dash, str) else ",".join(f"{2.0 * part:g}px" for part in dash[1])
     return {
         "x": _numbers(curve.x, 10), "y": _numbers(curve.y), "mode": _MODES[curve.form],
@@ -149,7 +148,7 @@ def _arrow(panel: Panel, curve: Curve, share: float) -> dict[str, Any]:
     (ax, x), (ay, y) = points[:, [max(at - 2, 0), at + 1]].tolist()  # one step may be too short to see
     return {
         "x": x, "y": y, "ax": ax, "ay": ay, "axref": "x", "ayref": "y", "text": "", "arrowhead": 2,
-        "arrowcolor": as_hex(curve.look.colour), "arrowsize": 1.5,
+        "arrowcolor": curve.look.colour, "arrowsize": 1.5,
     }  # fmt: skip
 
 

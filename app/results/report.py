@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from gzip import compress
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from unicodedata import normalize
@@ -20,6 +19,7 @@ from unicodedata import normalize
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
+from plotly.offline import get_plotlyjs
 
 from galinx.postprocess.compare import checked, failed
 from galinx.postprocess.quantities import runs, states
@@ -52,8 +52,6 @@ _POWER = re.compile(r"(?<![\w.])(-?\d(?:\.\d+)?)e([+-]\d+)\b")
 _RAISED = re.compile(" × 10([⁻⁰¹²³⁴-⁹]+)")
 #: Exponents, as in m^(-β), and signs of numbers.
 _EXPONENT, _NEGATIVE = re.compile(r"\^\(([^()]*)\)"), re.compile(r"(?<![\w.)\]}-])-(?=[\dσ]|a\b)")
-#: plotly.js beside its Python package: of PyPI, and of Debian.
-_SCRIPTS = ("package_data/plotly.min.js", "/usr/share/python3-plotly/plotly.js")
 
 
 def markup(text: str) -> Markup:
@@ -76,10 +74,7 @@ def markup(text: str) -> Markup:
 @cache
 def _plotly() -> str:
     """plotly.js, compressed, as text; browsers unpack it."""
-    spec = find_spec("plotly")
-    folder = Path(spec.origin).parent if spec and spec.origin else Path()
-    path = next(path for path in (folder / name for name in _SCRIPTS) if path.is_file())
-    return b64encode(compress(path.read_bytes(), 6, mtime=0)).decode()
+    return b64encode(compress(get_plotlyjs().encode(), 6, mtime=0)).decode()
 
 
 _MODES = {LINE: "lines", MARKERS: "markers", JOINED: "lines+markers", DOTS: "markers"}

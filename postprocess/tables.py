@@ -33,7 +33,7 @@ from .quantities import (
 )
 from .quantities import states as of
 from .quantities.quantity import CONTACT, FEM, OVER_A, SIE, TEXT
-from .units import Scaled, Units, engineering, number, solved
+from .units import Units, engineering, number, solved
 
 
 def parameters(data: dict[str, Any]) -> dict[str, Quantity]:
@@ -298,19 +298,19 @@ def _columns(
         data: datasets of the archive by path.
         units: of the result.
         specs: what the columns have.
-        archived: quantities without a unit of their own in the result are shown as archived, too.
+        archived: columns without finite numbers stay, and no number is taken for rounding.
     """
     columns: list[Column] = []
     owner: Column | None = None
     # Places and lengths of the contact, and stresses over N/(2a), up to which they are rounding.
-    length, stress = (solved(scale.factor).max() for scale in (units.length, units.stress))
+    length, stress = (solved(scale.factor).max() for scale in (units.scale(OVER_A), units.stress))
     length, stress = 5e-6 * length, 5e-8 * stress
     for head, rows, digits, taken, name in specs:
         if not (place := head.startswith("at ")):
             owner = None
         by_method = {"": rows} if isinstance(rows, Quantity) else rows
         row = preferred(data, by_method)
-        scaled = row and (units(row) or (Scaled("", row.unit) if archived else None))
+        scaled = row and units(row)
         if not row or not scaled:
             continue
         values = taken(of_any_method(data, by_method, row), data)
@@ -337,18 +337,15 @@ def _shear_at_interfaces(data: Mapping[str, Any], units: Units) -> list[Column]:
         return []
     at = layers.INTERFACE_EXTREMES[high.method][5]
     of_all, depths = layers.largest_shear(data, high.method), units.contact.solid.depths
-    several, columns = len(depths) > 1, []
-
-    def nth(part: int, i: int) -> Callable[[Any, Any], Any]:
-        return lambda *_: of_all[part][:, i - 1]
-
-    for i, depth in enumerate(depths, 1):
+    several, columns = len(depths) > 1, list[Column]()
+    for i, (depth, shear, X) in enumerate(zip(depths, *(values.T for values in of_all)), 1):
         depths_differ = swept.INTERFACE_DEPTHS.path in data
         where = f"at interface {i}" if depths_differ else f"{engineering(depth, 'm')} deep"
         head = f"shear {where}" if several else "interface shear"
         name = f"interface_shear{f'_{i}' * several}"
         columns += _columns(data, units, [
-            _Spec(head, high, 4, nth(0, i), name), _Spec("at X", at, 4, nth(1, i), f"{name}_X"),
+            _Spec(head, high, 4, lambda *_, held=shear: held, name),
+            _Spec("at X", at, 4, lambda *_, held=X: held, f"{name}_X"),
         ])  # fmt: skip
     return columns
 
@@ -678,7 +675,7 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     method = next((name for name in (FEM, SIE) if over_time.V0[name].path in data), "")
     if not method:
         return Sheet(title, [], [])
-    time = units(over_time.TIMES) or Scaled("", over_time.TIMES.unit)
+    time = units.scale(over_time.TIMES.unit)
     end, when = float(data[over_time.TIMES.path][-1]), data[over_time.WITHIN[method].path][:, 1]
     ways = ["-+"[int(way > 0.0)] + "X" for way in data[over_time.DIRECTION.path][:, -1]]
 

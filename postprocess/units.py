@@ -201,11 +201,6 @@ class Units:
         """Scale of positions along X over a, from the contact's middle: µm from the punch's axis."""
         return self.scale(X_OVER_A)
 
-    @property
-    def length(self) -> Scaled:
-        """Scale of lengths over a, as depths."""
-        return self.scale(OVER_A)
-
     def _largest(self, kind: str, row: Quantity | None) -> float:
         """Largest number of the quantities of a unit in the section of a row; 0 for none."""
         if row is None:

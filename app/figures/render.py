@@ -254,7 +254,7 @@ class _Drawn:
             axis.axvline(x, color=GREY, linewidth=0.4, zorder=0)
         for y in panel.at_y:
             axis.axhline(y / 10.0**self.power, color=GREY, linewidth=0.4, zorder=0)
-        self.lines = [self._curve(curve) for curve in panel.curves]
+        lines = [self._curve(curve) for curve in panel.curves]
         if panel.map:
             _draw_map(axis, panel.map)
         if panel.map and panel.map.label:
@@ -273,6 +273,10 @@ class _Drawn:
             axis.set_xlim(panel.xlim)
         if panel.ylim:
             axis.set_ylim([y / 10.0**self.power for y in panel.ylim])
+        for curve, points in zip(panel.curves, (line.get_xydata() for line in lines)):
+            for share in curve.arrows:
+                at = point_along(points.T, share, np.ptp([axis.get_xlim(), axis.get_ylim()], axis=1))
+                arrow(axis, points[at], points[at + 1], curve.look.colour)
         if panel.beside and panel.beside[1]:
             label, factor = panel.beside
             axis.tick_params(top=False)
@@ -313,10 +317,16 @@ class _Drawn:
                 style |= {"markerfacecolor": colour, "markeredgewidth": 0.0, "rasterized": True}
         return self.axis.plot(x, y, **style)[0]
 
+    def set_place(self, x: float, y: float, wide: float, tall: float) -> None:
+        """Put the lower left corner of a panel somewhere, so wide and so tall [in]."""
+        self.axis.set_position(
+            np.divide((x, y, wide, tall), np.tile(self.axis.figure.get_size_inches(), 2))
+        )
+
     def fit(self, wide: float, tall: float) -> None:
         """Choose ticks, and fold texts, for a panel so wide and so tall [in]."""
-        axis, panel, figure = self.axis, self.panel, self.axis.figure
-        axis.set_position((0.0, 0.0, wide / figure.get_figwidth(), tall / figure.get_figheight()))
+        axis, panel = self.axis, self.panel
+        self.set_place(0.0, 0.0, wide, tall)
         for one, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
             if one.get_scale() == "linear":
                 whole = panel.whole and one is axis.xaxis
@@ -354,21 +364,14 @@ class _Drawn:
             box = Bbox.union([box, self.legend.get_window_extent(renderer)])
         return np.abs(np.subtract(box.extents, axis.bbox.extents)) / DPI
 
-    def place(self, x: float, y: float, wide: float, tall: float) -> None:
-        """Put a panel into its place, that of its left and lower end, with its width and height [in]."""
-        axis = self.axis
-        width, height = axis.figure.get_size_inches()
-        axis.set_position((x / width, y / height, wide / width, tall / height))
-        style = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
-        for curve, line in zip(self.panel.curves, self.lines):
-            points = line.get_xydata()
-            for share in curve.arrows:
-                at = point_along(axis.transData.transform(points).T, share)
-                own = style | {"color": line.get_color()}
-                axis.annotate("", points[at + 1], points[at], arrowprops=own)
+
+def arrow(axis: Axes, start: Sequence[float], end: Sequence[float], colour: str = "black") -> None:
+    """Draw an arrow."""
+    style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
+    axis.annotate("", end, start, arrowprops=style)
 
 
-def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> int:
+def point_along(points: NDArray, share: float, scale: Any) -> int:
     """Number of the point of a polyline, (2, n), from which its next side is at a share of its length.
 
     Args:
@@ -376,8 +379,7 @@ def point_along(points: NDArray, share: float, scale: NDArray | None = None) -> 
         share: 0 to 1.
         scale: lengths along both axes that are drawn alike, (2,).
     """
-    steps = np.diff(points) if scale is None else np.diff(points) / scale[:, None]
-    way = np.append(0.0, np.cumsum(np.hypot(*steps)))
+    way = np.append(0.0, np.cumsum(np.hypot(*np.diff(points) / np.reshape(scale, (2, 1)))))
     return min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
 
 
@@ -486,7 +488,7 @@ def _arrange(
     y = height - _EDGE - np.cumsum(top + talls * tall + np.append(0.0, bottom[:-1] + _BELOW))
     for n, one in enumerate(drawn):
         i, j = divmod(n, columns)
-        one.place(x[j], y[i], wide, tall * one.panel.tall)
+        one.set_place(x[j], y[i], wide, tall * one.panel.tall)
 
 
 class Film:

@@ -6,6 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from .render import arrow
 from .style import COLOURS, GREY, PAGE, SMALL, TEXT, styled
 
 _BLUE, _ORANGE, _GREEN = COLOURS[:3]
@@ -19,18 +20,6 @@ def _blank(width: float, height: float) -> tuple[Figure, Axes]:
     axis.set(xlim=(0.0, width), ylim=(0.0, height))
     axis.set_axis_off()
     return figure, axis
-
-
-def _arrow(
-    axis: Axes, start: tuple[float, float], end: tuple[float, float], colour: str = "black"
-) -> None:
-    axis.annotate(
-        "", end, start,
-        arrowprops={
-            "arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0,
-            "mutation_scale": 9,
-        },
-    )  # fmt: skip
 
 
 @styled
@@ -49,23 +38,23 @@ def problem_figure() -> Figure:
     axis.text(X - a + 0.08, Y + 0.46, "rigid punch", fontsize=SMALL, va="center")
     axis.text(0.4, Y - 0.58, r"half-plane: $E$, $\nu$, $\rho$", va="center")
     # Loads, per depth.
-    _arrow(axis, (X, Y + 1.12), (X, Y + 0.62), _BLUE)
+    arrow(axis, (X, Y + 1.12), (X, Y + 0.62), _BLUE)
     axis.text(X + 0.07, Y + 0.98, "$N$", color=_BLUE, va="center")
-    _arrow(axis, (X + a, Y + 0.3), (X + a + 0.5, Y + 0.3), _BLUE)
+    arrow(axis, (X + a, Y + 0.3), (X + a + 0.5, Y + 0.3), _BLUE)
     axis.text(X + a + 0.55, Y + 0.3, "$F = f N$", color=_BLUE, va="center")
-    _arrow(axis, (X - a - 0.75, Y + 0.78), (X - a - 0.1, Y + 0.78), _ORANGE)
+    arrow(axis, (X - a - 0.75, Y + 0.78), (X - a - 0.1, Y + 0.78), _ORANGE)
     axis.text(X - a - 0.8, Y + 0.78, "$V$", color=_ORANGE, va="center", ha="right")
     axis.text(
         X - a - 0.1, Y + 0.62, "forward (FM)", color=_ORANGE, va="center", ha="right", fontsize=SMALL
     )  # fmt: skip
     # Tractions of the punch on the surface: friction drags it along.
     for at in np.linspace(X - 0.75 * a, X + 0.55 * a, 4):
-        _arrow(axis, (at, Y - 0.09), (at + 0.2, Y - 0.09), _GREEN)
+        arrow(axis, (at, Y - 0.09), (at + 0.2, Y - 0.09), _GREEN)
     axis.text(X + a + 0.08, Y - 0.14, r"$\sigma_{XY} = -f\,\sigma_{YY} > 0$", color=_GREEN, va="center")
     # Axes, which move along, and the ends.
-    _arrow(axis, (X, Y), (X, Y + 0.42))
+    arrow(axis, (X, Y), (X, Y + 0.42))
     axis.text(X + 0.06, Y + 0.36, "$Y$", va="center")
-    _arrow(axis, (4.2, Y), (4.75, Y))
+    arrow(axis, (4.2, Y), (4.75, Y))
     axis.text(4.7, Y + 0.11, "$X = x - V t$", va="center", ha="right")
     for end, name in ((-1.0, "trailing end\n$X = -a$"), (1.0, "leading end\n$X = a$")):
         axis.plot([X + end * a] * 2, [Y - 0.06, Y], color="black", linewidth=0.8)
@@ -110,8 +99,8 @@ def procedure_figure() -> Figure:
         x, width, *_ = _BOXES[name]
         return x + end * width / 2.0, places[name]
 
-    _arrow(axis, side("motion", 1.0), side("friction", -1.0))
+    arrow(axis, side("motion", 1.0), side("friction", -1.0))
     for method in ("exact", "fem"):
-        _arrow(axis, side("friction", 1.0), side(method, -1.0))
-        _arrow(axis, side(method, 1.0), side("stresses", -1.0))
+        arrow(axis, side("friction", 1.0), side(method, -1.0))
+        arrow(axis, side(method, 1.0), side("stresses", -1.0))
     return figure

@@ -137,9 +137,7 @@ def _trace(curve: Curve) -> dict[str, Any]:
 def _arrow(panel: Panel, curve: Curve, share: float) -> dict[str, Any]:
     """Arrow along a curve, at a share of its length on the panel's axes."""
     points = np.array([curve.x, curve.y])
-    at = point_along(
-        points, share, np.array([*map(np.ptp, (panel.xlim or curve.x, panel.ylim or curve.y))])
-    )
+    at = point_along(points, share, [*map(np.ptp, (panel.xlim or curve.x, panel.ylim or curve.y))])
     (ax, x), (ay, y) = points[:, [max(at - 2, 0), at + 1]].tolist()  # one step may be too short to see
     return {
         "x": x, "y": y, "ax": ax, "ay": ay, "axref": "x", "ayref": "y", "text": "", "arrowhead": 2,

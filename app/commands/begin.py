@@ -116,7 +116,7 @@ def fit(
     from ..figures.choice import Drawing
     from ..figures.files import Files
     from ..figures.friction import fitted_figure
-    from ..results.fitted import ALL, split
+    from ..results.fitted import ALL
     from ..results.fitted import fit as fit_laws
     from ..scene.read import read as read_scene
 
@@ -133,10 +133,10 @@ def fit(
     if into:
         read_scene(into)  # its faults are reported before the work
     law = model or (named[0] if named else ALL)
+    pairs = ([word.partition("=") for word in given] for given in (fix, start))
+    known, guess = ({key.strip(): text.strip() for key, _, text in each} for each in pairs)
     with progress:
-        best = fit_laws(
-            data, law, fix=split(fix), start=split(start), speed=speed, rows=rows, progress=progress
-        )
+        best = fit_laws(data, law, fix=known, start=guess, speed=speed, rows=rows, progress=progress)
     to_folder = Folder(folder, overwrite, inputs)
     target = to_folder.target("friction.toml", SECTION)
     section = best.scene()

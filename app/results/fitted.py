@@ -4,7 +4,7 @@ Measured friction comes as arrays, or from tables (:func:`read`).
 """
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import product
@@ -303,19 +303,6 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
     clocks = [t.measured.t / (1.0 if t.timed or not speeds else next(left)) for t in tables]
     moving = [replace(t, measured=replace(t.measured, t=clock)) for t, clock in zip(tables, clocks)]
     return tuple(moving), bool(slips and not speeds)
-
-
-def split(words: Iterable[str]) -> dict[str, str]:
-    """Texts by key from ``KEY=VALUE``.
-
-    Raises:
-        BadInput: one of them is none.
-    """
-    pairs = [word.partition("=") for word in words]
-    for word, (_, equals, _) in zip(words, pairs):
-        if not equals:
-            raise BadInput(f"found {short(word)!r}, expected KEY=VALUE")
-    return {key.strip(): text.strip() for key, _, text in pairs}
 
 
 def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:

@@ -427,17 +427,15 @@ def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
         return 0.0
     width, dpi = figure.get_figwidth(), figure.dpi
     room = (width - 0.1) * dpi
-    rows = max(1, floor(sum(0.05 * len(plain(str(one.get_label()))) + 0.5 for one in handles) / width))
-    while True:
+    for rows in range(1, len(handles) + 1):
+        figure.legends.clear()
         legend = figure.legend(
             handles=handles, ncols=ceil(len(handles) / rows), loc="lower center", borderaxespad=0.15,
             columnspacing=1.2, labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
         )  # fmt: skip
         box = legend.get_window_extent(figure.canvas.get_renderer())
-        if box.width <= room or rows >= len(handles):
+        if box.width <= room:
             break
-        legend.remove()
-        rows += 1
     for text in legend.get_texts() if box.width > room else ():
         fit_text(text, text.get_text(), width - 0.5)
     return legend.get_window_extent(figure.canvas.get_renderer()).height / dpi + 0.05

@@ -97,7 +97,7 @@ class Comparison:
                 if column is None:
                     continue
                 head, name = ", ".join([*key, self.labels[n]]), f"{column.name}_{n + 1}"
-                values = np.array(column.values, dtype=float) if _is_number(column) else column.values
+                values = column.values if column.unit == "none" else np.array(column.values, dtype=float)
                 columns.append(replace(column, head=head, values=values, name=name, path=""))
                 if percent is not None:
                     columns.append(Column(f"{head}, difference", percent, "%", f"{name}_difference"))
@@ -110,7 +110,7 @@ class Comparison:
 
         NaN where units differ; None of texts, and of what one of both has not.
         """
-        if not first or not other or not _is_number(other):
+        if not first or not other or other.unit == "none":
             return None
         a, b = (np.asarray(column.values, dtype=float) for column in (first, other))
         size, dimensionless = np.abs(a), self.units[0].dimensionless
@@ -248,10 +248,6 @@ def compare(first: Result, *others: Result, dimensionless: bool = False) -> list
         dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
     """
     return Comparison([first, *others], dimensionless).columns()
-
-
-def _is_number(column: Column) -> bool:
-    return column.unit != "none" and not isinstance(column.values[0], str)
 
 
 def _labels(results: Sequence[Result]) -> list[str]:

@@ -110,7 +110,7 @@ class Comparison:
 
         NaN where units differ; None of texts, and of what one of both has not.
         """
-        if not first or not other or other.unit == "none":
+        if not first or not other or "none" in (first.unit, other.unit):
             return None
         a, b = (np.asarray(column.values, dtype=float) for column in (first, other))
         size, dimensionless = np.abs(a), self.units[0].dimensionless

@@ -164,6 +164,16 @@ def test_what_is_not_needed_stands_beside_what_is_measured(table):
     assert fitted.read(table(text)).measured.f.tolist() == f.tolist()
 
 
+def test_words_of_yield_have_no_difference_from_a_share():
+    """A flat punch yields at its edges at any load, a cylinder from a share of its strength on."""
+    steel = PLAIN | {"solid.yield_strength": "500 MPa", "output.quantities": ["yield"]}
+    round_ = {"punch.profile": "parabolic", "punch.radius": 5e-3, "punch.half_width": None}
+    flat, cylinder = computed("tables4_5", steel), computed("tables4_5", steel | round_)
+    for pair in ((flat, cylinder), (cylinder, flat)):
+        found = by_name(galinx.compare(*pair))
+        assert {"yields_1", "yields_2"} <= found.keys() and "yields_2_difference" not in found
+
+
 def test_the_swapped_order_is_the_mirror(light, heavy):
     there, back = (by_name(galinx.compare(*pair)) for pair in ((light, heavy), (heavy, light)))
     assert there.keys() - {n for n in there if "difference" in n} == {

@@ -572,7 +572,7 @@ def sheets(
 def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """Table of more on yield, and of where answers hold, a row a state; none of what never occurs."""
     kept = _occurring(_columns(data, units, _LIMITS))
-    title, count, notes = "Where answers hold", len(data[of.FRICTION.path]), list[str]()
+    title, count, notes = "More, and where answers hold", len(data[of.FRICTION.path]), list[str]()
     if same := shared(kept):
         if len(same) < len(kept):
             kept = [c for c in kept if c not in same]

@@ -389,8 +389,9 @@ def interfaces(of: Archive) -> Drawing:
             title = titles[i] if len(panels) < len(columns) else ""
             panels.append(replace(surface_panel(drawn, title=title), ylim=None))
     across_ = len(panels) if len(columns) == 1 and width > 4.5 else len(columns)
+    grey = "grey, all contacts together" if any(len(panel.bands) > 1 for panel in panels) else "grey"
     caption = (
-        "Stresses along the interfaces, under the punch (grey) and beside it: tractions, which both "
+        f"Stresses along the interfaces, under the punch ({grey}) and beside it: tractions, which both "
         "sides share, and in-plane stress, which jumps: above solid, below dashed."
     )
     if len(columns) < len(over_a):

@@ -70,7 +70,7 @@ FINE = {"solve.tolerance": 1e-9}
 #: One speed, one friction, K_I or what stands in its place, by finite elements at 1e-6.
 ALIKE = {"motion.c": 0.6, "motion.X_over_L": 0.8, "motion.strokes": ["forward"], "solve.tolerance": 1e-6}
 ALIKE |= {"output.quantities": ["friction", "sif"], "solve.methods": ["closed_form", "fem"]}
-CYLINDER = {"punch.profile": "parabolic", "punch.radius": "20 mm"}
+CYLINDER = {"punch.profile": "parabolic", "punch.radius": "20 mm", "punch.load": "55.3 N/mm"}
 LOADS = {"punch.load": {"from": "1 N/mm", "to": "50 N/mm", "number": 1000}}
 FIBRES = {"solid.material": "carbon-epoxy", "solid.angle": 30, "motion.c": 0.2}
 STACK = {"friction.mu_c": 0.4, "solve.tolerance": 1e-6}

@@ -214,27 +214,41 @@ class Panels(Functions):
         return x, legendre.legvander(τ, self.nodes - 1) @ to_legendre
 
     def rows(self, kernel: Callable[[NDArray], NDArray], x: NDArray) -> NDArray[np.float64]:
-        """Weights of :meth:`row` for places x, (len(x), n, functions)."""
+        """Weights of values at the points in ∫ kernel(t(x) - t) w(t) … dt at x, (len(x), n, functions).
+
+        The kernel may be rough where t = t(x) if the panels are.
+        """
         if self.rough:
-            return np.array([self.row(kernel, place) for place in x.tolist()])
+            return np.concatenate([self._graded_rows(kernel, x[rows]) for rows in self.blocks(len(x))])
         parts = [x[rows, None] for rows in self.blocks(len(x), _ROWS)]
         return np.concatenate([
             kernel(-self.apart(part, self.x - part)) * self.weights[:, None] for part in parts
         ])  # fmt: skip
 
-    def row(self, kernel: Callable[[NDArray], NDArray], x: float) -> NDArray[np.float64]:
-        """Weights of values at the points in ∫ kernel(t(x) - t) w(t) … dt, (n, functions).
+    def _graded_rows(self, kernel: Callable[[NDArray], NDArray], x: NDArray) -> NDArray[np.float64]:
+        """Weights of :meth:`rows` by rules graded towards the places; the kernel is evaluated at once."""
+        x = np.clip(x, -self.reach, self.reach)
+        rules = [self._graded_rule(place) for place in x.tolist()]
+        away = [-self.apart(at, np.append(self.x - at, rule[0])) for at, rule in zip(x.tolist(), rules)]
+        every = np.concatenate(away)
+        every[every == 0.0] = 1.0  # the panels near a place are replaced
+        values = np.split(kernel(every), np.cumsum([len(part) for part in away])[:-1])
+        return np.array([self._row(*each) for each in zip(x.tolist(), rules, values)])
 
-        The kernel may be rough where t = t(x).
-        """
-        x, reach = min(max(x, -self.reach), self.reach), _NEAR * np.diff(self.ends)
+    def _graded_rule(self, x: float) -> tuple[NDArray, NDArray, list[int], tuple[int, ...], list[int]]:
+        """Distances from a place and weights of a rule on the panels near it; these panels; the panel of
+        each part of the rule, and the number of its points."""
+        reach = _NEAR * np.diff(self.ends)
         near = np.flatnonzero((self.ends[:-1] - reach <= x) & (x <= self.ends[1:] + reach)).tolist()
         panels, *parts = zip(*[(panel, *part) for panel in near for part in self._towards(x, panel)])
-        sizes, (δ, weights) = [len(part) for part in parts[0]], map(np.concatenate, parts)
+        δ, weights = map(np.concatenate, parts)
+        return δ, weights, near, panels, [len(part) for part in parts[0]]
+
+    def _row(self, x: float, rule: Any, values: NDArray) -> NDArray[np.float64]:
+        """Weights at a place, (n, functions), by its rule and the kernel at the points and on that."""
+        δ, weights, near, panels, sizes = rule
         places, own = x + δ, np.repeat(panels, sizes)
-        away = -self.apart(x, np.append(self.x - x, δ))
-        away[away == 0.0] = 1.0  # the panels near x are replaced below
-        by_rule, values = np.split(kernel(away), [len(self.x)])
+        by_rule, values = np.split(values, [len(self.x)])
         integrals = by_rule * self.weights[:, None]
         for panel in near:
             there = self.of(panel)
@@ -331,8 +345,10 @@ class Panels(Functions):
         ]
         integrals = np.empty((len(r), parts[0].shape[-1]))
         integrals[rows] = np.concatenate(parts)
-        for i, x in zip(np.flatnonzero(under), stretched(r[under]).tolist()):
-            integrals[i] = p @ self.row(kernel, x)
+        places = np.flatnonzero(under)
+        for some in self.blocks(len(places)):
+            at = places[some]
+            integrals[at] = np.einsum("t,xtf->xf", p, self._graded_rows(kernel, stretched(r[at])))
         return integrals
 
     def points(self, p: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

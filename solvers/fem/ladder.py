@@ -371,7 +371,6 @@ def to_tolerance(
         solved.close()
         share = work.plan.tolerance / work.finer.plan.tolerance
         solved = climb(work.finer, task, g, solve, share=share, done=done)
-    solved.error.warn()
     return solved
 
 

@@ -79,7 +79,9 @@ class FiniteElements:
             return BetweenKinks(work, task, g)
         if mode in (OWN_MESHES, FREE_ON_LAYERS):
             return Followed(work, task, g)
-        return to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
+        solved = to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
+        solved.error.warn()
+        return solved
 
     @contextmanager
     def one_state(

@@ -107,3 +107,15 @@ def test_a_parabola_is_one_by_every_name():
     cylinder, power = (computed("tables4_5", few | name).data for name in names)
     for path in (f"states/{by}/{of}" for by in ("closed_form", "fem") for of in ("half_width", "centre")):
         np.testing.assert_allclose(power[path], cylinder[path], rtol=1e-13)
+
+
+def test_a_mesh_that_another_replaced_gives_no_warning(capsys):
+    """Over layers the first mesh of a cusp is for a half-width near by, and its tip is not resolved."""
+    layer = {"kind": "cubic", "c11": 1.66e9, "c12": 0.64e9, "c44": 0.8e9, "rho": 1e3, "angle": 25.0}
+    result = galinx.compute(of_sections(
+        solid={"E": 1e9, "nu": 0.3, "rho": 1e3}, layer=[layer | {"thickness": 9e-4}],
+        punch={"profile": "power", "exponent": 1.5, "coefficient": 0.17, "load": 1608.0},
+        friction={"model": "coulomb", "mu_c": 0.9}, motion={"c": 0.05},
+        solve={"methods": ["fem"], "tolerance": 2.26e-3}, output={"quantities": ["sif", "interfaces"]},
+    ))  # fmt: skip
+    assert result.verdict == "PASS" and "warning" not in capsys.readouterr().err

@@ -134,7 +134,7 @@ def test_degrees_rise_until_the_tolerance_is_met_or_cannot_be(
     assert degrees[0] <= degree_of(work) <= degrees[1]
     assert error.excessive == missed and worst[0] <= error.worst <= worst[1]
     assert of_cells in (None, error.of_cells)
-    to_tolerance(work, TASK, G, lambda space, g: of_degree(space[1]))
+    to_tolerance(work, TASK, G, lambda space, g: of_degree(space[1])).error.warn()
     assert bool(finer.solved) == bool(of_cells) and bool(work.said) == (of_cells is False)
 
 
@@ -143,10 +143,13 @@ def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_
     finer = Work(1e-8, good)
     work = Work(1e-6, slow, finer)
     found = to_tolerance(work, TASK, G, solved)
+    found.error.warn()
     assert not found.error.excessive and found.error.worst <= 1e-6
     assert work.solved and finer.solved and not work.said + finer.said
     finer = Work(1e-8, slow)
-    assert to_tolerance(Work(1e-6, slow, finer), TASK, G, solved).error.excessive
+    found = to_tolerance(Work(1e-6, slow, finer), TASK, G, solved)
+    found.error.warn()
+    assert found.error.excessive
     assert degree_of(finer) < DEGREES[1]
     (said,) = finer.said
     assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
@@ -168,6 +171,7 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
     finer = Work(1e-9, None)
     work = Work(1e-7, None, finer)
     found = to_tolerance(work, TASK, G, slow)
+    found.error.warn()
     floor = found.error.floor
     assert found.error.excessive and not finer.solved and floor > 1e-7
     (text,) = work.said

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
-from matplotlib.transforms import Bbox, ScaledTranslation
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from galinx.texts import folded, in_tex, plain
@@ -28,6 +28,8 @@ from .style import DPI, GREY, PAGE, SMALL, TALLEST, Look, styled
 _LEAST, _EDGE, _ASIDE, _BELOW = 0.35, 0.04, 0.1, 0.05
 #: Height that panels have at least where a page has room [in], and markers along a curve.
 _LOW, _MARKERS = 0.95, 16
+#: Distance of names of axes from their numbers, and of a title from its panel [in].
+_PAD = 2.5 / 72.0
 #: Numbers beyond these are over a power of ten, which stands beside their unit.
 _SHORT, _LONG = 1e-2, 1e5
 
@@ -195,8 +197,7 @@ def render(
     made = []
     for n, panel in enumerate(panels):
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
-        made.append(_Drawn(figure.add_subplot(rows, columns, n + 1), panel, letter))
-    figure.align_labels()
+        made.append(_Drawn(figure.add_axes((0.0, 0.0, 1.0, 1.0), label=str(n)), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
     foot = _legend(figure, [*named.values(), *notes])
     _arrange(figure, made, size, (rows, columns), high, foot)
@@ -247,6 +248,10 @@ class _Drawn:
     def __init__(self, axis: Axes, panel: Panel, letter: str) -> None:
         self.axis, self.panel, self.letter = axis, panel, letter
         self.legend = self.bar = self.other = None
+        # Nothing is to be placed by matplotlib, which measures everything for it at every drawing.
+        self.title = axis.set_title("", loc="left", y=1.0)
+        axis.xaxis.set_label_coords(0.5, 0.0)
+        axis.yaxis.set_label_coords(0.0, 0.5)
         self.power = _power(panel)
         for low, high in panel.bands:
             axis.axvspan(low, high, color="#F2F2F2", linewidth=0.0, zorder=-1)
@@ -317,17 +322,13 @@ class _Drawn:
                 style |= {"markerfacecolor": colour, "markeredgewidth": 0.0, "rasterized": True}
         return self.axis.plot(x, y, **style)[0]
 
-    def set_place(self, x: float, y: float, wide: float, tall: float) -> None:
-        """Put the lower left corner of a panel somewhere, so wide and so tall [in]."""
-        self.axis.set_position(
-            np.divide((x, y, wide, tall), np.tile(self.axis.figure.get_size_inches(), 2))
-        )
-
-    def fit(self, wide: float, tall: float) -> None:
-        """Choose ticks, and fold texts, for a panel so wide and so tall [in]."""
-        axis, panel = self.axis, self.panel
-        self.set_place(0.0, 0.0, wide, tall)
+    def measure(self, wide: float, tall: float, beside: float) -> "_Room":
+        """Choose ticks, and fold texts, for a panel so wide and so tall, with so much beside it [in]."""
+        axis, panel, figure = self.axis, self.panel, self.axis.figure
+        renderer, dpi = figure.canvas.get_renderer(), figure.dpi
+        axis.set_position((0.0, 0.0, wide / figure.get_figwidth(), tall / figure.get_figheight()))
         for one, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
+            one.label.set_text("")
             if one.get_scale() == "linear":
                 whole = panel.whole and one is axis.xaxis
                 count = max(2, min(8, int(side / apart)))
@@ -342,27 +343,42 @@ class _Drawn:
             self.bar.update_ticks()
         if self.other is not None:
             self.other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
+        boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
+        box = Bbox.union([axis.bbox, *filter(None, boxes)])
+        left, below, right, above = np.abs(np.subtract(box.extents, axis.bbox.extents)) / dpi
         unit = in_tex(panel.unit)
         if self.power:
             unit = f"$10^{{{self.power}}}${' ' + unit if unit else ''}"
         y = panel.y and (f"{panel.y} ({unit})" if unit else panel.y)
-        fit_text(axis.set_title(""), self.letter + panel.title, wide)
-        fit_text(axis.xaxis.label, panel.x or "", wide + 0.1)
-        fit_text(axis.yaxis.label, y or "", tall + 0.25)
-
-    def around(self) -> NDArray[np.float64]:
-        """Room that numbers and texts take on the left, below, on the right and above [in], (4,)."""
-        axis = self.axis
-        renderer, child_axes = axis.figure.canvas.get_renderer(), axis.child_axes
-        # Axes leave out what names take beyond their ends.
-        sides = [axis.xaxis, axis.yaxis, *(child.yaxis for child in child_axes)]
-        box = axis.get_tightbbox(renderer, bbox_extra_artists=[*child_axes, *sides])
+        over = fit_text(self.title, self.letter + panel.title, wide + (_ASIDE if self.letter else 0.3))
+        name = fit_text(axis.xaxis.label, panel.x or "", wide + beside)
+        upright = fit_text(axis.yaxis.label, y or "", tall + 0.25)
+        legend = (0.0, 0.0)
         if self.legend is not None:
-            below = (box.y0 - axis.bbox.y0) / DPI - 0.03
-            down = ScaledTranslation(0.0, below, axis.figure.dpi_scale_trans)
-            self.legend.set_bbox_to_anchor((0.5, 0.0), axis.transAxes + down)
-            box = Bbox.union([box, self.legend.get_window_extent(renderer)])
-        return np.abs(np.subtract(box.extents, axis.bbox.extents)) / DPI
+            legend = self.legend.get_window_extent(renderer).size / dpi + (0.0, 0.03)
+        aside = (max(name[0], legend[0]) - wide) / 2.0
+        return _Room(
+            left, right, above, below, upright[0], over[1], name[1] + legend[1],
+            (upright[1] - tall) / 2.0, aside, max(aside, over[0] - wide),
+        )  # fmt: skip
+
+    def place(self, box: tuple[float, float, float, float], room: "_Room") -> None:
+        """Put a panel and its texts into their places.
+
+        Args:
+            box: its left and lower end, width and height [in].
+            room: around it; numbers of axes as wide as in its row and column.
+        """
+        axis, (x, y, wide, tall) = self.axis, box
+        width, height = axis.figure.get_size_inches()
+        axis.set_position((x / width, y / height, wide / width, tall / height))
+        self.title.set_y(1.0 + room.above / tall)
+        axis.xaxis.set_label_coords(0.5, -(room.below + _PAD) / tall)
+        axis.yaxis.set_label_coords(-(room.left + _PAD) / wide, 0.5)
+        if self.legend is not None:
+            high = self.legend.get_window_extent(axis.figure.canvas.get_renderer()).height
+            below = room.below + room.name - high / axis.figure.dpi
+            self.legend.set_bbox_to_anchor((0.5, -below / tall), axis.transAxes)
 
 
 def arrow(axis: Axes, start: Sequence[float], end: Sequence[float], colour: str = "black") -> None:
@@ -383,18 +399,28 @@ def point_along(points: NDArray, share: float, scale: Any) -> int:
     return min(int(np.searchsorted(way, share * way[-1])), len(way) - 2)
 
 
-def fit_text(text: Text, words: str, room: float) -> None:
-    """Set a text, in as many lines as it needs where it has so much room [in]."""
+def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:
+    """Set a text, in as many lines as it needs where it has so much room [in].
+
+    Returns:
+        Its width and height [in], across lines with its distance from what is beside it; 0 for no words.
+    """
     along, renderer = int(text.get_rotation() > 0.0), text.figure.canvas.get_renderer()
 
-    def length(words: str) -> float:
+    def measured(words: str) -> NDArray[np.float64]:
         text.set_text(words)
-        return float(text.get_window_extent(renderer).size[along]) / text.figure.dpi
+        return text.get_window_extent(renderer).size / text.figure.dpi
 
-    lines = ceil(length(words) / room)
+    if not words.strip():
+        return np.zeros(2)
+    size = measured(words)
+    lines = ceil(size[along] / room)
     for count in range(lines, lines + 3) if lines > 1 else ():
-        if length(folded(words, max(6, ceil(len(plain(words)) / count * 1.12)))) <= room:
+        size = measured(folded(words, max(6, ceil(len(plain(words)) / count * 1.12))))
+        if size[along] <= room:
             break
+    size[1 - along] += _PAD
+    return size
 
 
 def _draw_map(axis: Axes, shown: Map) -> None:
@@ -441,6 +467,29 @@ def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
     return legend.get_window_extent(figure.canvas.get_renderer()).height / dpi + 0.05
 
 
+class _Room(NamedTuple):
+    """Room around a panel [in].
+
+    Attributes:
+        left, right, above, below: of numbers of axes, and colour bars.
+        upright, title, name: of the name of the axis of y, of the title, and of the name of the axis of x
+            with the panel's legend.
+        taller, aside, beyond: over the panel's ends, of texts along y, and of those along x on the left
+            and on the right.
+    """
+
+    left: Any
+    right: Any
+    above: Any
+    below: Any
+    upright: Any
+    title: Any
+    name: Any
+    taller: Any
+    aside: Any
+    beyond: Any
+
+
 def _arrange(
     figure: Figure, drawn: Sequence[_Drawn], size: Size, shape: tuple[int, int], high: float, foot: float
 ) -> None:
@@ -455,18 +504,20 @@ def _arrange(
     talls = np.array([one.panel.tall for one in drawn[::columns]])
     maps = [one.axis for one in drawn if one.panel.map and one.panel.map.equal]
     ratio = float(np.ptp(maps[0].get_ylim()) / np.ptp(maps[0].get_xlim())) if maps else high
+    beside = 0.35 if all(one.panel.y for one in drawn) else 0.1
     wide = size.width / columns - 0.8
     tall = max(wide * ratio, _LOW)
     if size.height:
         tall = min(tall, (size.height - foot) / talls.sum() - 0.5)
-    room = np.zeros((rows * columns, 4))
+    room = np.zeros((rows * columns, len(_Room._fields)))
     for _ in range(2):  # texts are folded, and ticks chosen, by the room that they leave
         wide, tall = max(wide, _LEAST), max(tall, _LEAST)
-        for one in drawn:
-            one.fit(wide, tall * one.panel.tall)
-        room[: len(drawn)] = [one.around() for one in drawn]
-        left, _, right, _ = room.reshape(rows, columns, 4).max(axis=0).T
-        _, bottom, _, top = room.reshape(rows, columns, 4).max(axis=1).T
+        room[: len(drawn)] = [one.measure(wide, tall * one.panel.tall, beside) for one in drawn]
+        of_columns, of_rows = (_Room(*room.reshape(rows, columns, -1).max(axis=n).T) for n in (0, 1))
+        left, right = of_columns.left + of_columns.upright, of_columns.right.copy()
+        left[0], right[-1] = max(left[0], of_columns.aside[0]), max(right[-1], of_columns.beyond[-1])
+        top = np.maximum(of_rows.above + of_rows.title, of_rows.taller)
+        bottom = np.maximum(of_rows.below + of_rows.name, of_rows.taller)
         across_ = left.sum() + right.sum() + 2.0 * _EDGE + (columns - 1) * _ASIDE
         along = top.sum() + bottom.sum() + 2.0 * _EDGE + (rows - 1) * _BELOW + foot
         wide = (size.width - across_) / columns
@@ -486,7 +537,10 @@ def _arrange(
     y = height - _EDGE - np.cumsum(top + talls * tall + np.append(0.0, bottom[:-1] + _BELOW))
     for n, one in enumerate(drawn):
         i, j = divmod(n, columns)
-        one.set_place(x[j], y[i], wide, tall * one.panel.tall)
+        around = _Room(*room[n])._replace(
+            left=of_columns.left[j], above=of_rows.above[i], below=of_rows.below[i]
+        )
+        one.place((x[j], y[i], wide, tall * one.panel.tall), around)
 
 
 class Film:

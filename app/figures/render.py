@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
@@ -265,7 +266,7 @@ class _Drawn:
         if panel.map and panel.map.label:
             beside = axis.inset_axes((1.04, 0.0, 0.04, 1.0))
             beside.set_axes_locator(self._beside)
-            self.bar = axis.figure.colorbar(axis.collections[0], cax=beside, extend=panel.map.extend)
+            self.bar = axis.figure.colorbar(axis.images[0], cax=beside, extend=panel.map.extend)
             self.bar.ax.tick_params(labelsize=SMALL)
             self.bar.set_label(panel.map.label, fontsize=SMALL)
         for y in panel.dashes:
@@ -425,13 +426,18 @@ def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:
 
 def _draw_map(axis: Axes, shown: Map) -> None:
     X, Y = shown.X, shown.Y
+    half_X, half_Y = (abs(z[-1] - z[0]) / max(len(z) - 1, 1) / 2.0 for z in (X, Y))
+    along, heights = (X[0] - half_X, X[-1] + half_X), np.array([Y[0] - half_Y, Y[-1] + half_Y])
     lowest, colours = (-shown.limit, "RdBu_r") if shown.signed else (0.0, "viridis")
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
-        axis.pcolormesh(
-            X, side * Y, values, shading="gouraud", cmap=colours, vmin=lowest, vmax=shown.limit,
-            rasterized=True, zorder=0, gid="map",
+        image = axis.imshow(
+            values, extent=(*along, *side * heights), origin="lower", interpolation="bilinear",
+            aspect="auto", cmap=colours, vmin=lowest, vmax=shown.limit,
         )  # fmt: skip
+        # A colour reaches half a cell farther than its point; none is shown beyond the outermost points.
+        corner, tall = (X[0], min(side * Y[0], side * Y[-1])), abs(Y[-1] - Y[0])
+        image.set_clip_path(Rectangle(corner, X[-1] - X[0], tall, transform=axis.transData))
         if shown.lines:
             levels = MaxNLocator(9).tick_values(lowest, shown.limit)
             axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
@@ -567,6 +573,6 @@ class Film:
             for line, curve in zip(curves, panel.curves):
                 line.set_data(curve.x, np.asarray(curve.y) / scale)
             if panel.map:
-                axis.collections[0].set_array(panel.map.values)
+                axis.images[0].set_data(panel.map.values)
             letter = axis.get_title(loc="left")[:5] if self._count > 1 else ""
             axis.set_title(letter + panel.title, loc="left")

@@ -217,16 +217,19 @@ class _Sweep:
         numbers = every[order].reshape(len(up), len(across))
         label, y = self._axis(self.by)
         x, y = self.x[numbers[0]], y[numbers[:, 0]]
+        # On a grid of equal steps, as pictures are.
+        X, Y = np.linspace(x[0], x[-1], 4 * len(x)), np.linspace(y[0], y[-1], 4 * len(y))
         panels = []
         for name in self.drawn:
             shown = self.columns[name]
-            values = shown.best[numbers]
-            limit = float(np.nanmax(np.abs(values))) or 1.0
-            signed = bool(np.nanmin(values) < -1e-9 * limit)
+            fine = np.array([np.interp(X, x, row) for row in shown.best[numbers]])
+            fine = np.array([np.interp(Y, y, row) for row in fine.T]).T
+            limit = float(np.nanmax(np.abs(fine))) or 1.0
+            signed = bool(np.nanmin(fine) < -1e-9 * limit)
             about = named(shown.about, shown.unit)
             panels.append(Panel(
-                self.label, label, xlim=(x[0], x[-1]), ylim=(y[0], y[-1]),
-                map=Map(x, y, values, about, limit, signed=signed, lines=True, equal=False),
+                self.label, label, xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]),
+                map=Map(X, Y, fine, about, limit, signed=signed, lines=True, equal=False),
             ))  # fmt: skip
         return panels
 

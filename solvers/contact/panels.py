@@ -348,7 +348,7 @@ class Panels(Functions):
         places = np.flatnonzero(under)
         for some in self.blocks(len(places)):
             at = places[some]
-            integrals[at] = np.einsum("t,xtf->xf", p, self._graded_rows(kernel, stretched(r[at])))
+            integrals[at] = p @ self._graded_rows(kernel, stretched(r[at]))
         return integrals
 
     def points(self, p: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

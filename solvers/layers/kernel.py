@@ -386,8 +386,7 @@ class Level:
         for by_top in moved[:whole]:
             carried = by_top @ carried
         # Under the layer that the depth cuts, or that ends there.
-        reached = min(whole, len(under) - 1) if parts else whole - 1
-        Z = under[reached]
+        Z = under[min(whole, len(under) - 1) if parts else whole - 1]
         if parts:
             upper, *lower = parts
             Z = lower[0].top.down + lower[0].excess(k, Z) if lower else Z

@@ -63,24 +63,14 @@ class LayersAtSpeed:
         """Depths of the interfaces over a, (layers,)."""
         return np.cumsum([layer.H for layer in self.layers])
 
-    def below(self, k: NDArray) -> list[NDArray[Any]]:
-        """Stiffness Z under every layer, from the top down, (n, 2, 2) each.
-
-        Args:
-            k: wavenumbers times a, (n,).
-        """
-        Z = np.broadcast_to(self.substrate.down, (len(k), 2, 2))
-        stiffnesses = [Z]
-        for layer in self.layers[:0:-1]:
-            Z = layer.top.down + layer.excess(k, Z)
-            stiffnesses.append(Z)
-        return stiffnesses[::-1]
-
     def crossed(self, k: NDArray) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
         """Stiffness of the surface, (n, 2, 2); those under every layer, and displacements of its lower
         face by those of its upper one, (layers, n, 2, 2) each, from the top down.
 
         They are kept by wavenumber: fields at all depths go through the same layers.
+
+        Args:
+            k: wavenumbers times a, (n,).
         """
         new = np.setdiff1d(k, self._crossed[0])
         if len(new):
@@ -105,7 +95,10 @@ class LayersAtSpeed:
         """Stiffness of the surface less that of a half-plane of the solid there, (n, 2, 2)."""
         if not self.layers:
             return np.zeros((len(k), 2, 2), dtype=complex)
-        return np.asarray(self.layers[0].excess(k, self.below(k)[0]))
+        Z = np.broadcast_to(self.substrate.down, (len(k), 2, 2))
+        for layer in self.layers[:0:-1]:
+            Z = layer.top.down + layer.excess(k, Z)
+        return np.asarray(self.layers[0].excess(k, Z))
 
     def stiffness(self, k: NDArray) -> NDArray[Any]:
         """Z(k) of the surface, t = k Z u, Hermitian, (n, 2, 2)."""

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from galinx import files
+from galinx.solvers.contact import BELOW
 from galinx.solvers.friction import LAWS
 from galinx.solvers.profiles import has_free_end
 from galinx.texts import unseen
@@ -338,8 +339,11 @@ def _checked(
         title, text, half_plane=read.pop("solid"), layers=read.pop("layer"), steady=steady,
         swept=swept, elastic_punch=read.pop("punch.solid"), free_ends=free_ends, **read,
     )  # fmt: skip
-    if steady and not named and scene.solve.methods:
-        scene = replace(scene, output=replace(scene.output, quantities=usual_quantities(scene)))
+    if not named:
+        usual = steady and bool(scene.solve.methods)
+        quantities = usual_quantities(scene) if usual else scene.output.quantities
+        quantities += (BELOW,) * bool(scene.output.points or scene.output.map)
+        scene = replace(scene, output=replace(scene.output, quantities=quantities))
     faults += contradictions(scene)
     return None if len(faults) > before else scene
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FEM, FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
-from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, ON_SURFACE, YIELD
+from galinx.solvers.contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD
 from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
@@ -200,9 +200,9 @@ def contradictions(scene: Scene) -> list[str]:
         'time: the quantity "time" and the section [time] go together, with end': (
             (TIME in quantities) != (scene.time is not None)
         ),
-        'output: the quantity "interior" and output.points or output.map go together, as in points = '
-        "[[0.0, -0.5], [1.0, -0.5]] or map = { X = [-2, 2, 81], Y = [-2, -0.05, 40] } (over a: from, "
-        "to, number)": ("interior" in quantities) != bool(scene.output.points or scene.output.map),
+        f'output.points and output.map need "{BELOW}" among output.quantities': (
+            BELOW not in quantities and bool(scene.output.points or scene.output.map)
+        ),
         'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
         '"205 MPa", or a material that has one: stresses at sharp edges have no largest value': (
             of_yield and STRENGTH in scene.body.lacks and FINITE not in scene.body.modes

@@ -21,6 +21,7 @@ from galinx.meshes import MESHES
 from galinx.postprocess.quantities import WORDS
 from galinx.postprocess.quantities.swept import MOST_LAYERS
 from galinx.registry import Registry
+from galinx.solvers.contact import BELOW
 from galinx.solvers.contact.fem_plan import ASSEMBLERS
 from galinx.solvers.friction import LAWS, FrictionLaw
 from galinx.solvers.friction.along import tabulated
@@ -502,17 +503,20 @@ class Output:
 
     quantities: tuple[str, ...] = key(
         List(Choice(WORDS), "a list of names"), "quantities to compute", ("friction", "sif", "surface"),
-        "of a scene without strokes also `interfaces` and `yield`, where there are any; "
-        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
+        "without strokes also `interfaces` and `yield`, where there are any, with `points` or `map` "
+        "also `interior`; `sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
     )  # fmt: skip
-    points: tuple[tuple[float, float], ...] = key(
-        POINTS, "points inside, [X/a, Y/a]", (), 'needs the quantity `"interior"`; Y/a < 0'
-    )
+    points: tuple[tuple[float, float], ...] = key(POINTS, "points inside, [X/a, Y/a]", (), "Y/a < 0")
     map: tuple[tuple[float, float, int], ...] | None = key(
-        Map(), "points inside on a grid, over a", None, 'needs the quantity `"interior"`; Y/a < 0'
-    )
+        Map(), "points inside on a grid, over a", None,
+        "for `interior` alone `{X = [-2.5, 2.5, 101], Y = [-2.5, -0.025, 100]}`; Y/a < 0",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        if BELOW in self.quantities and not self.points and self.map is None:
+            object.__setattr__(self, "map", ((-2.5, 2.5, 101), (-2.5, -0.025, 100)))
 
     @property
     def inside(self) -> NDArray[np.float64]:

@@ -208,6 +208,19 @@ def test_mu_alone_is_coulombs_law_and_a_scene_without_strokes_is_steady():
 
 
 @pytest.mark.parametrize(
+    "given", ["points = [[0.0, -1.0]]", "map = { X = [-1, 1, 3], Y = [-1, -0.5, 2] }"]
+)
+def test_places_ask_for_stresses_inside_and_these_have_places(given):
+    """Besides what a scene computes without; a map where only the quantity is named."""
+    usual = parse(STEADY).output.quantities
+    assert parse(f"{STEADY}[output]\n{given}").output.quantities == (*usual, "interior")
+    alone = parse(STEADY + '[output]\nquantities = ["interior"]').output
+    assert np.ptp(alone.inside, axis=0).min() > 2.0 and alone.inside[:, 1].max() < 0.0
+    with pytest.raises(BadInput, match='need "interior" among'):
+        parse(f'{STEADY}[output]\nquantities = ["sif"]\n{given}')
+
+
+@pytest.mark.parametrize(
     "old, new, message",
     [
         ("mu = 0.15", "mu = 0,15", "found 0,15 in line 9, expected a decimal point, as in 0.15"),

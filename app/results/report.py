@@ -341,7 +341,8 @@ def page(
         "sheets": intensities if accuracy is None else accuracy,
         "states": None if few else states_table(data, units),
         "explorer": large,
-        "pictures": shown,
+        "answers": [each for each in shown if each["name"] not in ("degrees", "mesh")],
+        "numerics": [each for each in shown if each["name"] in ("degrees", "mesh")],
         "times": [
             (name, f"{value:.3f}", f"{100.0 * value / longest:.1f}")
             for name, value in zip(data[runs.STEPS.path].tolist(), seconds.tolist())
@@ -354,7 +355,7 @@ def page(
         "program": program(),
     }
     captions = [each["caption"] for each in shown]
-    words = str(parts | {"pictures": captions, "explorer": large and "σ_XX, a, c, X/L"})
+    words = str(parts | {"answers": captions, "numerics": "", "explorer": large and "σ_XX, a, c, X/L"})
     terms = [(t, meaning) for t, meaning in TERMS if any(word in words for word in t.split(", "))]
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined

@@ -10,6 +10,7 @@ wherever the table of quantities does not allow it.
 """
 
 import json
+import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +24,7 @@ from galinx.solvers.contact.edges import under_punch
 
 from .quantities import layers as on_layers
 from .quantities import over_time as in_time
-from .quantities import preferred, table
+from .quantities import preferred, runs, table
 from .quantities import states as of
 from .quantities import stresses as at
 from .quantities import yielding as to
@@ -518,8 +519,8 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
     lines, figures = [], judged(attributes)
     over = {text: pair for text, pair in figures.items() if not pair[0] <= pair[1]}
     for text, (value, limit) in sorted(over.items(), key=lambda item: -item[1][0] / (item[1][1] or 1.0)):
-        times = f", {value / limit:.2g} times what is wanted, {limit:g}" if limit else ""
-        lines.append(f"{text}: {value:.1e}{times}{_worst_state(text, data, attributes)}")
+        times = f", {value / limit:.3g} times what is wanted, {limit:g}" if limit else ""
+        lines.append(f"{text}: {value:.3g}{times}{_worst_state(text, data, attributes)}")
     lines += [r for r in json.loads(attributes["verdict_reasons"]) if r.startswith("not solved")]
     by_text = {rule.text: rule.tolerances for rule in RULES.values()}
     # Tolerances that are wanted, and that would be enough, of figures whose limits follow the tolerance.
@@ -527,7 +528,7 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
         [pair[i] / share for text, pair in over.items() if (share := by_text.get(text))] for i in (1, 0)
     )
     if wanted:
-        lines.append(f"what to do: --set solve.tolerance={min(wanted) / 10.0:.0e} may pass")
+        lines.append(f"what to do: {_finer(min(wanted), data, attributes)}")
         loosest = 10.0 ** np.ceil(np.log10(max(enough)))
         most = 1e-2 if in_time.TIMES.path in data else 0.1  # that a scene may have
         if len(wanted) == len(over) and loosest <= most:
@@ -535,6 +536,17 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
     elif over:
         lines.append("no solve.tolerance changes this: it has a limit of its own")
     return lines
+
+
+def _finer(wanted: float, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
+    """What may give a smaller error than a scene's tolerance asks for."""
+    solve = tomllib.loads(str(data.get(runs.SCENE.path, ""))).get("solve", {})
+    for key in ("degree", "mesh"):
+        if key in solve and solve[key] != "confocal":
+            return f"leave solve.{key} away, and finite elements follow the tolerance"
+    if "do not reach the tolerance" in attributes.get("warnings", ""):
+        return "no finer solve.tolerance helps, as finite elements have no more digits here"
+    return f"--set solve.tolerance={wanted / 10.0:.0e} may pass"
 
 
 def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:

@@ -7,7 +7,7 @@ where an answer costs accuracy. :func:`lines` are the plan's steps in words, wit
 
 import json
 from bisect import bisect_left
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -31,7 +31,7 @@ from galinx.postprocess.quantities.quantity import (
 )
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.postprocess.quantities.states import RATIO
-from galinx.solvers.contact import INTENSITIES, YIELD
+from galinx.solvers.contact import AT_INTERFACES, INTENSITIES, YIELD
 from galinx.solvers.contact.fem_plan import (
     BESIDES,
     DOLFINX,
@@ -43,6 +43,7 @@ from galinx.solvers.contact.fem_plan import (
     unknowns,
 )
 from galinx.solvers.contact.solution import FINITE, GIVEN_ENDS, SOLVED, Contact, Places, Task
+from galinx.solvers.contact.stresses import distances
 from galinx.solvers.errors import SolveError
 from galinx.texts import bytes_in_words, counted
 
@@ -57,6 +58,8 @@ from .states import Order, States, enumerate_states, order
 #: Most floating-point numbers that the states of a chunk hold at once, and bytes of each while they are
 #: computed.
 CHUNK_NUMBERS, _HELD = 1_200_000, 18
+#: Least margin for whose contacts positions along interfaces are as fine as they want.
+_LEAST_MARGIN = 1e-4
 #: Bytes of a state's friction.
 FRICTION = 300.0
 #: Least and largest floating-point number.
@@ -472,8 +475,9 @@ def make_plan(
     methods = tuple(name for name in named if not refusals[name])
     around = body.yield_places if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
-    depths, positions = interface_grid(body)
-    places = Places(surface_grid(), points, around, depths, positions if along is None else along)
+    depths = body.solid.depths / body.half_width if scene.layers else np.empty(0)
+    along = positions_along([scene]) if along is None else along
+    places = Places(surface_grid(), points, around, depths, along)
     for fault in _faults(scene, methods, places, {name: refusals[name] for name in named}):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
@@ -587,28 +591,30 @@ def surface_grid() -> np.ndarray:
     return np.unique(np.concatenate([-right, right]))
 
 
-def _from_edge(depth: float) -> np.ndarray:
-    """Distances from an edge over a, to 1 or 4 depths, an eighth of the depth or of themselves apart."""
-    steps = int(np.ceil(np.log(max(0.25 / depth, 1.0)) / np.log(9.0 / 8.0))) + 1
-    return np.append(depth * np.linspace(0.0, 4.0, 33), np.geomspace(4.0 * depth, 1.0, steps)[1:])
+def positions_along(scenes: Sequence[Scene]) -> np.ndarray:
+    """Positions X/a along interfaces that suit all states of some scenes, (places,).
 
-
-def interface_grid(body: Contact, several: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Depths of interfaces over a, (interfaces,), and positions X/a along them, (places,).
-
-    Positions are as fine below the edges as these are near, and reach so far that a largest stress behind
-    the punch is among them.
-
-    Args:
-        body: punch and solid.
-        several: depths over a, sorted, of all interfaces that the positions suit; None for the body's.
+    They are as fine below the edges as these are near, and reach so far that a largest stress behind the
+    punch is among them.
     """
-    if not body.solid.layers:
-        return np.empty(0), np.empty(0)
-    depths = body.solid.depths / body.half_width if several is None else several
-    near = np.concatenate([_from_edge(min(depth, 1.0)) for depth in depths.tolist()])
+    if not scenes[0].layers:
+        return np.empty(0)
+    each = np.array([_depths(scene) for scene in scenes])
+    near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
     seen = stresses.FARTHEST
-    far = np.geomspace(seen, max(40.0, seen * depths[-1]), 49)  # beyond these stresses only fall
+    far = np.geomspace(seen, max(40.0, seen * each.max()), 49)  # beyond these stresses only fall
     X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
-    return depths, np.unique(np.round(X, 9))
+    return np.unique(np.round(X, 9))
+
+
+def _depths(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest depths of interfaces over the half-widths of a scene's contacts, (layers,)."""
+    body, widths = scene.body, [scene.body.half_width]
+    if body.found and AT_INTERFACES in scene.output.quantities:
+        loads, speeds = scene.punch.loads, order(scene).speeds
+        if len(loads) > 1:
+            widths = body.loaded(np.array([min(loads), max(loads)])).half_width.tolist()
+        # A solid is about as soft as its margin is small, and contacts are no wider than its wedge's.
+        widths.append(max(widths) / max(min(body.response(c).margin for c in speeds), _LEAST_MARGIN))
+    return body.solid.depths / np.nanmax(widths), body.solid.depths / np.nanmin(widths)

@@ -17,7 +17,7 @@ from galinx.texts import counted
 from ..errors import BadInput, listed
 from ..scene.scene import Scene
 from .elements import lacking
-from .plan import FRICTION, Plan, interface_grid, lines, make_plan
+from .plan import FRICTION, Plan, lines, make_plan, positions_along
 from .states import States, order
 
 
@@ -37,7 +37,7 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
             f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
             "them, or make several scenes"
         )
-    plans, along, first = list[Plan](), positions_along(scene), (0, 0)
+    plans, along, first = list[Plan](), positions_along(scene.each), (0, 0)
     for variant in scene.each:
         try:
             plans.append(plan := make_plan(variant, done, along, first))
@@ -54,20 +54,6 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
                 f"{plans[0].scene.variant}: {some} is there for one of them only; make two scenes of it"
             )
     return plans
-
-
-def positions_along(scene: Scene) -> NDArray[np.float64] | None:
-    """Positions along interfaces that suit all variants; None for a scene that is alone."""
-    if not scene.variants or not scene.layers:
-        return None
-    depths = np.sort(
-        [variant.solid.depths / variant.body.half_width for variant in scene.variants], axis=None
-    )
-    apart: list[float] = []  # depths that stand for all
-    for depth in depths.tolist():
-        if not apart or depth > 1.5 * apart[-1]:  # else one grid suits both
-            apart.append(depth)
-    return interface_grid(scene.body, np.array([*apart[:-1], depths[-1]]))[1]
 
 
 def joined_states(plans: Sequence[Plan]) -> States:

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import AT_INTERFACES
-from galinx.solvers.contact.extremes import extreme
 from galinx.solvers.parameters import Range
 
 from .quantity import (
@@ -50,14 +49,14 @@ _PARTS = {
 
 
 def _extreme(
-    method: str, i: int, name: str, what: str, which_end: tuple[str, str, float]
+    method: str, i: int, name: str, what: str, which_end: tuple[str, str, int]
 ) -> tuple[Quantity, Quantity]:
     """Quantities of the largest or the smallest value along each interface, and of its place."""
 
-    end, word, sign = which_end
+    end, word, number = which_end
 
-    def read(s: Any, part: int) -> NDArray[np.float64]:
-        return extreme(s.interfaces[i], s.places.along, sign)[part]
+    def read(s: Any, part: int) -> Any:
+        return s.extremes_at_interfaces[number, part, i]
 
     path, over = f"interfaces/{method}/{name}_{end}", (STATE, INTERFACE)
     about = f"{word} {what} each interface"
@@ -86,7 +85,7 @@ INTERFACE_EXTREMES = {
     method: tuple(
         row
         for i, part in enumerate(_PARTS.items())
-        for end in (("max", "largest", 1.0), ("min", "smallest", -1.0))
+        for end in (("max", "largest", 0), ("min", "smallest", 1))
         for row in _extreme(method, i, *part, end)
     )
     for method in (SIE, FEM)

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import xlogy
 
 from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
@@ -208,7 +209,7 @@ class ExpansionAlong(BentExpansion):
 
 @dataclass(frozen=True)
 class Splines(Functions):
-    """Splines that follow a pressure without its weight where friction varies along the contact.
+    """Splines that follow a pressure without its weight where friction or a solid varies.
 
     Next to ends and kinks the pressure less its weight has terms like x log x, so knots gather there; at
     kinks splines are continuous only, elsewhere as smooth as they can be.
@@ -217,11 +218,13 @@ class Splines(Functions):
         knots: positions over a, those of the ends among them.
         kinks: those at which splines are continuous only.
         degree: of the polynomials.
+        logarithms: add x log x for each end, as solids have it that are graded from the surface on.
     """
 
     knots: tuple[float, ...]
     kinks: tuple[float, ...]
     degree: int
+    logarithms: bool = False
 
     @cached_property
     def _knots(self) -> NDArray[np.float64]:
@@ -233,8 +236,19 @@ class Splines(Functions):
         from scipy.interpolate import BSpline  # a slow import
 
         if not len(r):  # SciPy takes none
-            return np.empty((0, len(self._knots) - self.degree - 1))
-        return BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
+            return np.empty((0, len(self._knots) - self.degree - 1 + 2 * self.logarithms))
+        splines = BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
+        return np.hstack([splines, self._of_ends(r)]) if self.logarithms else splines
+
+    def _of_ends(self, r: NDArray) -> NDArray[np.float64]:
+        """Of x log x, x the distance from an end over that of the next knot, what is no spline: (n, 2).
+
+        It is all but the first terms of the series at x = 1, and 0 beyond.
+        """
+        ends, next_ = np.array(self.knots)[[[0, -1], [1, -2]]]
+        x = np.clip((r[:, None] - ends) / (next_ - ends), 0.0, 1.0)
+        terms = (((1.0 - x) ** k) / (k * (k - 1.0)) for k in range(2, self.degree + 1))
+        return np.asarray(xlogy(x, x) + (1.0 - x) - sum(terms))
 
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
         return c @ self.values(np.ravel(r)).T

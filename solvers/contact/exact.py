@@ -485,14 +485,42 @@ class LayeredSolution(ExactSolution):
 
         Arrays (2, 4, states, interfaces, n) and (interfaces,).
         """
-        layers, X, σ, errors = self._layers, self.places.along, [], []
-        assert layers.stack
-        widest = max(contact.half_width for contact in self._solved)
-        for depth in layers.stack.depths[: len(self.places.interfaces)].tolist():
-            level = layers.level(depth, widest * (1.0 + float(np.abs(X).max())))
+        X, σ, errors = self.places.along, [], []
+        for level in self._levels:
             σ.append([each.joined(lambda group: group.at_interface(X, level), 1) for each in self._both])  # noqa: B023
-            errors.append(widest * level.error)
+            errors.append(self._widest * level.error)
         return np.stack(σ, axis=3), np.array(errors)
+
+    @property
+    def _widest(self) -> float:
+        """Largest half-width of the contacts that were solved, in the unit of the punch."""
+        return max(contact.half_width for contact in self._solved)
+
+    @cached_property
+    def _levels(self) -> list[Level]:
+        """Stresses along every interface under a line load."""
+        layers, reach = self._layers, 1.0 + float(np.abs(self.places.along).max())
+        assert layers.stack
+        depths = layers.stack.depths[: len(self.places.interfaces)].tolist()
+        return [layers.level(depth, self._widest * reach) for depth in depths]
+
+    @property
+    def kinks(self) -> list[Sequence[float] | NDArray]:
+        """Positions over a at which each state's pressure is not smooth."""
+        return [self._alone(state).pressure.kinks for state in range(len(self.g))]
+
+    def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""
+        return self._alone(state).at_interface(X, self._levels[interface])[:, 0]
+
+    def _alone(self, state: int) -> Any:
+        """Group of one state, which was solved."""
+        (group,) = (group for group in self.contacts.groups if state in group.rows)
+        one = slice(0, 1)
+        return replace(
+            group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one],
+            centre=group.centre[one],
+        )  # fmt: skip
 
     @property
     def interfaces(self) -> NDArray[np.float64]:
@@ -523,10 +551,7 @@ class LayeredSolution(ExactSolution):
 
     def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, all at one depth, of one state, which was solved: (3, n)."""
-        (group,) = (group for group in self.contacts.groups if state in group.rows)
-        one = slice(0, 1)
-        alone = replace(group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one])
-        return alone.inside(*points.T[:, None])[:, 0]
+        return self._alone(state).inside(*points.T[:, None])[:, 0]
 
     @property
     def estimates(self) -> "_Evaluated":

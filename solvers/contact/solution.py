@@ -20,8 +20,9 @@ from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
+from .extremes import extreme
 from .prescribed_pressure import LinearPressure
-from .stresses import Places, extreme_in_plane
+from .stresses import Places, distances, extreme_in_plane
 from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
@@ -618,6 +619,9 @@ class Solution:
             plane, (states, m).
         stresses: σ_XX, σ_YY, σ_XY, (3, states, n), at points over a with Y <= 0, (1 or states, n, 2), on
             a uniform solid; over layers ``inside_of`` a state's number at points (n, 2), (3, n).
+        interfaces: σ_YY, σ_XY, σ_XX above and below every interface, (4, states, interfaces, n); also
+            ``at_interface`` by numbers of a state and an interface at positions X (n,), (4, n).
+        kinks: positions over a at which each state's pressure is not smooth, (k,) each.
         yield_turns: limits of stresses where they vary like a power of the distance; None for none.
         nearest: least distance over a from these at which ``stresses`` are accurate.
     """
@@ -644,6 +648,27 @@ class Solution:
     def extremes_in_plane(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
         """Highest and lowest in-plane stress over N/(2a), each with its place over a, (states,)."""
         return [extreme_in_plane(self, self.body, sign) for sign in (1.0, -1.0)]
+
+    @cached_property
+    def extremes_at_interfaces(self) -> NDArray[np.float64]:
+        """Largest and smallest stresses along every interface, over N/(2a), and their places over a.
+
+        The array is (2, 2, 4, states, interfaces): largest or smallest, stress or place, then as
+        ``interfaces``. Kinks have places of their own in each state, and these as many samples as edges.
+        """
+        X, σ = self.places.along, self.interfaces
+        extremes = np.array([extreme(σ, X, sign) for sign in (1.0, -1.0)])
+        for state, places in enumerate(self.kinks):
+            for i, depth in enumerate(self.body.solid.depths / self.half_width[state]):
+                apart = distances(depth, depth)
+                near = np.add.outer(places, np.concatenate([-apart, apart])).ravel()
+                if not len(near):
+                    continue
+                every, first = np.unique(np.concatenate([X, near]), return_index=True)
+                along = np.concatenate([σ[:, state, i], self.at_interface(state, i, near)], axis=1)
+                for end, sign in enumerate((1.0, -1.0)):
+                    extremes[end, :, :, state, i] = extreme(along[:, first], every, sign)
+        return extremes
 
 
 #: σ_YY over N/(2a) at positions X over a under the punch.

@@ -226,6 +226,25 @@ def of_inside(σ: Iterable[NDArray], X: NDArray, Y: NDArray) -> NDArray[np.float
     return _at_least_far(largest(σ), np.hypot(from_edge(X), Y) >= NEAR)
 
 
+#: Ratio of depths up to which positions along one interface suit another.
+_SUITS = 1.5
+
+
+def distances(low: float, high: float) -> NDArray[np.float64]:
+    """Distances over a from an edge or a kink that suit interfaces at depths from ``low`` to ``high``.
+
+    They are an eighth of the depth apart up to four depths, and farther away an eighth of themselves.
+    """
+    if high < _SUITS * low:
+        low = high
+    d = min(low, 1.0) * np.linspace(0.0, 4.0, 33)
+    for ratio, end in ((33.0 / 32.0, min(4.0 * high, 1.0)), (9.0 / 8.0, 1.0)):
+        if end > d[-1]:
+            steps = int(np.ceil(np.log(end / d[-1]) / np.log(ratio))) + 1
+            d = np.append(d, np.geomspace(d[-1], end, steps)[1:])
+    return d
+
+
 def of_interfaces(σ: NDArray) -> NDArray[np.float64]:
     """Size of stresses at interfaces: the largest along each interface of the component or a traction.
 

@@ -316,7 +316,8 @@ class SplineLevel(PunchLevel):
             of_knots.append(candidates[np.abs(candidates[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
-        splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), degree - _LESS)
+        of_splines = max(degree - _LESS, 0)
+        splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), of_splines, self._graded)
         local, at_nodes = body.edges(self.task.response, g, half_width, free), splines.values(self.r)
         # Nodal forces know of tests their interpolants only.
         return splines.fitted(
@@ -327,12 +328,19 @@ class SplineLevel(PunchLevel):
     def _analytic(self) -> float:
         """Unit over a of the nearest knots' distances where the pressure less its weight is analytic.
 
-        It is 0 where friction varies or the solid is graded from the surface on: there are logarithms.
+        Logarithms beside it are among the splines. It is 0 where friction varies.
         """
-        body, response = self.task.body, self.task.response
-        if body.along or (len(response.depths) and np.isfinite(response.solid.changes[0])):  # type: ignore[attr-defined]
+        if self.task.body.along:
             return 0.0
-        return _ANALYTIC * min([1.0, *response.depths[:1]])
+        response = self.task.response
+        changes = [length / response.a for length in response.solid.changes[:1]] if self._graded else []
+        return _ANALYTIC * min([1.0, *response.depths[:1], *changes])
+
+    @property
+    def _graded(self) -> bool:
+        """Is the solid graded from the surface on?"""
+        response = self.task.response
+        return bool(len(response.depths)) and response.solid.layers[0].bottom is not None  # type: ignore[attr-defined]
 
     def intensities(
         self, parts: NDArray, g: Any, half_width: float, nearest: float = NEXT

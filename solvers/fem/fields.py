@@ -378,14 +378,28 @@ class Displacement:
         Tractions, which both sides share, are taken from the softer side rather than from the stiffer,
         whose other stresses may be large beside them: each side's weight goes with the other's modulus.
         """
-        stresses = []
-        for i, points in enumerate(self._along):
-            σ_above, σ_below = (self._stresses(points, weights, side) for side in (1, -1))
-            upper, lower = self._task.body.solid.beside(i)  # type: ignore[attr-defined]
-            share = lower.μ / (upper.μ + lower.μ)
-            tractions = share * σ_above[1:] + (1.0 - share) * σ_below[1:]
-            stresses.append([*tractions, σ_above[0], σ_below[0]])
-        return np.moveaxis(np.array(stresses), 0, 2)
+        each = [
+            self._tractions_first(i, partial(self._stresses, points, weights))
+            for i, points in enumerate(self._along)
+        ]
+        return np.stack(each, axis=2)
+
+    def at_interface(self, i: int, X: NDArray, weights: NDArray) -> NDArray[np.float64]:
+        """The same along one interface at other positions X, (n,): (4, states, n)."""
+        points = np.column_stack([X, np.full_like(X, -self._task.places.interfaces[i])])
+        return self._tractions_first(
+            i, lambda side: self._task.response.stresses_at(
+                points[:, 1], self._at(points, side).of(weights), side
+            )
+        )  # fmt: skip
+
+    def _tractions_first(self, i: int, stresses: Callable[[int], NDArray]) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface by σ_XX, σ_YY, σ_XY on a side of it."""
+        above, below = stresses(1), stresses(-1)
+        upper, lower = self._task.body.solid.beside(i)  # type: ignore[attr-defined]
+        share = lower.μ / (upper.μ + lower.μ)
+        tractions = share * above[1:] + (1.0 - share) * below[1:]
+        return np.array([*tractions, above[0], below[0]])
 
     def rounding(self, weights: NDArray) -> NDArray[np.float64]:
         """Effect of rounding of the fields on σ_XX on the surface, (states, n)."""

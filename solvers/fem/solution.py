@@ -246,10 +246,25 @@ class Solution(solution.Solution):
 
     def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (n, 2), of one state, (3, n)."""
-        row = self.rows[state]
+        states, row = self._of(state)
+        return states.at(points[None], [row])[:, 0]
+
+    def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
+        """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""
+        states, row = self._of(state)
+        return states.displacement.at_interface(interface, X, states.contact.weights[[row]])[:, 0]
+
+    @property
+    def kinks(self) -> list[Sequence[float] | NDArray]:
+        """Positions over a at which each state's pressure is not smooth."""
+        return [self._of(state)[0].pressure.kinks for state in range(len(self.rows))]
+
+    def _of(self, state: int) -> tuple[SolvedStates, int]:
+        """Solved states that a state is among, and its number there."""
+        row = int(self.rows[state])
         for states in self.solved:
             if row < len(states.contact.g):
-                return states.at(points[None], [row])[:, 0]
+                return states, row
             row -= len(states.contact.g)
         raise IndexError(state)
 

@@ -177,16 +177,24 @@ def test_failures_are_told_by_how_much_they_exceed_their_limits():
     data = {"states/c": np.array([0.1, 0.2]), "states/f": np.array([0.3, 0.3])}
     data |= {"states/fem/estimate": np.array([1e-9, 3e-5])}
     residual, first, second, last = compare.failed(data, attributes)
-    assert "2.0e-06, 2e+02 times what is wanted, 1e-08" in residual
+    assert "2e-06, 200 times what is wanted, 1e-08" in residual
     text = rules["estimate"].text
-    assert first.startswith(f"{text}: 3.0e-05, 30 times what is wanted, 1e-06, in state 1 (c = ")
-    assert "4.0e-06, 4 times" in second
+    assert first.startswith(f"{text}: 3e-05, 30 times what is wanted, 1e-06, in state 1 (c = ")
+    assert "4e-06, 4 times" in second
     assert "solve.tolerance=1e-07 may pass" in last and "accepts" not in last  # a residual has its own
     fixed = rules["residual"].text
     less = {name: json.dumps([r for r in json.loads(attributes[name]) if not r.startswith(fixed)])
             for name in ("verdict_reasons",)}  # fmt: skip
     *_, last = compare.failed(data, attributes | less)
     assert last.endswith("; 1e-04 accepts it")
+    for scene, warnings, told in (
+        ("degree = 4", "", "leave solve.degree away"),
+        ('mesh = "uniform"', "", "leave solve.mesh away"),
+        ('mesh = "confocal"', "finite elements do not reach the tolerance", "no finer solve.tolerance"),
+    ):
+        of_scene = {"scene/text": f"[solve]\n{scene}", **data}
+        *_, last = compare.failed(of_scene, attributes | less | {"warnings": json.dumps([warnings])})
+        assert told in last and last.endswith("; 1e-04 accepts it")
     *_, last = compare.failed(data, attributes | {"verdict_reasons": json.dumps(reasons[-1:])})
     assert "no solve.tolerance changes this" in last
     assert compare.failed({}, attributes | {"verdict": "PASS"}) == []

@@ -50,6 +50,14 @@ def test_what_innermost_cells_leave_is_in_the_estimate(mesh, degree, cuts, c):
     assert np.all(true > 1e-11) and np.all(true <= estimate)
 
 
+def test_splines_of_friction_along_the_contact_do_with_every_degree():
+    """At the degree 1 there were none, and a traceback."""
+    changes = {"friction": {"along": [[-1.0, 0.5], [1.0, 0.2]]}, "output.quantities": ["sif"]}
+    changes |= {"motion": {"c": 0.4}, "solve.methods": ["fem"], "solve.degree": 1}
+    data = computed("tables4_5", changes).data
+    assert 1e-3 < data["states/fem/estimate"].max() < np.inf
+
+
 #: Cells are halved so often where multigrids are tried; steps hardly depend on it.
 HALVED = 4 if THOROUGH else 1
 

@@ -226,6 +226,52 @@ def test_stresses_by_the_integral_equation_are_largest_where_samples_are(layered
         assert missed.max() <= MISSED * size, name
 
 
+#: A thin film under a punch, whose stresses vary within its thickness at edges and kinks alone.
+FILM = """
+[solid]
+material = "bearing-steel"
+[[layer]]
+material = "TiN"
+thickness = "2 um"
+[punch]
+profile = "parabolic"
+radius = "10 mm"
+load = "50 N/mm"
+[friction]
+mu = 0.3
+[motion]
+c = 0.0
+[solve]
+methods = ["sie"]
+tolerance = 1e-5
+[output]
+quantities = ["interfaces"]
+"""
+WEDGE = FILM.replace('"parabolic"', '"wedge"').replace('radius = "10 mm"', "slope = 0.01")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FILM.replace('load = "50 N/mm"', 'load = ["1 N/mm", "50 N/mm"]'),
+        FILM.replace("c = 0.0", "c = 0.5"),
+        WEDGE,
+    ],
+    ids=["two loads", "fast", "wedge"],
+)  # fmt: skip
+def test_stresses_along_a_thin_film_are_largest_where_close_positions_say(text, monkeypatch):
+    """Positions were as fine as the least load wants them, and coarse at kinks."""
+    data = computed(text).data
+    close = np.union1d(data["interfaces/X_over_a"], np.linspace(-1.1, 1.1, 4001))
+    monkeypatch.setattr("galinx.app.plan.variants.positions_along", lambda scenes: close)
+    finer = computed(text).data
+    for name in ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below"):
+        curve = finer[f"interfaces/sie/{name}"][-1, 0]
+        for end, value in (("max", curve.max()), ("min", curve.min())):
+            largest = data[f"interfaces/sie/{name}_{end}"][-1, 0]
+            assert largest == pytest.approx(value, abs=2e-4 * np.abs(curve).max())
+
+
 def test_the_largest_tension_at_a_free_end_is_in_the_estimate():
     """It is a limit, which no place beside it shows; finite elements alone, at a loose tolerance."""
     solid = {"kind": "anisotropic", "rho": 2290.2283, "stiffness": [

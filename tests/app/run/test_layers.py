@@ -56,6 +56,13 @@ def test_the_example_from_scene_to_archive(tmp_path):
     assert json.loads(again.attributes["solid"])["layer 1"].startswith("1 mm of E = 7.5 GPa")
 
 
+def test_flat_punches_over_graded_tops_reach_the_usual_tolerance_by_finite_elements():
+    """Their pressure has logarithms at the edges, which splines alone follow too near to them."""
+    result = coated(GRADED, {"solve.methods": ["sie", "fem"]})
+    assert result.verdict == "PASS"
+    assert result.data["states/fem/estimate"].max() < 5e-7
+
+
 def test_rows_by_depth_are_linear_grading():
     rows = [[0, "7.5 GPa", 0.3, 1200], ["0.4 mm", "5.5 GPa", 0.28, 1120], ["1 mm", "2.5 GPa", 0.25, 1000]]
     of_rows = {"layer": [{"properties": rows, "yield_strength": "30 MPa"}]}

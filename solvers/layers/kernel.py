@@ -151,8 +151,8 @@ def transform(
 #: Chebyshev nodes of a panel, and the matrix from values there to coefficients.
 _x = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
 _TO_CHEBYSHEV = np.linalg.inv(chebyshev.chebvander(_x, _NODES - 1))
-#: Most panels of a table.
-_MOST_PANELS = 6000
+#: Most panels of a table; size of those next to 0 over the finest that may be asked for.
+_MOST_PANELS, _AT_0 = 6000, 1e-9
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,10 @@ def tabulated(
         middle, half = waiting.mean(axis=1), np.diff(waiting, axis=1)[:, 0] / 2.0
         c = _TO_CHEBYSHEV @ integrals(middle[:, None] + half[:, None] * _x)
         tail = np.abs(c[:, -_LAST:]).max(axis=(1, 2))
-        good = (tail <= tolerance) | (half <= finest / 1024.0)
+        # A power of the distance is followed to where it weighs nothing, under any pressure d^(-1/2).
+        at_0 = np.any(waiting == 0.0, axis=1)
+        good = (tail <= tolerance) | (half <= finest * np.where(at_0, _AT_0, 1.0 / 1024.0))
+        tail[at_0] *= np.minimum(half[at_0], 1.0) ** 0.5
         done += zip(waiting[good, 0].tolist(), c[good], tail[good].tolist())
         (low, high), middle = waiting[~good].T, middle[~good]
         waiting = np.column_stack([low, middle, middle, high]).reshape(-1, 2)

@@ -12,7 +12,7 @@ from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.errors import SolveError
-from galinx.solvers.layers.kernel import Level, transform
+from galinx.solvers.layers.kernel import Kernel, Level, transform
 from galinx.solvers.layers.layered import Layer, Layered, dispersion, weakest
 from galinx.solvers.layers.stiffness import inverse, least
 from galinx.solvers.solids.isotropic import Isotropic
@@ -56,6 +56,17 @@ def test_graded_layers_are_those_of_the_reference(grading, exponent):
     for one, number in zip(found, k.tolist()):
         exact = graded_admittance(properties, 0.8, (c * solid.c_s) ** 2, number)
         assert np.abs(one - exact).max() <= 1e-9 * np.abs(exact).max()
+
+
+def test_a_power_of_the_depth_that_is_no_whole_number_leaves_no_error_of_the_kernel():
+    """Next to 0 its kernel goes with a power of the distance, which no polynomial follows."""
+    bottom = Isotropic(2.0, 0.2, 1.0)
+    stack = Layered((Layer(0.8, COAT, bottom, "power", 1.5),), bottom).response(0.2).stack(1.0)
+    kernel = Kernel(stack, 1e-8)
+    assert kernel.error < 1e-7
+    near = 10.0 ** np.array([-7.0, -6.0, -5.0, -4.0])
+    rise = np.abs(kernel(near) - kernel(np.array([1e-12])))[:, 3]
+    assert np.diff(np.log10(rise)) == pytest.approx(0.5, abs=0.02)  # 1.5 less 1
 
 
 def test_speed_limit_of_uniform_half_planes_and_of_soft_layers_inside():

@@ -67,6 +67,18 @@ def test_the_error_of_innermost_cells_is_in_that_of_limits_at_kinks(kink, rings,
     assert 1e-8 < error <= pressure.left_at_kinks <= 0.1 * cell * np.abs(np.log(cell))
 
 
+def test_terms_that_the_series_lack_show_in_the_error_where_both_sides_have_the_same():
+    """An even pressure: its limits from both sides agree, and both are off."""
+
+    def σ_YY(r):
+        return np.sqrt(1.0 - r**2) * (np.abs(r) * np.log(np.maximum(np.abs(r), 1e-300)) - 2.0)
+
+    s, forces = nodes_and_forces(facets(0.0, 12), 9, σ_YY)
+    pressure = kinked(s, 9, forces, 0.0, σ_YY, 1.0, 1e-3)
+    error = abs(pressure.at_kink(0) + 2.0)
+    assert 0.5 * error < pressure.left_at_kinks < 4.0 * error < 1e-6
+
+
 @pytest.mark.parametrize("power", [2.0, 2.05, 2.5])
 @pytest.mark.parametrize("rings", [9, 12])
 def test_at_the_kink_of_a_smoother_punch_rounding_of_small_cells_does_not_show(power, rings):

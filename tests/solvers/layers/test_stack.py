@@ -74,6 +74,9 @@ def test_speed_limit_of_uniform_half_planes_and_of_soft_layers_inside():
     assert same.limit() == pytest.approx(COAT.limit(), rel=1e-12)
     hard = Layered((Layer(1.0, COAT),), SUBSTRATE)
     assert hard.limit() * COAT.c_s == pytest.approx(SUBSTRATE.limit() * SUBSTRATE.c_s, rel=1e-12)
+    # The slowest wave is one along the substrate by itself.
+    below = hard.response(0.9 * hard.limit())
+    assert (below.margin, below.left_below) == pytest.approx((0.19, 0.19), rel=1e-12)
     soft = Layered((Layer(1.0, SUBSTRATE),), COAT)
     assert soft.limit() == pytest.approx(SUBSTRATE.limit(), rel=1e-12)
     # Short waves in a soft layer inside run with its own shear speed.

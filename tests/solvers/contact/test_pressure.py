@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from scipy.integrate import newton_cotes
 from scipy.special import roots_jacobi
 
@@ -66,3 +67,21 @@ def test_rounding_of_the_smallest_cells_positions_stays_there():
     chart, r = MESHES["graded"].chart, np.array([-0.9, 0.0, 0.7])
     one, other = (pressure.ContactRecovery(positions, 4, chart, r).raw for positions in (s, moved))
     np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("exponents", [(0.5, 0.5), (0.3, 0.7)])
+def test_slopes_next_to_free_ends_are_continued_and_what_is_left_of_an_intensity_is_taken_away(exponents):
+    """Of two series in the distance from either end, on both sides, and an intensity of the elements."""
+
+    def slopes(X, left_over):
+        end = (X > 0.0).astype(int)
+        d, a = np.abs(np.abs(X) - 1.0), np.array(exponents)[end]
+        series = 1.0 + 2.0 * d - 3.0 * d**2 + d**a * (4.0 - (1.0 + end) * d) + end
+        return series + left_over * d ** (a - 1.0)
+
+    X = np.array([-1.08, -1.0 - 1e-6, -1.0 + 1e-7, -0.93, -0.5, 0.4, 0.95, 1.0 - 1e-8, 1.0 + 1e-5, 1.03])
+    places, to_slopes = pressure.slopes_towards_ends(X, (2.0, 2.0), exponents)
+    assert (np.abs(np.abs(places[len(X) :]) - 1.0) > 1e-5).all()
+    far = np.abs(np.abs(X) - 1.0) > 0.1
+    expected = np.where(far, slopes(X, 0.01), slopes(X, 0.0))
+    np.testing.assert_allclose(to_slopes @ slopes(places, 0.01), expected, rtol=1e-7)

@@ -19,8 +19,9 @@ from galinx.solvers.contact.equation import (
     LayersUnderPunch,
     under_punch,
 )
+from galinx.solvers.contact.exact import LayeredSolution
 from galinx.solvers.contact.pressure import Expansion
-from galinx.solvers.contact.solution import make_contact
+from galinx.solvers.contact.solution import Places, Task, make_contact
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.profiles import PROFILES
@@ -260,3 +261,20 @@ def test_free_ends_over_a_graded_top_settle_with_few_unknowns(tolerance):
     contact = under_punch(body, response, tolerance).contact(-0.7)
     assert contact.change <= 0.25 * tolerance
     assert contact.pressure.functions.finest > 0.3 and contact.pressure.kinks == ()
+
+
+def test_what_frictions_share_is_in_the_estimate_of_every_quantity():
+    body = make_contact(COATED, PUNCHES["edges"], LOAD * COATED.μ)
+    response, g, places = body.response(0.3), np.array([-0.4]), np.array([-1.5, 0.2])
+    layers = under_punch(body, response, 1e-6)
+    contact = layers.contact(-0.4)
+    points = np.array([[0.0, -0.5], [0.3, -0.5]])
+    where = Places(places, points, interfaces=COATED.depths, along=places)
+    task = Task(0, body, response, where, (slice(0, 1),), (body.load,))
+    alone, shared = (
+        LayeredSolution(task, layers, [contact], [], error, g).estimates for error in (0.0, 0.125)
+    )
+    assert len(alone) == 4
+    for word in alone:
+        assert 0.0 < alone[word][0] < 1e-5, word
+        assert shared[word] == pytest.approx(alone[word] + 0.125), word

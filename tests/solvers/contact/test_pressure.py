@@ -5,6 +5,7 @@ from scipy.special import roots_jacobi
 
 from galinx.meshes import MESHES
 from galinx.solvers.contact import recovery as pressure
+from galinx.solvers.contact.pressure import NEXT_TO_TIP, off_tips
 
 α = np.array([-0.5, -0.42, -0.7])
 β = -1.0 - α
@@ -85,3 +86,11 @@ def test_slopes_next_to_free_ends_are_continued_and_what_is_left_of_an_intensity
     far = np.abs(np.abs(X) - 1.0) > 0.1
     expected = np.where(far, slopes(X, 0.01), slopes(X, 0.0))
     np.testing.assert_allclose(to_slopes @ slopes(places, 0.01), expected, rtol=1e-7)
+
+
+def test_places_at_a_tip_are_moved_off_it_on_their_own_side():
+    """Where friction leans on one side, so does the pressure."""
+    tip, d = 0.3, NEXT_TO_TIP
+    r = np.array([-1.0, tip - 2.0 * d, tip - 0.5 * d, tip + 0.1 * d, tip + 3.0 * d, 0.9])
+    moved = np.array([-1.0, tip - 2.0 * d, tip - d, tip + d, tip + 3.0 * d, 0.9])
+    np.testing.assert_allclose(off_tips(r, (tip,)), moved, rtol=0.0, atol=1e-15)

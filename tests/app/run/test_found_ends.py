@@ -134,3 +134,12 @@ def test_series_next_to_ends_reach_as_far_as_the_slope_of_the_punch_is_smooth(ex
     level.task = SimpleNamespace(response=body.response(0.0))
     places, _ = level.continuation()(np.array([1.0 - 1e-9]))
     assert np.abs(np.abs(places) - 1.0).max() == pytest.approx(0.05 * share, rel=1e-2)
+
+
+def test_a_contact_over_layers_that_leans_beyond_what_is_known_of_the_punch_is_refused():
+    """Friction moves the contact of a parabola on a coating to -0.39 mm … 0.50 mm."""
+    known = [[X, 10.0 * X**2] for X in (-1e-3, -6e-4, 0.0, 4.6e-4)]
+    punch = {"profile": "table", "shape": known, "load": "2e4 N/m"}
+    changes = {"punch": punch, "solve.methods": ["fem"], "solve.tolerance": 0.1}
+    with pytest.raises(SolveError, match=r"known from -0\.001 m to 0\.00046 m only"):
+        computed("coating", changes | {"friction.mu_c": 0.4, "motion.strokes": ["backward"]})

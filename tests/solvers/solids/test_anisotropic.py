@@ -7,6 +7,7 @@ from random_solids import isotropic_as, random_solid, stiffness
 
 from galinx.solvers.contact import stresses
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.solids.half_plane import Roots
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.solids.plane import Anisotropic, Cubic, Orthotropic, along_axes, rotated
 
@@ -180,3 +181,20 @@ def test_stresses_along_axes_of_any_angle(angle):
     axes = np.array([[np.cos(φ), np.sin(φ)], [-np.sin(φ), np.cos(φ)]])
     turned = axes @ np.array([[σ[0], σ[2]], [σ[2], σ[1]]]) @ axes.T
     np.testing.assert_allclose(along_axes(*σ, angle), np.diag(turned), atol=1e-12)
+
+
+@pytest.mark.parametrize("shift, stretch", [(0.0, 1.0), (-3.0, 1.0), (0.7, 20.0)])
+def test_roots_are_as_far_apart_as_in_the_hyperbolic_plane(shift, stretch):
+    """A vertical line's length is a logarithm, and translations and stretches change no distance."""
+
+    def roots(p, other):
+        p, other = shift + stretch * p, shift + stretch * other
+        return Roots(p + other, p * other)
+
+    pair = roots(0.5j, 4.0j)
+    assert pair.apart == pytest.approx(np.log(8.0), rel=1e-12)
+    assert pair.midpoint == pytest.approx(shift + stretch * 2.0**0.5 * 1j, rel=1e-12)
+    # Points of the unit circle are on one line, of which i is the middle.
+    pair, half = (roots(0.6 + 0.8j, other) for other in (-0.6 + 0.8j, 1j))
+    assert pair.apart == pytest.approx(2.0 * half.apart, rel=1e-7)
+    assert pair.midpoint == pytest.approx(shift + stretch * 1j, rel=1e-12)

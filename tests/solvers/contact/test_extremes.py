@@ -92,6 +92,7 @@ def test_stress_measures_follow_from_principal_stresses():
         np.testing.assert_allclose(held, 0.0, atol=1e-15)
         low, high = np.linalg.eigvalsh(tensor[:, :2, :2]).T
         np.testing.assert_allclose(stresses.maximum_shear(XX, YY, XY), (high - low) / 2.0, rtol=1e-12)
+        np.testing.assert_allclose(stresses.principal(XX, YY, XY), [high, low], atol=1e-12)
 
 
 def test_no_polynomial_goes_through_samples_of_two_pieces():

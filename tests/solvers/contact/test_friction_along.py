@@ -9,7 +9,7 @@ import pytest
 from random_solids import random_solid
 from support import THOROUGH
 
-from galinx.solvers.contact.along import FlatAlong
+from galinx.solvers.contact.along import FlatAlong, Splines
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.equation import UNIFORM, Equation
 from galinx.solvers.contact.solution import make_contact
@@ -142,3 +142,14 @@ def test_a_jump_of_curvature_costs_no_digits(stiffness):
     found = FlatAlong(response, along)
     assert found.resultant_ratio == pytest.approx(exact.resultant_ratio, abs=1e-9)
     np.testing.assert_allclose(found.σ_YY(PLACES), exact.σ_YY(PLACES), rtol=1e-8)
+
+
+def test_splines_bend_at_kinks_of_friction_alone():
+    """At a kink they are continuous only, at another knot their slopes are, too."""
+    splines, r = Splines((-1.0, -0.4, 0.3, 1.0), (0.3,), 4), np.linspace(-1.0, 1.0, 201)
+
+    def left_out(curve):
+        values = splines.values(r)
+        return np.abs(values @ np.linalg.lstsq(values, curve, rcond=None)[0] - curve).max()
+
+    assert left_out(np.abs(r - 0.3)) < 1e-12 < 1e-3 < left_out(np.abs(r + 0.4))

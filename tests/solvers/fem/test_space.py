@@ -13,7 +13,7 @@ from galinx.solvers.contact import stresses
 from galinx.solvers.contact.fem_plan import requirements, unknowns
 from galinx.solvers.errors import MeshError
 from galinx.solvers.fem.fields import surface_slopes
-from galinx.solvers.fem.space import Space, distribute
+from galinx.solvers.fem.space import Space, consistent_forces, distribute
 
 
 def test_a_missing_boundary_part_is_named(monkeypatch):
@@ -81,3 +81,17 @@ def test_a_mesh_reaches_the_farthest_place_in_every_plane_of_the_solid():
     alike = SimpleNamespace(spread=1.0, margin=1.0)
     for planes, farthest in (((), 5.0**0.5), ((1.0 + 1.0j,), 10.0**0.5), ((-1.0 + 1.0j,), 5.0**0.5)):
         assert requirements(1e-6, places, -0.5, [alike], planes).farthest == pytest.approx(farthest)
+
+
+@pytest.mark.parametrize("mesh", ["graded", "confocal"])
+def test_nodal_forces_of_a_load_that_jumps_inside_a_facet_are_its_resultant(mesh):
+    """On a parabola, by the distances from both ends."""
+    chart, knots = MESHES[mesh].chart, np.array([-0.3, 0.12])
+    ends = chart.surface_coordinate(np.array([-1.0, 1.0]))
+    s = np.linspace(*ends, 13)[[range(0, 5), range(4, 9), range(8, 13)]]
+
+    def load(left, right):
+        return -left * right - 5.0 * ((left > 0.7) & (right > 0.88))
+
+    forces = consistent_forces(s, chart, ends, load, knots)
+    assert forces.sum() == pytest.approx(-4.0 / 3.0 - 5.0 * 0.42, rel=1e-12)

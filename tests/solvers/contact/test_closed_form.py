@@ -3,7 +3,9 @@ import pytest
 from loaded import punch_of
 
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.solids.isotropic import MovingFrame
+from galinx.solvers.contact.solution import make_contact
+from galinx.solvers.profiles.punches import Flat
+from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
 
 
 def test_states_of_the_references(references):
@@ -46,3 +48,22 @@ def test_intensities_are_the_limits_of_the_pressure_at_both_ends(g):
     assert (at_left, at_right) == pytest.approx((punch.K_I, punch.K_I), rel=1e-12)
     ratio = punch.g * punch.response.q / punch.response.n
     assert np.pi * punch.K_I == pytest.approx(1.0 / np.sqrt(1.0 + ratio**2), rel=1e-14)
+
+
+@pytest.mark.parametrize("bow", [0.3, -0.2])
+def test_a_bowed_punch_of_ones_own_between_sharp_edges(bow):
+    """Of the height P = bow X²/2 on |X| <= 1: T₂(r)/√(1 - r²) has the Hilbert transform 2 r."""
+
+    class Bowed(Flat):
+        def slope(self, X):
+            return bow * np.asarray(X)
+
+    body = make_contact(Isotropic(1.0, 0.25, 1.0), Bowed(1.0), 1.0)
+    response = body.response(0.3)
+    found = body.contacts(response, np.zeros(1))
+    r = np.linspace(-0.9, 0.9, 7)
+    # Slopes μ v,X over N/2 are n times the transform of σ_YY.
+    share = 2.0 * body.solid.μ * bow / (2.0 * response.n)
+    σ_YY = -(2.0 / np.pi - share * (2.0 * r**2 - 1.0)) / np.sqrt(1.0 - r**2)
+    np.testing.assert_allclose(found.on_surface(r)[1][0], σ_YY, rtol=1e-10)
+    np.testing.assert_allclose(found.of("K_I")[0], 0.5 * (2.0 / np.pi - share), rtol=1e-10)

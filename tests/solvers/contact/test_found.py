@@ -112,6 +112,10 @@ def test_what_has_no_contact_says_so():
         contacts(MovingFrame(2.0, 0.95), np.zeros(1), parabolic(1.0), LOAD)
     with pytest.raises(SolveError, match=r"known from -0\.002 m to 0.0025 m only"):
         contacts(MovingFrame(2.0, 0.5), np.zeros(1), table(SHAPE), 1e-3)
+    for side in (1.0, -1.0):  # at one end alone
+        known = sorted((side * X, X**2) for X in (-0.1, 0.0, 0.3, 1.0, 3.0))
+        with pytest.raises(SolveError, match="known from"):
+            contacts(MovingFrame(2.0, 0.5), np.zeros(1), table(tuple(known)), 1.0)
 
     class Hollow:
         """A punch of a user's own that is not convex."""

@@ -17,6 +17,7 @@ from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import (
     Jacobi,
     LayersUnderPunch,
+    SolvedContact,
     under_punch,
 )
 from galinx.solvers.contact.exact import LayeredSolution
@@ -278,3 +279,14 @@ def test_what_frictions_share_is_in_the_estimate_of_every_quantity():
     for word in alone:
         assert 0.0 < alone[word][0] < 1e-5, word
         assert shared[word] == pytest.approx(alone[word] + 0.125), word
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_a_change_next_to_free_ends_counts_ten_times(free):
+    """In-plane stresses follow it there: at a hundredth of the half-width √(1 - r²) is 0.141."""
+    weight = 0.5 if free else -0.5
+    one, other = (
+        SolvedContact(0.0, Expansion(weight, weight, np.array([size]), Jacobi(weight, weight)))
+        for size in (-1.0, -1.0 - 1e-6)
+    )
+    assert one.moved(other) == pytest.approx(1.41e-6 if free else 1e-6, rel=2e-3)

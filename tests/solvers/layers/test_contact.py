@@ -2,6 +2,7 @@
 
 from functools import cache
 from itertools import pairwise
+from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
@@ -290,3 +291,18 @@ def test_a_change_next_to_free_ends_counts_ten_times(free):
         for size in (-1.0, -1.0 - 1e-6)
     )
     assert one.moved(other) == pytest.approx(1.41e-6 if free else 1e-6, rel=2e-3)
+
+
+@pytest.mark.parametrize("away, counts", [(0.01, False), (0.03, True)])
+def test_a_change_at_a_tip_of_the_punch_does_not_count(away, counts):
+    """Pressure is infinite there, and no number of unknowns follows it."""
+    place = np.cos(np.pi * 4.5 / 25.0)  # one of those that are compared
+
+    def contact(bump):
+        def series(r):
+            return -1.0 - bump * np.exp(-(((r - place) / 1e-3) ** 2))
+
+        ends = {"α": -0.5, "β": -0.5, "free": np.array([False, False])}
+        return SolvedContact(0.0, SimpleNamespace(series=series, tips=(place + away,), **ends))
+
+    assert (contact(1e-3).moved(contact(0.0)) > 1e-4) == counts

@@ -21,7 +21,7 @@ from galinx.solvers.contact.equation import (
     SolvedContact,
     under_punch,
 )
-from galinx.solvers.contact.exact import LayeredSolution
+from galinx.solvers.contact.exact import LayeredSolution, Nodes, groups_of
 from galinx.solvers.contact.pressure import Expansion
 from galinx.solvers.contact.solution import Places, Task, make_contact
 from galinx.solvers.errors import SolveError
@@ -306,3 +306,16 @@ def test_a_change_at_a_tip_of_the_punch_does_not_count(away, counts):
         return SolvedContact(0.0, SimpleNamespace(series=series, tips=(place + away,), **ends))
 
     assert (contact(1e-3).moved(contact(0.0)) > 1e-4) == counts
+
+
+def test_lengths_of_a_contact_between_frictions_are_those_of_one_solved_there():
+    body = make_contact(COATED, PUNCHES["parabola"], LOAD * COATED.μ)
+    layers = under_punch(body, body.response(0.3), 1e-6)
+    solved, _ = layers.solved(np.linspace(0.0, 0.9, 41))
+    nodes = Nodes([groups_of(layers, of, np.array([of.g]), np.zeros(1, dtype=int))[0] for of in solved])
+    between = nodes.between(np.array([0.0, 0.47, 0.9]))
+    exact = layers.contact(0.47)
+    h, m = between.of("half_width"), between.of("centre")
+    lengths = np.array([exact.half_width, exact.centre]) * layers.punch.unit
+    assert (h[1], m[1]) == pytest.approx(lengths, rel=1e-6)
+    assert np.ptp(h) > 1e-3 * h[0]

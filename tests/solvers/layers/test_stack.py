@@ -156,6 +156,14 @@ def test_a_graded_layer_is_no_faster_than_its_slowest_face(E):
     assert weakest(solid.response(0.9999 * solid.limit()).stack(1.0))[0] > 0.0
 
 
+def test_layers_of_one_solid_have_its_constants():
+    names = ("c11", "c12", "c22", "c66", "c", "ρ")
+    alone = COAT.response(0.4).constants(names)
+    assert len(alone) == 1
+    for each in Layered((Layer(0.3, COAT),), COAT).response(0.4).constants(names):
+        np.testing.assert_allclose(each, alone[0], rtol=1e-12)
+
+
 X = np.linspace(-3.0, 3.0, 25)
 
 

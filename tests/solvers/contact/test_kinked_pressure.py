@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.approximation import lagrange
-from galinx.solvers.contact.recovery import KinkedPressure
+from galinx.solvers.contact.recovery import KinkedPressure, error_at_kink
 
 #: A chart in which surface coordinates are positions.
 AS_DRAWN = SimpleNamespace(
@@ -77,6 +77,12 @@ def test_terms_that_the_series_lack_show_in_the_error_where_both_sides_have_the_
     pressure = kinked(s, 9, forces, 0.0, σ_YY, 1.0, 1e-3)
     error = abs(pressure.at_kink(0) + 2.0)
     assert 0.5 * error < pressure.left_at_kinks < 4.0 * error < 1e-6
+
+
+@pytest.mark.parametrize("right", [0.9, 1.3])
+def test_where_one_side_of_a_kink_is_exact_the_mean_of_both_is_off_by_its_error(right):
+    limits, exact = np.array([1.0, right]), 1.0
+    assert error_at_kink(limits, limits) == pytest.approx(abs(limits.mean() - exact), rel=1e-12)
 
 
 @pytest.mark.parametrize("power", [2.0, 2.05, 2.5])

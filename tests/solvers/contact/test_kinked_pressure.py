@@ -85,6 +85,15 @@ def test_where_one_side_of_a_kink_is_exact_the_mean_of_both_is_off_by_its_error(
     assert error_at_kink(limits, limits) == pytest.approx(abs(limits.mean() - exact), rel=1e-12)
 
 
+def test_next_to_both_ends_the_pressure_is_the_one_that_holds_there():
+    """Twice that of the nodal forces here, to tell them apart."""
+    r = np.array([-1.0 + 1e-3, -0.5, 0.7, 1.0 - 1e-3])
+    s, forces = nodes_and_forces(facets(0.3, 6), 9, lambda r: -np.sqrt(1.0 - r**2))
+    pressure = kinked(s, 9, forces, 0.3, lambda r: -2.0 * np.sqrt(1.0 - r**2), 1.0, 1e-3)
+    found = pressure.σ_YY(r)[0] / -np.sqrt(1.0 - r**2)
+    np.testing.assert_allclose(found, [2.0, 1.0, 1.0, 2.0], rtol=1e-5)
+
+
 @pytest.mark.parametrize("power", [2.0, 2.05, 2.5])
 @pytest.mark.parametrize("rings", [9, 12])
 def test_at_the_kink_of_a_smoother_punch_rounding_of_small_cells_does_not_show(power, rings):

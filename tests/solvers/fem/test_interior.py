@@ -64,3 +64,20 @@ def test_many_points_are_not_held_for_every_field(punch):
     tracemalloc.stop()
     # Gradients of every field would be 32 bytes a field and point.
     assert len(fields) >= 10 and peak < 250 * count
+
+
+def test_a_point_has_the_gradient_of_the_cell_that_it_lies_in():
+    """Cells whose displacements are their numbers times the position, of which many are no rectangles."""
+    space = space_on("graded", Refinement(4, 0.5, 2, (1.0,) * 3), 1)
+    corners, numbers = space.vertices[..., :2], np.arange(1.0, space.cells + 1.0)
+
+    def values(cells):
+        return (numbers[cells, None, None] * corners[cells])[..., None]
+
+    points = np.random.default_rng(4).uniform([-2.0, -2.0], [2.0, -0.01], (400, 2))
+    found = InteriorGradients(space, MovingFrame(2.0, 0.0), values, points).of_fields()[..., 0]
+    around = corners[:, [0, 1, 3, 2]] - points[:, None, None]
+    turns = np.cross(around, np.roll(around, -1, axis=2))
+    held = np.all(turns > 0.0, axis=2) | np.all(turns < 0.0, axis=2)
+    assert (held.sum(axis=1) == 1).all()
+    np.testing.assert_allclose(found, numbers[held.argmax(axis=1), None, None] * np.eye(2), atol=1e-9)

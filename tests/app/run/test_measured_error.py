@@ -8,6 +8,7 @@ import pytest
 from galinx.meshes import MESHES, Requirements
 from galinx.meshes.kind import DEGREES
 from galinx.solvers.contact.estimate import of_degrees
+from galinx.solvers.fem.contact import PunchLevel
 from galinx.solvers.fem.ladder import Gauge, MeasuredError, climb, to_tolerance
 
 G = np.array([-0.5])
@@ -176,3 +177,18 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
     assert found.error.excessive and not finer.solved and floor > 1e-7
     (text,) = work.said
     assert text.endswith(f"of which {floor:.1e} would remain on any cells")
+
+
+@pytest.mark.parametrize("lengths", [(1.0, 1e-3, 0.0), (1.0, 0.0, 1e-3), (1.001, 0.0, 0.0)])
+def test_a_free_contact_is_off_by_what_its_lengths_and_its_pressures_centre_are_off(lengths):
+    """The load is -2 in the unit of stresses times lengths; its centre is its first moment over it."""
+
+    def gauge(half_width, centre, of_pressure):
+        contact = SimpleNamespace(
+            half_width=np.array([half_width]), centre=np.array([centre]),
+            tested=lambda moments: -2.0 * np.array([[of_pressure, 0.0, 0.0, 0.0, 0.0]]),
+        )  # fmt: skip
+        states, one = SimpleNamespace(contact=contact), np.ones((1, 1))
+        return PunchLevel.gauge_of_free(SimpleNamespace(moments=np.eye(6)), states, one, one, 0.0)
+
+    assert gauge(*lengths).change(gauge(1.0, 0.0, 0.0)) == pytest.approx(1e-3, rel=1e-3)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.units import Units, number
+from galinx.texts import plain
 
 from ..errors import BadInput, listed
 from ..scene.units import to_si
@@ -97,8 +98,8 @@ class Measured:
         if not inside.any():
             raise BadInput(
                 f"--measured {self.name}: found points at {number(x.min())} to {number(x.max())}, the "
-                f"figure shows {number(first)} to {number(last)} of its axis {panel.x!r}; check the "
-                "unit, and where positions are counted from"
+                f"figure shows {number(first)} to {number(last)} of its {plain(panel.x or 'axis')}; "
+                "check the unit, and where positions are counted from"
             )
         margin, bottom, top = 0.05 * (high - low), float(y[inside].min()), float(y[inside].max())
         if bottom < low or top > high:

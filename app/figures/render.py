@@ -533,6 +533,8 @@ def _arrange(
         if maps:
             wide, tall = min(wide, tall / ratio), min(tall, wide * ratio)
     if min(wide, tall) < _LEAST:
+        if size.height is None and foot > height / 2.0:
+            raise TooSmall("its legend takes most of the page; choose fewer curves, or a wider figure")
         needed = f"{across_ + columns * _LEAST / min(ratio, 1.0):.1f} in"
         if size.height is not None:
             needed = f"{across_ + columns * _LEAST:.1f} in x {along + talls.sum() * _LEAST:.1f} in"

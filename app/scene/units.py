@@ -194,6 +194,8 @@ def _by_pint(number: float, given: Units, target: Units) -> float:
             try:
                 of_pint = table.get_name(name)
             except pint.UndefinedUnitError:
+                if name == "%":
+                    raise ValueError("with %, which dimensionless numbers have") from None
                 hint = meant(name, _UNITS).removeprefix("; ")
                 why = f"with the unknown unit {excerpt(name)}" + f" ({hint})" * bool(hint)
                 raise ValueError(why) from None

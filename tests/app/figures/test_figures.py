@@ -139,3 +139,7 @@ def test_panels_are_as_large_as_there_is_room():
         assert figure.get_figheight() <= (size_.height or 230.0 / 25.4) + 1e-9
     with pytest.raises(TooSmall, match=r"expected at least \d\.\d in x \d\.\d in for 2 x 3 panels"):
         render([_line()] * 6, Size(2.0, 1.0), columns=3)
+    x, many = np.linspace(0.0, 1.0, 11), looks(90)
+    curves = [Curve(x, x, look, f"the curve of state {i}, at some speed") for i, look in enumerate(many)]
+    with pytest.raises(TooSmall, match="its legend takes most of the page; choose fewer curves"):
+        render([Panel("position", "number", curves=curves)] * 2, Size(3.35))

@@ -13,11 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
@@ -89,6 +91,7 @@ class Map:
         level: number of each Y that is reached along a white line, (rows,); infinite for none.
         above: numbers at -Y, (rows, columns), and their level; None for nothing above Y = 0.
         equal: both axes have one scale.
+        log: colours go with the logarithm.
     """
 
     X: NDArray
@@ -102,6 +105,7 @@ class Map:
     level: Any = np.inf
     above: tuple[NDArray, Any] | None = None
     equal: bool = True
+    log: bool = False
 
 
 @dataclass(frozen=True)
@@ -262,11 +266,11 @@ class _Drawn:
             axis.axhline(y / 10.0**self.power, color=GREY, linewidth=0.4, zorder=0)
         lines = [self._curve(curve) for curve in panel.curves]
         if panel.map:
-            _draw_map(axis, panel.map)
+            image = _draw_map(axis, panel.map, panel.log)
         if panel.map and panel.map.label:
             beside = axis.inset_axes((1.04, 0.0, 0.04, 1.0))
             beside.set_axes_locator(self._beside)
-            self.bar = axis.figure.colorbar(axis.images[0], cax=beside, extend=panel.map.extend)
+            self.bar = axis.figure.colorbar(image, cax=beside, extend=panel.map.extend)
             self.bar.ax.tick_params(labelsize=SMALL)
             self.bar.set_label(panel.map.label, fontsize=SMALL)
         for y in panel.dashes:
@@ -340,8 +344,9 @@ class _Drawn:
         if self.bar is not None:
             assert panel.map
             fit_text(self.bar.ax.yaxis.label, panel.map.label, tall + 0.25)
-            self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
-            self.bar.update_ticks()
+            if not panel.map.log:
+                self.bar.locator = MaxNLocator(max(2, int(4.0 * tall)))
+                self.bar.update_ticks()
         if self.other is not None:
             self.other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
         boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
@@ -424,28 +429,41 @@ def fit_text(text: Text, words: str, room: float) -> NDArray[np.float64]:
     return size
 
 
-def _draw_map(axis: Axes, shown: Map) -> None:
+def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
+    """Draw a map, on axes of which some are logarithmic; what its colour bar is of."""
     X, Y = shown.X, shown.Y
     half_X, half_Y = (abs(z[-1] - z[0]) / max(len(z) - 1, 1) / 2.0 for z in (X, Y))
     along, heights = (X[0] - half_X, X[-1] + half_X), np.array([Y[0] - half_Y, Y[-1] + half_Y])
     lowest, colours = (-shown.limit, "RdBu_r") if shown.signed else (0.0, "viridis")
+    norm, locator = Normalize(lowest, shown.limit), MaxNLocator(9)
+    if shown.log:
+        norm = LogNorm(lowest := float(np.nanmin(shown.values)), shown.limit)
+        locator = LogLocator(subs=(1.0, 2.0, 5.0))
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
-        image = axis.imshow(
-            values, extent=(*along, *side * heights), origin="lower", interpolation="bilinear",
-            aspect="auto", cmap=colours, vmin=lowest, vmax=shown.limit,
-        )  # fmt: skip
-        # A colour reaches half a cell farther than its point; none is shown beyond the outermost points.
-        corner, tall = (X[0], min(side * Y[0], side * Y[-1])), abs(Y[-1] - Y[0])
-        image.set_clip_path(Rectangle(corner, X[-1] - X[0], tall, transform=axis.transData))
+        image: ScalarMappable
+        if log:
+            axis.tick_params(axis="x", pad=5.0)  # a power at the end of each axis
+            image = axis.pcolormesh(
+                X, Y, values, cmap=colours, norm=norm, shading="nearest", rasterized=True
+            )
+        else:
+            image = axis.imshow(
+                values, extent=(*along, *side * heights), origin="lower", interpolation="bilinear",
+                aspect="auto", cmap=colours, norm=norm,
+            )  # fmt: skip
+            # A colour reaches half a cell farther than its point; none is shown beyond the outermost.
+            corner, tall = (X[0], min(side * Y[0], side * Y[-1])), abs(Y[-1] - Y[0])
+            image.set_clip_path(Rectangle(corner, X[-1] - X[0], tall, transform=axis.transData))
         if shown.lines:
-            levels = MaxNLocator(9).tick_values(lowest, shown.limit)
+            levels = locator.tick_values(lowest, shown.limit)
             axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
         share = values / np.reshape(level, (-1, 1))
         if share.max() > 1.0:
             axis.contour(X, side * Y, share, [1.0], colors="white", linewidths=1.0)
     top = -Y[0] if shown.above else max(Y[-1], 0.0) if shown.equal else Y[-1]
     axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], top))
+    return image
 
 
 def _entries(curves: Sequence[Curve]) -> list[Line2D]:

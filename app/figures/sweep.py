@@ -175,10 +175,7 @@ class _Sweep:
         """A panel for each column that is drawn, with a curve for each group."""
         styles = looks(len(self.groups), not self.by or self._of.numeric(self.by))
         x, panels = np.concatenate([self.x[numbers] for _, numbers in self.groups]), list[Panel]()
-        logarithmic = ""
-        if _spans(x, 30.0):  # and the middle number lies midway by ratios rather than by differences
-            low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
-            logarithmic = "x" * bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
+        logarithmic = "x" * _by_ratios(x)
         ticks = np.unique(x[np.isfinite(x)])
         ticks = ticks[: len(ticks) * (max(len(f"{value:g}") for value in ticks) <= 4)]
         for name in self.drawn:
@@ -217,19 +214,32 @@ class _Sweep:
         numbers = every[order].reshape(len(up), len(across))
         label, y = self._axis(self.by)
         x, y = self.x[numbers[0]], y[numbers[:, 0]]
-        # On a grid of equal steps, as pictures are.
-        X, Y = np.linspace(x[0], x[-1], 4 * len(x)), np.linspace(y[0], y[-1], 4 * len(y))
+        # On a grid of equal steps, as pictures are, or of equal ratios.
+        log = "x" * _by_ratios(x) + "y" * _by_ratios(y)
+        (X, x), (Y, y) = (
+            (np.geomspace(z[0], z[-1], 4 * len(z)), np.log(z))
+            if name in log
+            else (np.linspace(z[0], z[-1], 4 * len(z)), z)
+            for name, z in (("x", x), ("y", y))
+        )
+        at_X, at_Y = (np.log(Z) if name in log else Z for name, Z in (("x", X), ("y", Y)))
         panels = []
         for name in self.drawn:
             shown = self.columns[name]
-            fine = np.array([np.interp(X, x, row) for row in shown.best[numbers]])
-            fine = np.array([np.interp(Y, y, row) for row in fine.T]).T
+            values = shown.best[numbers]
+            by_ratios = _spans(values, 200.0)
+            fine = np.log(values) if by_ratios else values
+            fine = np.array([np.interp(at_X, x, row) for row in fine])
+            fine = np.array([np.interp(at_Y, y, row) for row in fine.T]).T
+            fine = np.exp(fine) if by_ratios else fine
             limit = float(np.nanmax(np.abs(fine))) or 1.0
             signed = bool(np.nanmin(fine) < -1e-9 * limit)
             about = named(shown.about, shown.unit)
             panels.append(Panel(
-                self.label, label, xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]),
-                map=Map(X, Y, fine, about, limit, signed=signed, lines=True, equal=False),
+                self.label, label, xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]), log=log,
+                map=Map(
+                    X, Y, fine, about, limit, signed=signed, lines=True, equal=False, log=by_ratios
+                ),
             ))  # fmt: skip
         return panels
 
@@ -275,6 +285,14 @@ def _swept(of: Archive, selected: NDArray) -> list[str]:
 def _varies(values: NDArray) -> bool:
     finite = values[np.isfinite(values)]
     return len(finite) > 1 and np.ptp(finite) > _SAME * np.abs(finite).max()
+
+
+def _by_ratios(x: NDArray) -> bool:
+    """Are numbers farther apart by ratios than by differences, and the middle one midway by these?"""
+    if not _spans(x, 30.0):
+        return False
+    low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
+    return bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
 
 
 def _spans(values: NDArray, more_than: float) -> bool:

@@ -146,9 +146,10 @@ def _arrow(panel: Panel, curve: Curve, share: float) -> dict[str, Any]:
 
 
 def _axis(title: str, ends: tuple[float, float] | None, logarithmic: bool) -> dict[str, Any]:
-    axis: dict[str, Any] = {"title": {"text": title}}
+    # Powers of ten, for prefixes would stand before units that have some.
+    axis: dict[str, Any] = {"title": {"text": title}, "exponentformat": "power"}
     if logarithmic:
-        return axis | {"type": "log", "exponentformat": "power"}
+        return axis | {"type": "log"}
     return axis | ({"range": _numbers(ends, 6)} if ends else {})
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from legible import LEAST, faults
-from matplotlib.colors import to_rgba
+from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
-from support import THOROUGH, kept
+from support import THOROUGH, computed, kept
 
 from galinx.app.figures.choice import size
 from galinx.app.figures.files import content
@@ -143,3 +143,28 @@ def test_panels_are_as_large_as_there_is_room():
     curves = [Curve(x, x, look, f"the curve of state {i}, at some speed") for i, look in enumerate(many)]
     with pytest.raises(TooSmall, match="its legend takes most of the page; choose fewer curves"):
         render([Panel("position", "number", curves=curves)] * 2, Size(3.35))
+
+
+def test_maps_over_numbers_that_are_apart_by_ratios_have_logarithmic_axes_and_colours():
+    """Hertz's largest pressure goes with √(N/R), which is straight there."""
+    scene = """
+        solid = { material = "steel" }
+        friction = { mu = 0.0 }
+        motion = { c = 0.0 }
+        solve = { methods = ["closed_form"] }
+        output = { quantities = ["sif"] }
+        [punch]
+        profile = "parabolic"
+        radius = { from = "1 mm", to = "10 m", number = 5, spacing = "log" }
+        load = { from = "10 N/mm", to = "1000 N/mm", number = 5, spacing = "log" }
+    """
+    (drawing,) = computed(scene).drawings(figures=("parameters",))
+    axis = drawing.figure.axes[0]
+    assert (axis.get_xscale(), axis.get_yscale()) == ("log", "log")
+    (image,) = (one for one in axis.collections if one.get_array() is not None and one.norm.vmin)
+    assert isinstance(image.norm, LogNorm) and not [*faults(drawing.figure)]
+    p = np.reshape(image.get_array(), (20, 20))
+    N, R = np.geomspace(1e4, 1e6, 20)[:, None], np.geomspace(1e-3, 10.0, 20)
+    shape = np.sqrt(N / R)
+    assert shape.shape == p.shape
+    np.testing.assert_allclose(p / p[0, 0], shape / shape[0, 0], rtol=1e-6)

@@ -539,7 +539,7 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
 
 
 def _finer(wanted: float, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
-    """What may give a smaller error than a scene's tolerance asks for."""
+    """Change of a scene that may make an error smaller than its tolerance does, in words."""
     solve = tomllib.loads(str(data.get(runs.SCENE.path, ""))).get("solve", {})
     for key in ("degree", "mesh"):
         if key in solve and solve[key] != "confocal":

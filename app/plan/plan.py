@@ -58,8 +58,6 @@ from .states import Order, States, enumerate_states, order
 #: Most floating-point numbers that the states of a chunk hold at once, and bytes of each while they are
 #: computed.
 CHUNK_NUMBERS, _HELD = 1_200_000, 18
-#: Least margin for whose contacts positions along interfaces are as fine as they want.
-_LEAST_MARGIN = 1e-4
 #: Bytes of a state's friction.
 FRICTION = 300.0
 #: Least and largest floating-point number.
@@ -610,11 +608,7 @@ def positions_along(scenes: Sequence[Scene]) -> np.ndarray:
 
 def _depths(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Least and largest depths of interfaces over the half-widths of a scene's contacts, (layers,)."""
-    body, widths = scene.body, [scene.body.half_width]
-    if body.found and AT_INTERFACES in scene.output.quantities:
-        loads, speeds = scene.punch.loads, order(scene).speeds
-        if len(loads) > 1:
-            widths = body.loaded(np.array([min(loads), max(loads)])).half_width.tolist()
-        # A solid is about as soft as its margin is small, and contacts are no wider than its wedge's.
-        widths.append(max(widths) / max(min(body.response(c).margin for c in speeds), _LEAST_MARGIN))
-    return body.solid.depths / np.nanmax(widths), body.solid.depths / np.nanmin(widths)
+    widths = [scene.body.half_width]
+    if AT_INTERFACES in scene.output.quantities:
+        widths = scene.body.bounds_on_half_widths(scene.punch.loads, order(scene).speeds)
+    return scene.solid.depths / max(widths), scene.solid.depths / min(widths)

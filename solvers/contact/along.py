@@ -241,7 +241,7 @@ class Splines(Functions):
         return np.hstack([splines, self._of_ends(r)]) if self.logarithms else splines
 
     def _of_ends(self, r: NDArray) -> NDArray[np.float64]:
-        """Of x log x, x the distance from an end over that of the next knot, what is no spline: (n, 2).
+        """Part of x log x that is no spline, x the distance from an end over the next knot's, (n, 2).
 
         It is all but the first terms of the series at x = 1, and 0 beyond.
         """

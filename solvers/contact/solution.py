@@ -369,6 +369,12 @@ class Contact:
         k = self.growth_exponent
         return None if k is None else (load / self.load) ** k
 
+    def bounds_on_half_widths(
+        self, loads: Sequence[float], speeds: Sequence[float]
+    ) -> tuple[float, float]:
+        """Least and largest half-width [m] under loads [N/m] and at speeds over c_s."""
+        return self.half_width, self.half_width
+
     @property
     def compression(self) -> Any:
         """Load over the shear modulus, N/μ [m]."""
@@ -505,6 +511,19 @@ class FreeEndContact(Contact):
             with suppress(SolveError):  # the method that solves reports a contact that fails
                 rest[i] = self.loaded(N).half_width
         return rest
+
+    def bounds_on_half_widths(
+        self, loads: Sequence[float], speeds: Sequence[float]
+    ) -> tuple[float, float]:
+        """Least and largest half-width [m] under loads [N/m] and at speeds over c_s.
+
+        A solid is about as soft as its margin is small; contacts grow at most as under wedges.
+        """
+        rest = [self.half_width]
+        if len(loads) > 1:
+            rest = self.loaded(np.array([min(loads), max(loads)])).half_width.tolist()
+        margin = min(self.response(c).margin for c in speeds)
+        return float(np.nanmin(rest)), float(np.nanmax(rest)) / max(margin, 1e-4)
 
     @property
     def _at_rest(self) -> float:

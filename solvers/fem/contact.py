@@ -338,7 +338,7 @@ class SplineLevel(PunchLevel):
 
     @property
     def _graded(self) -> bool:
-        """Is the solid graded from the surface on?"""
+        """True for a solid that is graded from the surface on."""
         response = self.task.response
         return bool(len(response.depths)) and response.solid.layers[0].bottom is not None  # type: ignore[attr-defined]
 

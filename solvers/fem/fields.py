@@ -385,7 +385,7 @@ class Displacement:
         return np.stack(each, axis=2)
 
     def at_interface(self, i: int, X: NDArray, weights: NDArray) -> NDArray[np.float64]:
-        """The same along one interface at other positions X, (n,): (4, states, n)."""
+        """σ_YY, σ_XY, σ_XX above and below interface ``i`` at positions X, (n,): (4, states, n)."""
         points = np.column_stack([X, np.full_like(X, -self._task.places.interfaces[i])])
         return self._tractions_first(
             i, lambda side: self._task.response.stresses_at(

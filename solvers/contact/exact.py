@@ -507,7 +507,11 @@ class LayeredSolution(ExactSolution):
     @property
     def kinks(self) -> list[Sequence[float] | NDArray]:
         """Positions over a at which each state's pressure is not smooth."""
-        return [self._alone(state).pressure.kinks for state in range(len(self.g))]
+        each: list[Sequence[float] | NDArray] = [()] * len(self.g)
+        for group in self.contacts.groups:
+            for row in group.rows.tolist():
+                each[row] = group.pressure.kinks
+        return each
 
     def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""

@@ -522,7 +522,9 @@ class FreeEndContact(Contact):
         rest = [self.half_width]
         if len(loads) > 1:
             rest = self.loaded(np.array([min(loads), max(loads)])).half_width.tolist()
-        margin = min(self.response(c).margin for c in speeds)
+        margin = 1.0
+        with suppress(ValueError):  # a speed beyond the limit, which is refused elsewhere
+            margin = min(self.response(c).margin for c in speeds)
         return float(np.nanmin(rest)), float(np.nanmax(rest)) / max(margin, 1e-4)
 
     @property

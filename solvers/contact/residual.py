@@ -41,8 +41,8 @@ _INSIDE, _ALONG = 6, 64
 #: Least depth over a of a point at which line loads are summed.
 _DEEP = 1e-3
 
-#: Relative error of the kernel of layers.
-_OF_KERNEL = 1e-10
+#: Relative error of the kernel of layers; ten times that of steps through graded ones, whose noise has no end.
+_OF_KERNEL = 1e-9
 
 #: σ_YY over N/(2a) at positions (n,) of all states: (states, n).
 Stress = Callable[[NDArray], NDArray]

@@ -41,7 +41,7 @@ _INSIDE, _ALONG = 6, 64
 #: Least depth over a of a point at which line loads are summed.
 _DEEP = 1e-3
 
-#: Relative error of the kernel of layers; ten times that of steps through graded ones, whose noise has no end.
+#: Relative error of the kernel of layers, ten times that of steps through graded ones.
 _OF_KERNEL = 1e-9
 
 #: σ_YY over N/(2a) at positions (n,) of all states: (states, n).

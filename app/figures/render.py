@@ -439,11 +439,12 @@ def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
     if shown.log:
         norm = LogNorm(lowest := float(np.nanmin(shown.values)), shown.limit)
         locator = LogLocator(subs=(1.0, 2.0, 5.0))
+    if log:
+        axis.tick_params(axis="x", pad=5.0)  # a power at the end of each axis
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
         image: ScalarMappable
         if log:
-            axis.tick_params(axis="x", pad=5.0)  # a power at the end of each axis
             image = axis.pcolormesh(
                 X, Y, values, cmap=colours, norm=norm, shading="nearest", rasterized=True
             )

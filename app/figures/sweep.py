@@ -1,7 +1,9 @@
 """Numbers of an archive's states over what is swept; over two swept numbers they are maps."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -214,23 +216,16 @@ class _Sweep:
         numbers = every[order].reshape(len(up), len(across))
         label, y = self._axis(self.by)
         x, y = self.x[numbers[0]], y[numbers[:, 0]]
-        # On a grid of equal steps, as pictures are, or of equal ratios.
         log = "x" * _by_ratios(x) + "y" * _by_ratios(y)
-        (X, x), (Y, y) = (
-            (np.geomspace(z[0], z[-1], 4 * len(z)), np.log(z))
-            if name in log
-            else (np.linspace(z[0], z[-1], 4 * len(z)), z)
-            for name, z in (("x", x), ("y", y))
-        )
-        at_X, at_Y = (np.log(Z) if name in log else Z for name, Z in (("x", X), ("y", Y)))
+        (X, along), (Y, upwards) = _finer(x), _finer(y)
         panels = []
         for name in self.drawn:
             shown = self.columns[name]
             values = shown.best[numbers]
             by_ratios = _spans(values, 200.0)
             fine = np.log(values) if by_ratios else values
-            fine = np.array([np.interp(at_X, x, row) for row in fine])
-            fine = np.array([np.interp(at_Y, y, row) for row in fine.T]).T
+            fine = np.array([along(row) for row in fine])
+            fine = np.array([upwards(row) for row in fine.T]).T
             fine = np.exp(fine) if by_ratios else fine
             limit = float(np.nanmax(np.abs(fine))) or 1.0
             signed = bool(np.nanmin(fine) < -1e-9 * limit)
@@ -288,11 +283,19 @@ def _varies(values: NDArray) -> bool:
 
 
 def _by_ratios(x: NDArray) -> bool:
-    """Are numbers farther apart by ratios than by differences, and the middle one midway by these?"""
+    """True for numbers over more than a decade whose middle one lies midway rather by ratios."""
     if not _spans(x, 30.0):
         return False
     low, middle, high = np.quantile(np.unique(x[np.isfinite(x)]), (0.0, 0.5, 1.0))
     return bool(middle**2 < (low * high) ** 0.5 * (low + high) / 2.0)
+
+
+def _finer(x: NDArray) -> tuple[NDArray, Callable[[NDArray], NDArray]]:
+    """Four places for each of rising numbers, by equal steps or ratios, and what interpolates there."""
+    log = _by_ratios(x)
+    X = (np.geomspace if log else np.linspace)(x[0], x[-1], 4 * len(x))
+    steps = np.log if log else np.asarray
+    return X, partial(np.interp, steps(X), steps(x))
 
 
 def _spans(values: NDArray, more_than: float) -> bool:

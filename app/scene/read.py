@@ -342,7 +342,7 @@ def _checked(
     if not named:
         usual = steady and bool(scene.solve.methods)
         quantities = usual_quantities(scene) if usual else scene.output.quantities
-        quantities += (BELOW,) * bool(scene.output.points or scene.output.map)
+        quantities += (BELOW,) * scene.output.has_places
         scene = replace(scene, output=replace(scene.output, quantities=quantities))
     faults += contradictions(scene)
     return None if len(faults) > before else scene

@@ -201,7 +201,7 @@ def contradictions(scene: Scene) -> list[str]:
             (TIME in quantities) != (scene.time is not None)
         ),
         f'output.points and output.map need "{BELOW}" among output.quantities': (
-            BELOW not in quantities and bool(scene.output.points or scene.output.map)
+            BELOW not in quantities and scene.output.has_places
         ),
         'output.quantities asks for "yield": expected solid.yield_strength, as in yield_strength = '
         '"205 MPa", or a material that has one: stresses at sharp edges have no largest value': (

@@ -515,8 +515,13 @@ class Output:
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        if BELOW in self.quantities and not self.points and self.map is None:
+        if BELOW in self.quantities and not self.has_places:
             object.__setattr__(self, "map", ((-2.5, 2.5, 101), (-2.5, -0.025, 100)))
+
+    @property
+    def has_places(self) -> bool:
+        """True where points inside or a map are given."""
+        return bool(self.points or self.map)
 
     @property
     def inside(self) -> NDArray[np.float64]:

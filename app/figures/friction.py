@@ -222,8 +222,8 @@ def slider(of: Archive) -> Drawing:
         curves = [Curve(cycle_v[law], cycle_f[law], look, arrows=(0.25, 0.75)) for law, look in cycles]
         panels.append(Panel(velocity, F_LABEL, curves=curves, at_x=(drive,)))
     caption = (
-        "A mass that is pulled through a spring: its velocity, the line is that of the drive, and "
-        "friction over velocity in the last cycle, in the direction of the arrows."
+        "A mass that is pulled through a spring: its velocity, and friction over velocity in the last "
+        "cycle, in the direction of the arrows."
     )
     if len(cycles) < len(laws):
         caption += (
@@ -232,7 +232,8 @@ def slider(of: Archive) -> Drawing:
     if shown < t[-1]:
         caption += f" Of the velocity the first {_CYCLES} cycles are shown."
     missing = fewer(len(laws), count, f"laws{several * ' and loads'}")
-    return Drawing("slider", caption, render(panels, choice.size, high=0.62), left_out=missing)
+    figure = render(panels, choice.size, 0, [note(Look(GREY, "-", ""), "drive", width=0.4)], 0.62)
+    return Drawing("slider", caption, figure, left_out=missing)
 
 
 def fitted_figure(measured: Measured, law: NDArray, timed: bool) -> Any:

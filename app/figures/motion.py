@@ -33,8 +33,8 @@ LEAST_FRAMES = 4
 #: What is drawn over time, and what it is called.
 _OVER_TIME = (
     (rows.CENTRE, "centre of pressure"), (rows.V0, "indentation $v_0$"),
-    (rows.K_I_LEFT, "$K_I$ at $X = -a$"),
-    (rows.K_I_RIGHT, "$K_I$ at $X = a$"),
+    (rows.K_I_LEFT, "$K_I$ at $X = -a$, over $N$"),
+    (rows.K_I_RIGHT, "$K_I$ at $X = a$, over $N$"),
 )  # fmt: skip
 #: Names of the curves of works and energies.
 _WORKS = ("load", "friction", "being carried past the punch"), ("strain near", "motion near", "radiated")
@@ -103,7 +103,8 @@ def time(of: Archive) -> Drawing:
     if len(shown) == 1:
         caption += f" At {plain(drive_label(*motions[0]))}."
     columns = 2 if not of.choice.size or of.choice.size.width > 3.0 else 1
-    figure = render(panels, of.choice.size, columns, explained(methods))
+    dotted = note(_STEADY._replace(line=":"), "steady motion", width=0.7)
+    figure = render(panels, of.choice.size, columns, [*explained(methods), dotted])
     return Drawing("time", caption, figure, left_out=_left_out(of, len(shown)))
 
 

@@ -223,7 +223,7 @@ def response_drawing(computed: list[Answer]) -> Drawing:
 
 
 #: Wavelengths over the thickness of all layers, angles [°], and speeds over the limit.
-_LENGTHS, _ANGLES, _SPEEDS = np.geomspace(1.0, 100.0, 17), np.linspace(-90.0, 90.0, 37), 25
+_LENGTHS, _ANGLES, _SPEEDS = np.geomspace(1.0, 100.0, 33), np.linspace(-90.0, 90.0, 37), 25
 
 
 def has_flutter(of: Archive) -> bool:

@@ -105,6 +105,8 @@ class TextTable:
             found = f"{self.path}, line {line}{name}: found {excerpt(cell)}"
             sign = "comma" if self.decimal == "," else "point"
             hint = f" with a decimal {sign}, as other numbers of the table have" if "," in cell else ""
+            nothing = cell.strip().lower() in ("", "-", "na", "n/a", "nan")
+            hint = hint or "; leave rows without one away" * nothing
             raise BadInput(f"{found}, expected a finite number{hint}")
         return number
 

@@ -128,6 +128,7 @@ def test_tables_of_all_conventions_are_one_measurement(tmp_path):
         ("slip [mm],f\n", "three or more rows"),
         ("a,b\n1,2\n", r'expected "slip \[mm\],f", "time \[s\],position \[mm\],f", or with "force'),
         ("slip,f\n0,0\n1,x\n2,1\n", "line 3, f: found 'x', expected a finite number"),
+        ("slip;f\n0;0\n1;\n2;1\n", "line 3, f: found '', expected a finite number; leave rows without"),
         ("slip,f\n0,0\n2,1\n1,1\n", "line 4: .* the slip grows; .* write time and position"),
         ("position [mm],f\n0,0\n1,1\n2,1\n", "line 1: found the columns .*; alone, a slip"),
         ("slip [mm],fricton\n0,0\n1,1\n", "did you mean friction"),

@@ -130,7 +130,7 @@ class Jacobi(Functions):
 
     def points(self, c: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Rule for other integrals, see :meth:`.pressure.Pressure.points`."""
-        fine = Panels(self.α, self.β, min(finest, 0.7))
+        fine = Panels(self.α, self.β, min(finest, 0.7), settled=_SETTLED)
         return fine.t, fine.weights * self.sum(c, fine.t)
 
 

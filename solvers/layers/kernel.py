@@ -174,14 +174,15 @@ class Table:
         x = np.asarray(x, dtype=float)
         flat = x.ravel()
         panel = np.clip(np.searchsorted(self.ends, flat) - 1, 0, len(self.ends) - 2)
-        start, end = self.ends[panel], self.ends[panel + 1]
-        T = chebyshev.chebvander((2.0 * flat - start - end) / (end - start), _NODES - 1)
-        values = np.empty((len(flat), self.coefficients.shape[-1]))
         # Panel by panel: to gather coefficients for every position would take longer than to use them.
         order = np.argsort(panel, kind="stable")
-        met, first = np.unique(panel[order], return_index=True)
-        for i, rows in zip(met.tolist(), np.split(order, first[1:])):
-            values[rows] = T[rows] @ self.coefficients[i]
+        flat, panel = flat[order], panel[order]
+        start, end = self.ends[panel], self.ends[panel + 1]
+        T = chebyshev.chebvander((2.0 * flat - start - end) / (end - start), _NODES - 1)
+        of_panel, values = np.empty((2, len(flat), self.coefficients.shape[-1]))
+        for i, j in pairwise(np.flatnonzero(np.diff(panel, prepend=-1, append=-1)).tolist()):
+            np.matmul(T[i:j], self.coefficients[panel[i]], out=of_panel[i:j])
+        values[order] = of_panel
         return values.reshape(*x.shape, values.shape[-1])
 
 

@@ -262,7 +262,8 @@ WEDGE = FILM.replace('"parabolic"', '"wedge"').replace('radius = "10 mm"', "slop
 def test_stresses_along_a_thin_film_are_largest_where_close_positions_say(text, monkeypatch):
     """Positions were as fine as the least load wants them, and coarse at kinks."""
     data = computed(text).data
-    close = np.union1d(data["interfaces/X_over_a"], np.linspace(-1.1, 1.1, 4001))
+    near = np.add.outer([-1.0, 0.0, 1.0], np.linspace(-0.1, 0.1, 201))
+    close = np.union1d(data["interfaces/X_over_a"], [*near.flat, *np.linspace(-1.1, 1.1, 601)])
     monkeypatch.setattr("galinx.app.plan.variants.positions_along", lambda scenes: close)
     finer = computed(text).data
     for name in ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below"):

@@ -39,17 +39,23 @@ _PERIODS, _FEW, _SHORTER, _STEPS = 10, 2_000, 8.0, 100
 #: Unit of time of the integration over the length of a piece: SciPy locates events to an absolute time.
 _INSTANT = 1e-16
 #: Equal cycles after which a motion is periodic, and their largest difference over the sizes of the
-#: motion: the tolerance leaves about as much in a cycle.
-_CYCLES, _SAME = 8, 1e-8
-#: Share of the largest velocity from which on a mass slips, and times in a slip besides its fastest one.
-_SLIPS, _IN_A_SLIP = 1e-3, 24
+#: motion: the tolerance leaves about as much in a cycle. Most crossings of the drive's speed in a cycle.
+_CYCLES, _SAME, _MOST_CROSSINGS = 8, 1e-8, 32
+#: Differences of the spring between the ends of a cycle, over its swing, up to which it is one: of the
+#: last cycle of any motion, and of a periodic one.
+_ALIKE, _CLOSE = 1e-2, 1e-5
+#: Share of the largest velocity from which on a mass slips.
+_SLIPS = 1e-3
 #: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
 #: sticks; under laws of the logarithm of the speed it creeps, and never stops.
 _STEADY, _STOPPED = 1e-3, 1e-2
+#: Growth of a swing about steady sliding over its frequency from which on it counts, and differences,
+#: over the sizes of the motion, by which that is measured.
+_GROWS, _DIFFERENCE = 1e-4, 1e-6
 #: Outcomes of a slider's motion.
 STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
     "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
-    "no whole cycle yet",
+    "not settled yet",
 )  # fmt: skip
 
 
@@ -98,8 +104,8 @@ class Ride:
         f: friction coefficient, that of the spring's pull where it sticks.
         crossings: times at which the slider became faster than the drive [s], (m,).
         x_crossings: positions at these times [m], (m,).
-        period, slip: duration [s] of the last cycle of stick-slip, from one crossing to the next, and
-            slip of the mass in it [m]; NaN where there is none.
+        period, slip: duration [s] of the last cycle of stick-slip, from a crossing to the next like it,
+            and slip of the mass in it [m]; NaN where there is none.
         peak, least: largest and smallest velocity in it [m/s].
     """
 
@@ -109,11 +115,11 @@ class Ride:
         self.x, self.v, self.f = np.vstack([motion.rows(piece, piece.t) for piece in motion.pieces]).T
         self.crossings = np.array([t for t, _ in motion.crossings])
         self.x_crossings = self._drive * self.crossings - [state[0] for _, state in motion.crossings]
+        #: Crossings in the last cycle.
+        self._in_cycle = self._alike(_CLOSE if motion.repeats else _ALIKE) or motion.repeats
         self.period = self.slip = self.peak = self.least = np.nan
         if (steps := self.cycle) and self.v[steps].max() >= (1.0 + _STEADY) * self._drive:
-            self.period, self.slip = (
-                float(np.diff(of[-2:])[0]) for of in (self.crossings, self.x_crossings)
-            )
+            self.period, self.slip = self._since(self._in_cycle)
             self.peak, self.least = float(self.v[steps].max()), float(self.v[steps].min())
 
     def at(self, times: NDArray) -> NDArray[np.float64]:
@@ -123,8 +129,8 @@ class Ride:
         """
         t, cycles = np.array(times, dtype=float), np.zeros(np.shape(times))
         if self._motion.repeats:
-            period, last = self.crossings[-1] - self.crossings[-2], self.crossings[-1]
-            cycles = np.maximum(np.floor((t - last) / period) + 1.0, 0.0)
+            period, slip = self._since(self._motion.repeats)
+            cycles = np.maximum(np.floor((t - self.crossings[-1]) / period) + 1.0, 0.0)
             t = t - cycles * period
         starts = np.array([piece.start for piece in self._motion.pieces])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
@@ -134,38 +140,65 @@ class Ride:
             since = np.clip(t[here], piece.start, piece.end) - piece.start
             values[:, here] = self._motion.rows(piece, since).T
         if self._motion.repeats:
-            values[0] += cycles * (self.x_crossings[-1] - self.x_crossings[-2])
+            values[0] += cycles * slip
         return values
+
+    def _alike(self, closely: float) -> int:
+        """Crossings from the last one back to the one like it, a cycle earlier; 0 for none.
+
+        The spring is as long there, but for a share of its swing; so it is at the ones before both.
+        """
+        e, E = self._drive * self.crossings - self.x_crossings, self._drive * self.t - self.x
+        for k in range(1, max((len(e) - 1) // 2, 1) + 1 if len(e) > 1 else 1):
+            swing = np.ptp(E[np.searchsorted(self.t, self.crossings[-1 - k]) :])
+            before = e[: len(e) - k]
+            if (np.abs(e[k:] - before)[-2:] <= closely * swing).all():
+                return k
+        return 0
+
+    def _since(self, crossings: int) -> tuple[float, float]:
+        """Time since so many crossings before the last one [s], and slip since [m]."""
+        t, x = self.crossings, self.x_crossings
+        return float(t[-1] - t[-1 - crossings]), float(x[-1] - x[-1 - crossings])
 
     def slips(self, end: float, most: int) -> NDArray[np.float64]:
         """Times in the slips up to an end [s], rising: fast slips are over between times far apart.
 
+        These are steps of the integration: first where slips begin, are fastest and end, then others.
+
         Args:
             end: last time [s].
-            most: most times; of more slips so many are picked.
+            most: most times; of more so many are picked.
         """
-        if self.cycle is None:
+        if self.v.max() < (1.0 + _STEADY) * self._drive:
             return np.empty(0)
-        begun, v = self.crossings, self.v[self.cycle]
-        t, period = self.t[self.cycle] - begun[-2], begun[-1] - begun[-2]
-        more = max(int((end - begun[-1]) / period), 0) if self._motion.repeats else 0
-        fast = t[v > _SLIPS * v.max()]
-        inside = np.linspace(0.0, len(fast) - 1.0, _IN_A_SLIP)
-        inside = np.append(np.interp(inside, np.arange(len(fast)), fast), t[v.argmax()])
-        # Of slips that repeat there may be more than fit into memory.
-        slips = np.arange(0, len(begun) + more, ceil((len(begun) + more) * len(inside) / most))
-        again = np.maximum(slips - len(begun) + 1, 0)
-        starts = begun[np.minimum(slips, len(begun) - 1)] + again * period
-        # The end of a cycle is the beginning of the next slip.
-        times = (starts[:, None] + np.where(inside > period / 2.0, inside - period, inside)).ravel()
-        return np.unique(times[(times >= 0.0) & (times <= end)])
+        fast, rises = self.v > _SLIPS * self.v.max(), np.diff(self.v) > 0.0
+        first = np.zeros_like(fast)
+        first[1:-1] = (fast[1:-1] != fast[:-2]) | (fast[1:-1] != fast[2:]) | (rises[:-1] & ~rises[1:])
+        times = self._again(self.t[first & fast], end, most)
+        others = self._again(self.t[fast & ~first], end, most)
+        others = others[:: ceil(len(others) / max(most - len(times), 1)) or 1]
+        return np.unique(np.concatenate([times, others])[:most])
+
+    def _again(self, times: NDArray, end: float, most: int) -> NDArray[np.float64]:
+        """Times up to an end, and those of the last cycle in the cycles after it, or in some of many."""
+        if self._motion.repeats and end > self.crossings[-1]:
+            (period, _), last = self._since(self._motion.repeats), self.crossings[-1]
+            times = times[times <= last]
+            cycle = times[times > last - period]
+            count = ceil((end - last) / period)
+            # Of slips that repeat there may be more than fit into memory.
+            cycles = np.arange(1, count + 1, ceil(count * max(len(cycle), 1) / most))
+            times = np.concatenate([times, np.add.outer(cycles * period, cycle).ravel()])
+        times = times[times <= end]
+        return times[:: max(ceil(len(times) / most), 1)]
 
     @property
     def cycle(self) -> slice | None:
         """Steps of the last cycle of stick-slip; None where there is no whole cycle."""
-        if len(self.crossings) < 2:
+        if not self._in_cycle:
             return None
-        first, last = np.searchsorted(self.t, self.crossings[-2:])
+        first, last = np.searchsorted(self.t, self.crossings[[-1 - self._in_cycle, -1]])
         return slice(int(first), int(last) + 1)
 
     @property
@@ -173,9 +206,9 @@ class Ride:
         """Outcome of the motion in words."""
         if np.isfinite(self.period):
             return STICK_SLIP if self.least <= _STOPPED * self._drive else SWINGS
-        if len(self.crossings) > 1 or abs(self.v[-1] / self._drive - 1.0) < _STEADY:
+        if self._motion.slides_steadily:
             return STEADY
-        if self.v[-1] > _STOPPED * self._drive:
+        if len(self.crossings) > 1 or self.v[-1] > _STOPPED * self._drive:
             return SHORT
         return ONE_SLIP if len(self.crossings) else STAYS
 
@@ -235,15 +268,33 @@ class _Motion:
         self._stops = type(law).settle is not FrictionLaw.settle
 
     @property
-    def repeats(self) -> bool:
-        """True if the last cycles are equal to rounding of the integration."""
+    def repeats(self) -> int:
+        """Crossings in a cycle of which the last ones are equal to rounding of the integration; or 0."""
         if len(self.crossings) <= _CYCLES:
-            return False
-        times, states = (np.array(of) for of in zip(*self.crossings[-_CYCLES - 1 :]))
-        sizes, periods = np.abs(states).max(axis=0), np.diff(times)
+            return 0
+        last = self.crossings[-_CYCLES * _MOST_CROSSINGS - 1 :]
+        times, states = (np.array(of) for of in zip(*last))
+        sizes = np.abs(states).max(axis=0)
         sizes[0] = max(sizes[0], self._length)
-        unchanged = np.ptp(states, axis=0) <= _SAME * sizes
-        return bool(unchanged.all() and np.ptp(periods) <= _SAME * periods.max())
+        for k in range(1, (len(times) - 1) // _CYCLES + 1):
+            ends = slice(-1 - _CYCLES * k, None, k)
+            unchanged, periods = np.ptp(states[ends], axis=0) <= _SAME * sizes, np.diff(times[ends])
+            if unchanged.all() and np.ptp(periods) <= _SAME * periods.max():
+                return k
+        return 0
+
+    @property
+    def slides_steadily(self) -> bool:
+        """True where the mass moves with the drive and goes on so: what is left of its swing falls."""
+        drive = self.slider.drive_speed
+        y = np.array([self.e, self.v, *self.z])
+        ω = np.sqrt(self.slider.stiffness / self.slider.mass)
+        if self.s != 1 or np.hypot(self.v - drive, self._acceleration(y) / ω) > _STEADY * drive:
+            return False
+        steps = _DIFFERENCE * np.diag([self._length, drive, *np.ones_like(self.z)])
+        J = [(self._rates(y + step) - self._rates(y - step)) / (2.0 * step.sum()) for step in steps]
+        λ = np.linalg.eigvals(np.array(J))
+        return bool((λ.real <= _GROWS * np.abs(λ)).all())
 
     def rows(self, piece: _Piece, since: NDArray) -> NDArray[np.float64]:
         """Position [m], velocity [m/s] and friction coefficient at times since a piece began, (n, 3)."""

@@ -350,7 +350,7 @@ class UniformHalfPlane(HalfPlane):
 
     def far(self, X: NDArray, Y: NDArray, terms: int = 1, datum: float = DATUM) -> NDArray[np.float64]:
         p, other = self.roots.each
-        z = X + p * np.minimum(Y, 0.0) - 0.0j
+        z = X + p * np.minimum(Y, 0.0)
         z = np.where(Y < 0.0, z, X + np.where(X < 0.0, -1e-300j, 0.0))
         step = (other - p) * Y / z
         # The argument goes from 0 ahead of the load to -π behind it; half of that is a translation.

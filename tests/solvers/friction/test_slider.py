@@ -5,7 +5,17 @@ import pytest
 from scipy.integrate import solve_ivp, trapezoid
 
 from galinx.solvers.friction import LAWS
-from galinx.solvers.friction.slider import SHORT, STAYS, STEADY, Slider, pull
+from galinx.solvers.friction.slider import (
+    SHORT,
+    STAYS,
+    STEADY,
+    STICK_SLIP,
+    Ride,
+    Slider,
+    _Motion,
+    _Piece,
+    pull,
+)
 from galinx.solvers.parameters import build_model
 
 CURVE = {"mu_c": 1.0, "mu_s": 1.5, "stribeck_velocity": 1e-3}
@@ -74,6 +84,37 @@ ROCK = {"reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01, "b": 0.01
 )  # fmt: skip
 def test_creeping_sliders_are_followed_to_their_end(law, load, slider, said):
     assert pull(slider, law, load).outcome == said
+
+
+def test_a_cycle_with_two_slips_ends_where_the_first_one_comes_back():
+    """The spring says which slip is like which: it gets longer by the drive less the slip."""
+    T, V, end = 2.0, 0.1, 13.0
+    motion = _Motion(Slider(1.0, 2.0, 0.0, V, end), of("dahl", mu_c=0.5, sigma0_over_load=50.0), 1.0)
+    t, ω = np.linspace(0.0, end, 4001), 2.0 * np.pi / T * np.array([[1.0], [2.0]])
+
+    def moved(t):  # v - V = V [sin ωt + 2 sin 2ωt], which rises through 0 twice a period
+        (e1, e2), (v1, v2) = V / ω * (np.cos(ω * t) - 1.0), V * np.sin(ω * t)
+        return np.vstack([e1 + 2.0 * e2, V + v1 + 2.0 * v2, 0.0 * t])
+
+    motion.pieces = [_Piece(0.0, end, 1, t, moved)]
+    rises = np.sort(np.append(np.arange(1.0, 7.0) * T, np.arange(0.0, 6.0) * T + T / 2.0))
+    motion.crossings = [(at, moved(np.array([at]))[[0, 2], 0]) for at in rises.tolist()]
+    ride = Ride(motion)
+    np.testing.assert_allclose([ride.period, ride.slip], [T, V * T], rtol=1e-12)
+    assert ride.peak == pytest.approx(ride.v.max(), rel=1e-4) and ride.outcome == STICK_SLIP
+    motion.crossings = motion.crossings[:2]  # one of each
+    assert np.isnan(Ride(motion).period) and Ride(motion).outcome == SHORT
+
+
+#: A LuGre slider whose steady sliding is unstable: it grows by e within 0.6 s, and sticks after 16 s.
+RINGS = of("lugre", mu_c=1.0, mu_s=1.5, stribeck_velocity=1e-3, sigma0_over_load=1e5,
+           sigma1_over_load=100.0, sigma2_over_load=0.4)  # fmt: skip
+
+
+@pytest.mark.parametrize("end", [9.0, 12.0])
+def test_a_swing_that_grows_is_neither_steady_nor_a_cycle(end):
+    ride = pull(Slider(1.0, 2000.0, 0.0, 1e-4, end), RINGS, 1.0)
+    assert ride.outcome == SHORT and np.isnan(ride.period)
 
 
 ELEMENTS = ((300.0, 0.3), (100.0, 0.3))
@@ -145,6 +186,8 @@ def test_every_slip_has_its_peak_among_the_times_of_slips():
     assert len(tops) == int((end - ride.crossings[0]) / ride.period) + 1
     np.testing.assert_allclose(v[tops], ride.peak, rtol=1e-6)
     np.testing.assert_allclose(np.diff(times[tops]), ride.period, rtol=1e-5)
+    few = ride.slips(end, 4 * len(tops))
+    assert set(times[tops]) <= set(few)
     few = ride.slips(end, 500)
     assert 250 < len(few) <= 500 and set(few) <= set(times)
 

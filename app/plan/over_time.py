@@ -31,6 +31,9 @@ from ..scene.scene import Scene
 from ..scene.sections import Time
 from .states import States, headings
 
+#: Least number of steps of a stroke, and of a motion whose step is not given.
+_LEAST_STEPS = 12
+
 
 def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     """Steps of the punch at a speed over c_s, at most so long, up to the motion's end.
@@ -43,12 +46,12 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     """
     assert scene.time
     end, every, t = scene.time.end, scene.time.every, 0.0
-    strokes = [(1, [end], largest)]
+    strokes = [(1, [end], largest if scene.time.step else min(largest, end / _LEAST_STEPS))]
     if scene.time.by_law:
         strokes = []
         for direction, legs in groupby(scene.legs, lambda leg: leg.s * scene.legs[0].s):
             durations = _durations(scene, legs, c)
-            strokes.append((direction, durations, min(largest, min(durations) / 12)))  # steps, at least
+            strokes.append((direction, durations, min(largest, min(durations) / _LEAST_STEPS)))
     ways: list[Way] = []
     for direction, durations, longest in strokes:
         # A step less than a millionth of a stroke is rounding.

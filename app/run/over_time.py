@@ -111,15 +111,20 @@ def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.flo
     return np.array([punch.β - punch.α for punch in punches])[which]
 
 
+#: Least number of steps of the quadrature.
+_LEAST_STEPS = 24
+
+
 def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:
     """Motions at a speed up to the first turn, NaN after it."""
     first, response, drives = starts.ways[0], starts.response(c), starts.drives[c]
     shortest = min(starts.shortest, *(drive.shortest for drive in drives))
     # At a tolerance of 1e-3 steps of the quadrature, of order five, are at most 0.5 a/c_s, and 6 in which
-    # the load comes on; and there are 24 polynomials, 8 more at each tenth of it.
+    # the load comes on; and there are 24 polynomials, 8 more at each tenth of it. Works are sums
+    # over all steps.
     tolerance = starts.scene.solve.tolerance
     largest = min(0.5, shortest / 6) * min(tolerance / 1e-3, 1.0) ** 0.2
-    finer = int(np.ceil(first.h / largest - 1e-9))
+    finer = int(np.ceil(max(first.h / largest - 1e-9, _LEAST_STEPS / first.steps)))
     terms = 24 + round(8 * max(-3.0 - np.log10(tolerance), 0.0))
     surface, alone = bool(starts.time.every), starts.methods == (SIE,)
 

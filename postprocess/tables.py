@@ -167,11 +167,10 @@ def _nth(n: int) -> Callable[[Any, Any], Any]:
 
 
 def _where_tension(values: Any, data: Mapping[str, Any]) -> Any:
-    """Values of the largest σ_XX, NaN where it is below 0 and largest at the end of what is output."""
-    largest, place = (preferred(data, rows) for rows in (stresses.HIGHEST, stresses.HIGHEST_X))
-    assert largest and place
-    none = (np.abs(data[place.path]) >= stresses.FARTHEST) & (data[largest.path] < 0.0)
-    return np.where(none, np.nan, values)
+    """Values of the largest σ_XX, NaN where it is below 0."""
+    largest = preferred(data, stresses.HIGHEST)
+    assert largest
+    return np.where(data[largest.path] < 0.0, np.nan, values)
 
 
 #: What says where answers hold, and more of yield, in a table of its own.

@@ -452,7 +452,7 @@ _PLACES = {
 def make_plan(
     scene: Scene,
     done: Callable[[int, int], None] = lambda laws, of: None,
-    along: np.ndarray | None = None,
+    at: tuple[np.ndarray, np.ndarray] | None = None,
     first: tuple[int, int] = (0, 0),
 ) -> Plan:
     """Plan of a scene's work; none of it is done yet but friction, where the plan depends on that.
@@ -460,7 +460,7 @@ def make_plan(
     Args:
         scene: the scene, the first variant of one with swept numbers.
         done: called with the number of laws whose friction is computed, and with that of all laws.
-        along: positions X/a along interfaces, (places,); None for those that suit the scene.
+        at: positions X/a on the surface and along interfaces; None for those that suit the scene.
         first: numbers of its first state and of its first speed in the archive.
 
     Raises:
@@ -474,8 +474,8 @@ def make_plan(
     around = body.yield_places if YIELD in scene.output.quantities else np.empty((0, 2))
     points = np.reshape(scene.output.inside, (-1, 2))
     depths = body.solid.depths / body.half_width if scene.layers else np.empty(0)
-    along = positions_along([scene]) if along is None else along
-    places = Places(surface_grid(), points, around, depths, along)
+    X, along = at or positions([scene])
+    places = Places(X, points, around, depths, along)
     for fault in _faults(scene, methods, places, {name: refusals[name] for name in named}):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
@@ -580,35 +580,48 @@ def _skipped(scene: Scene, contact: bool, words: Collection[str]) -> Iterator[st
         )
 
 
-def surface_grid() -> np.ndarray:
-    """Positions X/a of archived surface stresses, clustered at ±1, without ±1 itself."""
+#: Reach of positions over the length in which layers bend: largest stresses are within half of it.
+_BENT = 12.0
+
+
+def surface_grid(farthest: float = stresses.FARTHEST, kinks: Sequence[float] = ()) -> np.ndarray:
+    """Positions X/a of archived surface stresses, clustered at ±1, without ±1 itself, and at kinks."""
     near = np.geomspace(1e-6, 0.1, 31)
     inside = np.concatenate([1.0 - near, np.linspace(0.0, 0.88, 23)])
     outside = 1.0 + np.concatenate([near, np.geomspace(0.1, stresses.FARTHEST - 1.0, 25)[1:]])
-    right = np.concatenate([inside, outside])
-    return np.unique(np.concatenate([-right, right]))
+    right = np.concatenate([inside, outside, _beyond(farthest, 8)])
+    beside = np.add.outer(kinks, np.concatenate([-near[15:], near[15:]])).ravel()
+    return np.unique(np.concatenate([-right, right, beside[np.abs(beside) < 0.9]]))
 
 
-def positions_along(scenes: Sequence[Scene]) -> np.ndarray:
-    """Positions X/a along interfaces that suit all states of some scenes, (places,).
+def _beyond(farthest: float, per_octave: int) -> np.ndarray:
+    """Positions from ``FARTHEST``, which is left out, to the farthest."""
+    count = int(np.ceil(per_octave * np.log2(farthest / stresses.FARTHEST))) + 1
+    return np.geomspace(stresses.FARTHEST, farthest, count)[1:]
 
-    They are as fine below the edges as these are near, and reach so far that a largest stress behind the
-    punch is among them.
+
+def positions(scenes: Sequence[Scene]) -> tuple[np.ndarray, np.ndarray]:
+    """Positions X/a on the surface and along interfaces that suit all states of some scenes.
+
+    Below edges those along interfaces are as fine as these are near. Layers that are stiffer than what is
+    below them bend far beyond the contact, and are stretched there.
     """
+    kinks = {kink for scene in scenes for kink in scene.body.friction_kinks}
     if not scenes[0].layers:
-        return np.empty(0)
+        return surface_grid(kinks=sorted(kinks)), np.empty(0)
     each = np.array([_depths(scene) for scene in scenes])
+    bent = [_BENT * scene.solid.bending / scene.solid.depths[-1] for scene in scenes]
+    reach = max(stresses.FARTHEST, *(bent * each[:, 1, -1]))
     near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
-    seen = stresses.FARTHEST
-    far = np.geomspace(seen, max(40.0, seen * each.max()), 49)  # beyond these stresses only fall
+    seen, far = stresses.FARTHEST, _beyond(max(40.0, reach), 16)
     X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
-    return np.unique(np.round(X, 9))
+    return surface_grid(reach, sorted(kinks)), np.unique(np.round(X, 9))
 
 
 def _depths(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Least and largest depths of interfaces over the half-widths of a scene's contacts, (layers,)."""
     widths = [scene.body.half_width]
-    if AT_INTERFACES in scene.output.quantities:
+    if {AT_INTERFACES, stresses.ON_SURFACE} & {*scene.output.quantities}:
         widths = scene.body.bounds_on_half_widths(scene.punch.loads, order(scene).speeds)
     return scene.solid.depths / max(widths), scene.solid.depths / min(widths)

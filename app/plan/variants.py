@@ -17,7 +17,7 @@ from galinx.texts import counted
 from ..errors import BadInput, listed
 from ..scene.scene import Scene
 from .elements import lacking
-from .plan import FRICTION, Plan, lines, make_plan, positions_along
+from .plan import FRICTION, Plan, lines, make_plan, positions
 from .states import States, order
 
 
@@ -37,10 +37,10 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
             f"the scene's lists multiply to {states:.3g} states, whose friction needs {lack}: shorten "
             "them, or make several scenes"
         )
-    plans, along, first = list[Plan](), positions_along(scene.each), (0, 0)
+    plans, at, first = list[Plan](), positions(scene.each), (0, 0)
     for variant in scene.each:
         try:
-            plans.append(plan := make_plan(variant, done, along, first))
+            plans.append(plan := make_plan(variant, done, at, first))
         except BadInput as error:
             raise BadInput(f"with {variant.variant}: {error}" if variant.swept else str(error)) from None
         first = first[0] + plan.states, first[1] + len(plan.order.speeds)

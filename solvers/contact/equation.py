@@ -580,11 +580,11 @@ class LayersUnderPunch:
         """The kernel with lengths over the shared unit."""
         return self._kernels[-1]
 
-    def scaled(self, h: float) -> Any:
-        """The kernel of a contact of the half-width h; a longer table is made where one is needed."""
+    def scaled(self, h: float, reach: float = REACH) -> Any:
+        """The kernel of a contact of the half-width h, up to a distance over h at least."""
         if not self.stack:
             return UNIFORM
-        if (needed := REACH * h) > self.kernel.reach:
+        if (needed := max(reach, REACH) * h) > self.kernel.reach:
             self._kernels.append(replace(self.kernel, reach=_KERNEL_MARGIN * needed))
         return Scaled(self.kernel, h)
 

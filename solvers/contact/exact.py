@@ -164,6 +164,20 @@ class ExactSolution(Solution):
     def _turns(self) -> Turns | None:
         return _turns_of(self.contacts)
 
+    def in_plane_at(self, state: int, X: NDArray) -> NDArray[np.float64]:
+        """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
+        return np.asarray(self._alone(state).surface(X)[0])
+
+    def _alone(self, state: int) -> Any:
+        """Group of one state, which was solved."""
+        number = np.arange(len(self._g))[self._rows][state]
+        (group,) = (group for group in self.contacts.groups if number in group.rows)
+        one = slice(0, 1)
+        return replace(
+            group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one],
+            centre=group.centre[one],
+        )  # fmt: skip
+
     @cached_property
     def inside(self) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points inside, (3, states, m)."""
@@ -299,8 +313,9 @@ class OnLayers(Group):
 
     def strain(self, r: NDArray) -> NDArray[np.float64]:
         name = "strain", r.tobytes()
+        reach = 1.0 + float(np.abs(r).max(initial=0.0))
         return self.pressure.read(
-            self, name, lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size), r)
+            self, name, lambda of: of.pressure.strain(of.g, self.layers.scaled(of.size, reach), r)
         )
 
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
@@ -515,16 +530,7 @@ class LayeredSolution(ExactSolution):
 
     def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""
-        return self._alone(state).at_interface(X, self._levels[interface])[:, 0]
-
-    def _alone(self, state: int) -> Any:
-        """Group of one state, which was solved."""
-        (group,) = (group for group in self.contacts.groups if state in group.rows)
-        one = slice(0, 1)
-        return replace(
-            group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one],
-            centre=group.centre[one],
-        )  # fmt: skip
+        return np.asarray(self._alone(state).at_interface(X, self._levels[interface])[:, 0])
 
     @property
     def interfaces(self) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ Lengths are over the contact's half-width a, stresses over N/(2a), N the load pe
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
@@ -22,7 +22,7 @@ from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
 from .extremes import extreme
 from .prescribed_pressure import LinearPressure
-from .stresses import Places, distances, extreme_in_plane
+from .stresses import Places, at_and_between, distances, extreme_in_plane
 from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
@@ -642,6 +642,7 @@ class Solution:
             a uniform solid; over layers ``inside_of`` a state's number at points (n, 2), (3, n).
         interfaces: σ_YY, σ_XY, σ_XX above and below every interface, (4, states, interfaces, n); also
             ``at_interface`` by numbers of a state and an interface at positions X (n,), (4, n).
+        in_plane_at: in-plane stress at positions X on the surface (n,) by a state's number, (1, n).
         kinks: positions over a at which each state's pressure is not smooth, (k,) each.
         yield_turns: limits of stresses where they vary like a power of the distance; None for none.
         nearest: least distance over a from these at which ``stresses`` are accurate.
@@ -664,6 +665,19 @@ class Solution:
     def strength(self) -> Any:
         """Yield of the states."""
         return self.body.strength(self)
+
+    @cached_property
+    def between_kinks_of_friction(self) -> NDArray[np.float64] | None:
+        """As :attr:`.stresses.Turns.between`, by places of each state's own; None without such kinks."""
+        found, ends = np.full((2, 2, len(self.g)), np.nan), self.body.infinite_ends(self.local)
+        for state, (g, a) in enumerate(zip(self.g.tolist(), self.half_width.tolist())):
+            bends = () if np.isnan(a) else self.body.friction(g, a).kinks
+            if bends:
+                turns = np.unique([-1.0, *bends, 1.0])
+                infinite = [ends[state, 0], *[False] * (len(turns) - 2), ends[state, 1]]
+                _, between = at_and_between(turns, partial(self.in_plane_at, state), infinite)
+                found[..., state] = between[..., 0]
+        return None if np.isnan(found).all() else found
 
     @cached_property
     def extremes_in_plane(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:

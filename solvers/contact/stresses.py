@@ -390,8 +390,11 @@ def extreme_in_plane(
     curves = counted(surface.places.X, surface.σ_XX)
     samples = curves.max(axis=1)[:, None], surface.places.X[curves.argmax(axis=1)][:, None]
     candidates = [(counted(turns.X, turns.σ[0]), turns.X), samples]
-    if turns.between is not None:
-        X, σ = turns.between[:, int(sign < 0.0), :, None]
+    between = solution.between_kinks_of_friction
+    if between is None:
+        between = turns.between
+    if between is not None:
+        X, σ = between[:, int(sign < 0.0), :, None]
         candidates.append((counted(X, σ), X))
         curves = np.where(np.isfinite(σ) & surface.places.under, -np.inf, curves)
     candidates.append(on_surface(surface.places.X, curves, turns))

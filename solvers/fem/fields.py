@@ -308,6 +308,10 @@ class Displacement:
         """Strain μ u,X of the first field over N/(2a) at positions on the surface, (n,)."""
         return surface_slopes(self._space, self._fields[:1], X).of(np.ones((1, 1)))[0][0]
 
+    def strains(self, X: NDArray, weights: NDArray) -> NDArray[np.float64]:
+        """Strain μ u,X over N/(2a) at X on the surface, by weights (states, fields): (states, n)."""
+        return surface_slopes(self._space, self._fields, X).of(weights)[0]
+
     @cached_property
     def _values(self) -> KeptValues:
         return KeptValues(self._space, self._task.response, self._fields)

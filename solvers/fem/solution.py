@@ -249,6 +249,16 @@ class Solution(solution.Solution):
         states, row = self._of(state)
         return states.at(points[None], [row])[:, 0]
 
+    def in_plane_at(self, state: int, X: NDArray) -> NDArray[np.float64]:
+        """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
+        states, row = self._of(state)
+        u_X = states.displacement.strains(X, states.contact.weights[[row]])
+        σ_YY, ratio = (
+            np.broadcast_to(of, (len(states.contact.g), len(X)))[[row]]
+            for of in (states.pressure.σ_YY(X), states.ratio(X))
+        )
+        return self.task.response.σ_XX(u_X, σ_YY, ratio * σ_YY)
+
     def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""
         states, row = self._of(state)

@@ -386,6 +386,17 @@ class Layered(Composite):
         return layer.at(((depth - top) / layer.thickness) ** layer.power)
 
     @property
+    def bending(self) -> float:
+        """Length in which layers that are stiffer than what is below them bend [m].
+
+        A plate of the thickness H and the modulus E on a half-plane of E₀ bends in H (E/(6 E₀))^⅓; the
+        plate is as thick as all layers here, and as stiff as any over what is the softest below it.
+        """
+        stiffness = np.array([solid.μ / solid.response(0.0).n for solid in self.solids])
+        softest = np.minimum.accumulate(stiffness[::-1])[::-1]
+        return float(self.depths[-1] * (np.max(stiffness / softest) / 6.0) ** (1.0 / 3.0))
+
+    @property
     def changes(self) -> tuple[float, ...]:
         """Length in which each layer's modulus changes by its own amount [m], infinite where uniform."""
         lengths = []

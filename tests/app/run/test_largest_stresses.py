@@ -1,5 +1,6 @@
 """Largest stresses of both methods, against samples of the closed form that know nothing of a search."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -8,6 +9,7 @@ from loaded import LoadedHalfPlane
 from support import THOROUGH, computed, of_sections
 
 import galinx
+from galinx.app.plan.plan import surface_grid
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.stresses import maximum_shear, von_mises
@@ -218,7 +220,7 @@ def test_stresses_by_the_integral_equation_are_largest_where_samples_are(layered
     found = galinx.compute(scene).data
     near = np.logspace(-6.0, 0.0, 1500)
     X = np.unique(np.concatenate([near - 1.0, 1.0 - near]))
-    monkeypatch.setattr("galinx.app.plan.plan.surface_grid", lambda: X)
+    monkeypatch.setattr("galinx.app.plan.plan.surface_grid", lambda **of: X)
     sampled = galinx.compute(scene).data["surface/sie/sigma_XX"]
     size = np.abs(sampled).max()
     for name, sign in (("sigma_XX_min", -1.0), ("sigma_XX_max", 1.0)):
@@ -264,13 +266,69 @@ def test_stresses_along_a_thin_film_are_largest_where_close_positions_say(text, 
     data = computed(text).data
     near = np.add.outer([-1.0, 0.0, 1.0], np.linspace(-0.1, 0.1, 201))
     close = np.union1d(data["interfaces/X_over_a"], [*near.flat, *np.linspace(-1.1, 1.1, 601)])
-    monkeypatch.setattr("galinx.app.plan.variants.positions_along", lambda scenes: close)
+    monkeypatch.setattr("galinx.app.plan.variants.positions", lambda scenes: (surface_grid(), close))
     finer = computed(text).data
     for name in ("sigma_YY", "sigma_XY", "sigma_XX_above", "sigma_XX_below"):
         curve = finer[f"interfaces/sie/{name}"][-1, 0]
         for end, value in (("max", curve.max()), ("min", curve.min())):
             largest = data[f"interfaces/sie/{name}_{end}"][-1, 0]
             assert largest == pytest.approx(value, abs=2e-4 * np.abs(curve).max())
+
+
+@pytest.mark.parametrize("method", ["sie", "fem"])
+def test_a_stiff_plate_is_stretched_most_far_beside_the_contact(method, monkeypatch):
+    """Alumina on acrylic glass bends: tension and lift were sought within five half-widths only."""
+    scene = (
+        """
+        [solid]
+        material = "PMMA"
+        [[layer]]
+        material = "Al2O3"
+        thickness = "0.5 mm"
+        [punch]
+        profile = "parabolic"
+        radius = "50 mm"
+        load = "100 N/mm"
+        [friction]
+        mu = 0.02
+        [motion]
+        c = 0.0
+        [output]
+        quantities = ["surface", "interfaces"]
+        [solve]
+        tolerance = 1e-5
+        """
+        + f'methods = ["{method}"]'
+    )
+    data = computed(scene).data
+    X = np.union1d(surface_grid(), np.linspace(-60.05, 60.05, 1201))
+    monkeypatch.setattr("galinx.app.plan.variants.positions", lambda scenes: (X, X))
+    sampled = computed(scene).data
+    size = np.abs(sampled[f"surface/{method}/sigma_XX"]).max()
+    highest = sampled[f"surface/{method}/sigma_XX"].max()
+    assert highest > 0.05 * size
+    assert data[f"states/{method}/sigma_XX_max"][0] == pytest.approx(highest, abs=1e-5 * size)
+    lift = sampled[f"interfaces/{method}/sigma_YY"].max()
+    assert data[f"interfaces/{method}/sigma_YY_max"][0, 0] == pytest.approx(lift, rel=2e-3)
+
+
+@pytest.mark.parametrize("profile", ["flat", "parabolic"])
+def test_the_largest_tension_at_a_step_of_friction_is_between_its_places(profile, monkeypatch):
+    step = [[-1.0, 0.1], [0.33, 0.1], [0.34, 0.9], [1.0, 0.9]]
+    punch = {"half_width": 1e-4} if profile == "flat" else {"profile": profile, "radius": 5e-3}
+    scene = of_sections(
+        solid={"material": "steel"}, punch=punch | {"load": 5e4}, friction={"along": step},
+        motion={"c": 0.3}, output={"quantities": ["surface"]}, solve={"tolerance": 1e-4},
+    )  # fmt: skip
+    scene = replace(scene, solve=replace(scene.solve, methods=("closed_form", "sie")))
+    data = galinx.compute(scene).data
+    method = "closed_form" if profile == "flat" else "sie"
+    X = np.union1d(np.linspace(0.32, 0.35, 3001), surface_grid())
+    monkeypatch.setattr("galinx.app.plan.variants.positions", lambda scenes: (X, np.empty(0)))
+    sampled = galinx.compute(scene).data[f"surface/{method}/sigma_XX"]
+    highest = sampled[0, (np.abs(X) < 0.99) | (np.abs(X) > 1.01)].max()
+    assert data[f"states/{method}/sigma_XX_max"][0] == pytest.approx(highest, rel=1e-3)
+    assert abs(data[f"states/{method}/sigma_XX_max_X_over_a"][0] - 0.335) < 6e-3
 
 
 def test_the_largest_tension_at_a_free_end_is_in_the_estimate():

@@ -220,7 +220,7 @@ def test_stresses_by_the_integral_equation_are_largest_where_samples_are(layered
     found = galinx.compute(scene).data
     near = np.logspace(-6.0, 0.0, 1500)
     X = np.unique(np.concatenate([near - 1.0, 1.0 - near]))
-    monkeypatch.setattr("galinx.app.plan.plan.surface_grid", lambda **of: X)
+    monkeypatch.setattr("galinx.app.plan.plan.surface_grid", lambda *_, **kinks: X)
     sampled = galinx.compute(scene).data["surface/sie/sigma_XX"]
     size = np.abs(sampled).max()
     for name, sign in (("sigma_XX_min", -1.0), ("sigma_XX_max", 1.0)):

@@ -10,12 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import runs, states
-from galinx.postprocess.tables import LIMIT, Column, Sheet, parameters, state_columns
+from galinx.postprocess.tables import (
+    LIMIT,
+    Column,
+    Sheet,
+    parameters,
+    sliders_sheet,
+    starts_sheet,
+    state_columns,
+)
 from galinx.postprocess.units import Units
 
 from ..errors import BadInput, listed, short
 from ..scene.changes import differences
 from .result import Result
+
+#: Difference [%] that rounding may make.
+_ROUNDING = 1e-9
 
 
 class Comparison:
@@ -150,9 +161,14 @@ class Comparison:
                 row = [f"{'  ' * column.place}{column.label}", cells[0]]
                 for cell, percent in zip(cells[1:], percents):
                     off = np.nan if percent is None else percent[p]
-                    row += [cell, "" if np.isnan(off) else f"{off:+.3g}" if off else "0"]
+                    words = f"{off:+.3g}" if abs(off) >= _ROUNDING else "0"
+                    row += [cell, "" if np.isnan(off) else words]
                 rows.append(row)
             yield Sheet(title, ["", *heads], rows)
+        for result, units, label in zip(self.results, self.units, self.labels):
+            for made in (sliders_sheet(result.data, units), starts_sheet(result.data, units)):
+                if made.rows:
+                    yield replace(made, title=f"{made.title}: {label}")
 
     def notes(self) -> Iterator[str]:
         """In what the scenes differ, how states are paired, and what differences are."""

@@ -86,7 +86,9 @@ class StribeckCurve(FrictionLaw):
 
     def g(self, V: float) -> NDArray[np.float64]:
         """Coefficient of steady sliding at a speed [m/s], without viscous friction."""
-        return self.μ_C + (self.μ_S - self.μ_C) * np.exp(-np.power(V / self.v_S, self.j))
+        with np.errstate(over="ignore"):  # a steep curve's power is infinite beyond v_S
+            share = np.exp(-np.power(V / self.v_S, self.j))
+        return self.μ_C + (self.μ_S - self.μ_C) * share
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -164,6 +164,18 @@ def test_what_is_not_needed_stands_beside_what_is_measured(table):
     assert fitted.read(table(text)).measured.f.tolist() == f.tolist()
 
 
+def test_motions_of_sliders_stand_below_each_other():
+    light, stiff = (
+        computed("slider", {"slider.duration": "1 s", "slider.stiffness": k, "title": k})
+        for k in ("2 N/m^2", "4 N/m^2")
+    )
+    *_, first, second = Comparison([light, stiff]).sheets()
+    assert [sheet.title for sheet in (first, second)] == [
+        "Motion of the slider: 2 N/m^2", "Motion of the slider: 4 N/m^2",
+    ]  # fmt: skip
+    assert "does not break away" in first.rows[0]
+
+
 def test_words_of_yield_have_no_difference_from_a_share():
     """A flat punch yields at its edges at any load, a cylinder from a share of its strength on."""
     steel = PLAIN | {"solid.yield_strength": "500 MPa", "output.quantities": ["yield"]}

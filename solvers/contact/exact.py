@@ -168,6 +168,15 @@ class ExactSolution(Solution):
         """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
         return np.asarray(self._alone(state).surface(X)[0])
 
+    @property
+    def kinks(self) -> list[Sequence[float] | NDArray]:
+        """Positions over a at which each state's pressure is not smooth."""
+        each: list[Sequence[float] | NDArray] = [()] * len(self._g)
+        for group in self.contacts.groups:
+            for row in group.rows.tolist():
+                each[row] = group.pressure.kinks
+        return [each[row] for row in np.arange(len(self._g))[self._rows].tolist()]
+
     def _alone(self, state: int) -> Any:
         """Group of one state, which was solved."""
         number = np.arange(len(self._g))[self._rows][state]
@@ -518,15 +527,6 @@ class LayeredSolution(ExactSolution):
         assert layers.stack
         depths = layers.stack.depths[: len(self.places.interfaces)].tolist()
         return [layers.level(depth, self._widest * reach) for depth in depths]
-
-    @property
-    def kinks(self) -> list[Sequence[float] | NDArray]:
-        """Positions over a at which each state's pressure is not smooth."""
-        each: list[Sequence[float] | NDArray] = [()] * len(self.g)
-        for group in self.contacts.groups:
-            for row in group.rows.tolist():
-                each[row] = group.pressure.kinks
-        return each
 
     def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""

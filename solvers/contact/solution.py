@@ -7,7 +7,7 @@ Lengths are over the contact's half-width a, stresses over N/(2a), N the load pe
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
@@ -22,7 +22,7 @@ from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
 from .extremes import extreme
 from .prescribed_pressure import LinearPressure
-from .stresses import Places, at_and_between, distances, extreme_in_plane
+from .stresses import Places, at_and_between, distances, extreme_in_plane, off_tips
 from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
@@ -626,6 +626,10 @@ def solved_once(
     return different, None, rows, growth
 
 
+#: Distance over a up to which two kinks are one.
+_COINCIDE = 1e-9
+
+
 class Solution:
     """Friction states at one speed, from any method; an attribute is computed when it is first used.
 
@@ -672,11 +676,18 @@ class Solution:
         found, ends = np.full((2, 2, len(self.g)), np.nan), self.body.infinite_ends(self.local)
         for state, (g, a) in enumerate(zip(self.g.tolist(), self.half_width.tolist())):
             bends = () if np.isnan(a) else self.body.friction(g, a).kinks
-            if bends:
-                turns = np.unique([-1.0, *bends, 1.0])
-                infinite = [ends[state, 0], *[False] * (len(turns) - 2), ends[state, 1]]
-                _, between = at_and_between(turns, partial(self.in_plane_at, state), infinite)
-                found[..., state] = between[..., 0]
+            if not bends:
+                continue
+            turns = np.unique([-1.0, *bends, *self.kinks[state], 1.0])
+            turns = turns[np.append(np.diff(turns) > _COINCIDE, True)]
+            infinite = [ends[state, 0], *[False] * (len(turns) - 2), ends[state, 1]]
+            tips = (np.array(self.body.tips) - self.centre[state]) / a
+
+            def in_plane(X: NDArray, state: int = state, tips: NDArray = tips) -> NDArray[np.float64]:
+                return np.where(off_tips(X, tips), self.in_plane_at(state, X), np.nan)
+
+            _, between = at_and_between(turns, in_plane, infinite)
+            found[..., state] = between[..., 0]
         return None if np.isnan(found).all() else found
 
     @cached_property

@@ -614,7 +614,7 @@ def positions(scenes: Sequence[Scene]) -> tuple[np.ndarray, np.ndarray]:
     reach = max(stresses.FARTHEST, *(bent * each[:, 1, -1]))
     near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
-    seen, far = stresses.FARTHEST, _beyond(max(40.0, reach), 16)
+    seen, far = stresses.FARTHEST, _beyond(max(40.0, stresses.FARTHEST * each.max(), reach), 16)
     X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
     return surface_grid(reach, sorted(kinks)), np.unique(np.round(X, 9))
 

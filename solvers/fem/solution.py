@@ -252,6 +252,7 @@ class Solution(solution.Solution):
     def in_plane_at(self, state: int, X: NDArray) -> NDArray[np.float64]:
         """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
         states, row = self._of(state)
+        X = np.where(np.abs(np.abs(X) - 1.0) < _AT_END, np.sign(X) * (1.0 - _AT_END), X)
         u_X = states.displacement.strains(X, states.contact.weights[[row]])
         σ_YY, ratio = (
             np.broadcast_to(of, (len(states.contact.g), len(X)))[[row]]

@@ -387,14 +387,15 @@ class Layered(Composite):
 
     @property
     def bending(self) -> float:
-        """Length in which layers that are stiffer than what is below them bend [m].
+        """Length in which layers that are stiffer than what is below them bend [m]; 0 for none.
 
-        A plate of the thickness H and the modulus E on a half-plane of E₀ bends in H (E/(6 E₀))^⅓; the
-        plate is as thick as all layers here, and as stiff as any over what is the softest below it.
+        A plate of the thickness H and the modulus E on a half-plane of E₀ bends in H (E/(6 E₀))^⅓, where
+        E - E₀ is what is more than the half-plane's own. The plate is as thick as all layers here, and as
+        stiff as any over what is the softest below it.
         """
         stiffness = np.array([solid.μ / solid.response(0.0).n for solid in self.solids])
         softest = np.minimum.accumulate(stiffness[::-1])[::-1]
-        return float(self.depths[-1] * (np.max(stiffness / softest) / 6.0) ** (1.0 / 3.0))
+        return float(self.depths[-1] * (np.max(stiffness / softest - 1.0) / 6.0) ** (1.0 / 3.0))
 
     @property
     def changes(self) -> tuple[float, ...]:

@@ -51,8 +51,9 @@ from .style import COLUMN, GREY, LINES, PAGE, Look, looks
 #: Curves that can be told apart in a panel, those that are each of several lines, columns of a page, and
 #: the least width for one [in].
 _CURVES, _FEW, _COLUMNS, _LEAST = 6, 4, 3, 2.0
-#: Positions shown of a stress all along the surface, and of one under the punch alone [a].
-_BESIDE, _UNDER = 2.0, 1.04
+#: Positions shown of a stress all along the surface, and of one under the punch alone [a]; those round
+#: the largest tension over its distance.
+_BESIDE, _UNDER, _ROUND = 2.0, 1.04, 1.5
 
 #: Stresses that are shown by default along the surface: what axes call them, and their sign.
 SHOWN = {
@@ -145,6 +146,15 @@ class Shown(NamedTuple):
     width: float = 1.0
 
 
+def _needed(X: NDArray, values: NDArray) -> float:
+    """Half the width over a of a panel that shows a contact, and the largest tension beside it."""
+    beside = np.where(under_punch(X), np.nan, values)
+    if np.isnan(beside).all():
+        return _UNDER
+    far = np.abs(X[np.nanargmax(beside)])  # a stiff plate bends: the tension of its surface is there
+    return max(_BESIDE, _ROUND * far) if np.nanmax(beside) > 0.0 else _BESIDE
+
+
 def surface_panel(
     shown: Sequence[Shown], ylim: tuple[float, float] | None = None, **options: Any
 ) -> Panel:
@@ -159,7 +169,7 @@ def surface_panel(
     for k, (along, row, look, label, width) in enumerate(shown):
         X, values = along.X, {method: y[row] for method, y in along.values.items()}
         every = np.array(list(values.values()))
-        own = along.half or (_UNDER if np.isnan(every[:, ~under_punch(X)]).all() else _BESIDE)
+        own = along.half or _needed(X, every[0])
         half, inside = max(half, own), np.abs(X) <= own
         ranges.append(limits(X, every[:1]))
         places.append(along.places[row])
@@ -176,7 +186,7 @@ def surface_panel(
             curves.append(replace(curve, x=b + a * x, y=y, width=thin))
     low, high = np.array(ranges).T
     ends = sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
-    same = half == _BESIDE and np.allclose(ends, ends[0], rtol=1e-9)
+    same = half >= _BESIDE and np.allclose(ends, ends[0], rtol=1e-9)
     panel = Panel(
         shown[0].along.position, shown[0].along.axis, curves=curves,
         xlim=(min(b - half * a for a, b in places), max(b + half * a for a, b in places)),

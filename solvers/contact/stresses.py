@@ -131,13 +131,14 @@ class Surface:
 
 
 def flatness(surface: Any) -> NDArray[np.float64]:
-    """Largest |v,X| for |X| <= 0.9a over the largest for |X| >= 1.1a, dimensionless, (states,).
+    """Largest |v,X| for |X| <= 0.9a over the largest for 1.1a <= |X| <= 5a, dimensionless, (states,).
 
     Args:
         surface: of finite elements, :class:`galinx.solvers.contact.solution.Surface`.
     """
     X = np.abs(surface.places.X)
-    under, beside = (np.abs(surface.v_X[:, part]).max(axis=1) for part in (X <= 0.9, X >= 1.1))
+    parts = X <= 0.9, (X >= 1.1) & (X <= 5.0)
+    under, beside = (np.abs(surface.v_X[:, part]).max(axis=1) for part in parts)
     return under / beside
 
 

@@ -7,6 +7,8 @@ from support import computed
 
 from galinx.app.figures import waves
 from galinx.app.figures.choice import size
+from galinx.app.figures.stresses import Along, Shown, surface_panel
+from galinx.app.figures.style import looks
 
 MAP = {"output.map": {"X": [-2.0, 2.0, 21], "Y": [-2.0, -0.1, 20]}}
 QUANTITIES = {"output.quantities": ["sif", "surface", "interfaces", "interior"]}
@@ -115,3 +117,13 @@ def test_curves_that_do_not_depend_on_what_is_swept_stand_once():
         drawing = drawn(result, name)
         assert "the same for every" in drawing.caption and "3 of 6 states" in drawing.left_out
         assert not any("Y" in panel.title for panel in drawing.figure.panels)
+
+
+@pytest.mark.parametrize("peak, half", [(20.0, 30.0), (1.0, 2.0), (np.nan, 1.04)])
+def test_a_panel_reaches_beyond_the_largest_tension_beside_the_contact(peak, half):
+    """Which a stiff plate has many half-widths away; a pressure has none there."""
+    X = np.concatenate([np.linspace(-0.9, 0.9, 19), np.linspace(1.0, 40.0, 79)])
+    X = np.union1d(-X, X)
+    σ = np.where(np.abs(X) < 1.0, -1.0, 0.1 - 0.01 * np.abs(np.abs(X) - peak))
+    panel = surface_panel([Shown(Along(X, "", {"sie": σ[None]}, [(1.0, 0.0)]), 0, *looks(1))])
+    assert panel.xlim == (-half, half)

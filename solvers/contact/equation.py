@@ -366,13 +366,13 @@ def converged(
             if error <= allowed:
                 return replace(now, before=before.pressure, change=error)
         before = now
-    short, units = "friction varies much over the contact's width", ""
+    reasons, units = ["friction varies much over the contact's width"] * equation.friction.varies, ""
     if equation.kernel is not UNIFORM:
-        short = "the uppermost layer is very thin beside the contact's width"
+        reasons.append("the uppermost layer is very thin beside the contact's width")
         units = ", and look at the units of the punch and the layers"
     raise SolveError(
         f"with the most unknowns the pressure still changes by {error:.2g}, expected {allowed:.2g}: "
-        f"{short}; take a larger tolerance{units}"
+        f"{', or '.join(reasons)}; take a larger tolerance{units}"
     )
 
 

@@ -112,7 +112,7 @@ def _steady_centres(starts: Starts, c: float, ratios: NDArray) -> NDArray[np.flo
 
 
 #: Least number of steps of the quadrature.
-_LEAST_STEPS = 24
+_LEAST_STEPS = 8
 
 
 def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets]:

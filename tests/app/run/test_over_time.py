@@ -26,13 +26,13 @@ def test_works_of_a_short_motion_are_integrals_of_its_load_and_indentation(step)
     """Few times are archived of it, but works are sums over more: they were 5 % off."""
     short = {"time.end": 0.5, "solve.methods": ["sie"], "solve.tolerance": 1e-2}
     few = computed("start_from_rest", short | ({"time.step": step} if step else {})).data
-    many = computed("start_from_rest", short | {"time.step": 1e-2}).data
+    many = computed("start_from_rest", short | {"time.step": 0.05}).data
     for name in ("work_of_load", "work_of_friction"):
         path = f"time/sie/{name}"
         np.testing.assert_allclose(few[path][:, -1], many[path][:, -1], rtol=1e-4)
     N, v0 = many["time/load"], many["time/sie/v0"][0]
     work = np.trapz(N, v0) * 2.0
-    assert many["time/sie/work_of_load"][0, -1] == pytest.approx(work, rel=1e-2)
+    assert many["time/sie/work_of_load"][0, -1] == pytest.approx(work, rel=3e-2)
 
 
 def test_a_start_is_archived_judged_and_drawn(tmp_path):

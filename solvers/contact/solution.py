@@ -673,12 +673,15 @@ class Solution:
     @cached_property
     def between_kinks_of_friction(self) -> NDArray[np.float64] | None:
         """As :attr:`.stresses.Turns.between`, by places of each state's own; None without such kinks."""
+        if not self.body.along:
+            return None
         found, ends = np.full((2, 2, len(self.g)), np.nan), self.body.infinite_ends(self.local)
+        kinks_of_pressures = self.kinks
         for state, (g, a) in enumerate(zip(self.g.tolist(), self.half_width.tolist())):
             bends = () if np.isnan(a) else self.body.friction(g, a).kinks
             if not bends:
                 continue
-            turns = np.unique([-1.0, *bends, *self.kinks[state], 1.0])
+            turns = np.unique([-1.0, *bends, *kinks_of_pressures[state], 1.0])
             turns = turns[np.append(np.diff(turns) > _COINCIDE, True)]
             infinite = [ends[state, 0], *[False] * (len(turns) - 2), ends[state, 1]]
             tips = (np.array(self.body.tips) - self.centre[state]) / a

@@ -304,10 +304,6 @@ class Displacement:
         samples, of_samples = self._continuation(X)
         return surface_slopes(self._space, self._fields, samples).continued(of_samples)
 
-    def strain(self, X: NDArray) -> NDArray[np.float64]:
-        """Strain μ u,X of the first field over N/(2a) at positions on the surface, (n,)."""
-        return surface_slopes(self._space, self._fields[:1], X).of(np.ones((1, 1)))[0][0]
-
     def strains(self, X: NDArray, weights: NDArray) -> NDArray[np.float64]:
         """Strain μ u,X over N/(2a) at X on the surface, by weights (states, fields): (states, n)."""
         return surface_slopes(self._space, self._fields, X).of(weights)[0]

@@ -349,16 +349,19 @@ class KinkedLevel(SplineLevel, SingleLevel):
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns:
         """Limits of stresses at both ends, and under kinks where they are finite."""
-        X, pressure, strain = self.base.kinks, states.pressure, states.displacement.strain
+        X, pressure = self.base.kinks, states.pressure
         σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+
+        def strain(r: NDArray) -> NDArray[np.float64]:
+            return states.displacement.strains(r, states.contact.weights)[0]
+
         u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
         response, σ_XY = states.task.response, states.ratio(X)[0] * σ_YY
         under = np.array([response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
         def in_plane(r: NDArray) -> NDArray[np.float64]:
-            r = np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS)  # at an end itself a slope has no digits
-            σ = pressure.σ_YY(r)
-            return np.atleast_2d(response.σ_XX(strain(r), σ, states.ratio(r) * σ))
+            # At an end itself a slope has no digits.
+            return states.in_plane(np.clip(r, _DIGITS - 1.0, 1.0 - _DIGITS))
 
         between = None
         if len(X):

@@ -67,6 +67,11 @@ class SolvedStates:
         """σ_XY/σ_YY at X over a, (states, n) or (states, 1)."""
         return np.asarray(self.body.ratio(self.contact.g, X, self.contact.half_width))
 
+    def in_plane(self, X: NDArray) -> NDArray[np.float64]:
+        """σ_XX under the punch at X over a, off its ends, (states, n)."""
+        σ_YY, u_X = self.pressure.σ_YY(X), self.displacement.strains(X, self.contact.weights)
+        return np.asarray(self.task.response.σ_XX(u_X, σ_YY, self.ratio(X) * σ_YY))
+
     @property
     def local(self) -> Exponents:
         """Exponents of the pressure at the right and the left end."""
@@ -253,12 +258,7 @@ class Solution(solution.Solution):
         """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
         states, row = self._of(state)
         X = np.where(np.abs(np.abs(X) - 1.0) < _AT_END, np.sign(X) * (1.0 - _AT_END), X)
-        u_X = states.displacement.strains(X, states.contact.weights[[row]])
-        σ_YY, ratio = (
-            np.broadcast_to(of, (len(states.contact.g), len(X)))[[row]]
-            for of in (states.pressure.σ_YY(X), states.ratio(X))
-        )
-        return self.task.response.σ_XX(u_X, σ_YY, ratio * σ_YY)
+        return states.in_plane(X)[[row]]
 
     def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""

@@ -115,8 +115,9 @@ class Ride:
         self.x, self.v, self.f = np.vstack([motion.rows(piece, piece.t) for piece in motion.pieces]).T
         self.crossings = np.array([t for t, _ in motion.crossings])
         self.x_crossings = self._drive * self.crossings - [state[0] for _, state in motion.crossings]
-        #: Crossings in the last cycle.
-        self._in_cycle = self._alike(_CLOSE if motion.repeats else _ALIKE) or motion.repeats
+        #: Crossings in a cycle that repeats, 0 for none, and in the last cycle.
+        self._repeats = motion.repeats
+        self._in_cycle = self._alike(_CLOSE if self._repeats else _ALIKE) or self._repeats
         self.period = self.slip = self.peak = self.least = np.nan
         if (steps := self.cycle) and self.v[steps].max() >= (1.0 + _STEADY) * self._drive:
             self.period, self.slip = self._since(self._in_cycle)
@@ -128,8 +129,8 @@ class Ride:
         Between its steps the scheme's own polynomials are evaluated, as accurate as the steps.
         """
         t, cycles = np.array(times, dtype=float), np.zeros(np.shape(times))
-        if self._motion.repeats:
-            period, slip = self._since(self._motion.repeats)
+        if self._repeats:
+            period, slip = self._since(self._repeats)
             cycles = np.maximum(np.floor((t - self.crossings[-1]) / period) + 1.0, 0.0)
             t = t - cycles * period
         starts = np.array([piece.start for piece in self._motion.pieces])
@@ -139,7 +140,7 @@ class Ride:
             piece, here = self._motion.pieces[n], which == n
             since = np.clip(t[here], piece.start, piece.end) - piece.start
             values[:, here] = self._motion.rows(piece, since).T
-        if self._motion.repeats:
+        if self._repeats:
             values[0] += cycles * slip
         return values
 
@@ -149,7 +150,8 @@ class Ride:
         The spring is as long there, but for a share of its swing; so it is at the ones before both.
         """
         e, E = self._drive * self.crossings - self.x_crossings, self._drive * self.t - self.x
-        for k in range(1, max((len(e) - 1) // 2, 1) + 1 if len(e) > 1 else 1):
+        # Of two crossings one ends a cycle; of more there are two cycles.
+        for k in range(1, min(len(e), max((len(e) + 1) // 2, 2))):
             swing = np.ptp(E[np.searchsorted(self.t, self.crossings[-1 - k]) :])
             before = e[: len(e) - k]
             if (np.abs(e[k:] - before)[-2:] <= closely * swing).all():
@@ -177,21 +179,20 @@ class Ride:
         first[1:-1] = (fast[1:-1] != fast[:-2]) | (fast[1:-1] != fast[2:]) | (rises[:-1] & ~rises[1:])
         times = self._again(self.t[first & fast], end, most)
         others = self._again(self.t[fast & ~first], end, most)
-        others = others[:: ceil(len(others) / max(most - len(times), 1)) or 1]
+        others = _thinned(others, most - len(times))
         return np.unique(np.concatenate([times, others])[:most])
 
     def _again(self, times: NDArray, end: float, most: int) -> NDArray[np.float64]:
         """Times up to an end, and those of the last cycle in the cycles after it, or in some of many."""
-        if self._motion.repeats and end > self.crossings[-1]:
-            (period, _), last = self._since(self._motion.repeats), self.crossings[-1]
+        if self._repeats and end > self.crossings[-1]:
+            (period, _), last = self._since(self._repeats), self.crossings[-1]
             times = times[times <= last]
             cycle = times[times > last - period]
             count = ceil((end - last) / period)
             # Of slips that repeat there may be more than fit into memory.
             cycles = np.arange(1, count + 1, ceil(count * max(len(cycle), 1) / most))
             times = np.concatenate([times, np.add.outer(cycles * period, cycle).ravel()])
-        times = times[times <= end]
-        return times[:: max(ceil(len(times) / most), 1)]
+        return _thinned(times[times <= end], most)
 
     @property
     def cycle(self) -> slice | None:
@@ -211,6 +212,11 @@ class Ride:
         if len(self.crossings) > 1 or self.v[-1] > _STOPPED * self._drive:
             return SHORT
         return ONE_SLIP if len(self.crossings) else STAYS
+
+
+def _thinned(times: NDArray, most: int) -> NDArray[np.float64]:
+    """Every so manyth of some times, that they are no more than ``most``, or one."""
+    return times[:: max(ceil(len(times) / max(most, 1)), 1)]
 
 
 def pull(

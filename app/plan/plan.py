@@ -589,14 +589,14 @@ def surface_grid(farthest: float = stresses.FARTHEST, kinks: Sequence[float] = (
     near = np.geomspace(1e-6, 0.1, 31)
     inside = np.concatenate([1.0 - near, np.linspace(0.0, 0.88, 23)])
     outside = 1.0 + np.concatenate([near, np.geomspace(0.1, stresses.FARTHEST - 1.0, 25)[1:]])
-    right = np.concatenate([inside, outside, _beyond(farthest, 8)])
+    right = np.concatenate([inside, outside, _beyond(farthest)])
     beside = np.add.outer(kinks, np.concatenate([-near[15:], near[15:]])).ravel()
     return np.unique(np.concatenate([-right, right, beside[np.abs(beside) < 0.9]]))
 
 
-def _beyond(farthest: float, per_octave: int) -> np.ndarray:
-    """Positions from ``FARTHEST``, which is left out, to the farthest."""
-    count = int(np.ceil(per_octave * np.log2(farthest / stresses.FARTHEST))) + 1
+def _beyond(farthest: float) -> np.ndarray:
+    """Positions from ``FARTHEST``, which is left out, to the farthest, 16 an octave."""
+    count = int(np.ceil(16 * np.log2(farthest / stresses.FARTHEST))) + 1
     return np.geomspace(stresses.FARTHEST, farthest, count)[1:]
 
 
@@ -614,7 +614,7 @@ def positions(scenes: Sequence[Scene]) -> tuple[np.ndarray, np.ndarray]:
     reach = max(stresses.FARTHEST, *(bent * each[:, 1, -1]))
     near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
-    seen, far = stresses.FARTHEST, _beyond(max(40.0, stresses.FARTHEST * each.max(), reach), 16)
+    seen, far = stresses.FARTHEST, _beyond(max(40.0, stresses.FARTHEST * each.max(), reach))
     X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
     return surface_grid(reach, sorted(kinks)), np.unique(np.round(X, 9))
 

@@ -17,6 +17,7 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 from galinx.clock import Clock
@@ -361,6 +362,15 @@ def print_sheets(sheets: Iterable[Any], notes: Iterable[str]) -> None:
         print_sheet(console, sheet)
     for note in notes:
         _print_folded(console, note)
+
+
+def print_failure(path: Path, data: dict[str, Any], attributes: dict[str, Any]) -> None:
+    """Print on the error stream that an archive failed, and by how much where it is worst."""
+    from galinx.postprocess.compare import failed
+
+    if lines := failed(data, attributes):
+        more = f"FAIL of {path}: {lines[0]}\n  {program()} show {quote(str(path))} says more"
+        print(for_people(more), file=sys.stderr)
 
 
 def print_warnings(attributes: dict[str, Any]) -> None:

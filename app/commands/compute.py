@@ -14,7 +14,16 @@ from galinx.postprocess.target import Folder, Target
 from galinx.texts import counted
 
 from .. import errors, process, ranks
-from ..console import Progress, print_result, print_times, print_warnings, program, say, width
+from ..console import (
+    Progress,
+    print_failure,
+    print_result,
+    print_times,
+    print_warnings,
+    program,
+    say,
+    width,
+)
 from . import options
 
 
@@ -55,11 +64,13 @@ def run(
     with progress:
         progress.note(f"scene: {scene}")
         verdict = _archived(checked, target, journal, progress, clock)
-    data, attributes = read(path, stresses=False, just_sealed=True)
+    data, attributes = read(path, stresses=False, verified=True)
     if not quiet:
         units = Units(checked.body, data, dimensionless)
         shown = sheets(data, units, attributes["title"], width())
         print_result(shown, data, attributes, progress.verbose)
+    else:
+        print_failure(path, data, attributes)
     print_warnings(attributes)
     if not quiet:
         print_times(clock)

@@ -15,7 +15,7 @@ import click
 from galinx.postprocess.target import TABLE, Target
 
 from .. import errors, ranks
-from ..console import print_result, print_sheets, print_warnings, program, say, width
+from ..console import print_failure, print_result, print_sheets, print_warnings, program, say, width
 from . import options
 
 
@@ -31,7 +31,7 @@ def show(archive: Path, as_json: bool, dimensionless: bool, verbose: bool) -> No
     """
     from galinx.postprocess.tables import sheets
 
-    result = _loaded(archive, stresses=False)
+    result = _loaded(archive, stresses=False, failure=False)
     data, attributes = result.data, result.attributes
     if ranks.is_root():
         units = result.units(dimensionless)
@@ -83,7 +83,7 @@ def compare(
     if measured and not to:
         raise click.UsageError("--measured lies over a figure; say by -o where to draw it")
     points = read_measured(measured) if measured else None
-    results = [_loaded(archive, stresses=bool(to)) for archive in archives]
+    results = [_loaded(archive, bool(to), failure=False) for archive in archives]
     comparison = Comparison(results, dimensionless, numbers(states) if states else ())
     if ranks.is_root():
         if to:
@@ -162,12 +162,20 @@ def fields(
         print(f"next: open it in ParaView ({version} or newer), and colour by von_mises_for_colours")
 
 
-def _loaded(archive: Path, stresses: bool = True) -> Any:
-    """Result of an archive that knows all files which the command reads."""
+def _loaded(archive: Path, stresses: bool = True, failure: bool = True) -> Any:
+    """Result of an archive that knows all files which the command reads.
+
+    Args:
+        archive: its file.
+        stresses: read stresses on the surface and inside, too.
+        failure: say on the error stream that its verdict is FAIL, as what the command writes does not.
+    """
     from ..results.result import load
 
     result = load(archive, stresses)
     result.inputs = options.inputs(archive)
+    if failure and ranks.is_root():
+        print_failure(archive, result.data, result.attributes)
     return result
 
 
@@ -236,11 +244,10 @@ def plot(
     from ..figures.archive import write
     from ..figures.choice import words
     from ..figures.files import Files
-    from ..results.result import load
 
     inputs = options.inputs(archive, measured)
     files = Files(to, archive.stem, words(formats), dpi or 0, overwrite, inputs)
-    result = load(archive)
+    result = _loaded(archive)
     selection = result.choice(measured=measured, **chosen)
     if ranks.is_root():
         _print_files(write(result.data, result.scene, selection, files))
@@ -354,7 +361,8 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
         raise click.UsageError(
             f"{' and '.join(f'--{name}' for name in chosen)} exclude each other; keep one"
         )
-    made = pieces(archive, chosen[0], dimensionless)
+    _loaded(archive, stresses=False)
+    made = pieces(archive, chosen[0], dimensionless, verified=True)
     if not ranks.is_root():
         return
     if output is None or str(output) == "-":

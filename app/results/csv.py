@@ -40,7 +40,9 @@ _TOGETHER = 20_000
 _Column = tuple[str, NDArray]
 
 
-def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> Iterator[str]:
+def pieces(
+    path: Path, which: str = "states", dimensionless: bool = False, verified: bool = False
+) -> Iterator[str]:
     """Text of a table, piece by piece, its heads with units first; NaN is an empty cell.
 
     Args:
@@ -48,13 +50,14 @@ def pieces(path: Path, which: str = "states", dimensionless: bool = False) -> It
         which: of ``TABLES``: a row a state; a row for each point of each state, along the surface, along
             interfaces or inside; friction along strokes; motions in time; motions of sliders.
         dimensionless: stresses over N/(2a), positions over a and speeds over c_s, as archived.
+        verified: this very process has verified the archive's digest before.
 
     Raises:
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
         BadInput: it holds no such table.
     """
     (over, word), quantities = TABLES[which], table()
-    with reader.opened(path) as archive:
+    with reader.opened(path, verified) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
         units = Units(scene.body, archive.data, dimensionless)
         rows = _rows(archive, over)

@@ -135,7 +135,7 @@ def _computed(scene: Scene, progress: Progress, target: Target | None = None) ->
 
     with archive.Writer(target) as writer:
         writer.finish(compute(scene, writer, progress))
-    return Result(*archive.read(target.path, just_sealed=True))
+    return Result(*archive.read(target.path, verified=True))
 
 
 def _draw(

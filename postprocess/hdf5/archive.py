@@ -324,7 +324,7 @@ class Archive:
 
 
 @contextmanager
-def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
+def opened(path: Path, verified: bool = False) -> Iterator[Archive]:
     """Archive that stays open within the context; for the arguments see :func:`read`.
 
     Raises:
@@ -335,7 +335,7 @@ def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
     if not there:
         raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
     with _reading(path):
-        if not just_sealed:
+        if not verified:
             verify(path)
         file = h5py.File(path, "r")
     with file:
@@ -343,14 +343,14 @@ def opened(path: Path, just_sealed: bool = False) -> Iterator[Archive]:
 
 
 def read(
-    path: Path, stresses: bool = True, just_sealed: bool = False
+    path: Path, stresses: bool = True, verified: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Datasets by path and attributes of an archive.
 
     Args:
         path: the file.
         stresses: also stresses on the surface and inside, which can be large.
-        just_sealed: sealed by this very process, which need not verify the digest once more.
+        verified: this very process has sealed the archive, or verified its digest, before.
 
     Returns:
         Arrays and text by path, and the root's attributes.
@@ -358,7 +358,7 @@ def read(
     Raises:
         UnreadableArchive: no archive, a damaged one, or one that this program does not know.
     """
-    with opened(path, just_sealed) as archive:
+    with opened(path, verified) as archive:
         return archive.all() if stresses else archive.data, archive.attributes
 
 

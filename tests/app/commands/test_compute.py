@@ -52,6 +52,10 @@ def test_a_verdict_has_its_status(tmp_path):
     assert done.returncode == 1 and "verdict: FAIL" in done.stdout
     assert "the punch would have to pull" in done.stderr
     assert all(line.startswith("warning: ") for line in done.stderr.splitlines())  # none is mpirun's
+    silent = ["run", "-q", "--overwrite", *words, "-o", "a.h5"], ["csv", "a.h5"], ["plot", "a.h5"]
+    for done in (here(*each, cwd=tmp_path) for each in silent):
+        assert "verdict" not in done.stdout
+        assert done.stderr.startswith("FAIL of a.h5: tension under the punch")
 
 
 def test_init_writes_a_scene_once(tmp_path):

@@ -180,8 +180,9 @@ class RoundedFlat(Profile):
         )
 
 
-#: Relative difference of slopes that is rounding of the given numbers.
-_ROUNDING = 1e-12
+#: Relative difference of slopes that is rounding of the given numbers; most that a slope changes next to a
+#: point of a table over its change at the next one: 0 next to three points on a straight line.
+_ROUNDING, _BEND = 1e-12, 1e3
 
 
 @dataclass(frozen=True)
@@ -190,11 +191,12 @@ class Table(Profile):
 
     Between two points the height is one parabola, or two that meet (Schumaker, SIAM Journal on Numerical
     Analysis 20 (1983) 853), so that a convex table gives a convex profile; at the points the slope is
-    the mean of those beside, weighted by the neighbouring lengths.
+    the mean of those beside, weighted by the neighbouring lengths, or that of a straight run of points.
 
     Raises:
-        ValueError: fewer than three points, not in their order, not convex, or without a lowest point
-            between the first and the last; the message says where.
+        ValueError: fewer than three points, not in their order, not convex, with a corner between two
+            straight runs, or without a lowest point between the first and the last; the message says
+            where.
     """
 
     about: ClassVar[str] = "table"
@@ -223,6 +225,13 @@ class Table(Profile):
             )
         if not secants[0] < 0.0 < secants[-1]:
             raise ValueError("shape: expected a lowest point between the first and the last")
+        _, least, most = self._changes
+        if len(corners := X[1:-1][least > most]):
+            at = ", ".join(f"X = {x:g} m" for x in corners[:3])
+            raise ValueError(
+                f"shape: found a corner between straight runs of points at {at}, under which the pressure "
+                "is infinite; expected a rounded one: points beside it that are not in a straight line"
+            )
 
     @property
     def _points(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -235,12 +244,27 @@ class Table(Profile):
         return self.shape[0][0], self.shape[-1][0]
 
     @cached_property
+    def _changes(self) -> tuple[NDArray[np.float64], ...]:
+        """Change of the slope at each inner point; the least and the most of it that is before the point.
+
+        A piece on which the slope changes at one of its points, and hardly else, would have a jump there.
+        At a corner between straight runs of points there is no way out: the least exceeds the most.
+        """
+        X, P = self._points
+        secants = np.diff(P) / np.diff(X)
+        change = np.diff(secants)
+        change[change < _ROUNDING * np.abs(secants).max()] = 0.0
+        beside = _BEND * np.concatenate([[np.inf], change, [np.inf]])
+        return change, change - beside[2:], beside[:-2]
+
+    @cached_property
     def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Knots [m] between which the slope is linear, and slopes there, (knots,) each."""
         X, P = self._points
         δ, Δ = np.diff(P) / np.diff(X), np.diff(X)
         d = np.empty(len(X))
-        d[1:-1] = (Δ[1:] * δ[:-1] + Δ[:-1] * δ[1:]) / (Δ[1:] + Δ[:-1])
+        change, *bounds = self._changes
+        d[1:-1] = δ[:-1] + np.clip(Δ[:-1] * change / (Δ[1:] + Δ[:-1]), *bounds)
         d[0], d[-1] = 2.0 * δ[0] - d[1], 2.0 * δ[-1] - d[-2]
         knots, slopes = [X[0]], [d[0]]
         for i, ((x0, x1), (d0, d1)) in enumerate(zip(pairwise(X), pairwise(d))):

@@ -180,8 +180,8 @@ class RoundedFlat(Profile):
         )
 
 
-#: Relative difference of slopes that is rounding of the given numbers; most that a slope changes next to a
-#: point of a table over its change at the next one: 0 next to three points on a straight line.
+#: Relative difference of slopes that is rounding of the given numbers; most that a slope changes next to
+#: a point of a table over its change at the next one: 0 next to three points on a straight line.
 _ROUNDING, _BEND = 1e-12, 1e3
 
 
@@ -216,7 +216,8 @@ class Table(Profile):
             at = X[1:][np.diff(X) <= 0.0][0]
             raise ValueError(f"shape: found X = {at:g} m after a larger or equal one, expected growing X")
         secants = np.diff(P) / np.diff(X)
-        falls = np.diff(secants) < -_ROUNDING * np.abs(secants).max()
+        rounding = _ROUNDING * np.abs(secants).max()
+        falls = np.diff(secants) < -rounding
         if falls.any():
             at = ", ".join(f"X = {x:g} m" for x in X[1:-1][falls][:3])
             raise ValueError(
@@ -225,12 +226,12 @@ class Table(Profile):
             )
         if not secants[0] < 0.0 < secants[-1]:
             raise ValueError("shape: expected a lowest point between the first and the last")
-        _, least, most = self._changes
-        if len(corners := X[1:-1][least > most]):
+        least, most = self._bounds
+        if len(corners := X[1:-1][least > most + rounding]):
             at = ", ".join(f"X = {x:g} m" for x in corners[:3])
             raise ValueError(
-                f"shape: found a corner between straight runs of points at {at}, under which the pressure "
-                "is infinite; expected a rounded one: points beside it that are not in a straight line"
+                f"shape: found a corner between straight runs of points at {at}, under which pressure is "
+                "infinite; expected a rounded one: points beside it that are not in a straight line"
             )
 
     @property
@@ -244,18 +245,17 @@ class Table(Profile):
         return self.shape[0][0], self.shape[-1][0]
 
     @cached_property
-    def _changes(self) -> tuple[NDArray[np.float64], ...]:
-        """Change of the slope at each inner point; the least and the most of it that is before the point.
+    def _bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Least and largest slope at each inner point, the least above the largest at a corner.
 
         A piece on which the slope changes at one of its points, and hardly else, would have a jump there.
-        At a corner between straight runs of points there is no way out: the least exceeds the most.
         """
         X, P = self._points
         secants = np.diff(P) / np.diff(X)
         change = np.diff(secants)
         change[change < _ROUNDING * np.abs(secants).max()] = 0.0
         beside = _BEND * np.concatenate([[np.inf], change, [np.inf]])
-        return change, change - beside[2:], beside[:-2]
+        return secants[1:] - beside[2:], secants[:-1] + beside[:-2]
 
     @cached_property
     def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -263,8 +263,7 @@ class Table(Profile):
         X, P = self._points
         δ, Δ = np.diff(P) / np.diff(X), np.diff(X)
         d = np.empty(len(X))
-        change, *bounds = self._changes
-        d[1:-1] = δ[:-1] + np.clip(Δ[:-1] * change / (Δ[1:] + Δ[:-1]), *bounds)
+        d[1:-1] = np.clip((Δ[1:] * δ[:-1] + Δ[:-1] * δ[1:]) / (Δ[1:] + Δ[:-1]), *self._bounds)
         d[0], d[-1] = 2.0 * δ[0] - d[1], 2.0 * δ[-1] - d[-2]
         knots, slopes = [X[0]], [d[0]]
         for i, ((x0, x1), (d0, d1)) in enumerate(zip(pairwise(X), pairwise(d))):

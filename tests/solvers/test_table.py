@@ -13,7 +13,7 @@ def test_the_slope_is_continuous_beside_straight_runs(seed, straight):
     rng = np.random.default_rng(seed)
     X = np.cumsum(rng.uniform(0.2, 1.0, 12))
     bends = rng.uniform(0.1, 1.0, 10)
-    bends[[1, 4, 7]] *= straight
+    bends[[1, 4, 7, 8]] *= straight
     P = np.append(0.0, np.cumsum(np.append(0.0, np.cumsum(bends)) * np.diff(X)))
     P -= P[6] / (X[6] - X[0]) * (X - X[0])
     table = Table(tuple(zip(X.tolist(), P.tolist())))

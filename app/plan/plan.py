@@ -580,8 +580,10 @@ def _skipped(scene: Scene, contact: bool, words: Collection[str]) -> Iterator[st
         )
 
 
-#: Reach of positions over the length in which layers bend: largest stresses are within half of it.
-_BENT = 12.0
+#: Reach of positions over the length in which layers bend, and along interfaces over their depth or the
+#: half-width; and at most, over the half-width. Where friction is low the largest tension is far away:
+#: the tension that friction makes falls like 1/X, the compression under the load faster.
+_BENT, _ALONG, _REACH = 100.0, 200.0, 2000.0
 
 
 def surface_grid(farthest: float = stresses.FARTHEST, kinks: Sequence[float] = ()) -> np.ndarray:
@@ -611,10 +613,10 @@ def positions(scenes: Sequence[Scene]) -> tuple[np.ndarray, np.ndarray]:
         return surface_grid(kinks=sorted(kinks)), np.empty(0)
     each = np.array([_depths(scene) for scene in scenes])
     bent = [_BENT * scene.solid.bending / scene.solid.depths[-1] for scene in scenes]
-    reach = max(stresses.FARTHEST, *(bent * each[:, 1, -1]))
+    reach = min(max(stresses.FARTHEST, *(bent * each[:, 1, -1])), _REACH)
     near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
-    seen, far = stresses.FARTHEST, _beyond(max(40.0, stresses.FARTHEST * each.max(), reach))
+    seen, far = stresses.FARTHEST, _beyond(max(reach, min(_ALONG * max(1.0, each.max()), _REACH)))
     X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
     return surface_grid(reach, sorted(kinks)), np.unique(np.round(X, 9))
 

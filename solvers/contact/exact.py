@@ -164,11 +164,11 @@ class ExactSolution(Solution):
     def _turns(self) -> Turns | None:
         return _turns_of(self.contacts)
 
-    def in_plane_at(self, state: int, X: NDArray) -> NDArray[np.float64]:
-        """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
-        return np.asarray(self._alone(state).surface(X)[0])
+    def at_surface(self, state: int, X: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY of one state at positions X (n,) on the surface, (2, n)."""
+        return np.asarray(self._alone(state).surface(X)[:, 0])
 
-    @property
+    @cached_property
     def kinks(self) -> list[Sequence[float] | NDArray]:
         """Positions over a at which each state's pressure is not smooth."""
         each: list[Sequence[float] | NDArray] = [()] * len(self._g)

@@ -154,7 +154,7 @@ _MANY = 8
 
 #: Most kinks in a contact; over its half-width, their largest distance from its middle, and their least
 #: distance from each other: cells between kinks that are nearer have no shape.
-_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.99, 1e-3
+_MOST, _NEXT_TO_END, _NEXT_TO_KINK = 12, 0.998, 1e-3
 
 
 def crowded_kinks(places: Sequence[float] | NDArray) -> str:

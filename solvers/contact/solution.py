@@ -646,7 +646,7 @@ class Solution:
             a uniform solid; over layers ``inside_of`` a state's number at points (n, 2), (3, n).
         interfaces: σ_YY, σ_XY, σ_XX above and below every interface, (4, states, interfaces, n); also
             ``at_interface`` by numbers of a state and an interface at positions X (n,), (4, n).
-        in_plane_at: in-plane stress at positions X on the surface (n,) by a state's number, (1, n).
+        at_surface: σ_XX and σ_YY at positions X under the punch (n,) by a state's number, (2, n).
         kinks: positions over a at which each state's pressure is not smooth, (k,) each.
         yield_turns: limits of stresses where they vary like a power of the distance; None for none.
         nearest: least distance over a from these at which ``stresses`` are accurate.
@@ -673,25 +673,41 @@ class Solution:
     @cached_property
     def between_kinks_of_friction(self) -> NDArray[np.float64] | None:
         """As :attr:`.stresses.Turns.between`, by places of each state's own; None without such kinks."""
-        if not self.body.along:
-            return None
-        found, ends = np.full((2, 2, len(self.g)), np.nan), self.body.infinite_ends(self.local)
-        kinks_of_pressures = self.kinks
-        for state, (g, a) in enumerate(zip(self.g.tolist(), self.half_width.tolist())):
-            bends = () if np.isnan(a) else self.body.friction(g, a).kinks
-            if not bends:
-                continue
-            turns = np.unique([-1.0, *bends, *kinks_of_pressures[state], 1.0])
-            turns = turns[np.append(np.diff(turns) > _COINCIDE, True)]
-            infinite = [ends[state, 0], *[False] * (len(turns) - 2), ends[state, 1]]
-            tips = (np.array(self.body.tips) - self.centre[state]) / a
-
-            def in_plane(X: NDArray, state: int = state, tips: NDArray = tips) -> NDArray[np.float64]:
-                return np.where(off_tips(X, tips), self.in_plane_at(state, X), np.nan)
-
-            _, between = at_and_between(turns, in_plane, infinite)
-            found[..., state] = between[..., 0]
+        found = np.full((2, 2, len(self.g)), np.nan)
+        for state in range(len(self.g)):
+            if self._kinks_of_friction(state):
+                found[..., state] = self.between_kinks(state, lambda σ_XX, σ_YY, σ_XY: σ_XX)
         return None if np.isnan(found).all() else found
+
+    def _kinks_of_friction(self, state: int) -> Sequence[float]:
+        """Positions over a at which the friction of a state is not smooth."""
+        a = float(self.half_width[state])
+        if not self.body.along or np.isnan(a):
+            return ()
+        return self.body.friction(float(self.g[state]), a).kinks
+
+    def between_kinks(self, state: int, measure: Callable[..., NDArray]) -> NDArray[np.float64]:
+        """Largest and smallest measure of a state's stresses between kinks, and their places, (2, 2).
+
+        Args:
+            state: its number.
+            measure: of σ_XX, σ_YY and σ_XY under the punch, (n,) each.
+
+        Returns:
+            As :attr:`.stresses.Turns.between` of one state.
+        """
+        turns = np.unique([-1.0, *self._kinks_of_friction(state), *self.kinks[state], 1.0])
+        turns = turns[np.append(np.diff(turns) > _COINCIDE, True)]
+        ends, g, a = self.body.infinite_ends(self.local)[state], self.g[[state]], self.half_width[[state]]
+        tips = (np.array(self.body.tips) - self.centre[state]) / a
+
+        def stress(X: NDArray) -> NDArray[np.float64]:
+            σ_XX, σ_YY = self.at_surface(state, X)
+            σ = measure(σ_XX, σ_YY, self.body.ratio(g, X, a)[0] * σ_YY)
+            return np.where(off_tips(X, tips), σ, np.nan)[None]
+
+        infinite = [ends[0], *[False] * (len(turns) - 2), ends[1]]
+        return at_and_between(turns, stress, infinite)[1][..., 0]
 
     @cached_property
     def extremes_in_plane(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:

@@ -377,6 +377,10 @@ def places_on_rays() -> NDArray[np.float64]:
     return np.concatenate([*rays])
 
 
+#: Factor that covers rounding of a distance.
+_HARDLY = 1.0 - 1e-9
+
+
 def zones(
     stress: Stress, there: NDArray, exponents: NDArray
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -394,7 +398,7 @@ def zones(
     t, first, power = _grid(), np.log(NEAREST), -exponents[..., None]
     L = _log(there).reshape(len(there), 2, *t.shape)
     passed = L >= 0.0
-    endless = (passed[..., -1] & (t[:, -1] >= np.log(FARTHEST))).any(axis=(1, 2))
+    endless = (passed[..., -1] & (np.exp(t[:, -1]) >= _HARDLY * FARTHEST)).any(axis=(1, 2))
     with np.errstate(divide="ignore"):
         flat = np.log(np.sin(_ANGLES))  # of the depth over the distance
     # The last sample in the zone, and linear interpolation to the next one.
@@ -425,19 +429,14 @@ def zones(
 
         def bounds(t: NDArray) -> tuple[Any, NDArray]:
             if deep:  # noqa: B023
-                return np.arcsin(np.exp(np.minimum(t, np.log(FARTHEST))) / FARTHEST), np.pi - np.arctan(
-                    np.exp(t)
-                )
+                r = np.exp(t)
+                return np.arcsin(np.minimum(r / FARTHEST, 1.0)), np.pi - np.arctan(r)
             return 0.0, np.arccos(-np.exp(-np.maximum(t, 0.0)))
 
         apart = np.full(guess.shape, _ANGLES[1])
         sizes.append(np.exp(_farthest(at, guess + _LESS, guess + _MORE, φ, apart, bounds)))
     reach, depth = sizes[0], sizes[1].max(axis=1)
     return np.where(endless[:, None], np.nan, reach), np.where(endless, np.nan, depth)
-
-
-#: Factor that covers rounding of a distance.
-_HARDLY = 1.0 - 1e-9
 
 
 @dataclass(frozen=True)
@@ -687,19 +686,25 @@ class StrengthOfLayers:
 
     def _on_surface(self) -> Peak:
         """Largest von Mises stress on the surface."""
-        surface, solid = self.solution.surface, self.body.solid.at(0.0)  # type: ignore[attr-defined]
+        solution, surface = self.solution, self.solution.surface
+        solid = self.body.solid.at(0.0)  # type: ignore[attr-defined]
         X, σ_YY = surface.places.X, np.nan_to_num(surface.σ_YY)
 
         def stress(XX: NDArray, YY: NDArray, XY: NDArray) -> NDArray[np.float64]:
             return von_mises(XX, YY, XY, solid.σ_ZZ(XX, YY, XY))
 
-        turns = turns_at_ends(surface, self.solution.local)
+        turns = turns_at_ends(surface, solution.local)
         if surface.turns:
             turns = turns.joined(surface.turns)
-        curves = stress(surface.σ_XX, σ_YY, self.solution.g[:, None] * σ_YY)
+        curves = stress(surface.σ_XX, σ_YY, solution.g[:, None] * σ_YY)
         samples = Peak(curves.max(axis=1), X[curves.argmax(axis=1)], np.zeros(len(curves)))
         at_turns = np.nan_to_num(stress(*turns.σ), nan=-np.inf), turns.X
-        return _higher(_higher(samples, *on_surface(X, curves, turns)), *at_turns)
+        places, values = np.full((2, len(curves), 1), -np.inf)
+        for state, kinks in enumerate(solution.kinks):
+            if len(kinks):
+                (places[state], values[state]), _ = solution.between_kinks(state, stress)
+        smooth = _higher(_higher(samples, *on_surface(X, curves, turns)), *at_turns)
+        return _higher(smooth, np.nan_to_num(values, nan=-np.inf), places)
 
     def _searched(self, state: int, layer: int, faces: float) -> tuple[float, float, float]:
         """Largest von Mises stress inside a layer, X and Y over a; -inf where its faces have more.

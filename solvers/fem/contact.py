@@ -250,7 +250,8 @@ class SharpLevel(PunchLevel):
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: several in a cell, over that length; how many; degree of the cells less that of its splines.
 NEXT, _WIDE, _IN_A_CELL, _LESS = 1e-5, 1e-2, 4, 2
-#: Unit of the first of these over the thickness of the uppermost layer, where there are no logarithms.
+#: Unit of the first of these over the thickness of the uppermost layer or over the least distance between
+#: ends and kinks, where there are no logarithms.
 _ANALYTIC = 100.0
 #: The first of these for splines that show what the others leave out, and factor of what they show.
 COARSE, _SURE = 4.0 * NEXT, 1.5
@@ -334,7 +335,8 @@ class SplineLevel(PunchLevel):
             return 0.0
         response = self.task.response
         changes = [length / response.a for length in response.solid.changes[:1]] if self._graded else []
-        return _ANALYTIC * min([1.0, *response.depths[:1], *changes])
+        apart = np.diff(self.kinks, prepend=-1.0, append=1.0)
+        return _ANALYTIC * float(min([1.0, *response.depths[:1], *changes, *apart]))
 
     @property
     def _graded(self) -> bool:
@@ -471,9 +473,11 @@ class FreeLevel(PunchLevel):
 
 #: Frictions whose matrices are kept; accuracy of intensities at free ends that vanish, and the most left.
 _KEPT, _BALANCED, _OF_INTENSITIES = 32, 1e-12, 1e-7
-#: Places over the half-width at which the pressure between free ends is measured, some next to them.
-NEXT_TO_ENDS = np.outer(ENDS, [0.985, 0.99, 0.995, 0.999, 0.9999, 1.0 - 1e-6]).ravel()
-ACROSS = np.append(np.cos(np.pi * (np.arange(24) + 0.5) / 24.0), NEXT_TO_ENDS)
+#: Distances over the half-width from free ends at which the pressure is measured, and all places.
+BESIDE_ENDS = np.array([0.015, 0.01, 0.005, 1e-3, 1e-4, 1e-6])
+ACROSS = np.append(
+    np.cos(np.pi * (np.arange(24) + 0.5) / 24.0), np.outer(ENDS, 1.0 - BESIDE_ENDS).ravel()
+)
 
 
 class VaryingFreeLevel(SplineLevel, FreeLevel):

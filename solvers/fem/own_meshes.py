@@ -52,9 +52,9 @@ from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between,
 from ..profiles.punches import Flat
 from .contact import (
     ACROSS,
+    BESIDE_ENDS,
     COARSE,
     NEXT,
-    NEXT_TO_ENDS,
     FreeLevel,
     PunchLevel,
     SplineLevel,
@@ -341,9 +341,11 @@ class KinkedLevel(SplineLevel, SingleLevel):
         at_kinks = [pressure.at_kink(i) for i in range(len(self.base.kinks))]
         σ = np.append(pressure.σ_YY(across), at_kinks)[None]
         size = np.abs(σ).max(keepdims=True)
-        # Splines of all degrees are off alike next to ends.
+        # Splines of all degrees are off alike next to ends, where they are the pressure.
+        gaps = np.minimum(gaps_of(self.base.kinks), 1.0)
+        beside = (ENDS[:, None] * (1.0 - np.outer(gaps, BESIDE_ENDS))).ravel()
         each = pressure.at_ends, self.at_ends(states.contact, COARSE)
-        now, coarse = (of.σ_YY(NEXT_TO_ENDS) for of in each)
+        now, coarse = (of.σ_YY(beside) for of in each)
         left = np.abs(coarse - now).max() + pressure.left_at_kinks
         return self.gauge_of_free(states, σ, size, float(left / size[0, 0]))
 

@@ -254,18 +254,18 @@ class Solution(solution.Solution):
         states, row = self._of(state)
         return states.at(points[None], [row])[:, 0]
 
-    def in_plane_at(self, state: int, X: NDArray) -> NDArray[np.float64]:
-        """σ_XX of one state at positions X (n,) on the surface, (1, n)."""
+    def at_surface(self, state: int, X: NDArray) -> NDArray[np.float64]:
+        """σ_XX and σ_YY of one state at positions X (n,) under the punch, (2, n)."""
         states, row = self._of(state)
         X = np.where(np.abs(np.abs(X) - 1.0) < _AT_END, np.sign(X) * (1.0 - _AT_END), X)
-        return states.in_plane(X)[[row]]
+        return np.array([states.in_plane(X)[row], states.pressure.σ_YY(X)[row]])
 
     def at_interface(self, state: int, interface: int, X: NDArray) -> NDArray[np.float64]:
         """σ_YY, σ_XY, σ_XX above and below an interface at X (n,) of one state, (4, n)."""
         states, row = self._of(state)
         return states.displacement.at_interface(interface, X, states.contact.weights[[row]])[:, 0]
 
-    @property
+    @cached_property
     def kinks(self) -> list[Sequence[float] | NDArray]:
         """Positions over a at which each state's pressure is not smooth."""
         return [self._of(state)[0].pressure.kinks for state in range(len(self.rows))]

@@ -37,14 +37,12 @@ def test_gmsh_gives_the_pattern_back_and_is_not_needed_twice(pattern, monkeypatc
     same(store.obtain(pattern), pattern)
 
 
-@pytest.mark.parametrize(
-    "damage", [lambda whole: b"", lambda whole: whole[:200], lambda whole: b"x" * 500]
-)
-def test_a_damaged_file_is_replaced(pattern, kept, damage):
+def test_a_damaged_file_is_replaced(pattern, kept):
     whole = kept.read_bytes()
-    kept.write_bytes(damage(whole))
-    same(store.obtain(pattern), pattern)
-    assert kept.stat().st_size == len(whole)
+    for damaged in (b"", whole[:200], b"x" * 500):
+        kept.write_bytes(damaged)
+        same(store.obtain(pattern), pattern)
+        assert kept.stat().st_size == len(whole)
 
 
 def test_what_is_no_file_is_no_mesh(pattern, kept):

@@ -98,21 +98,14 @@ def growing(solid, g):
     return turns(F, solid.response(0.0).C.max() ** 0.5 * solid.c_s)
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_below_the_threshold_no_wave_grows_and_above_it_some_do(seed):
-    solid = random_solid(seed)
+@pytest.mark.parametrize("solid", [*map(random_solid, range(12)), material("carbon-epoxy", 30.0)])
+def test_below_the_threshold_no_wave_grows_and_above_it_some_do(solid):
+    """In the last one rounding turns the slope of a real ratio next to the speeds at which roots meet."""
     for sign, g in zip((1.0, -1.0), solid.flutter()):
         limited = min(g, 20.0)
         assert growing(solid, 0.97 * sign * limited) == 0
         if g == limited:
             assert growing(solid, 1.03 * sign * g) > 0
-
-
-def test_where_slopes_have_no_digits_there_is_no_threshold():
-    """Next to the speeds at which roots meet rounding turns the slope of a ratio that is real."""
-    solid = material("carbon-epoxy", 30.0)
-    for sign, g in zip((1.0, -1.0), solid.flutter()):
-        assert growing(solid, 0.97 * sign * g) == 0 and growing(solid, 1.03 * sign * g) > 0
 
 
 @pytest.mark.parametrize("ν", [-0.9, -0.2, 0.0, 0.01, 0.25, 0.4999])

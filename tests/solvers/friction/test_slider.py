@@ -74,12 +74,12 @@ ROCK = {"reference_friction": 0.6, "reference_speed": 1e-6, "a": 0.01, "b": 0.01
     [
         (of("lugre", **OVERDAMPED, sigma1_over_load=30.0, sigma2_over_load=5.0), 1.0,
          Slider(1.0, 2.0, 0.0, 0.1, 15.0), SHORT),
-        # A creep of 30 000 periods of the mass on its spring that follows every digit of the pull.
-        (of("lugre", mu_c=0.4, mu_s=0.5, stribeck_velocity=1e-3, sigma0_over_load=1e5,
-            sigma1_over_load=100.0), 1e3, Slider(0.1, 1e6, 0.0, 1e-6, 600.0), STEADY),
+        # A creep of 80 000 periods of the mass on its spring that follows every digit of the pull.
+        (of("lugre", mu_c=0.4, mu_s=0.5, stribeck_velocity=1e-3, sigma0_over_load=1e6,
+            sigma1_over_load=100.0), 300.0, Slider(0.1, 1e6, 0.0, 1e-6, 165.0), STEADY),
         # Stiffer than (b - a) N/D_c; friction slows so light a mass down within 1e-18 s.
         (of("rate_and_state", **ROCK), 1e5, Slider(1.0, 1e8, 0.0, 1e-6, 1000.0), STEADY),
-        (of("dahl", mu_c=0.5, sigma0_over_load=50.0), 1e3, Slider(1.0, 2.0, 0.0, 0.1, 3.0), STAYS),
+        (of("dahl", mu_c=0.5, sigma0_over_load=50.0), 1e3, Slider(1.0, 2.0, 0.0, 0.1, 1.0), STAYS),
     ],
 )  # fmt: skip
 def test_creeping_sliders_are_followed_to_their_end(law, load, slider, said):

@@ -30,7 +30,7 @@ def load(t):
 @pytest.fixture(scope="module")
 def at_once():
     """Response, scheme, basis and answers of a start at c = 0.6 and g = -0.4, in the transform."""
-    response, scheme = SOLID.response(0.6), Radau(4.0, 20)
+    response, scheme = SOLID.response(0.6), Radau(4.0, 10)
     transformed = Transformed(response, SOLID.limit(), scheme.s, 16)
     basis = transformed.basis(-0.4)
     (answers,) = transformed.answers(basis)
@@ -39,7 +39,7 @@ def at_once():
 
 @pytest.fixture(scope="module")
 def marching():
-    return StartingPunch(SOLID.response(0.6), SOLID.limit(), 4.0, 20, 16)
+    return StartingPunch(SOLID.response(0.6), SOLID.limit(), 4.0, 10, 16)
 
 
 def test_pressures_of_all_frictions_lie_between_those_of_a_few():
@@ -77,7 +77,7 @@ def test_the_residual_falls_with_the_steps():
     def g(t):
         return -0.5 * np.sin(0.8 * t)
 
-    coarse, fine = (by_integral_equation(SOLID, 0.6, g, 3.0, n, checked=True).residual for n in (6, 12))
+    coarse, fine = (by_integral_equation(SOLID, 0.6, g, 3.0, n, checked=True).residual for n in (4, 8))
     assert fine < min(coarse / 6.0, 1e-3)
 
 
@@ -86,7 +86,7 @@ def test_the_residual_shows_a_wrong_number(at_once):
     residual = Residual(response, SOLID.limit(), scheme.times[:, -1], 16)
     right = residual.of([basis], solved[:, :-1], solved[:, -1])
     # Of the pressure's polynomials, and the indentation.
-    for when, number in product((3, 10, 19), (0, 1, 5, -1)):
+    for when, number in product((1, 5, 9), (0, 1, 5, -1)):
         wrong = solved.copy()
         wrong[when, number] += 0.05 * np.abs(solved).max()
         assert residual.of([basis], wrong[:, :-1], wrong[:, -1]) > 5.0 * right

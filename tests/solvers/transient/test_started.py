@@ -45,7 +45,6 @@ def over_layers(end):
 
 ROTATED = random_solid(1)
 BOTH = {
-    "one friction": ((SOLID, 0.6, -0.4, 4.0, 20, 3.0, 16), {}, (3e-5, 5e-4, 1e-3, 1e-4, 1e-5)),
     "changing friction": (
         (SOLID, 0.6, lambda t: -0.6 * (1.0 - np.exp(-t)), 3.0, 14, 3.0, 16), {},
         (3e-5, 1e-3, 1e-3, 1e-4, 1e-5)),

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from galinx.solvers.friction.dahl import Dahl
 from galinx.solvers.friction.integrate import RK4_STABILITY_LIMIT, runge_kutta
@@ -14,17 +13,6 @@ def exact(law, f0, s, d):
 
 def by_steps(law, f0, s, length, steps):
     return runge_kutta(law, np.array([f0]), s, 0.0, length, steps)[0][:, 0]
-
-
-@pytest.mark.parametrize("δ", [0.5, 1.0, 1.0 + 1e-12, 1.5, 3.0])
-@pytest.mark.parametrize("f0, s", [(0.0, 1), (0.6, -1), (-0.3, 1)])
-def test_exact_solution_solves_the_law(δ, f0, s):
-    law = Dahl(0.7, 25000.0, δ)
-    d = np.linspace(0.0, 2e-5, 7)
-    found = solve_ivp(
-        lambda _, f: law.rate(f, s), (0.0, d[-1]), [f0], "DOP853", d, rtol=1e-12, atol=1e-13
-    )
-    np.testing.assert_allclose(exact(law, f0, s, d), found.y[0], rtol=0.0, atol=1e-10)
 
 
 def test_the_rate_is_that_of_the_studys_equation():
@@ -53,7 +41,7 @@ def test_the_stability_limit_is_that_of_the_steepest_slope(f0, s, δ):
         by_steps(Dahl(0.5, 1.001 * λ, δ), f0, s, length, steps)
 
 
-@pytest.mark.parametrize("δ", [0.3, 1.0, 2.5])
+@pytest.mark.parametrize("δ", [0.3, 1.0, 1.0 + 1e-12, 2.5])
 @pytest.mark.parametrize("x", [1e-300, 1e-12, 1e-3, 0.7])
 def test_small_friction_keeps_its_digits(δ, x):
     """From rest f = μ_C (1 - y), and 1 - y is nearly x = λ d/μ_C where that is small."""

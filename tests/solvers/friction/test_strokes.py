@@ -21,13 +21,6 @@ def test_friction_of_the_reference_states(references):
         assert found[key] == pytest.approx(float(state["f"]), rel=1e-13)
 
 
-def test_backward_strokes_travel_from_L_to_0():
-    forward, backward, _ = friction_along(Dahl(0.7, 25000.0), STROKES, 1e-4, [0.2, 0.8])
-    places = [list(positions(leg, [0.2, 0.8])) for leg in legs(STROKES)]
-    assert places == [[0.2, 0.8], [0.8, 0.2], [0.2, 0.8]]
-    assert forward.f[0] < forward.f[1] and backward.f[0] > backward.f[1]
-
-
 @pytest.mark.parametrize(
     "strokes, first",
     [

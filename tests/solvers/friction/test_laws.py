@@ -144,16 +144,6 @@ def test_steps_of_the_speed_show_both_effects_of_rate_and_state(evolution, facto
     assert law.friction(before, 1, V) == pytest.approx(steady, rel=1e-14)
 
 
-def test_rate_and_state_ages_at_rest_and_has_no_steady_state_there():
-    law = of("rate_and_state", reference_friction=0.6, reference_speed=1e-6, a=0.01, b=0.015,
-             critical_slip=1e-5)  # fmt: skip
-    aged = law.pause(law.rest(), 90.0)
-    healed = law.friction(aged, 1, 1e-6) - law.friction(law.rest(), 1, 1e-6)
-    assert healed == pytest.approx(0.015 * np.log(10.0), rel=1e-12)
-    with pytest.raises(ValueError, match="found the speed 0 m/s"):
-        law.exact(law.rest(), 1, 0.0, np.array([1.0]))
-
-
 @pytest.mark.parametrize(
     "name, changes, said",
     [

@@ -143,7 +143,7 @@ def changes(solid, V2):
     with mp.workdps(25):
         top, below = ((constants(one), mp.mpf(one.ρ)) for one in (layer.solid, solid.substrate))
         alone = admittance([], top, V2, mp.mpf(1))
-        x, w = np.polynomial.legendre.leggauss(16)
+        x, w = np.polynomial.legendre.leggauss(8)
         ends = np.concatenate([[0.0], 2.0 ** np.arange(-6.0, 5.0)])
         half = np.diff(ends)[:, None] / 2.0
         kH = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half * x).ravel()

@@ -77,12 +77,6 @@ def test_files_that_are_no_whole_archives(path, change):
         reader.read(path)
 
 
-def test_what_is_no_file_is_said(tmp_path):
-    for name in ("missing.h5", "."):
-        with pytest.raises(UnreadableArchive, match="is not a file"):
-            reader.read(tmp_path / name)
-
-
 UNKNOWN = {
     "dataset renamed": (renamed("states/f", "states/F"), "'states/F': not in the table"),
     "section renamed": (renamed("run", "ruN"), "'run/seconds': missing"),

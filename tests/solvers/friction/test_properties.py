@@ -74,20 +74,10 @@ def test_a_mirrored_motion_has_mirrored_friction(name, seed):
 
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("seed", SETS)
-def test_work_and_slope_are_those_of_the_friction(name, seed):
-    """By quadrature and differences of f alone."""
+def test_slopes_are_differences_of_the_friction(name, seed):
     law, rng = drawn(name, seed)
     z, V = moved(law, law.rest(), [random.LENGTH, -0.37 * random.LENGTH]), 1e-3
     length = float(rng.uniform(0.2, 1.0) * random.LENGTH)
-    at, weight = np.polynomial.legendre.leggauss(7)
-    pieces = np.linspace(0.0, length, 61)
-    half = 0.5 * np.diff(pieces)
-    places = (0.5 * (pieces[1:] + pieces[:-1]))[:, None] + half[:, None] * at
-    f = law.friction(exactly(law, z, 1, V, length, places.ravel()), 1, V).reshape(places.shape)
-    wanted = (f * half[:, None] * weight).sum()
-    found = float(work(law, z, 1, V, length))
-    # A kink within one of the 60 pieces costs up to 1/8 of its slope times the piece squared.
-    assert found == pytest.approx(wanted, rel=2e-4, abs=1e-6 * length)
     h = 1e-6 * length
     after = exactly(law, z, 1, V, length, np.array([0.0, h]))
     slope = law.slope(z if name == "table" else after[0], 1, V)

@@ -67,18 +67,6 @@ def test_the_error_of_innermost_cells_is_in_that_of_limits_at_kinks(kink, rings,
     assert 1e-8 < error <= pressure.left_at_kinks <= 0.1 * cell * np.abs(np.log(cell))
 
 
-def test_terms_that_the_series_lack_show_in_the_error_where_both_sides_have_the_same():
-    """An even pressure: its limits from both sides agree, and both are off."""
-
-    def σ_YY(r):
-        return np.sqrt(1.0 - r**2) * (np.abs(r) * np.log(np.maximum(np.abs(r), 1e-300)) - 2.0)
-
-    s, forces = nodes_and_forces(facets(0.0, 12), 9, σ_YY)
-    pressure = kinked(s, 9, forces, 0.0, σ_YY, 1.0, 1e-3)
-    error = abs(pressure.at_kink(0) + 2.0)
-    assert 0.5 * error < pressure.left_at_kinks < 4.0 * error < 1e-6
-
-
 @pytest.mark.parametrize("right", [0.9, 1.3])
 def test_where_one_side_of_a_kink_is_exact_the_mean_of_both_is_off_by_its_error(right):
     limits, exact = np.array([1.0, right]), 1.0

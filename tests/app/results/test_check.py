@@ -3,12 +3,13 @@
 import hashlib
 import json
 import shutil
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from support import computed
-from tampering import attribute, opened, value
+from tampering import opened, value
 
 import galinx
 from galinx.app.methods import METHODS
@@ -17,18 +18,24 @@ from galinx.postprocess.errors import UnreadableArchive
 from galinx.postprocess.hdf5 import archive
 
 
-@pytest.fixture
-def whole(inside_run, tmp_path):
-    """An archive that may be changed."""
-    path = tmp_path / "whole.h5"
+@pytest.fixture(scope="module")
+def sound(inside_run, tmp_path_factory):
+    """An archive without faults, to be read only."""
+    path = tmp_path_factory.mktemp("sound") / "whole.h5"
     inside_run.save(path)
     assert check.faults(path) == []
     return path
 
 
-def test_states_may_be_looked_at_a_few_at_a_time(whole, monkeypatch):
+@pytest.fixture
+def whole(sound, tmp_path):
+    """A copy of it that may be changed."""
+    return Path(shutil.copy(sound, tmp_path))
+
+
+def test_states_may_be_looked_at_a_few_at_a_time(sound, monkeypatch):
     monkeypatch.setattr(check, "_ROWS", 1)
-    assert check.faults(whole) == []
+    assert check.faults(sound) == []
 
 
 def times(name, factor):
@@ -38,24 +45,15 @@ def times(name, factor):
     return apply
 
 
-def in_attribute(name, old, new):
+def of_scene(old, new):
+    """The archive of another scene, by its digest, too."""
+
     def apply(file):
-        assert old in file.attrs[name]
-        file.attrs[name] = file.attrs[name].replace(old, new)
+        text = file["scene/text"].asstr()[()].replace(old, new)
+        file["scene/text"][()] = text
+        file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
 
     return apply
-
-
-def other_scene(file):
-    text = file["scene/text"].asstr()[()].replace("mu_c", "delta = 0.9\nmu_c")
-    file["scene/text"][()] = text
-    file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
-
-
-def more_states(file):
-    text = file["scene/text"].asstr()[()].replace("X_over_L = 0.8", "X_over_L = [0.7, 0.8]")
-    file["scene/text"][()] = text
-    file.attrs["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
 
 
 def lost(file):
@@ -69,18 +67,12 @@ def lost(file):
     [
         (times("states/g", -1.0), "states/g holds something else"),
         (value("states/motion", "BM7"), "states/motion holds something else"),
-        (times("loops/f", 1.001), "loops/f holds something else"),
-        (value("interior/X_over_a", 0.123), "interior/X_over_a holds other positions"),
-        (other_scene, "states/f holds something else"),
-        (more_states, "it holds 2 states, its scene has 4"),
+        (of_scene("mu_c", "delta = 0.9\nmu_c"), "states/f holds something else"),
+        (of_scene("X_over_L = 0.8", "X_over_L = [0.7, 0.8]"), "it holds 2 states, its scene has 4"),
         (lost, "states/fem/v0 is missing, its scene asks for it"),
-        (value("states/fem/normal_force", -1.0), "nodal forces against the load"),
         (times("states/fem/K_I_right", 1.0 + 1e-3), "states/fem/true_error is not what"),
         (value("interior/fem/sigma_XX", 1e3), "its comparisons say"),
         (value("interior/fem/sigma_XX", np.nan), "interior/fem/sigma_XX is not finite in states 0 ..."),
-        (attribute("verdict", "FAIL"), "verdict says FAIL, its comparisons give PASS"),
-        (in_attribute("verdict_reasons", "at most 0.001", "at most 0.003"), "verdict_reasons says"),
-        (attribute("rules", "[]"), "rules says '[]', its scene gives"),
     ],
 )
 def test_what_does_not_fit_is_said(whole, changed, message):

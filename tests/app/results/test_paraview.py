@@ -39,6 +39,12 @@ def test_stresses_are_those_of_the_potentials(mode):
     for part, level in ((np.abs(X) < 0.9, -1.0), ((np.abs(X) > 1.1) & (np.abs(X) < 5.0), 0.0)):
         σ_YY = found.data["sigma_YY"][part & (Y > -1e-12)] / unit
         assert σ_YY.max() < -0.3 if level else np.abs(σ_YY).max() < 1e-2
+    pressure = found.data["contact_pressure"] / unit
+    assert np.isnan(pressure[(Y < -1e-12) | (np.abs(np.abs(X) - 1.0) < 1e-15)]).all()
+    assert not pressure[(Y > -1e-14) & (np.abs(X) > 1.0)].any()
+    inner = (Y > -1e-14) & (np.abs(X) < 0.999)
+    assert inner.sum() > 50
+    np.testing.assert_allclose(pressure[inner], -punch.σ_YY(X[inner]), rtol=1e-5)
 
 
 def test_what_has_no_field_is_bad_input(tmp_path):
@@ -102,39 +108,23 @@ def test_vtk_reads_what_was_written(tmp_path):
     assert found.sum() == pytest.approx(18.0 * a**2, rel=1e-9)
 
 
-def test_the_contact_pressure_is_that_of_the_closed_form_and_carries_the_load():
-    given = template("tables4_5", {"motion.c": 0.6})
-    for changes in ({}, {"solve.mode": "traction"}):
-        scene = template("tables4_5", {"motion.c": 0.6} | changes)
-        found = state_field(scene, 1, 2.0)
-        a, states = given.punch.profile.half_width, enumerate_states(given)
-        X, Y = found.points.T / a
-        pressure = found.data["contact_pressure"] * 2.0 * a / given.punch.load
-        assert np.isnan(pressure[(Y < -1e-12) | (np.abs(np.abs(X) - 1.0) < 1e-15)]).all()
-        assert not pressure[(Y > -1e-14) & (np.abs(X) > 1.0)].any()
-        under = (Y > -1e-14) & (np.abs(X) < 0.999)
-        exact = FlatPunch(MovingFrame(3.0 - 4.0 * given.solid.ν, 0.6), states.g[1]).σ_YY(X[under])
-        assert under.sum() > 50
-        np.testing.assert_allclose(pressure[under], -exact, rtol=1e-5)
-
-
 def test_several_states_are_a_series(tmp_path, monkeypatch):
     """States at two speeds, whose cells differ; a newer VTK reads it, see tests/with_wheel.sh."""
     import h5py
 
     scene, path = template("tables4_5"), tmp_path / "series.vtkhdf"
-    numbers = [0, 3, 7]
-    write_fields(scene, numbers, Target(path), extent=3.0, degrees=[5, 5, 6])
-    alone = [state_field(scene, number, 3.0, degree) for number, degree in zip(numbers, (5, 5, 6))]
+    numbers = [3, 7]
+    write_fields(scene, numbers, Target(path), extent=3.0, degrees=[5, 6])
+    alone = [state_field(scene, number, 3.0, degree) for number, degree in zip(numbers, (5, 6))]
     with h5py.File(path) as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
-        assert root.attrs["Version"].tolist() == [2, 0] and steps.attrs["NSteps"] == 3
-        assert steps["Values"][:].tolist() == [0.0, 3.0, 7.0]
-        assert steps["PartOffsets"][:].tolist() == [0, 1, 2]
-        assert steps["NumberOfParts"][:].tolist() == [1, 1, 1]
+        assert root.attrs["Version"].tolist() == [2, 0] and steps.attrs["NSteps"] == 2
+        assert steps["Values"][:].tolist() == [3.0, 7.0]
+        assert steps["PartOffsets"][:].tolist() == [0, 1]
+        assert steps["NumberOfParts"][:].tolist() == [1, 1]
         assert root["FieldData/state"][:].tolist() == numbers
-        assert root["FieldData/motion"][:].tolist() == [b"FM1", b"BM1", b"FM1"]
-        assert steps["FieldDataOffsets/motion"][:].tolist() == [0, 1, 2]
+        assert root["FieldData/motion"][:].tolist() == [b"BM1", b"FM1"]
+        assert steps["FieldDataOffsets/motion"][:].tolist() == [0, 1]
         assert root["PointData"][fields.COLOURED].attrs["Attribute"] == b"Scalars"
         for i, one in enumerate(alone):
             points, cells = root["NumberOfPoints"][i], root["NumberOfCells"][i]

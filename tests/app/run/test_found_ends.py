@@ -1,7 +1,6 @@
 """Contacts whose ends are found, end to end: Hertz, rounding at free ends, kinks, names of a parabola."""
 
 import itertools
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,11 +10,8 @@ from support import computed, of_sections
 import galinx
 from galinx.meshes.kind import check_cells
 from galinx.meshes.rings import Refinement, with_kinks
-from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.errors import SolveError
-from galinx.solvers.fem.own_meshes import EndsBetweenKinks, KinkedLevel
-from galinx.solvers.profiles.punches import Power
-from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 
 CYLINDER = {"profile": "parabolic", "radius": 0.02}
 
@@ -123,17 +119,6 @@ def test_a_mesh_that_another_replaced_gives_no_warning(capsys):
         solve={"methods": ["fem"], "tolerance": 2.26e-3}, output={"quantities": ["sif", "interfaces"]},
     ))  # fmt: skip
     assert result.verdict == "PASS" and "warning" not in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("exponent, share", [(1.5, 1.0), (3.0, 1.0), (5.0, 0.5), (17.0, 0.125)])
-def test_series_next_to_ends_reach_as_far_as_the_slope_of_the_punch_is_smooth(exponent, share):
-    """To the kink, or where the slope changes faster than that of a cube, less far by as much."""
-    level = object.__new__(KinkedLevel)  # without a mesh
-    body = make_contact(Isotropic(1.0, 0.3, 1.0), Power(exponent, 1.0), 1e-3)
-    level.base, level.g = EndsBetweenKinks(body, (0.0, 0.7), 1e-6), np.array([0.0])
-    level.task = SimpleNamespace(response=body.response(0.0))
-    places, _ = level.continuation()(np.array([1.0 - 1e-9]))
-    assert np.abs(np.abs(places) - 1.0).max() == pytest.approx(0.05 * share, rel=1e-2)
 
 
 def test_a_contact_over_layers_that_leans_beyond_what_is_known_of_the_punch_is_refused():

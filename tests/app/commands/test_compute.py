@@ -6,9 +6,6 @@ import h5py
 import numpy as np
 from support import HOME, SCENE, command, finished, here
 
-from galinx.app.scene.library import templates
-from galinx.app.scene.read import read
-
 
 def test_one_and_two_ranks_agree(archives):
     with h5py.File(archives[0]) as one, h5py.File(archives[1]) as two:
@@ -56,18 +53,6 @@ def test_a_verdict_has_its_status(tmp_path):
     for done in (here(*each, cwd=tmp_path) for each in silent):
         assert "verdict" not in done.stdout
         assert done.stderr.startswith("FAIL of a.h5: tension under the punch")
-
-
-def test_init_writes_a_scene_once(tmp_path):
-    assert here("init", "own_material", "-o", "mine.toml", cwd=tmp_path).returncode == 0
-    scene = read(tmp_path / "mine.toml")
-    assert scene.solid.E == 3.3e9 and "#:schema" not in scene.text
-    before = (tmp_path / "mine.toml").read_bytes()
-    again = here("init", "tables4_5", "-o", "mine.toml", cwd=tmp_path)
-    assert again.returncode == 2 and "exists" in again.stderr
-    assert (tmp_path / "mine.toml").read_bytes() == before
-    listed = here("init", cwd=tmp_path).stdout
-    assert all(name in listed for name in templates())
 
 
 def test_the_schema_is_what_the_command_prints():

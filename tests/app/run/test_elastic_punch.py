@@ -4,18 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from support import computed, of_sections
+from support import of_sections
 
-from galinx.app.errors import BadInput
 from galinx.app.results.result import compute, template
-
-
-def test_what_rolls_carries_bristles_along():
-    body = {"material": "steel", "speed": "10 m/s"}
-    punch = {"profile": "parabolic", "radius": "20 mm", "load": "50 N/mm", "solid": body}
-    friction = {"model": "dahl", "mu_c": 0.3, "state": "advected", "sigma0_over_load": 1000}
-    with pytest.raises(BadInput, match="bristles that a rolling punch carries along, too"):
-        computed("tables4_5", {"punch": punch, "friction": friction, "motion": {"c": 0.1}})
 
 
 def test_a_scene_says_which_body_yields_first():

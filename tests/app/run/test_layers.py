@@ -9,7 +9,6 @@ from scipy.integrate import trapezoid
 from support import THOROUGH, areas, computed, scene_of
 
 import galinx
-from galinx.app.errors import BadInput
 from galinx.meshes.kind import Requirements, check_cells
 from galinx.meshes.layered import OnLayers
 from galinx.meshes.rings import CONTACT, FAR, FREE
@@ -62,15 +61,6 @@ def test_flat_punches_over_graded_tops_reach_the_usual_tolerance_by_finite_eleme
     result = coated(GRADED, {"solve.methods": ["sie", "fem"]})
     assert result.verdict == "PASS"
     assert result.data["states/fem/estimate"].max() < 5e-7
-
-
-@pytest.mark.parametrize(
-    "profile", [{"profile": "flat", "half_width": 1e-3}, {"profile": "parabolic", "radius": 0.1}]
-)
-def test_punches_faster_than_waves_along_layers_are_refused(profile):
-    faster = {"motion.speed": "1.1 km/s", "output.quantities": ["interfaces"]}
-    with pytest.raises(BadInput, match="is not below the speed limit of the layers"):
-        coated(faster, {"punch": profile | {"load": 1e5}})
 
 
 def test_rows_by_depth_are_linear_grading():

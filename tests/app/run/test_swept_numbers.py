@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from support import THOROUGH, computed
 
-from galinx.app.errors import BadInput
 from galinx.app.results import check
 from galinx.app.results.result import load
 from galinx.app.scene.changes import from_words
@@ -84,14 +83,6 @@ def test_thicknesses_of_a_layer(scene, thin):
         held, expected = result.data[row.path][1], single.data[row.path][0]
         # The positions along interfaces are those of both thicknesses.
         assert np.allclose(held, expected, rtol=1e-6, atol=1e-4 * ("_X" in row.path)), row.path
-
-
-def test_contacts_of_another_kind_are_no_sweep():
-    """Of a nearly incompressible solid finite elements have no stresses inside."""
-    inside = {"output.quantities": ["interior"], "output.points": [[0.0, -1.0]]}
-    both = {"solve": {"methods": ["closed_form", "fem"]}}
-    with pytest.raises(BadInput, match="of another kind"):
-        swept_by(FLAT | both | inside, "solid.nu=[0.3, 0.5]")
 
 
 @pytest.mark.parametrize("method", ["closed_form", "fem"])

@@ -1,6 +1,5 @@
 """Examples of the pages: commands, Python and other blocks found, and what runs them."""
 
-import hashlib
 import io
 import re
 import shlex
@@ -104,37 +103,8 @@ def words_of(command):
     return words[words.index("./run.sh") + 1 :]
 
 
-class Shelf:
-    """Runs commands; what ran before on the same files is taken from the shelf."""
-
-    def __init__(self, folder):
-        self._folder, self._known = folder, {}
-
-    def run(self, command, cwd):
-        """Status and output of a command line of a page in ``cwd``."""
-        words = words_of(command) or ["paper", "-o", "results"]
-        key = (command.split("./run.sh")[0].strip(), *words, *_digests(words, cwd))
-        if key in self._known:
-            status, told, files = self._known[key]
-            shutil.copytree(files, cwd, dirs_exist_ok=True)
-        else:
-            kept = self._folder / str(len(self._known))
-            status, told, _ = self._known[key] = self._record(command, cwd, kept)
-        return status, told
-
-    def _record(self, command, cwd, kept):
-        before = _state(cwd)
-        status, told = _run(command, cwd)
-        kept.mkdir()
-        for path, stamp in _state(cwd).items():
-            if before.get(path) != stamp:
-                (kept / path).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(cwd / path, kept / path)
-        return status, told, kept
-
-
 def _run(command, cwd):
-    """Status and output of a command line."""
+    """Status and output of a command line of a page in ``cwd``."""
     words = words_of(command)
     if not words:
         results, said = paper_run()
@@ -151,30 +121,6 @@ def _run(command, cwd):
     return done.returncode, done.stdout
 
 
-def _files(cwd):
-    """Files below a page's folder; scenes/ and run.sh are those of the checkout."""
-    return [
-        path.relative_to(cwd)
-        for path in cwd.rglob("*")
-        if path.is_file() and path.relative_to(cwd).parts[0] not in ("scenes", "run.sh", "__pycache__")
-    ]
-
-
-def _state(cwd):
-    return {path: (cwd / path).stat().st_mtime_ns for path in _files(cwd)}
-
-
-def _digests(words, cwd):
-    """Of the files that a command names or could find in its way."""
-    named = {word.split("=")[-1] for word in words}
-    named |= {Path(word).stem + ".h5" for word in words if word.endswith(".toml")}
-    return sorted(
-        (str(path), hashlib.sha256((cwd / path).read_bytes()).hexdigest())
-        for path in _files(cwd)
-        if str(path) in named
-    )
-
-
 def folder_for(page, folder):
     """A page's folder, in which ./run.sh and scenes/ are those of the checkout."""
     made = folder / page.name
@@ -186,7 +132,7 @@ def folder_for(page, folder):
     return made
 
 
-def run_page(page, shelf, folder):
+def run_page(page, folder):
     """Save the files of a page, run its commands in order, then its Python; what both print."""
     output, faults = "", []
     save_blocks(page, folder)
@@ -198,7 +144,7 @@ def run_page(page, shelf, folder):
             _read(words, folder)
             continue
         wanted = int((_STATUS.search(command) or [0, 0])[1])
-        status, told = shelf.run(command, folder)
+        status, told = _run(command, folder)
         output += told
         if status != wanted:
             faults.append(f"{command}\n  status {status}, expected {wanted}\n{told[-1500:]}")

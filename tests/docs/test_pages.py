@@ -10,7 +10,6 @@ import pytest
 from examples import (
     DOCS,
     PAGES,
-    Shelf,
     blocks,
     commands,
     file_of,
@@ -39,10 +38,9 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def outputs(tmp_path_factory, folder):
+def outputs(folder):
     """Runs the examples of a page, once, and returns what they print."""
-    shelf = Shelf(tmp_path_factory.mktemp("shelf"))
-    return cache(lambda page: run_page(page, shelf, folder_for(page, folder)))
+    return cache(lambda page: run_page(page, folder_for(page, folder)))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)

@@ -118,6 +118,8 @@ LADDERS = {
                          True, False, (FIRST + 1, FIRST + 1), ANY),
     "within the bound, and falls": (
         1e-9, lambda p: level(1e-7 * (-0.4) ** p, rounding=1e-7, mirrored=False), False, None, ANY, ANY),
+    "falls with the degree": (1e-3, lambda p: unmirrored(*[10.0 ** (2.0 - 0.5 * p)] * 2), False, None,
+                              (FIRST + 3, DEGREES[1]), ANY),
 }  # fmt: skip
 
 
@@ -139,14 +141,10 @@ def test_degrees_rise_until_the_tolerance_is_met_or_cannot_be(
     assert bool(finer.solved) == bool(of_cells) and bool(work.said) == (of_cells is False)
 
 
-def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_said():
-    slow, good = (lambda p: 1e-3 * 0.8**p), (lambda p: 10.0 ** (-1.0 - 1.2 * p))
-    finer = Work(1e-8, good)
-    work = Work(1e-6, slow, finer)
-    found = to_tolerance(work, TASK, G, solved)
-    found.error.warn()
-    assert not found.error.excessive and found.error.worst <= 1e-6
-    assert work.solved and finer.solved and not work.said + finer.said
+def test_where_finer_cells_do_not_do_either_that_is_said():
+    def slow(p):
+        return 1e-3 * 0.8**p
+
     finer = Work(1e-8, slow)
     found = to_tolerance(Work(1e-6, slow, finer), TASK, G, solved)
     found.error.warn()
@@ -154,12 +152,6 @@ def test_where_degrees_do_not_do_cells_are_finer_and_where_these_do_not_that_is_
     assert degree_of(finer) < DEGREES[1]
     (said,) = finer.said
     assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
-
-
-def test_what_falls_with_the_degree_in_a_solid_without_mirror_is_no_rounding():
-    work = Work(1e-3, None)
-    error = climb(work, TASK, G, lambda space, g: unmirrored(*[10.0 ** (2.0 - 0.5 * space[1])] * 2)).error
-    assert degree_of(work) > FIRST + 2 and (not error.excessive or error.of_cells)
 
 
 @pytest.mark.parametrize("mirrored", [True, False])

@@ -87,7 +87,8 @@ def same_as_alone(changes, loads=LOADS, digits=1e-12):
 def test_states_under_several_loads_are_those_under_each(name):
     """By both methods; the tilted punch lifts off at the least load alone."""
     # Ends are found to rounding, and next to these stresses make a thousand times as much of it.
-    many, alone = same_as_alone(ALL | ROUGH | punch(name), digits=1e-8 if name == "wedge" else 1e-12)
+    digits = 1e-8 if name == "wedge" else 1e-12
+    many, alone = same_as_alone(ALL | ROUGH | punch(name), LOADS[::2], digits)
     if name == "tilted":
         a = many.data["states/fem/half_width"]
         assert (a[:2] < 0.9e-3).all() and (a[2:] == 1e-3).all()

@@ -80,7 +80,6 @@ def test_what_is_installed_works_elsewhere(names_and_site):
     [
         (("run", "--help"), "mpirun -n 2 galinx run "),
         (("init", "own_material"), "galinx plan own_material.toml"),
-        (("init",), "tables4_5"),
     ],
 )
 def test_an_installed_command_calls_itself_galinx(names_and_site, arguments, said):

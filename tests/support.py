@@ -102,6 +102,9 @@ KEPT = {
     }),
     "inside": ("inside", {"solve.tolerance": 1e-3}),
     "flat": ("tables4_5", CLOSED_FORM),
+    "yield": ("tables4_5", CLOSED_FORM | {
+        "output.quantities": ["sif", "surface", "yield"], "solid.yield_strength": 6e8,
+    }),
     "cylinder": ("cylinder", CLOSED_FORM | {"output.quantities": ["sif", "surface", "interior"]}),
     "laws": ("tables4_5", CLOSED_FORM | {
         "friction.mu_c": [0.3, 0.7], "friction.sigma0_over_load": [1e4, 4e4],
@@ -113,8 +116,8 @@ KEPT = {
     for name, changes in {
         "slider": {}, "fibres": CLOSED_FORM, "shoulders": CLOSED_FORM, "minor_loops": {},
         "velocity_steps": {}, "fig6": {}, "sinusoidal": {}, "own_material": CLOSED_FORM,
-        "cylinder_on_steel": {}, "parameter_study": CLOSED_FORM, "high_speed": CLOSED_FORM,
-        "study": CLOSED_FORM, "table1": {},
+        "cylinder_on_steel": {}, "parameter_study": CLOSED_FORM, "traction": CLOSED_FORM,
+        "high_speed": CLOSED_FORM, "study": CLOSED_FORM, "table1": {},
     }.items()
 }  # fmt: skip
 

@@ -13,6 +13,7 @@ IMA J. Numer. Anal. 42, 2022).
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -207,7 +208,7 @@ _STEPS, _LAST = 60, 1e-10
 
 def inverted(
     function: Callable[[NDArray], tuple[NDArray, NDArray]], values: NDArray, start: NDArray,
-    low: float = 0.0, high: float = np.inf,
+    low: Any = 0.0, high: Any = np.inf,
 ) -> NDArray[np.float64]:  # fmt: skip
     """Arguments at which a growing function has given values, by Newton's method, (n,).
 
@@ -215,7 +216,7 @@ def inverted(
         function: gives its values and slopes at arguments, (n,) each.
         values: of the function, (n,).
         start: arguments to begin with, (n,).
-        low, high: bounds of the arguments.
+        low, high: bounds of the arguments, of all or of each.
     """
     x = start
     for _ in range(_STEPS):

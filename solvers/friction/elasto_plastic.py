@@ -13,9 +13,9 @@ from ..parameters import parameter
 from .law import LAWS
 from .lugre import Bristles
 
-#: Width in y of a panel of Gauss's rule, and y beyond that of breakaway squared from which on slip is y
-#: and a constant to the last digit.
-_WIDTH, _FAR = 0.25, 40.0
+#: Width in y of a panel of Gauss's rule; y beyond that of breakaway squared from which on slip is y and a
+#: constant to the last digit; y at which e^-y is still a number; panels that a step tries at once.
+_WIDTH, _FAR, _LAST, _AT_ONCE = 1.0, 40.0, 700.0, 8
 #: Gauss's rule of a panel.
 _NODES, _WEIGHTS = leggauss(16)
 
@@ -72,11 +72,7 @@ class ElastoPlastic(Bristles):
         x, w = x - np.maximum(self.r - w0, 0.0), np.where(w0 < 1.0, np.maximum(w0, self.r), self.r)
         if np.ndim(self.r) == 0:
             return _yielding(float(self.r)).after(x, w)
-        y = np.empty(x.shape)
-        for r in np.unique(self.r).tolist():
-            laws = self.r[:, 0] == r  # type: ignore[index]  # an array here
-            y[laws] = _yielding(r).after(x[laws], w[laws])
-        return y
+        return _stepped(x, w, np.asarray(self.r))
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """∫ s (σ₀ z + σ₁ ż + σ₂ v) dd, with ∫ w dx in its three parts."""
@@ -107,11 +103,55 @@ class ElastoPlastic(Bristles):
         return ζ0, s * ζ0 / g, self.σ0 / g * np.asarray(slip, dtype=float)
 
 
-class _Yielding:
-    """Sliding from breakaway to steady sliding, by y = -ln(1 - w), which grows with slip without end.
+def _slopes(y: NDArray, r: float | NDArray) -> NDArray[np.float64]:
+    """dx/dy from breakaway to steady sliding, by y = -ln(1 - w), which grows with slip without end.
 
     With ε = 1 - w = e^-y and θ = π ε/(2(1 - r)), α is cos²θ, so that dx/dy = 1/(sin²θ/ε + cos²θ): smooth,
     and 1 in the end.
+    """
+    ε = np.exp(-np.minimum(y, _LAST))
+    rising = np.sin(ε * (0.5 * np.pi / (1.0 - r))) ** 2 / ε
+    return 1.0 / (1.0 + rising * (1.0 - ε))
+
+
+def _nodes(start: NDArray, end: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Half of the length between two y, (..., 1), and the nodes of Gauss's rule there, (..., n)."""
+    half = 0.5 * (end - start)[..., None]
+    return half, start[..., None] + half * (1.0 + _NODES)
+
+
+def _stepped(x: NDArray, w: NDArray, r: NDArray) -> NDArray[np.float64]:
+    """Coordinates y of many laws after a few slips x from w, panel after panel, (laws, slips).
+
+    Tables for each law, as :class:`_Yielding` has them, take longer: a fit tries thousands of laws.
+
+    Args:
+        x: slips; x < 0 counts as none.
+        w: r <= w < 1 at their start.
+        r: breakaway ratios, (laws, 1).
+    """
+    left, y, far = np.maximum(x, 0.0), -np.log1p(-w), _FAR - np.log1p(-r)
+
+    def slip(start: NDArray, end: NDArray) -> NDArray[np.float64]:
+        half, nodes = _nodes(start, end)
+        return (half * _slopes(nodes, np.reshape(r, (-1, *[1] * start.ndim)))) @ _WEIGHTS
+
+    while True:
+        starts = y[..., None] + _WIDTH * np.arange(_AT_ONCE)
+        slips = np.cumsum(slip(starts, starts + _WIDTH), axis=-1)
+        passed = slips < left[..., None]
+        count = passed.sum(axis=-1)
+        left, y = left - np.where(passed, slips, 0.0).max(axis=-1), y + _WIDTH * count
+        if not ((count == _AT_ONCE) & (y < far)).any():
+            break
+    in_panel = np.minimum(left, _WIDTH)
+    start = y + np.minimum(in_panel / _slopes(y + 0.5 * in_panel, r), _WIDTH)
+    end = inverted(lambda end: (slip(y, end), _slopes(end, r)), in_panel, start, y, y + _WIDTH)
+    return np.where(y < far, end, y + left)
+
+
+class _Yielding:
+    """Sliding from breakaway to steady sliding, by y = -ln(1 - w), which grows with slip without end.
 
     Args:
         r: breakaway ratio.
@@ -125,13 +165,13 @@ class _Yielding:
         self._x, self._short = np.hstack([np.zeros((2, 1)), np.cumsum(pieces, axis=1)])
         from scipy.interpolate import CubicHermiteSpline  # a slow import
 
-        self._near = CubicHermiteSpline(self._x, self._y, 1.0 / self._slopes(self._y))
+        self._near = CubicHermiteSpline(self._x, self._y, 1.0 / _slopes(self._y, r))
 
     def after(self, x: NDArray, w: float | NDArray) -> NDArray[np.float64]:
         """Coordinate y after slips x from w, r <= w < 1; x < 0 counts as none."""
         target = self._at(-np.log1p(-np.asarray(w)))[0] + np.maximum(x, 0.0)
         y = self._near(np.minimum(target, self._x[-1])) + np.maximum(target - self._x[-1], 0.0)
-        return inverted(lambda y: (self._at(y)[0], self._slopes(y)), target, y, self._first)
+        return inverted(lambda y: (self._at(y)[0], _slopes(y, self._r)), target, y, self._first)
 
     def short(self, x: NDArray, w: float) -> NDArray[np.float64]:
         """∫ (1 - w) dx over slips x from w."""
@@ -149,18 +189,9 @@ class _Yielding:
 
     def _pieces(self, start: NDArray, end: NDArray) -> NDArray[np.float64]:
         """Slip, and ∫ (1 - w) dx, from y to y in the same panel, (...) each: (2, ...)."""
-        half = 0.5 * (end - start)[..., None]
-        y = start[..., None] + half * (1.0 + _NODES)
-        x = self._slopes(y)
+        half, y = _nodes(start, end)
+        x = _slopes(y, self._r)
         return np.array([((half * x) @ _WEIGHTS), ((half * x * np.exp(-y)) @ _WEIGHTS)])
-
-    def _slopes(self, y: NDArray) -> NDArray[np.float64]:
-        """dx/dy."""
-        ε = np.exp(-y)
-        θ = 0.5 * np.pi * ε / (1.0 - self._r)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            rising = np.where(ε > 0.0, np.sin(θ) ** 2 / ε, 0.0)
-        return 1.0 / (rising + np.cos(θ) ** 2)
 
 
 @lru_cache(maxsize=64)

@@ -546,7 +546,7 @@ def _finer(wanted: float, data: Mapping[str, Any], attributes: Mapping[str, Any]
             return f"leave solve.{key} away, and finite elements follow the tolerance"
     if in_time.DIRECTION.path in data and np.ptp(data[in_time.DIRECTION.path]):
         return "a time.end before the punch turns round; behind a turn finer steps hardly help"
-    if "do not reach the tolerance" in attributes.get("warnings", ""):
+    if "would remain on any cells" in attributes.get("warnings", ""):
         return "no finer solve.tolerance helps, as finite elements have no more digits here"
     return f"--set solve.tolerance={wanted / 10.0:.0e} may pass"
 

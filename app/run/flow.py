@@ -125,12 +125,14 @@ class Judge:
     Attributes:
         worst: largest value by the comparison's text, dimensionless.
         failures: speeds that could not be solved, with the reasons.
+        missed: warnings that finite elements do not reach the tolerance.
         validity: collects states for which the theory does not hold.
     """
 
     def __init__(self, scene: Scene, names: Iterable[str]) -> None:
         self.worst: dict[str, float] = {}
         self.failures: list[str] = []
+        self.missed: list[str] = []
         self.validity = Validity(_steady(scene))
         rules = {name: RULES[name] for name in names if RULES[name].mode in scene.modes}
         #: Largest values of a PASS by name, None for rules that are only reported.
@@ -307,7 +309,8 @@ def compute(
         runs.SECONDS.path: np.array([clock[name] for name in names], dtype=float),
     })  # fmt: skip
     verdict, reasons = judge.verdict()
-    warnings = [*dict.fromkeys(chain(*(each.warnings for each in plans))), *judge.validity.words()]
+    planned = chain(*(each.warnings for each in plans))
+    warnings = [*dict.fromkeys([*planned, *judge.missed]), *judge.validity.words()]
     texts = {
         "versions": libraries(), "rules": sorted(rules), "verdict_reasons": reasons,
         "comparisons": judge.worst, "warnings": warnings,
@@ -339,6 +342,7 @@ def _solve(
                 sink.write(name, part.rows, values)
         if part.record:
             records[part.record["speed"]] = part.record
+            judge.missed += part.record.get("missed", ())
         finished[part.rows] = True
         progress.done(int(finished.sum()), len(states))
 

@@ -348,9 +348,6 @@ class Messages(Protocol):
     def say(self, text: str) -> None:
         """Say what is done now."""
 
-    def warn(self, text: str) -> None:
-        """Warn the user."""
-
 
 #: Tolerance over the scene's of the finer cells, tried where no degree reaches the scene's tolerance.
 _FINER = 0.03

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -285,6 +285,9 @@ class Estimate:
     loads: NDArray[np.float64]
     errors: dict[str, NDArray[np.float64]]
 
+    #: Warnings that the tolerance is not reached.
+    missed: ClassVar[Sequence[str]] = ()
+
     def of(self, g: NDArray, load: Any = None) -> dict[str, NDArray[np.float64]]:
         """Errors of states with frictions g, (states,), and loads [N/m], all loads if None.
 
@@ -348,7 +351,7 @@ class Solved:
         return [replace(states, errors=errors, fitted=self.fitted)]
 
     def record(self) -> dict[str, Any]:
-        return self.numbers
+        return self.numbers | {"missed": self.error.missed}
 
     def close(self) -> None:
         """Free factor and fields."""
@@ -501,17 +504,19 @@ class MeasuredError(Estimate):
         """Largest change from the degree before; 0 where that was not solved."""
         return max(self._changes.get(degree, {}).values(), default=0.0)
 
-    def warn(self) -> None:
-        """Warn the user where the tolerance is not reached."""
-        if self.excessive and not self._work.plan.fixed:
-            rest = "and falls too slowly"
-            if self.floor > self._tolerance:
-                rest = f"of which {self.floor:.1e} would remain on any cells"
-            self._work.progress.warn(
-                f"finite elements at c = {self._level.task.response.c:g} do not reach the tolerance "
-                f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
-                f"{self._degree}, {rest}"
-            )
+    @property
+    def missed(self) -> list[str]:
+        """Warning that the tolerance is not reached; none where it is."""
+        if not self.excessive or self._work.plan.fixed:
+            return []
+        rest = "and falls too slowly"
+        if self.floor > self._tolerance:
+            rest = f"of which {self.floor:.1e} would remain on any cells"
+        return [
+            f"finite elements at c = {self._level.task.response.c:g} do not reach the tolerance "
+            f"{self._tolerance:.2g}: the estimated error is {self.worst:.1e} at degree "
+            f"{self._degree}, {rest}"
+        ]
 
     @property
     def change_by_degree(self) -> list[float]:

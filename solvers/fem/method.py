@@ -79,9 +79,7 @@ class FiniteElements:
             return BetweenKinks(work, task, g)
         if mode in (OWN_MESHES, FREE_ON_LAYERS):
             return Followed(work, task, g)
-        solved = to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
-        solved.error.warn()
-        return solved
+        return to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
 
     @contextmanager
     def one_state(

@@ -83,6 +83,7 @@ class OwnMeshes:
     def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
         self._work, self._task, self._done = work, task, WorkDone()
         self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
+        self._missed: list[str] = []
         #: States by σ_XY/σ_YY and load, in the order of their last use; the error on the last mesh.
         self._kept: dict[State, SolvedStates] = {}
         self._error: Any = None
@@ -99,7 +100,7 @@ class OwnMeshes:
         if state is None:
             task = replace(self._task, body=self._task.body.loaded(load), loads=(load,))
             state = self._solved(np.array([g]), task)
-            self._error.warn()  # others are of meshes that were replaced
+            self._missed += self._error.missed  # others are of meshes that were replaced
         self._kept[g, load] = state
         while len(self._kept) > OWN_MESHES_KEPT:
             self._kept.pop(next(iter(self._kept))).level.close()
@@ -119,12 +120,12 @@ class OwnMeshes:
         """Contact on its mesh, by a :class:`SingleLevel` whose degree is raised to the tolerance."""
         solved = to_tolerance(mesh, task, g, level, self._done)
         self._error = solved.error
-        for name, value in solved.record().items():
+        for name, value in solved.numbers.items():
             self._record[name] = max(self._record.get(name, value), value)
         return solved.on_mesh(g)[0]
 
     def record(self) -> dict[str, Any]:
-        return self._record | vars(self._done)
+        return self._record | vars(self._done) | {"missed": self._missed}
 
     def close(self) -> None:
         """Free the kept states."""

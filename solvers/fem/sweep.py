@@ -364,7 +364,7 @@ class Fit:
             off = largest_changes(level.gauges(*self._probes), expected) if fits and expected else {}
             estimate = Estimate(error.g, error.loads, error.errors) if error else None
             sample = self._sampled(task, level) if fits else None
-            return Speed(number, level.space.degree, sample, solved.record(), estimate, off)
+            return Speed(number, level.space.degree, sample, solved.numbers, estimate, off)
 
     @property
     def _all(self) -> NDArray[np.float64]:

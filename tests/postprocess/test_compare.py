@@ -190,7 +190,7 @@ def test_failures_are_told_by_how_much_they_exceed_their_limits():
     for scene, warnings, told in (
         ("degree = 4", "", "leave solve.degree away"),
         ('mesh = "uniform"', "", "leave solve.mesh away"),
-        ('mesh = "confocal"', "finite elements do not reach the tolerance", "no finer solve.tolerance"),
+        ('mesh = "confocal"', "1e-05 would remain on any cells", "no finer solve.tolerance"),
     ):
         of_scene = {"scene/text": f"[solve]\n{scene}", **data}
         *_, last = compare.failed(of_scene, attributes | less | {"warnings": json.dumps([warnings])})

@@ -39,15 +39,11 @@ class Work:
             kind=kind, wanted=wanted, tolerance=tolerance, degrees=(FIRST,), fixed=False, cuts=1,
             rate=of_degrees(2),
         )  # fmt: skip
-        self.errors, self.finer, self.said, self.solved = errors, finer, [], []
-        self.progress = self
+        self.errors, self.finer, self.solved = errors, finer, []
 
     def space(self, degree, cuts=1):
         self.solved.append(degree)
         return self, degree
-
-    def warn(self, text):
-        self.said.append(text)
 
 
 def solved(space, g):
@@ -137,8 +133,8 @@ def test_degrees_rise_until_the_tolerance_is_met_or_cannot_be(
     assert degrees[0] <= degree_of(work) <= degrees[1]
     assert error.excessive == missed and worst[0] <= error.worst <= worst[1]
     assert of_cells in (None, error.of_cells)
-    to_tolerance(work, TASK, G, lambda space, g: of_degree(space[1])).error.warn()
-    assert bool(finer.solved) == bool(of_cells) and bool(work.said) == (of_cells is False)
+    told = to_tolerance(work, TASK, G, lambda space, g: of_degree(space[1])).error.missed
+    assert bool(finer.solved) == bool(of_cells) and bool(told) == missed
 
 
 def test_where_finer_cells_do_not_do_either_that_is_said():
@@ -147,10 +143,9 @@ def test_where_finer_cells_do_not_do_either_that_is_said():
 
     finer = Work(1e-8, slow)
     found = to_tolerance(Work(1e-6, slow, finer), TASK, G, solved)
-    found.error.warn()
     assert found.error.excessive
     assert degree_of(finer) < DEGREES[1]
-    (said,) = finer.said
+    (said,) = found.error.missed
     assert said.startswith("finite elements at c = 0.3 do not reach the tolerance 1e-06: the estimated")
 
 
@@ -164,10 +159,9 @@ def test_cells_are_no_finer_where_rounding_alone_exceeds_the_tolerance(mirrored)
     finer = Work(1e-9, None)
     work = Work(1e-7, None, finer)
     found = to_tolerance(work, TASK, G, slow)
-    found.error.warn()
     floor = found.error.floor
     assert found.error.excessive and not finer.solved and floor > 1e-7
-    (text,) = work.said
+    (text,) = found.error.missed
     assert text.endswith(f"of which {floor:.1e} would remain on any cells")
 
 

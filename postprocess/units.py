@@ -239,8 +239,8 @@ class Units:
 
 
 def engineering(value: float, unit: str, digits: int = 4) -> str:
-    """Number with four digits and a prefix of its own: 113.8 GPa; N/mm for loads."""
-    if unit == "N/m":
-        name, of_si = prefixed(unit, abs(value))
-        return f"{number(value / of_si, digits)} {name}"
-    return with_prefix(value, unit, digits)
+    """Number with four digits and a prefix of its own: 113.8 GPa; N/mm for loads, 7850 kg/m^3."""
+    if unit in ("m", "s", "Pa", "m/s"):
+        return with_prefix(value, unit, digits)
+    name, of_si = prefixed(unit, abs(value))
+    return f"{number(value / of_si, digits)} {name}"

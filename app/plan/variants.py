@@ -15,7 +15,7 @@ from galinx.postprocess.quantities.swept import HALF_WIDTH, INTERFACE_DEPTHS, WA
 from galinx.texts import counted
 
 from ..errors import BadInput, listed
-from ..scene.scene import Scene
+from ..scene.scene import Scene, with_unit
 from .elements import lacking
 from .plan import FRICTION, Plan, lines, make_plan, positions
 from .states import States, order
@@ -100,10 +100,10 @@ def lines_of(plans: Sequence[Plan]) -> list[str]:
         return steps
     values = {key: [plan.scene.swept[key] for plan in plans] for key in plans[0].scene.swept}
     several = "; ".join(
-        f"{len(set(each))} values of {key}, {min(each):g} to {max(each):g}"
+        f"{len(set(each))} values of {key}, {with_unit(key, min(each))} to {with_unit(key, max(each))}"
         for key, each in values.items()
     )
-    return [f"sweep: {counted(len(plans), 'variant')}: {several} (SI); each of them:", *steps]
+    return [f"sweep: {counted(len(plans), 'variant')}: {several}; each of them:", *steps]
 
 
 def of_state(scene: Scene, number: int) -> tuple[Scene, int]:

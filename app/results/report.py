@@ -261,7 +261,7 @@ def states_table(data: dict[str, Any], units: Units) -> dict[str, Any]:
 #: Meanings of a report's terms; those that it does not use are left out.
 TERMS = (
     ("a, N", "half-width of the contact, and load per unit of depth"),
-    ("c", "speed over the shear wave speed of the solid, dimensionless"),
+    ("c", "speed over the shear wave speed of the solid, or of its uppermost layer, dimensionless"),
     ("closed form", "solution of the singular integral equation by formulas; needs no mesh"),
     ("friction f", "friction coefficient: friction force over load, positive in forward motion"),
     ("FM, BM", "forward and backward motion: strokes, numbered"),
@@ -271,9 +271,10 @@ TERMS = (
     ("X/L", "place on a stroke over the pre-sliding displacement L, along which friction builds up"),
     ("indentation", "relative to the surface 100 a away, or 100 times the length over which layers "
      "are seen: in the plane it grows with that distance like a logarithm"),
-    ("estimate", "error of finite elements measured on other degrees, the closed form not used"),
-    ("verdict", "PASS where every comparison is within what is allowed; not judged where one method "
-     "alone was asked for"),
+    ("estimate", "error that a method measures alone: finite elements on other degrees, the integral "
+     "equation with other numbers of unknowns"),
+    ("verdict", "PASS where every comparison and every estimate is within what is allowed; not judged "
+     "where there is none, as of friction alone"),
     ("σ_XX, σ_YY, σ_XY", "in-plane, normal and shear stress: X along the motion, Y out of the solid; "
      "tension is positive"),
 )  # fmt: skip

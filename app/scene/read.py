@@ -32,12 +32,13 @@ from .scene import Scene, contradictions, in_words, usual_quantities
 from .sections import ADVECTED, SECTIONS, SWEPT, Key
 from .values import Number, Numbers, Or, Rows
 
-#: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm.
+#: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm and steel.
 _PLACE = re.compile(r"\(at line (\d+),")
 _COMMA = re.compile(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$")
 _UNIT = re.compile(
     r"=\s*([-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\W\d_e%]\S*(?:\s*[*/]\s*\S+)*|[-+]?[\d.]+\s*%)\s*(#.*)?$"
 )
+_WORD = re.compile(r"=\s*(?!(?:true|false)\b)([^\W\d][\w.-]*)\s*(#.*)?$", re.IGNORECASE)
 
 
 def explained(text: str, said: str) -> str:
@@ -58,6 +59,10 @@ def explained(text: str, said: str) -> str:
         return f"found {comma[1]} in line {number}, expected a decimal point, as in {point}"
     if unit := _UNIT.search(line):
         return f'found {unit[1]} in line {number}, expected quotes around a number and unit, "{unit[1]}"'
+    if word := _WORD.search(line):
+        return f'found {word[1]} in line {number}, expected quotes around a text, "{word[1]}"'
+    if said.startswith("Illegal character '\\n'"):
+        return f"found {short(line)} in line {number}, whose text has no quote at its end"
     return said
 
 

@@ -14,9 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.postprocess.quantities import declared
 from galinx.postprocess.quantities.over_time import TIME
 from galinx.postprocess.quantities.quantity import FEM, FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
+from galinx.postprocess.units import engineering
 from galinx.solvers.contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD
 from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
@@ -163,8 +165,14 @@ class Scene:
 
 
 def in_words(swept: Mapping[str, float]) -> str:
-    """Values of swept numbers in words, as ``solid.E = 2e+11``."""
-    return ", ".join(f"{key} = {value:g}" for key, value in swept.items())
+    """Values of swept numbers in words, as ``solid.E = 200 GPa``."""
+    return ", ".join(f"{key} = {with_unit(key, value)}" for key, value in swept.items())
+
+
+def with_unit(key: str, value: float) -> str:
+    """Value of a swept number, in SI, with its unit."""
+    unit = declared(f"states/{key}").unit
+    return f"{value:g}" if unit == "1" else engineering(value, unit)
 
 
 #: Names in output.quantities that need no contact.

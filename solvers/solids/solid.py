@@ -159,7 +159,7 @@ def modulus(key: str, about: str, symbol: str = "") -> Any:
 
 def density() -> Any:
     """Field of the density ρ [kg/m³]."""
-    return parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(1.0, 3e4))
+    return parameter("rho", "density", "kg/m^3", symbol=r"\rho", above=0.0, usual=(10.0, 3e4))
 
 
 def angle(axis: str) -> Any:

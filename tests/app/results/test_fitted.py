@@ -98,7 +98,8 @@ def written(measured, path, head="time [s],position [mm],f", decimal=".", separa
 
 
 def test_tables_of_all_conventions_are_one_measurement(tmp_path):
-    measured = swing("dahl", {"mu_c": 0.4, "sigma0_over_load": 2.2e4}, 100)
+    # Of 100 samples the two beside the turn would be alike, or not, as a processor rounds.
+    measured = swing("dahl", {"mu_c": 0.4, "sigma0_over_load": 2.2e4}, 101)
     forms = [
         {}, {"decimal": ",", "separator": ";"}, {"decimal": ",", "separator": "\t"},
         {"separator": ";"}, {"head": "t (s),Displacement [mm],Friction Coefficient"},

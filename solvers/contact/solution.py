@@ -687,14 +687,14 @@ class Solution:
         return self.body.friction(float(self.g[state]), a).kinks
 
     def between_kinks(self, state: int, measure: Callable[..., NDArray]) -> NDArray[np.float64]:
-        """Largest and smallest measure of a state's stresses between kinks, and their places, (2, 2).
+        """Largest and smallest measure of a state's stresses between ends and kinks, and their places.
 
         Args:
             state: its number.
             measure: of σ_XX, σ_YY and σ_XY under the punch, (n,) each.
 
         Returns:
-            As :attr:`.stresses.Turns.between` of one state.
+            Places over a, then values; the largest, then the smallest, (2, 2).
         """
         turns = np.unique([-1.0, *self._kinks_of_friction(state), *self.kinks[state], 1.0])
         turns = turns[np.append(np.diff(turns) > _COINCIDE, True)]

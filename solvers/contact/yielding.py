@@ -702,7 +702,7 @@ class StrengthOfLayers:
         places, values = np.full((2, len(curves), 1), -np.inf)
         for state, kinks in enumerate(solution.kinks):
             if len(kinks):
-                (places[state], values[state]), _ = solution.between_kinks(state, stress)
+                places[state], values[state] = solution.between_kinks(state, stress)[:, 0]
         smooth = _higher(_higher(samples, *on_surface(X, curves, turns)), *at_turns)
         return _higher(smooth, np.nan_to_num(values, nan=-np.inf), places)
 

@@ -312,6 +312,39 @@ def test_a_stiff_plate_is_stretched_most_far_beside_the_contact(method, monkeypa
     assert data[f"interfaces/{method}/sigma_YY_max"][0, 0] == pytest.approx(lift, rel=2e-3)
 
 
+def test_low_friction_stretches_an_interface_many_depths_away(monkeypatch):
+    """The tension that friction makes falls like 1/X, the compression under the load faster."""
+    scene = of_sections(
+        solid={"material": "steel"},
+        layer=[{"thickness": 5e-5, "E": 3e12, "nu": 0.2, "rho": 5000.0}],
+        punch={"profile": "parabolic", "radius": 0.02, "load": 1e5},
+        friction={"model": "coulomb", "mu_c": 0.2}, motion={"c": 0.0},
+        solve={"methods": ["sie"], "tolerance": 1e-5}, output={"quantities": ["interfaces"]},
+    )  # fmt: skip
+    data = galinx.compute(scene).data
+    X = np.union1d(np.linspace(-2.0, 2.0, 401), np.linspace(-300.0, 300.0, 6001))
+    monkeypatch.setattr("galinx.app.plan.variants.positions", lambda scenes: (surface_grid(), X))
+    σ = galinx.compute(scene).data["interfaces/sie/sigma_XX_below"][0, 0]
+    assert data["interfaces/sie/sigma_XX_below_max"][0, 0] == pytest.approx(σ.max(), rel=1e-5)
+    assert X[σ.argmax()] < -45.0
+
+
+def test_the_surface_of_a_layer_yields_beside_a_kink_as_that_of_the_same_solid_without():
+    solid = {"E": 1e9, "nu": 0.3, "rho": 1000.0, "yield_strength": 1e7}
+    blunt_wedge = [[-1e-2, 1e-4], [-2e-4, 1e-6], [0.0, 0.0], [2e-4, 1e-6], [1e-2, 1e-4]]
+    asked = {
+        "solid": solid, "friction": {"model": "coulomb", "mu_c": 0.6}, "motion": {"c": 0.0},
+        "punch": {"profile": "table", "shape": blunt_wedge, "load": 8e3},
+        "output": {"quantities": ["surface", "yield"]},
+    }  # fmt: skip
+    layer, by = [solid | {"thickness": 3e-3}], {"tolerance": 1e-4}
+    layered = galinx.compute(of_sections(**asked, layer=layer, solve=by | {"methods": ["sie"]})).data
+    uniform = galinx.compute(of_sections(**asked, solve=by | {"methods": ["closed_form"]})).data
+    for name, allowed in (("von_mises", {"rel": 1e-6}), ("von_mises_X_over_a", {"abs": 1e-5})):
+        of_layer = layered[f"states/sie/{name}"][0]
+        assert of_layer == pytest.approx(uniform[f"states/closed_form/{name}"][0], **allowed)
+
+
 @pytest.mark.parametrize("profile", ["flat", "parabolic"])
 def test_the_largest_tension_at_a_step_of_friction_is_between_its_places(profile, monkeypatch):
     step = [[-1.0, 0.1], [0.33, 0.1], [0.34, 0.9], [1.0, 0.9]]

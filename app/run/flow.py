@@ -111,7 +111,7 @@ class Memory(dict[str, Any]):
         self[name][rows] = values
 
 
-#: Largest number of unsolved speeds whose reasons a verdict gives.
+#: Most speeds that are named one by one, unsolved or with errors beyond the tolerance.
 _FAILURES = 10
 
 
@@ -309,8 +309,8 @@ def compute(
         runs.SECONDS.path: np.array([clock[name] for name in names], dtype=float),
     })  # fmt: skip
     verdict, reasons = judge.verdict()
-    planned = chain(*(each.warnings for each in plans))
-    warnings = [*dict.fromkeys([*planned, *judge.missed]), *judge.validity.words()]
+    planned = dict.fromkeys(chain(*(each.warnings for each in plans)))
+    warnings = [*planned, *judge.missed, *judge.validity.words()]
     texts = {
         "versions": libraries(), "rules": sorted(rules), "verdict_reasons": reasons,
         "comparisons": judge.worst, "warnings": warnings,
@@ -342,7 +342,6 @@ def _solve(
                 sink.write(name, part.rows, values)
         if part.record:
             records[part.record["speed"]] = part.record
-            judge.missed += part.record.get("missed", ())
         finished[part.rows] = True
         progress.done(int(finished.sum()), len(states))
 
@@ -365,7 +364,11 @@ def _solve(
                     journal.keep(part)
             take(part)
     if ranks.is_root():
-        judge.failures = _put_records(sink, plans, [records[i] for i in sorted(records)])
+        in_order = [records[i] for i in sorted(records)]
+        judge.failures = _put_records(sink, plans, in_order)
+        judge.missed = [text for record in in_order for text in record.get("missed", ())]
+        if len(judge.missed) > _FAILURES:
+            judge.missed[_FAILURES:] = [f"and so at {len(judge.missed) - _FAILURES} more speeds"]
 
 
 def _parts(

@@ -707,7 +707,7 @@ class Solution:
             return np.where(off_tips(X, tips), σ, np.nan)[None]
 
         infinite = [ends[0], *[False] * (len(turns) - 2), ends[1]]
-        return at_and_between(turns, stress, infinite)[1][..., 0]
+        return at_and_between(turns, stress, infinite, self.nearest)[1][..., 0]
 
     @cached_property
     def extremes_in_plane(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:

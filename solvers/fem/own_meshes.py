@@ -18,7 +18,7 @@ On the mesh of a contact the degree rises until the measured error is within tol
 all loads differ in size alone, a single state of a friction stands for all of them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -83,7 +83,8 @@ class OwnMeshes:
     def __init__(self, work: Discretisation, task: Task, g: NDArray) -> None:
         self._work, self._task, self._done = work, task, WorkDone()
         self._record: dict[str, Any] = {"cells": 0, "unknowns": 0, "degree": 0}
-        self._missed: list[str] = []
+        #: Warnings of the state with the largest error, and this error.
+        self._missed: tuple[float, Sequence[str]] = 0.0, ()
         #: States by σ_XY/σ_YY and load, in the order of their last use; the error on the last mesh.
         self._kept: dict[State, SolvedStates] = {}
         self._error: Any = None
@@ -100,7 +101,8 @@ class OwnMeshes:
         if state is None:
             task = replace(self._task, body=self._task.body.loaded(load), loads=(load,))
             state = self._solved(np.array([g]), task)
-            self._missed += self._error.missed  # others are of meshes that were replaced
+            if self._error.missed and self._error.worst > self._missed[0]:
+                self._missed = self._error.worst, self._error.missed
         self._kept[g, load] = state
         while len(self._kept) > OWN_MESHES_KEPT:
             self._kept.pop(next(iter(self._kept))).level.close()
@@ -125,7 +127,7 @@ class OwnMeshes:
         return solved.on_mesh(g)[0]
 
     def record(self) -> dict[str, Any]:
-        return self._record | vars(self._done) | {"missed": self._missed}
+        return self._record | vars(self._done) | {"missed": self._missed[1]}
 
     def close(self) -> None:
         """Free the kept states."""

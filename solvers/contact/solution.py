@@ -673,6 +673,8 @@ class Solution:
     @cached_property
     def between_kinks_of_friction(self) -> NDArray[np.float64] | None:
         """As :attr:`.stresses.Turns.between`, by places of each state's own; None without such kinks."""
+        if not self.body.along:
+            return None
         found = np.full((2, 2, len(self.g)), np.nan)
         for state in range(len(self.g)):
             if self._kinks_of_friction(state):

@@ -215,8 +215,7 @@ class Table(Profile):
         if np.any(np.diff(X) <= 0.0):
             at = X[1:][np.diff(X) <= 0.0][0]
             raise ValueError(f"shape: found X = {at:g} m after a larger or equal one, expected growing X")
-        secants = np.diff(P) / np.diff(X)
-        rounding = _ROUNDING * np.abs(secants).max()
+        secants, rounding = self._secants, self._rounding
         falls = np.diff(secants) < -rounding
         if falls.any():
             at = ", ".join(f"X = {x:g} m" for x in X[1:-1][falls][:3])
@@ -239,6 +238,17 @@ class Table(Profile):
         X, P = np.array(self.shape, dtype=float).reshape(-1, 2).T
         return X, P
 
+    @cached_property
+    def _secants(self) -> NDArray[np.float64]:
+        """Mean slopes between neighbouring points, (points - 1,)."""
+        X, P = self._points
+        return np.asarray(np.diff(P) / np.diff(X))
+
+    @property
+    def _rounding(self) -> float:
+        """Difference of two slopes that is rounding."""
+        return _ROUNDING * float(np.abs(self._secants).max())
+
     @property
     def reach(self) -> tuple[float, float]:
         """First and last position [m] at which the punch is known."""
@@ -250,10 +260,8 @@ class Table(Profile):
 
         A piece on which the slope changes at one of its points, and hardly else, would have a jump there.
         """
-        X, P = self._points
-        secants = np.diff(P) / np.diff(X)
-        change = np.diff(secants)
-        change[change < _ROUNDING * np.abs(secants).max()] = 0.0
+        secants, change = self._secants, np.diff(self._secants)
+        change[change < self._rounding] = 0.0
         beside = _BEND * np.concatenate([[np.inf], change, [np.inf]])
         return secants[1:] - beside[2:], secants[:-1] + beside[:-2]
 
@@ -261,14 +269,14 @@ class Table(Profile):
     def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Knots [m] between which the slope is linear, and slopes there, (knots,) each."""
         X, P = self._points
-        δ, Δ = np.diff(P) / np.diff(X), np.diff(X)
+        δ, Δ = self._secants, np.diff(X)
         d = np.empty(len(X))
         d[1:-1] = np.clip((Δ[1:] * δ[:-1] + Δ[:-1] * δ[1:]) / (Δ[1:] + Δ[:-1]), *self._bounds)
         d[0], d[-1] = 2.0 * δ[0] - d[1], 2.0 * δ[-1] - d[-2]
         knots, slopes = [X[0]], [d[0]]
         for i, ((x0, x1), (d0, d1)) in enumerate(zip(pairwise(X), pairwise(d))):
             # Two parabolas, whose slopes meet at ξ, where one cannot have both slopes and the height.
-            if abs(d0 + d1 - 2.0 * δ[i]) > _ROUNDING * np.abs(δ).max():
+            if abs(d0 + d1 - 2.0 * δ[i]) > self._rounding:
                 near_left = δ[i] - d0 > d1 - δ[i]
                 share = (d1 - δ[i] if near_left else δ[i] - d0) / (d1 - d0)
                 ξ = x0 + Δ[i] * share if near_left else x1 - Δ[i] * share

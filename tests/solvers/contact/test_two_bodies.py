@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from stroh import admittances
 
-from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.closed_form import FlatPunch, contacts
+from galinx.solvers.profiles import PROFILES
 from galinx.solvers.solids import SOLIDS, Isotropic
 from galinx.solvers.solids.pair import Pair
 
@@ -57,3 +58,11 @@ def test_coupling_at_rest_is_dundurs_constant(plane):
     pair = Pair(first, second, 0.0).response(0.0)
     assert pair.q / pair.n == pytest.approx(β, rel=1e-12)
     assert 1.0 / np.tan(pi * FlatPunch(pair, -0.3).α) == pytest.approx(-0.3 * β, rel=1e-12)
+
+
+def test_hertz_with_the_contact_modulus_of_both_bodies():
+    R, N = 10e-3, 1e5
+    modulus = 1.0 / sum((1.0 - s.ν**2) / s.E for s in (STEEL, POLYMER))
+    pair = Pair(STEEL, POLYMER, 0.0).response(0.0)
+    contact = contacts(pair, np.zeros(1), PROFILES["parabolic"](R), N / STEEL.μ)
+    assert contact.of("half_width")[0] == pytest.approx(np.sqrt(4.0 * N * R / (pi * modulus)), rel=1e-12)

@@ -63,3 +63,10 @@ def test_tractions_of_both_bodies_are_one():
     found = _solution(STEEL, FIBRES, 400.0, 0.0, (-0.5,))
     on = POINTS[:, 1] == 0.0
     np.testing.assert_allclose(found.inside_punch[1:, :, on], found.inside[1:, :, on], rtol=1e-12)
+
+
+def test_like_bodies_without_friction_have_mirrored_stresses():
+    found = _solution(STEEL, STEEL)
+    np.testing.assert_allclose(
+        found.inside_punch, found.inside * [[[1.0]], [[1.0]], [[-1.0]]], atol=1e-14
+    )

@@ -209,7 +209,7 @@ class Table(Profile):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        X, P = self._points
+        X, _ = self._points
         if len(X) < 3:
             raise ValueError(f"shape: found {len(X)} points, expected at least 3")
         if np.any(np.diff(X) <= 0.0):
@@ -268,7 +268,7 @@ class Table(Profile):
     @cached_property
     def _knots(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Knots [m] between which the slope is linear, and slopes there, (knots,) each."""
-        X, P = self._points
+        X, _ = self._points
         δ, Δ = self._secants, np.diff(X)
         d = np.empty(len(X))
         d[1:-1] = np.clip((Δ[1:] * δ[:-1] + Δ[:-1] * δ[1:]) / (Δ[1:] + Δ[:-1]), *self._bounds)

@@ -30,6 +30,10 @@ _REJECTED = 1e3
 _INSIDE = 1e-6
 #: Factor from its start within which a positive number is sought.
 _FARTHEST = 1e5
+#: Change of speed over those before and after from which on it is a jump.
+_JUMPS = 3.0
+#: Least speed at a sample over the mean one before it: laws may take the logarithm, which a turn has not.
+_SLOWEST = 0.1
 
 
 @dataclass(frozen=True)
@@ -55,24 +59,28 @@ class Measured:
         return Measured(self.t[kept], self.X[kept], self.f[kept])
 
 
-@dataclass(frozen=True)
+@dataclass
 class Move:
     """Samples in one direction and, where a law depends on it, at one speed.
 
     Attributes:
         s: direction, ±1.
-        V: speed [m/s].
+        V: mean speed [m/s].
+        end: speed at its end [m/s].
         rest: time at rest before it [s].
+        way: length [m].
         slip: slip since the move began, (n,) [m].
-        samples: numbers of the samples, (n,).
+        samples: numbers of the samples, (n,); none where it lies between two.
         first: True if a measurement begins with it, and the law at rest.
     """
 
     s: int
     V: float
+    end: float
     rest: float
-    slip: NDArray[np.float64]
-    samples: NDArray[np.int64]
+    way: float
+    slip: list[float]
+    samples: list[int]
     first: bool = False
 
 
@@ -124,25 +132,57 @@ def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]
         by_speed: True if the law depends on the speed: a change of speed begins a new move.
         before: number of the first sample.
     """
-    steps, seconds = np.diff(X), np.diff(t)
-    pieces: list[tuple[int, float, float, list[float], list[int]]] = []
+    result: list[Move] = []
     rest = 0.0
-    for n, (step, time) in enumerate(zip(steps.tolist(), seconds.tolist()), before + 1):
-        if step == 0.0:
-            rest += time
-            continue
-        s, V = (1 if step > 0.0 else -1), abs(step) / time
-        last = pieces[-1] if pieces and rest == 0.0 else None
-        if last and last[0] == s and (not by_speed or abs(V / last[1] - 1.0) < 1e-6):
-            last[3].append(last[3][-1] + abs(step))
-            last[4].append(n)
-        else:
-            pieces.append((s, V, rest, [abs(step)], [n]))
-            rest = 0.0
-    return [
-        Move(s, V, at, np.array(slip), np.array(rows), first=not i)
-        for i, (s, V, at, slip, rows) in enumerate(pieces)
-    ]
+    for number, parts in enumerate(_parts(X, t), before + 1):
+        for n, (v, end, seconds) in enumerate(parts, 1):
+            if v == 0.0:
+                rest += seconds
+                continue
+            s, V, way = (1 if v > 0.0 else -1), abs(v), abs(v) * seconds
+            last = result[-1] if result and rest == 0.0 else None
+            if last and last.s == s and (not by_speed or abs(V / last.V - 1.0) < 1e-6):
+                way += last.way
+            else:
+                last = Move(s, V, max(abs(end), _SLOWEST * V), rest, 0.0, [], [], first=not result)
+                result.append(last)
+                rest = 0.0
+            last.way = way
+            if n == len(parts):
+                last.slip.append(way)
+                last.samples.append(number)
+    return result
+
+
+def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
+    """Parts of the way to each sample after the first: mean speed, speed at its end [m/s], time [s].
+
+    From sample to sample the speed is linear, with the smaller one of the slopes to the neighbours, and
+    none where these have two signs (B. van Leer, J. Comput. Phys. 32 (1979) 101). Where it changes by far
+    more than before and after, it jumps between two samples, as in strokes at constant speeds.
+    """
+    seconds = np.diff(t)
+    v = np.diff(X) / seconds
+    change = np.diff(v) / (0.5 * (seconds[1:] + seconds[:-1]))
+    left, right = change[:-1], change[1:]
+    slope = np.zeros(len(v))
+    slope[1:-1] = np.where(left * right > 0.0, np.sign(left) * np.fmin(np.abs(left), np.abs(right)), 0.0)
+    parts = []
+    for n, (mean, Δ) in enumerate(zip(v.tolist(), seconds.tolist())):
+        begin, end = mean - 0.5 * slope[n] * Δ, mean + 0.5 * slope[n] * Δ
+        one = [(mean, end, Δ)]
+        if begin * end < 0.0:
+            turn = begin / (begin - end)
+            one = [(0.5 * begin, 0.0, turn * Δ), (0.5 * end, end, (1.0 - turn) * Δ)]
+        if 2 <= n < len(v) - 2:
+            begin = v[n - 1] + 0.5 * change[n - 2] * seconds[n - 1]
+            end = v[n + 1] - 0.5 * change[n + 1] * seconds[n + 1]
+            if abs(end - begin) > _JUMPS * max(abs(change[n - 2]), abs(change[n + 1])) * Δ:
+                at = (mean - end) / (begin - end)
+                if 1e-3 < at < 1.0 - 1e-3:
+                    one = [(begin, begin, at * Δ), (end, end, (1.0 - at) * Δ)]
+        parts.append([tuple(map(float, part)) for part in one])
+    return parts
 
 
 def friction(
@@ -157,26 +197,25 @@ def friction(
     z = rest
     for move in motion:
         z = law.pause(rest if move.first else z, move.rest)
-        states = exactly(law, z, move.s, move.V, float(move.slip[-1]), move.slip)
-        f[..., move.samples] = law.friction(states, move.s, move.V)
+        states = exactly(law, z, move.s, move.V, move.way, np.append(move.slip, move.way))
+        f[..., move.samples] = law.friction(states, move.s, move.end)[..., :-1]
         z = states[..., -1:, :] if laws else states[-1]
     return f
 
 
 def measured_friction(motion: Sequence[Move], f: NDArray, rows: int) -> MeasuredFriction:
     """Summary of measured friction f, (samples,), for a guess of parameters with tables of ``rows``."""
-    sliding = np.abs(np.concatenate([f[move.samples] for move in motion]))
-    first = motion[0]
-    longest = max(move.slip[-1] for move in motion)
-    near = first.slip <= 0.1 * first.slip[-1]
-    near[: min(2, len(near))] = True
-    slope = float(
-        np.sum(np.abs(f[first.samples[near]]) * first.slip[near]) / np.sum(first.slip[near] ** 2)
-    )
+    sliding = np.abs(np.concatenate([f[move.samples] for move in motion if move.samples]))
+    first = next(move for move in motion if move.samples)
+    longest = max(move.way for move in motion)
+    slip, f_first = np.array(first.slip), np.abs(f[first.samples])
+    near = slip <= 0.1 * slip[-1]
+    near[:2] = True
+    slope = float(np.sum(f_first[near] * slip[near]) / np.sum(slip[near] ** 2))
     level = float(np.quantile(sliding, 0.95)) or 1.0
     speed = float(np.exp(np.mean(np.log([max(move.V, 1e-12) for move in motion]))))
     least = float(np.quantile(sliding, 0.3)) or level
-    return MeasuredFriction(level, least, slope or level / longest, float(longest), speed, rows)
+    return MeasuredFriction(level, least, slope or level / longest, longest, speed, rows)
 
 
 def fit(
@@ -252,7 +291,7 @@ class _Fitted:
             self.motion += moves(one.t, one.X, kind.depends_on_speed, before)
             before += len(one.t)
         self.f = np.concatenate([one.f for one in measured])
-        self.used = np.concatenate([move.samples for move in self.motion])
+        self.used = np.array([sample for move in self.motion for sample in move.samples])
         self._at_once = kind.broadcasts or kind.batched
 
     def residuals(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:

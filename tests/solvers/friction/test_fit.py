@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import random_laws
+from scipy.integrate import solve_ivp
 from support import THOROUGH
 
 from galinx.solvers.friction import LAWS
@@ -112,14 +113,75 @@ def test_deviations_are_those_of_repeated_measurements():
     np.testing.assert_allclose(np.std(best, axis=0), np.mean(told, axis=0), rtol=0.35)
 
 
+def level(v, law):
+    """Stribeck's curve with an exponent of 2."""
+    decay = np.exp(-((v / law["stribeck_velocity"]) ** 2))
+    return law["mu_c"] + (law["mu_s"] - law["mu_c"]) * decay
+
+
+def lugre_along(v, t, law):
+    """LuGre friction at times t of a speed v(t), by its differential equation in time."""
+
+    def rate(t, ζ):
+        return v(t) - abs(v(t)) * ζ / level(v(t), law)
+
+    ζ = solve_ivp(
+        lambda t, ζ: law["sigma0_over_load"] * rate(t, ζ), t[[0, -1]], [0.0], "LSODA", t,
+        rtol=1e-9, atol=1e-12, max_step=t[1] - t[0],
+    ).y[0]  # fmt: skip
+    rates = np.array([*map(rate, t, ζ)])
+    return ζ + law["sigma1_over_load"] * rates + law["sigma2_over_load"] * v(t)
+
+
+@pytest.mark.parametrize("samples", [150, 400])
+@pytest.mark.parametrize("name", ["stribeck", "lugre"])
+def test_a_smooth_motion_is_fitted_from_its_samples(name, samples):
+    """Friction is that of the true speed at each sample, which lies between those before and after."""
+    amplitude, ω, true = 5e-5, 40.0, {"mu_c": 0.3, "mu_s": 0.5, "stribeck_velocity": 1e-3}
+    true["sigma2_over_load"] = 5.0
+
+    def v(t):
+        return amplitude * ω * np.sin(ω * t)
+
+    t = np.linspace(0.0, 3.3 * np.pi / ω, samples)
+    if name == "lugre":
+        true |= {"sigma0_over_load": 3e4, "sigma1_over_load": 20.0}
+        f = lugre_along(v, t, true)
+    else:
+        f = np.sign(v(t)) * level(v(t), true) + true["sigma2_over_load"] * v(t)
+    f = f + 1e-3 * np.random.default_rng(1).standard_normal(samples)
+    measured = Measured(t, amplitude * (1.0 - np.cos(ω * t)), f)
+    found = fit(LAWS[name], [measured], {"stribeck_exponent": 2.0}, {})
+    assert found.rms == pytest.approx(1e-3, rel=0.15)
+    off = np.abs(found.best - numbers(true, found.names)) / np.array([*found.deviations.values()])
+    assert (off <= 3.0).all(), dict(zip(found.names, off))
+
+
+def test_strokes_turn_between_samples():
+    """Speeds are constant but at the turns, which no sample meets."""
+    samples, law = np.linspace(0.0, 3.83, 300), {"mu_c": 0.4, "sigma0_over_load": 2.2e4}
+    exact = np.union1d(samples, [1.0, 2.0, 3.0])
+    X = 1e-4 * (1.0 - np.abs(1.0 - exact % 2.0))
+    clean = friction(build_model(LAWS["dahl"], law), moves(exact, X, False), len(exact))
+    at = np.isin(exact, samples)
+    way = moves(samples, X[at], False)
+    assert [move.s for move in way] == [1, -1, 1, -1]
+    np.testing.assert_allclose(
+        [move.way for move in way], np.array([1.0, 1.0, 1.0, 0.83]) * 1e-4, rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        friction(build_model(LAWS["dahl"], law), way, 300)[1:], clean[at][1:], atol=1e-12
+    )
+
+
 def test_moves_are_split_where_a_law_wants_it():
     t = np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0, 7.0])
     X = np.array([0.0, 1.0, 2.0, 4.0, 4.0, 5.0, 3.0]) * 1e-6
     alike, apart = moves(t, X, False), moves(t, X, True)
-    assert [(m.s, m.rest, m.samples.tolist()) for m in alike] == [
+    assert [(m.s, m.rest, m.samples) for m in alike] == [
         (1, 0.0, [1, 2, 3]), (1, 2.0, [5]), (-1, 0.0, [6]),
     ]  # fmt: skip
-    assert [m.samples.tolist() for m in apart] == [[1, 2], [3], [5], [6]]
+    assert [m.samples for m in apart] == [[1, 2], [3], [5], [6]]
     np.testing.assert_allclose([m.V for m in apart], [1e-6, 2e-6, 1e-6, 2e-6])
     np.testing.assert_allclose(alike[0].slip, [1e-6, 2e-6, 4e-6])
 

@@ -63,8 +63,9 @@ def pieces(
         rows = _rows(archive, over)
         if word and not any(row.over == over for row in rows):
             raise BadInput(
-                f"{path} holds nothing for --{which}; a scene asks for it by "
-                f'output.quantities = ["{word}"]'
+                f"{path} holds nothing for --{which}; a scene "
+                + "with [[layer]] " * (word == "interfaces" and not scene.layers)
+                + f'asks for it by output.quantities = ["{word}"]'
             )
         lengths = {STATE: len(archive.data[states.FRICTION.path])}
         for name, values in archive.data.items():

@@ -630,11 +630,14 @@ class Section:
                 keys = self.keys(given)
         for key in (key for key in given if key not in keys):
             others = [n for n, model in (self.models or {}).items() if key in parameters(model)]
-            have = "has it" if len(others) == 1 else "have it"
-            hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
-            own_faults.append(
-                f"{name}.{short(key)}: no such key{hint if others else nearest(key, [*keys])}"
-            )
+            elsewhere = [f"[{section}]" for section, of in SECTIONS.items() if key in of.every]
+            hint = nearest(key, [*keys])
+            if others:
+                have = "has it" if len(others) == 1 else "have it"
+                hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
+            elif elsewhere:
+                hint = f"; it is one of {' or '.join(elsewhere)}"
+            own_faults.append(f"{name}.{short(key)}: no such key{hint}")
         values: dict[str, Any] = {}
         for key, entry in sorted(keys.items(), key=lambda pair: not pair[1].stands_for):
             parameter = entry.stands_for

@@ -331,9 +331,10 @@ def opened(path: Path, verified: bool = False) -> Iterator[Archive]:
         UnreadableArchive: no archive, a damaged one, or one that this program does not know.
     """
     with _reading(path):
-        there = path.is_file()
-    if not there:
-        raise UnreadableArchive(f"{path} is not a file, expected an archive written by galinx")
+        found, there = path.is_file(), path.exists()
+    if not found:
+        what = "is not a file" if there else "does not exist"
+        raise UnreadableArchive(f"{path} {what}, expected an archive written by galinx")
     with _reading(path):
         if not verified:
             verify(path)

@@ -387,11 +387,12 @@ def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
         equation: of such a contact; its slope is not used.
         resolution: number of polynomials, or longest panel.
     """
-    adjoint = replace(equation, adjoint=True)
+    adjoint, friction = replace(equation, adjoint=True), equation.friction
+    of_friction = (*friction.kinks, *friction.weak_kinks)
     ρ = adjoint.pressures(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
 
     def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:
-        panels = Panels(ρ.α, ρ.β, finest(resolution), kinks)
+        panels = Panels(ρ.α, ρ.β, finest(resolution), tuple(sorted({*kinks, *of_friction})))
         lifting, carrying = panels.weights * ρ.series(panels.t)
         return panels.t, -lifting, carrying
 

@@ -103,6 +103,16 @@ def test_punch_with_advected_dahl_against_15_digits(profile, seed, stiffness):
     np.testing.assert_allclose(own * contact.pressure.σ_YY(PLACES), τ, rtol=1e-7)
 
 
+@pytest.mark.parametrize("layers", [False, True])
+def test_ends_beside_a_step_of_friction_are_free_on_the_coarsest_panels(layers):
+    """The rule of their balance has panels that end at kinks of friction, as the pressure's."""
+    friction = tabulated([(-1, 0.1), (0.33, 0.1), (0.34, 0.9), (1, 0.9)], -1.0)
+    solid = Layered((Layer(0.02, Isotropic(5e9, 0.3, 1000.0)),), ISOTROPIC) if layers else ISOTROPIC
+    body = make_contact(solid, CYLINDER, LOAD, along={friction.mean: friction})
+    under = under_punch(body, body.response(0.3 * solid.limit()), 1e-4)
+    assert under._between_free_ends(friction.mean, 1.0, 1.4).change < 1e-8
+
+
 @pytest.mark.parametrize("profile", [CYLINDER, WEDGE])
 @pytest.mark.parametrize("seed", [0, 2])
 def test_constant_friction_is_one_number(profile, seed):

@@ -31,7 +31,7 @@ that its transform back to X goes along it.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, cos, log, log2, pi
+from math import ceil, cos, log, pi
 from typing import Any
 
 import numpy as np
@@ -53,7 +53,7 @@ _DIRECTIONS = np.arange(0.6, 1.7, 0.3)
 #: Panels between two speeds at which 𝐘 is not analytic: at first, halvings at most, and accuracy.
 _PANELS, _HALVINGS, _ACCURACY = 3, 14, 1e-10
 #: Radians of the exponential in a panel at most.
-_TURN = 5.0
+_TURN = 7.0
 #: Places of a panel, -1 to 1, at which its polynomial is compared with the function.
 _BETWEEN = np.linspace(-0.9, 0.9, 4)
 #: Width of panels of distances that have the same points.
@@ -104,8 +104,7 @@ class Kernel:
         ψ = float(np.angle(s))
         down = int(np.abs(_DIRECTIONS - ψ).argmin())
         last = _GONE / (abs(s) * cos(ψ - _DIRECTIONS[down]) * float(x.min()))
-        turns = abs(s) * self._edges[-1] * float(x.max()) / _TURN
-        ζ, values = self._above(max(0, ceil(log2(max(turns, 1.0) / _PANELS))))
+        ζ, values = self._above(_TURN / (abs(s) * float(x.max())))
         felt = ζ * (s.real * float(x.min())) < _GONE
         ways = [
             (ζ[felt], values[:, felt]),
@@ -157,23 +156,35 @@ class Kernel:
         """Points and weighted values of both ways by direction."""
         return {}
 
+    def _above(self, longest: float) -> tuple[NDArray, NDArray]:
+        """Points and weighted values above the real axis, on panels halved until none is longer."""
+        which, start, length, _ = self._panels
+        ends, _ = self._between(which, np.array([start, start + length]))
+        halvings = np.ceil(np.log2(np.maximum(np.diff(ends, axis=0)[0] / longest, 1.0))).astype(int)
+        parts = [
+            (ζ[halvings == n].ravel(), values[:, halvings == n].reshape(4, -1))
+            for n in np.unique(halvings).tolist()
+            for ζ, values in [self._halved(n)]
+        ]
+        ζ, values = (np.concatenate(part, axis=-1) for part in zip(*parts))
+        return ζ, values
+
     @cached_property
-    def _refined(self) -> dict[int, tuple[NDArray, NDArray]]:
-        """Points and weighted values above the real axis by the number of halvings."""
+    def _all_halved(self) -> dict[int, tuple[NDArray, NDArray]]:
+        """Points and weighted values of halved panels by the number of halvings."""
         return {}
 
-    def _above(self, halvings: int) -> tuple[NDArray, NDArray]:
-        """Points and weighted values above the real axis, with each panel halved ``halvings`` times."""
-        if halvings not in self._refined:
+    def _halved(self, n: int) -> tuple[NDArray, NDArray]:
+        """Points (panels, k) and weighted values (4, panels, k), with each panel halved n times."""
+        if n not in self._all_halved:
             t, w = leggauss(_POINTS)
-            cuts = np.arange(2**halvings)[:, None]
-            finer = ((2.0 * cuts + 1.0 + t) / 2**halvings - 1.0).ravel()
+            finer = ((2.0 * np.arange(2**n)[:, None] + 1.0 + t) / 2**n - 1.0).ravel()
             which, start, length, values = self._panels
             ζ, _ = self._between(which[:, None], start[:, None] + length[:, None] * (1.0 + finer) / 2.0)
-            weighted = values @ (interpolation(_POINTS, finer) * np.tile(w, 2**halvings)[:, None]).T
-            weighted = weighted * (1j / (2.0 * pi) * length / 2.0 ** (halvings + 1))[:, None, None]
-            self._refined[halvings] = ζ.ravel(), weighted.swapaxes(0, 1).reshape(4, -1)
-        return self._refined[halvings]
+            weighted = values @ (interpolation(_POINTS, finer) * np.tile(w, 2**n)[:, None]).T
+            weighted = weighted * (1j / (2.0 * pi) * length / 2.0 ** (n + 1))[:, None, None]
+            self._all_halved[n] = ζ, weighted.swapaxes(0, 1)
+        return self._all_halved[n]
 
     def _between(self, which: NDArray, φ: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Slownesses at φ, 0 to 1 between two edges, and their slopes by φ; roots are smooth in φ."""

@@ -449,6 +449,9 @@ class Kinked(Pressure):
     kinks: tuple[float, ...]
     tips: tuple[float, ...]
 
+    #: Rules of σ₀ by their longest panel.
+    _fine: dict[float, tuple[NDArray, NDArray]] = field(default_factory=dict)
+
     #: Both ends are free.
     free = np.array([True, True])  # type: ignore[assignment]
 
@@ -470,8 +473,11 @@ class Kinked(Pressure):
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         panels: Panels = self.on_panels.functions
-        fine = _on_panels(self.alone, replace(panels, finest=min(finest, panels.finest)))
-        (t, σ), (t_alone, σ_alone) = self.more.points(finest), fine.points(np.inf)
+        # Depths that are searched share panels.
+        finest = min(float(2.0 ** np.floor(np.log2(finest))), panels.finest)
+        if finest not in self._fine:
+            self._fine[finest] = _on_panels(self.alone, replace(panels, finest=finest)).points(np.inf)
+        (t, σ), (t_alone, σ_alone) = self.more.points(finest), self._fine[finest]
         return np.append(t, t_alone), np.append(σ, σ_alone)
 
 

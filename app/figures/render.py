@@ -476,20 +476,29 @@ def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
     """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in]."""
     if not (handles := _entries(curves)):
         return 0.0
-    width, dpi = figure.get_figwidth(), figure.dpi
-    room = (width - 0.1) * dpi
+    width, dpi, renderer = figure.get_figwidth(), figure.dpi, figure.canvas.get_renderer()
+    room, texts, beside, frame = (width - 0.1) * dpi, np.zeros(0), 0.0, 0.0
     for rows in range(1, len(handles) + 1):
+        columns = ceil(len(handles) / rows)
+        # Widths follow from those of the first try, which is slow as each is.
+        each = np.array_split(texts, columns)
+        if 1 < rows < len(handles) and frame + columns * beside + sum(map(max, each)) > room:
+            continue
         figure.legends.clear()
         legend = figure.legend(
-            handles=handles, ncols=ceil(len(handles) / rows), loc="lower center", borderaxespad=0.15,
-            columnspacing=1.2, labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
+            handles=handles, ncols=columns, loc="lower center", borderaxespad=0.15, columnspacing=1.2,
+            labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
         )  # fmt: skip
-        box = legend.get_window_extent(figure.canvas.get_renderer())
+        box = legend.get_window_extent(renderer)
         if box.width <= room:
             break
+        if rows == 1:
+            texts = np.array([text.get_window_extent(renderer).width for text in legend.get_texts()])
+            beside = (1.2 + 0.5 + 2.2) * SMALL * dpi / 72.0
+            frame = box.width - texts.sum() - columns * beside
     for text in legend.get_texts() if box.width > room else ():
         fit_text(text, text.get_text(), width - 0.5)
-    return legend.get_window_extent(figure.canvas.get_renderer()).height / dpi + 0.05
+    return legend.get_window_extent(renderer).height / dpi + 0.05
 
 
 class _Room(NamedTuple):

@@ -85,7 +85,11 @@ class NoRoot(ValueError):
 
 
 def free_ends(
-    punch: Punch, rules: Callable[[float], Rule], h: float, m: float | None = None
+    punch: Punch,
+    rules: Callable[[float], Rule],
+    h: float,
+    m: float | None = None,
+    rounding: float = _ROUNDING,
 ) -> tuple[float, float]:
     """Middle and half-width of a contact with two free ends, in the unit of the punch.
 
@@ -94,6 +98,7 @@ def free_ends(
         rules: the quadrature of both conditions at a half-width.
         h: half-width to begin with.
         m: middle of a similar contact with that half-width; None without any.
+        rounding: see :func:`half_width_of_load`.
 
     Raises:
         SolveError: no contact satisfies both conditions.
@@ -117,7 +122,7 @@ def free_ends(
         middles[h] = lean * h
         return logarithm_of_load(carried[lean])
 
-    h = half_width_of_load(load, h, punch)
+    h = half_width_of_load(load, h, punch, rounding)
     return middles[h], h
 
 

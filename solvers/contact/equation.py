@@ -526,6 +526,8 @@ def kinked(
     return Kinked(added.α, added.β, alone, on_panels, added, added.near, places, tips), taken
 
 
+#: Accuracy of half-widths over the tolerance, where each has an equation of its own.
+_OF_LENGTHS = 1e-4
 #: Accuracy of a half-width at rest, over which others are given.
 _AT_REST = 1e-5
 #: Accuracy with which an edge counts as lifted off.
@@ -680,7 +682,8 @@ class LayersUnderPunch:
                 rules[own] = rule_of_ends(self._equation(g, own), resolution)
             return rules[own]
 
-        m, h = free_ends(self.punch, of_half_width, h)
+        rounding = {} if share else {"rounding": _OF_LENGTHS * self.tolerance}
+        m, h = free_ends(self.punch, of_half_width, h, **rounding)
         equation = self._equation(g, h, self.punch.slope(m, h))
         places = self.punch.kinks(m, h)
         if places and not equation.friction.varies:

@@ -275,6 +275,25 @@ def test_stresses_along_a_thin_film_are_largest_where_close_positions_say(text, 
             assert largest == pytest.approx(value, abs=2e-4 * np.abs(curve).max())
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.34])
+def test_next_to_a_tip_stresses_count_from_a_distance_on_which_is_no_position_of_the_surface(mu):
+    """There they are lowest: without friction σ_XX = σ_YY = -(2/π) arccosh(1/0.02)."""
+    data = galinx.compute(of_sections(
+        solid={"material": "steel"}, punch={"profile": "wedge", "slope": 0.01, "load": 5e4},
+        friction={"mu": mu}, motion={"c": 0.6 if mu else 0.0}, output={"quantities": ["surface"]},
+        solve={"methods": BOTH},
+    )).data  # fmt: skip
+    for method in BOTH:
+        X, centre, a = (
+            data[f"states/{method}/{name}"][0]
+            for name in ("sigma_XX_min_X_over_a", "centre", "half_width")
+        )
+        assert abs(X + centre / a) == pytest.approx(0.02, rel=1e-6)
+        if not mu:
+            lowest = data[f"states/{method}/sigma_XX_min"][0]
+            assert lowest == pytest.approx(-2.0 / np.pi * np.arccosh(50.0), rel=1e-6)
+
+
 @pytest.mark.parametrize("method", ["sie", "fem"])
 def test_a_stiff_plate_is_stretched_most_far_beside_the_contact(method, monkeypatch):
     """Alumina on acrylic glass bends: tension and lift were sought within five half-widths only."""

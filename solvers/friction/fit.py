@@ -19,6 +19,8 @@ _STARTS, _AWAY = 48, 3.0
 _SEARCHED = 25_000
 #: Samples of all measurements through which starts search, and most that the best of them is fitted to.
 _FEW, _MOST = 150, 3000
+#: Step over the range of an unknown by which deviations are computed.
+_WIDE = 1e-3
 #: Tolerance and most steps of the search from a start, and of the fit from the best of them.
 _SEARCH, _FIT = (1e-4, 30), (1e-7, 40)
 #: Relative difference of sums of squares below which two starts led to one law, and times that this
@@ -32,7 +34,7 @@ _INSIDE = 1e-6
 _FARTHEST = 1e5
 #: Change of speed over those before and after from which on it is a jump.
 _JUMPS = 3.0
-#: Least speed at a sample over the mean one before it: laws may take the logarithm, which a turn has not.
+#: Least speed at a sample over the mean one before it: at a turn neither sign nor logarithm are known.
 _SLOWEST = 0.1
 
 
@@ -71,6 +73,7 @@ class Move:
         way: length [m].
         slip: slip since the move began, (n,) [m].
         samples: numbers of the samples, (n,); none where it lies between two.
+        turns: those among them that lie at a smooth turn.
         first: True if a measurement begins with it, and the law at rest.
     """
 
@@ -81,6 +84,7 @@ class Move:
     way: float
     slip: list[float]
     samples: list[int]
+    turns: list[int]
     first: bool = False
 
 
@@ -144,13 +148,14 @@ def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]
             if last and last.s == s and (not by_speed or abs(V / last.V - 1.0) < 1e-6):
                 way += last.way
             else:
-                last = Move(s, V, max(abs(end), _SLOWEST * V), rest, 0.0, [], [], first=not result)
+                last = Move(s, V, max(abs(end), _SLOWEST * V), rest, 0.0, [], [], [], not result)
                 result.append(last)
                 rest = 0.0
             last.way = way
             if n == len(parts):
                 last.slip.append(way)
                 last.samples.append(number)
+                last.turns += [number] * (abs(end) < _SLOWEST * V)
     return result
 
 
@@ -159,7 +164,8 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
 
     From sample to sample the speed is linear, with the smaller one of the slopes to the neighbours, and
     none where these have two signs (B. van Leer, J. Comput. Phys. 32 (1979) 101). Where it changes by far
-    more than before and after, it jumps between two samples, as in strokes at constant speeds.
+    more than before and after, and than usually, it jumps between two samples, as in strokes at constant
+    speeds.
     """
     seconds = np.diff(t)
     v = np.diff(X) / seconds
@@ -167,6 +173,10 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
     left, right = change[:-1], change[1:]
     slope = np.zeros(len(v))
     slope[1:-1] = np.where(left * right > 0.0, np.sign(left) * np.fmin(np.abs(left), np.abs(right)), 0.0)
+    usual = 2.0 * float(np.median(np.abs(change))) if len(change) else 0.0
+    for at, beside in ((0, 1), (-1, -2)):  # the first and the last one as those beside, without a turn
+        most = 2.0 * abs(v[at]) / seconds[at]
+        slope[at] = np.clip(slope[beside], -most, most) if len(v) > 2 else 0.0
     parts = []
     for n, (mean, Δ) in enumerate(zip(v.tolist(), seconds.tolist())):
         begin, end = mean - 0.5 * slope[n] * Δ, mean + 0.5 * slope[n] * Δ
@@ -177,7 +187,8 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
         if 2 <= n < len(v) - 2:
             begin = v[n - 1] + 0.5 * change[n - 2] * seconds[n - 1]
             end = v[n + 1] - 0.5 * change[n + 1] * seconds[n + 1]
-            if abs(end - begin) > _JUMPS * max(abs(change[n - 2]), abs(change[n + 1])) * Δ:
+            noise = max(abs(change[n - 2]), abs(change[n + 1]), usual) * Δ
+            if abs(end - begin) > _JUMPS * noise and min(abs(mean - begin), abs(mean - end)) > noise:
                 at = (mean - end) / (begin - end)
                 if 1e-3 < at < 1.0 - 1e-3:
                     one = [(begin, begin, at * Δ), (end, end, (1.0 - at) * Δ)]
@@ -255,16 +266,15 @@ def fit(
     if search.names:
         few = _Fitted(kind, [one.every(-(-used // _FEW)) for one in measured])
         θ = _best_start(few if len(few.used) > 2 * len(search.names) else fitted, search, step)
-        result = _least(fitted, search, θ, *_FIT)
-        θ, J = result.x, result.jac
+        θ = _least(fitted, search, θ, *_FIT).x
     else:
-        θ, J = search.begin, np.zeros((len(fitted.used), 0))
+        θ = search.begin
     residuals = fitted.residuals(search, θ[None])[0]
     if np.abs(residuals).max() >= _REJECTED:
         raise ValueError("no start of the search leads to a law; fix or start other parameters")
     law, names = search.law(θ), search.names
     spread = float(residuals @ residuals) / (len(residuals) - len(θ))
-    deviations = search.stretch(θ) * np.sqrt(spread * _variances(J))
+    deviations = search.stretch(θ) * np.sqrt(spread * _variances(_slopes(fitted, search, θ)))
     vague = tuple(np.array(names)[~(deviations < search.sizes(θ))].tolist())
     with np.errstate(all="ignore"):
         f = friction(law, whole.motion, len(whole.f))
@@ -281,7 +291,7 @@ class _Fitted:
     Attributes:
         motion: moves of all.
         f: measured friction coefficient, (samples,).
-        used: numbers of the samples in motion.
+        used: numbers of the samples in motion, but for those at a smooth turn.
     """
 
     def __init__(self, kind: type[FrictionLaw], measured: Sequence[Measured]) -> None:
@@ -291,7 +301,9 @@ class _Fitted:
             self.motion += moves(one.t, one.X, kind.depends_on_speed, before)
             before += len(one.t)
         self.f = np.concatenate([one.f for one in measured])
-        self.used = np.array([sample for move in self.motion for sample in move.samples])
+        self.used = np.array(
+            [n for move in self.motion for n in move.samples if n not in move.turns], dtype=int
+        )
         self._at_once = kind.broadcasts or kind.batched
 
     def residuals(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
@@ -352,6 +364,14 @@ def _least(data: _Fitted, search: "_Search", θ: NDArray, tolerance: float, step
         lambda θ: both(θ)[0], θ, lambda θ: both(θ)[1], bounds=(search.low, search.high),
         x_scale="jac", xtol=1e-10, ftol=tolerance, gtol=1e-12, max_nfev=steps,
     )  # fmt: skip
+
+
+def _slopes(data: _Fitted, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
+    """Derivatives of residuals by θ, (used, m), by steps over which a law's kinks are smooth."""
+    h = np.diag(_WIDE * np.maximum(search.reach, np.abs(θ)))
+    low, high = np.maximum(θ - h, search.low), np.minimum(θ + h, search.high)
+    below, above = data.residuals(search, np.concatenate([low, high])).reshape(2, len(θ), len(data.used))
+    return np.asarray(((above - below) / np.diag(high - low)[:, None]).T)
 
 
 def _variances(J: NDArray) -> NDArray[np.float64]:

@@ -133,28 +133,67 @@ def lugre_along(v, t, law):
     return ζ + law["sigma1_over_load"] * rates + law["sigma2_over_load"] * v(t)
 
 
-@pytest.mark.parametrize("samples", [150, 400])
-@pytest.mark.parametrize("name", ["stribeck", "lugre"])
-def test_a_smooth_motion_is_fitted_from_its_samples(name, samples):
+#: Half amplitudes [m] and circular frequencies [1/s] of sums of 1 - cos.
+SINE, TWO = [(5e-5, 10.0 * np.pi)], [(5e-5, 2.0 * np.pi / 0.3), (2e-5, 2.0 * np.pi / 0.11)]
+
+
+@pytest.mark.parametrize(
+    "waves, samples", [(SINE, 150), (SINE, 401), (SINE, 481), (TWO, 401)],
+    ids=["few", "to a turn", "at turns", "two"],
+)  # fmt: skip
+@pytest.mark.parametrize("name", ["coulomb", "stribeck", "lugre"])
+def test_a_smooth_motion_is_fitted_from_its_samples(name, waves, samples):
     """Friction is that of the true speed at each sample, which lies between those before and after."""
-    amplitude, ω, true = 5e-5, 40.0, {"mu_c": 0.3, "mu_s": 0.5, "stribeck_velocity": 1e-3}
-    true["sigma2_over_load"] = 5.0
+    true = {"mu_c": 0.3}
 
     def v(t):
-        return amplitude * ω * np.sin(ω * t)
+        return sum(a * ω * np.sin(ω * t) for a, ω in waves)
 
-    t = np.linspace(0.0, 3.3 * np.pi / ω, samples)
+    t = np.linspace(0.0, 0.6, samples)
+    if name != "coulomb":
+        true |= {"mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma2_over_load": 5.0}
     if name == "lugre":
         true |= {"sigma0_over_load": 3e4, "sigma1_over_load": 20.0}
         f = lugre_along(v, t, true)
+    elif name == "coulomb":
+        f = 0.3 * np.sign(v(t))
     else:
         f = np.sign(v(t)) * level(v(t), true) + true["sigma2_over_load"] * v(t)
     f = f + 1e-3 * np.random.default_rng(1).standard_normal(samples)
-    measured = Measured(t, amplitude * (1.0 - np.cos(ω * t)), f)
-    found = fit(LAWS[name], [measured], {"stribeck_exponent": 2.0}, {})
+    measured = Measured(t, sum(a * (1.0 - np.cos(ω * t)) for a, ω in waves), f)
+    found = fit(LAWS[name], [measured], {"stribeck_exponent": 2.0} if name != "coulomb" else {}, {})
     assert found.rms == pytest.approx(1e-3, rel=0.15)
     off = np.abs(found.best - numbers(true, found.names)) / np.array([*found.deviations.values()])
     assert (off <= 3.0).all(), dict(zip(found.names, off))
+
+
+def test_positions_that_are_rounded_or_noisy_turn_no_more_often():
+    """Strokes whose positions have steps of 0.2 µm, and a sine with noise of a sixth of a step."""
+    t = np.linspace(0.0, 0.6, 388)
+    strokes = 1e-4 * (1.0 - np.abs(1.0 - 10.0 * t % 2.0))
+    sine = 5e-5 * (1.0 - np.cos(10.0 * np.pi * t))
+    for X, v in (
+        (2e-7 * np.round(strokes / 2e-7), np.sign(1.0 - 10.0 * t % 2.0)),
+        (sine + 5e-8 * np.random.default_rng(7).standard_normal(388), np.sin(10.0 * np.pi * t)),
+    ):
+        law = fit(LAWS["coulomb"], [Measured(t, X, 0.4 * np.sign(v))], {}, {})
+        wrong = np.abs(law.f[0] - 0.4 * np.sign(v)) > 0.1
+        assert np.nansum(wrong) <= 3
+
+
+def test_deviations_of_laws_with_kinks_are_no_smaller_than_their_errors():
+    """Elements that just reach their limits are kinks of residuals, between which slopes say nothing."""
+    true = {
+        "mu_c": 0.4, "mu_s": 0.6, "stribeck_velocity": 1e-3, "attraction_rate": 20.0,
+        "elements": ((4e4, 0.25), (1e4, 0.375), (4e3, 0.375)),
+    }  # fmt: skip
+    t = np.linspace(0.0, 0.6, 16001)
+    X, by = sum(a * (1.0 - np.cos(ω * t)) for a, ω in TWO), {"stribeck_exponent": 2.0}
+    f = friction(build_model(LAWS["gms"], true | by), moves(t, X, True), len(t))
+    f = np.nan_to_num(f[::40]) + 2e-3 * np.random.default_rng(7).standard_normal(401)
+    found = fit(LAWS["gms"], [Measured(t[::40], X[::40], f)], by, true, 3)
+    stiffness = found.names.index("elements[2, 0]")
+    assert abs(found.best[stiffness] - 4e3) < 5.0 * found.deviations["elements[2, 0]"]
 
 
 def test_strokes_turn_between_samples():

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .quantities import validity as of
-from .quantities.states import RATIO, SPEED
+from .quantities.states import LARGEST_RATIO, RATIO, SPEED
 from .units import engineering
 
 #: Wave crossings of the contact in a stroke below which steady motion is not reached.
@@ -82,7 +82,7 @@ class Validity:
             self._shortest = sorted(short, key=lambda stroke: (stroke[2], -abs(stroke[1])))[:1]
             self._fastest = sorted(long, key=lambda stroke: (-stroke[0], -abs(stroke[1])))[:1]
         if RATIO.path in data and all(row.path in data for row in of.FLUTTER.values()):
-            g = data[RATIO.path]
+            g = data.get(LARGEST_RATIO.path, data[RATIO.path])
             threshold = np.where(g > 0.0, *(data[of.FLUTTER[sign].path] for sign in of.SIGNS))
             steep = (np.abs(g) >= threshold) & (g != 0.0)
             self._count("ratio", steep, np.abs(g))

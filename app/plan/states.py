@@ -211,8 +211,11 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
         work, breakaway, slope = scene.punch.load * np.concatenate(taken, axis=1)
     first = last_cycle(legs)
     cycle = np.full(len(work), np.nan) if first is None else work[:, first:].sum(axis=1)
+    # Bristles that enter the contact have those of their places.
+    advected = friction.state == ADVECTED
+    inner_state = {} if advected else {INNER_STATE.path: _of_all(order_, np.concatenate(z))}
     return States(_columns(scene, order_, _of_all(order_, f)), {
-        INNER_STATE.path: _of_all(order_, np.concatenate(z)),
+        **inner_state,
         runs.LOOP_OF_STATE.path: _of_all(order_, np.tile(loop[:, None], f.shape[1])),
         runs.LOOP_X.path: np.concatenate(fine), runs.LOOP_F.path: drawn_loops,
         runs.LOOP_WORK.path: work, runs.LOOP_CYCLE.path: cycle,
@@ -267,8 +270,16 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": np.where((c > 0.0) & (not scene.steady), crossings, np.nan),  # of strokes
         "f": f,
-        "g": friction.stress_ratio * f + 0.0,
+        "g": (g := friction.stress_ratio * f + 0.0),
+        **({"g_largest": _largest(scene, g)} if scene.along else {}),
     }
+
+
+def _largest(scene: Scene, g: NDArray) -> NDArray[np.float64]:
+    """σ_XY/σ_YY of the largest size along the contact of states with the means ``g``, (states,)."""
+    means, along = np.array(list(scene.along)), [*scene.along.values()]
+    nearest = np.abs(g[:, None] - means).argmin(axis=1)
+    return np.array([each.largest for each in along])[nearest]
 
 
 def _flutter(solid: Solid, c: NDArray, ways: NDArray) -> NDArray[np.float64]:

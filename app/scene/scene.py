@@ -240,7 +240,17 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
         yield (
             f"friction varies along the contact, but found {found}; take that away, or give one friction"
         )
-    elif FEM in scene.solve.methods:
+        return
+    forward = scene.friction.stress_ratio * scene.legs[0].s
+    for along in scene.along.values() if scene.friction.state == ADVECTED else ():
+        least = float((forward * along(np.array([-1.0, 1.0]))).min())
+        if least < 0.0:
+            yield (
+                f"friction.state: bristles enter the contact with f = {least:g}, which drives the slip; "
+                "expected a law with f >= 0 at its start"
+            )
+            return
+    if FEM in scene.solve.methods:
         try:
             crowded = crowded_kinks(scene.body.friction_kinks)
         except ValueError as error:
@@ -329,7 +339,9 @@ def _unusual_numbers(scene: Scene) -> Iterator[str]:
                 continue
             low, high = parameter.usual
             numbers = np.atleast_1d(values[key]).tolist()
-            odd = [f"{value:g}" for value in numbers if value and not low <= value <= high]  # 0: no unit
+            odd = [
+                f"{value:g}" for value in numbers if value and not low <= abs(value) <= high
+            ]  # 0: no unit
             if odd:
                 are, their = ("is", "its unit") if len(odd) == 1 else ("are", "their unit")
                 yield (

@@ -61,9 +61,11 @@ FRICTION = Quantity(
 RATIO = Quantity(
     "states/g", "1", "sigma_XY/sigma_YY under the punch, its mean as that of f where it varies", (STATE,)
 )
+LARGEST_RATIO = Quantity(
+    "states/g_largest", "1", "sigma_XY/sigma_YY of the largest size, where it varies along X", (STATE,)
+)
 INNER_STATE = Quantity(
-    "states/inner_state", "1",
-    "inner state of the friction law, as its page says; not of advected ones",
+    "states/inner_state", "1", "inner state of the friction law, as its page says",
     (STATE, INNER),
 )  # fmt: skip
 VELOCITY = Quantity("states/speed", "m/s", "speed", (STATE,), range=NOT_NEGATIVE)

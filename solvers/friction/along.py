@@ -23,6 +23,8 @@ _EXACT, _INTEGRATED = 1e-12, 1e-7
 #: surround a kink, or a jump of a higher derivative, and at which they are no longer halved; most panels
 #: of one length.
 _BESIDE, _BESIDE_WEAK, _SHORTEST, _MOST = 1e-3, 1e-2, 1e-8, 400
+#: Places at which the largest is sought, beside kinks.
+_SAMPLES = 401
 #: End of the first panel: panels end at no round number, where kinks are that they would not meet.
 _FIRST = 0.0618033988
 
@@ -51,6 +53,12 @@ class Along:
         """σ_XY/σ_YY at X/a, beside the contact that at its nearer end, in the shape of X."""
         X = np.clip(X, -1.0, 1.0)
         return np.asarray(self.ratio(X.ravel())).reshape(X.shape)
+
+    @property
+    def largest(self) -> float:
+        """σ_XY/σ_YY of the largest size."""
+        g = self(np.unique([*np.linspace(-1.0, 1.0, _SAMPLES), *self.kinks, *self.weak_kinks]))
+        return float(g[np.abs(g).argmax()])
 
     @property
     def has_length(self) -> bool:

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from support import computed
+from support import computed, of_sections
 
+import galinx
 from galinx.postprocess.over_time import from_steady, times_near_steady
 from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.contact.closed_form import FlatPunch
@@ -152,6 +153,18 @@ def test_the_threshold_of_flutter_is_that_of_the_solid_and_of_the_sign(
                 assert found == pytest.approx(expected, abs=1e-8) if expected else found > 2.0
             warnings = json.loads(result.attributes["warnings"])
             assert any("flutter" in text for text in warnings) == flutter
+
+
+def test_friction_along_the_contact_flutters_where_it_is_largest():
+    """Short waves feel the friction of their place: 1.8 at one end, the mean is below the threshold 1."""
+    scene = of_sections(
+        solid={"material": "steel"}, friction={"along": [[-1, 0.1], [1, 1.8]]}, motion={"c": 0.6},
+        output={"quantities": ["surface"]}, solve={"methods": ["closed_form"]},
+    )  # fmt: skip
+    result = galinx.compute(scene)
+    assert result.data["states/g_largest"].tolist() == [-1.8]
+    (warning,) = (text for text in json.loads(result.attributes["warnings"]) if "flutter" in text)
+    assert warning.startswith("|σ_XY/σ_YY| is up to 1.8, and at least 1 in 1 state")
 
 
 def test_strokes_are_held_against_the_time_that_steady_motion_takes():

@@ -136,6 +136,8 @@ FAULTS = {
         (_ALONG | {"friction": {"along": [[-1, 0], [1, 0]]}}, "not all 0"),
         (_ALONG | {"friction": {"along": [[-1, 0.2], [0, 0.3], [0.0005, 0.3], [1, 0.5]]}},
          "0.001 of another"),
+        (_ALONG | {"friction": {"model": "table", "shape": [[0, -0.4], [1, 0.4]], "state": "advected"}},
+         "f = -0.4, which drives the slip"),
         (_ALONG | {"time": {"end": 3}, "output.quantities": ["time"]}, "in time"),
         (_ALONG | {"friction": _DAHL, "motion.strokes": ["forward", "backward"]}, "strokes"),
         (_ALONG | {"friction": _DAHL, "solve.mesh": "box"}, 'mesh = "box"'),

@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from support import HOME, SCENE, computed
+from support import HOME, SCENE, computed, of_sections
 
 from galinx import template
 from galinx.app.errors import BadInput
@@ -243,6 +243,13 @@ def test_messages_say_what_to_write(old, new, message):
     with pytest.raises(BadInput) as raised:
         parse(STEADY.replace(old, new))
     assert message in str(raised.value)
+
+
+def test_stiffnesses_of_either_sign_are_usual():
+    """Shear and normal stresses are coupled so in the mirror image of a solid."""
+    stiffness = ["40 GPa", "6 GPa", "-5 GPa", "15 GPa", "-1.5 GPa", "8 GPa"]
+    solid = {"kind": "anisotropic", "stiffness": stiffness, "rho": 1600}
+    assert not oddities(of_sections(solid=solid, friction={"mu": 0.3}, motion={"c": 0.3}))
 
 
 def test_slopes_that_are_not_small_are_warned_about():

@@ -24,8 +24,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..layers.kernel import Kernel, Scaled
 from ..solids.half_plane import DATUM, HalfPlane
 
-#: Panels' ends off all kinks: beyond |x| = 12 all is powers of e^x, beyond 300 it is negligible.
+#: Panels' ends off all kinks: beyond |x| = 12 all is powers of e^x; distance from an end at 300.
 _OUTER = np.append(np.arange(12.0, 300.0, 8.0), 300.0)
+_BEYOND_PANELS = 2.0 * np.exp(-_OUTER[-1])
 _ENDS = np.concatenate([-_OUTER[::-1], np.linspace(-12.0, 12.0, 17)[1:-1], _OUTER])
 #: Points and weights of a panel; the shortest panel.
 _τ, _w = np.polynomial.legendre.leggauss(12)
@@ -75,7 +76,11 @@ class Rule:
 
     def weights(self, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Weights of ∫ (1 - t)^α (1 + t)^β F dt, (states, n); exponents (states,)."""
-        return self._weights * self.right ** α[:, None] * self.left ** β[:, None]
+        weights = self._weights * self.right ** α[:, None] * self.left ** β[:, None]
+        # Beyond the last panels F is that of the last point, and one distance that between the ends.
+        for end, near, far in ((0, β, α), (-1, α, β)):
+            weights[:, end] += 2.0**far * _BEYOND_PANELS ** (1.0 + near) / (1.0 + near)
+        return weights
 
     def smooth(self, pressure: Stress, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Smooth part of a pressure, σ_YY over (1 - t)^α (1 + t)^β at :attr:`t`, (states, n)."""

@@ -106,7 +106,7 @@ def test_advected_dahl_against_a_quadrature_in_30_digits(stiffness):
     assert pressure.α == -0.5 and pressure.β == pytest.approx(at_trailing_end.β, rel=1e-12)
 
 
-@pytest.mark.parametrize("f", [0.0, 0.3, 0.9])
+@pytest.mark.parametrize("f", [0.0, 0.3, 0.9, 20.0])
 @pytest.mark.parametrize("seed", [0, 2])
 def test_constant_friction_is_one_number(f, seed):
     solid = random_solid(seed) if seed else ISOTROPIC

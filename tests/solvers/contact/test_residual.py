@@ -43,6 +43,16 @@ def test_exact_answers_leave_nothing(contact):
     assert of_pressure.max() <= 1e-9 and of_field.max() <= 1e-9
 
 
+@pytest.mark.parametrize("μ", [10.0, 50.0])
+def test_a_load_that_is_nearly_all_at_an_edge_leaves_nothing(μ):
+    """Exponents of -0.947 and -0.989: of the first a load of 1e-7 lies within e^-300 of the edge."""
+    response, g = Isotropic(1.0, 0.3, 1.0).response(0.9), np.array([-μ])
+    punch = FlatPunch(response, -μ)
+    exponents = np.array([punch.α]), np.array([punch.β])
+    pressure = lambda r: punch.σ_YY(r)[None]  # noqa: E731
+    assert residual.of_pressure(response, g, exponents, np.zeros_like, pressure)[0] < 1e-11
+
+
 @pytest.mark.parametrize("ε", [1e-2, 1e-5])
 def test_a_wrong_pressure_is_seen(contact, ε):
     found = contact[0]

@@ -151,7 +151,7 @@ CYCLE_FRICTION = _row(
 OUTCOME = Quantity(
     "slider/outcome", "none",
     "what becomes of the slider: stick-slip, swings about the drive, slides steadily, one slip only, "
-    "does not break away, or not settled yet",
+    "has not broken away yet, or not settled yet",
     (LAW,), asked_by=SLIDER,
 )  # fmt: skip
 PERIOD = _row("period", "s", "period of stick-slip, the last; NaN for none", (LAW,), range=NOT_NEGATIVE)

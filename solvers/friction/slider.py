@@ -54,7 +54,7 @@ _STEADY, _STOPPED = 1e-3, 1e-2
 _GROWS, _DIFFERENCE = 1e-4, 1e-6
 #: Outcomes of a slider's motion.
 STICK_SLIP, SWINGS, STEADY, ONE_SLIP, STAYS, SHORT = (
-    "stick-slip", "swings about the drive", "slides steadily", "one slip only", "does not break away",
+    "stick-slip", "swings about the drive", "slides steadily", "one slip only", "has not broken away yet",
     "not settled yet",
 )  # fmt: skip
 

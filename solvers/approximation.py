@@ -21,6 +21,7 @@ from numpy.polynomial.legendre import legder, leggauss, legvander
 from numpy.typing import ArrayLike, NDArray
 
 
+@lru_cache
 def legendre_panel(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Gauss's points in (-1, 1) and weights, (nodes,) each, and a matrix (nodes, nodes).
 

@@ -48,8 +48,6 @@ _ξ, _ω = legendre.leggauss(14)
 #: layers over that.
 _ELLIPSE, _CLOSE, _AT_ONCE, _ROWS = 2.4, 0.1, 20_000, 8
 
-_legendre_panel = lru_cache(legendre_panel)
-
 
 @lru_cache(maxsize=16)
 def ends_of_panels(
@@ -147,13 +145,13 @@ class Panels(Functions):
     @cached_property
     def x(self) -> NDArray[np.float64]:
         """Points in x, (n,)."""
-        τ, _, _ = _legendre_panel(self.nodes)
+        τ, _, _ = legendre_panel(self.nodes)
         return (self.middle[:, None] + self.half[:, None] * τ).ravel()
 
     @cached_property
     def dx(self) -> NDArray[np.float64]:
         """Weights of integrals over x, (n,)."""
-        _, w, _ = _legendre_panel(self.nodes)
+        _, w, _ = legendre_panel(self.nodes)
         return np.asarray((self.half[:, None] * w).ravel())
 
     @cached_property
@@ -186,7 +184,7 @@ class Panels(Functions):
     def basis(self, x: NDArray, panel: int | NDArray) -> NDArray[np.float64]:
         """Matrix from values at a panel's points to those at its places x, (len(x), nodes)."""
         τ = (x - self.middle[panel]) / self.half[panel]
-        return np.asarray(legendre.legvander(τ, self.nodes - 1) @ _legendre_panel(self.nodes)[2])
+        return np.asarray(legendre.legvander(τ, self.nodes - 1) @ legendre_panel(self.nodes)[2])
 
     def interpolated(self, p: NDArray, x: NDArray) -> NDArray[np.float64]:
         """Values at places x of functions p with values (n, ...) at the points, shape of x and (...)."""
@@ -209,7 +207,7 @@ class Panels(Functions):
         Returns:
             Places, (panels * (nodes + 1),), and the matrix of each panel, (nodes + 1, nodes).
         """
-        (τ, _, _), (_, _, to_legendre) = _legendre_panel(self.nodes + 1), _legendre_panel(self.nodes)
+        (τ, _, _), (_, _, to_legendre) = legendre_panel(self.nodes + 1), legendre_panel(self.nodes)
         x = (self.middle[:, None] + self.half[:, None] * τ).ravel()
         return x, legendre.legvander(τ, self.nodes - 1) @ to_legendre
 
@@ -305,7 +303,7 @@ class Panels(Functions):
         # The distance from the end at which two panels meet is the same number, and logarithms cancel.
         from_start, from_end = (y[point] - self.ends[panel + i] for i in (0, 1))
         Q = _second_kind(ζ[point, panel], from_start, from_end, self.nodes)
-        coefficients = (of_panel * _without_pole(k, ξ)) @ _legendre_panel(self.nodes)[2].T
+        coefficients = (of_panel * _without_pole(k, ξ)) @ legendre_panel(self.nodes)[2].T
         np.add.at(integral, point, -2.0 * np.einsum("ik,ik->i", coefficients, Q))
         # Beyond the panels f is that of the ends: two terms of a series.
         beyond = (0, k + δ, -self.reach - y, -np.exp(δ * y)), (1, 1.0 - k, y - self.reach, 1.0)

@@ -286,15 +286,14 @@ class Panels(Functions):
         """
         k, δ, ends = -self.α, 1.0 + self.α + self.β, f[..., [0, -1]]
         f = f * (1.0 + np.exp(-self.x)) ** -δ
-        x, rule = self.x, np.broadcast_to(f * (np.exp(k * self.x) * self.dx), (len(y), len(self.x)))
+        x, rule = self.x, f * (np.exp(k * self.x) * self.dx)
         ζ = (y[:, None] - self.middle) / self.half
         root = np.sqrt((ζ - 1.0).astype(complex)) * np.sqrt((ζ + 1.0).astype(complex))
         near = np.abs(ζ + root) < _ELLIPSE
         integral = np.zeros(len(y), dtype=np.result_type(y, float))
         for rows in self.blocks(len(y)):
-            left_out = np.repeat(near[rows], self.nodes, axis=1)
-            kernel = np.where(left_out, 0.0, _kernel(x, y[rows], left_out))
-            integral[rows] = np.einsum("ij,ij->i", kernel, rule[rows])
+            kernel = _kernel(x, y[rows], near[rows])
+            integral[rows] = kernel @ rule if f.ndim == 1 else (kernel * rule[rows]).sum(axis=1)
         integral *= np.exp(-k * y)
         point, panel = np.nonzero(near)
         ξ = x.reshape(-1, self.nodes)[panel] - y[point][:, None]
@@ -379,15 +378,20 @@ def _to_end(d: NDArray) -> NDArray[np.float64]:
 
 
 def _kernel(x: NDArray, y: NDArray, left_out: NDArray) -> NDArray[Any]:
-    """1/(e^ξ - 1), ξ = x - y, (points, n), but for places that are left out."""
+    """1/(e^ξ - 1), ξ = x - y, (points, n), but 0 on panels that are left out, (points, panels)."""
     with np.errstate(divide="ignore", invalid="ignore"):
         rest = np.exp(x) * np.exp(-y)[:, None] - 1.0
         kernel = 1.0 / rest
-    point, node = np.nonzero((rest.real**2 + rest.imag**2 < _CLOSE**2) & ~left_out)
+    close = np.flatnonzero(np.abs(rest.real) < _CLOSE)
+    close = close[np.abs(rest.ravel()[close]) < _CLOSE]
+    point, node = np.divmod(close, len(x))
     ξ = x[node] - y[point]
     of = ξ * ξ
-    # Bernoulli's series next to the pole.
-    kernel[point, node] = 1.0 / ξ - 0.5 + ξ * (1 / 12 - of * (1 / 720 - of * (1 / 30240 - of / 1209600)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Bernoulli's series next to the pole.
+        series = ξ * (1 / 12 - of * (1 / 720 - of * (1 / 30240 - of / 1209600)))
+        kernel[point, node] = 1.0 / ξ - 0.5 + series
+    kernel.reshape(*left_out.shape, -1)[left_out] = 0.0
     return kernel
 
 

@@ -98,7 +98,7 @@ def test_no_deeper_place_yields_and_the_deepest_does(changes, strength):
         "solid": {"material": "steel", "yield_strength": f"{strength} MPa"}, "motion": {"speed": "1 m/s"},
         "punch.load": "100 N/mm", "friction": {}, "solve.methods": ["closed_form"],
         "output.quantities": ["friction", "sif", "interior", "yield"],
-        "output.map": {"X": [-1.5, 1.5, 301], "Y": [-0.8, -0.005, 160]},
+        "output.map": {"X": [-1.5, 1.5, 151], "Y": [-0.8, -0.005, 160]},
     } | changes  # fmt: skip
     if "punch.radius" in changes:
         scene["punch.half_width"] = None

@@ -160,9 +160,9 @@ HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
 
 
 def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Work less energy, over the largest work of a motion, (motions, times)."""
+    """Work less energy, over the largest work of a motion, (motions, times); of no work over LEAST."""
     done, held = (sum(data[row.path] for row in kind) for kind in (DONE, HELD))
-    return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True))
+    return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True, initial=LEAST))
 
 
 def _over_largest(values: Any, expected: Any, axes: tuple[int, int]) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import YIELD
-from galinx.solvers.contact.solution import FINITE
+from galinx.solvers.contact.solution import FINITE, STRENGTH
 from galinx.texts import plain
 
 from .quantities import (
@@ -537,7 +537,8 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         if len(units.contact.solid.depths) and not any("shear" in head for head in heads):
             lacking.append('"interfaces" (their shear)')
         computed = any(word in head for head in heads for word in ("yields", "von Mises"))
-        if not computed and YIELD not in units.contact.lacks:
+        bears = FINITE in units.contact.modes or STRENGTH not in units.contact.lacks
+        if not computed and bears and YIELD not in units.contact.lacks:
             lacking.append('"yield" (von Mises, yields or not)')
     # What a scene asks for, and no method of it gives, is in its plan.
     scene = str(data.get(runs.SCENE.path, ""))

@@ -425,6 +425,7 @@ def both(
 
 def explained(*of: Collection[str]) -> list[Any]:
     """Handles that explain lines and markers, where the methods of all curves of a figure have both."""
-    methods = {method for each in of for method in each}
-    lines = next((METHODS[name] for name in METHODS if name in methods and name != FEM), "")
-    return lines_and_markers(lines, METHODS[FEM]) if lines and FEM in methods else []
+    each = [[METHODS[name] for name in METHODS if name in methods and name != FEM] for methods in of]
+    lines = " or ".join(dict.fromkeys(names[0] for names in each if names))
+    fem = any(FEM in methods for methods in of)
+    return lines_and_markers(lines, METHODS[FEM]) if lines and fem else []

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.postprocess.quantities.validity import SIGNS
+from galinx.solvers.contact.solution import FINITE
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS, closely
 from galinx.solvers.friction.motion import follow, last_cycle, works
@@ -145,9 +146,8 @@ def speeds(scene: Scene) -> tuple[float, ...]:
     if fast := [f"{speed:g}" for speed in scene.motion.speed or () if speed >= c_s]:
         limit = f"the shear wave speed {c_s:.6g} m/s"
         if "fem" in scene.solve.methods:  # the lower limit
-            limit = (
-                f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s (by closed_form alone, {limit})"
-            )
+            alone = f" (by closed_form alone, {limit})" * (FINITE not in scene.body.modes)
+            limit = f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s{alone}"
         fault = f"motion.speed = {listed(fast)} m/s: expected less than {limit}"
         raise BadInput("; ".join([*oddities(scene), fault]))  # what is unusual may be the cause
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))

@@ -111,8 +111,10 @@ def read(path: Path) -> Table:
         row = int(back[0]) + 1 if len(clock) >= 3 else len(clock) - 1
         line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
         hint = "; where it falls, as in a loop, write time and position" * (len(back) > 0 and not timed)
+        found = f"a {name} that does not grow" if len(clock) >= 3 else f"{len(clock)} rows"
         raise BadInput(
-            f"{path}, line {line}: expected three or more rows in which the {name} grows{hint}"
+            f"{path}, line {line}: found {found}, expected three or more rows in which the {name} grows"
+            f"{hint}"
         )
     if not np.ptp(X):
         raise BadInput(f"{path}: found one position in all rows, expected a motion")

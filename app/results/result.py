@@ -152,6 +152,8 @@ class Result:
     def grid(self) -> Any:
         """xarray.Dataset over the scene's parameters: ``grid.fem_K_I_right.sel(c=0.6, motion="FM1")``."""
         flat = self.dataset
+        if self.scene.motion.speed is not None:  # c follows from it and the solid
+            flat = flat.reset_coords("c").set_coords("speed")
         apart = [name for name in flat.coords if flat[name].dims == ("state",)]
         return flat.set_index(state=apart).unstack("state")
 

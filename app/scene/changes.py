@@ -210,10 +210,14 @@ def _section(tree: Any, name: str, new: Any) -> Any:
         count = len(tables) if isinstance(tables, list) else 0
         number = int(match[2]) if match else count
         if number >= count:
-            first = "the first of them layer[0]" if count else "and no layer stands in it"
+            if not count:
+                raise ValueError(
+                    f"found {excerpt(name)}, but the scene has no layer; write a table [[layer]] with "
+                    "thickness and material into it first"
+                )
             raise ValueError(
                 f"found {excerpt(name)}, expected layers by their number from the top: the scene has "
-                f"{count}, {first}, as in layer[0].thickness"
+                f"{count}, the first of them layer[0], as in layer[0].thickness"
             )
         return tables[number]  # type: ignore[index]
     section = tree.setdefault(name, new)

@@ -202,7 +202,7 @@ def contradictions(scene: Scene) -> list[str]:
     of_yield = YIELD in quantities
     faults = {
         f"solve.methods is empty, but output.quantities asks for {', '.join(contact)}; name "
-        "closed_form, fem or both": contact and not solve.methods,
+        "closed_form, fem or sie": contact and not solve.methods,
         'slider: the quantity "slider" and the section [slider] go together, with mass, stiffness, '
         "drive_speed and duration": (SLIDER in quantities) != (scene.slider is not None),
         'time: the quantity "time" and the section [time] go together, with end': (
@@ -326,12 +326,14 @@ def oddities(scene: Scene) -> list[str]:
 def _unusual_numbers(scene: Scene) -> Iterator[str]:
     """Warnings about numbers beyond their usual range."""
     pre_sliding = Parameter("pre_sliding", "", "m", usual=(1e-10, 1.0))
+    strength = Parameter("yield_strength", "", "Pa", usual=(1e4, 1e11))
     models: dict[str, Any] = {"solid": scene.solid, "punch": scene.punch.profile}
     if punch := scene.elastic_punch:
         models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
     for section, described, values in (
         ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
         *((name, parameters(model), constants(model)) for name, model in models.items()),
+        ("solid", {strength.key: strength}, {strength.key: scene.half_plane.yield_strength or 0.0}),
         ("friction", parameters(scene.friction.law), scene.friction.values),
     ):
         for key, parameter in described.items():

@@ -380,8 +380,8 @@ class Solve:
     """[solve]: methods and their options; ``pressure`` is None for that of the closed form."""
 
     methods: tuple[str, ...] = key(
-        List(Choice(METHODS), "a list of names", at_least=0), "methods that solve the contact",
-        OWN_METHODS,
+        List(Choice(METHODS), 'a list of names, as ["sie"]', at_least=0),
+        "methods that solve the contact", OWN_METHODS,
         "an empty list for friction alone",
     )  # fmt: skip
     tolerance: float = key(
@@ -502,7 +502,8 @@ class Output:
     """
 
     quantities: tuple[str, ...] = key(
-        List(Choice(WORDS), "a list of names"), "quantities to compute", ("friction", "sif", "surface"),
+        List(Choice(WORDS), 'a list of names, as ["yield"]'),
+        "quantities to compute", ("friction", "sif", "surface"),
         "without strokes also `interfaces` and `yield`, where there are any, with `points` or `map` "
         "also `interior`; `sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
@@ -635,8 +636,8 @@ class Section:
             if others:
                 have = "has it" if len(others) == 1 else "have it"
                 hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
-            elif elsewhere:
-                hint = f"; it is one of {' or '.join(elsewhere)}"
+            elif len(elsewhere) == 1:
+                hint = f"; it is one of {elsewhere[0]}"
             own_faults.append(f"{name}.{short(key)}: no such key{hint}")
         values: dict[str, Any] = {}
         for key, entry in sorted(keys.items(), key=lambda pair: not pair[1].stands_for):

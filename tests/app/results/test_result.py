@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import SCENE
+from support import SCENE, of_sections
 
 from galinx import compute, load, read_scene
 from galinx.app.errors import BadInput
@@ -72,3 +72,13 @@ def test_options_of_figures_are_texts_as_on_the_command_line_or_lists(exact_run)
     assert result.choice(states=3).states == (3,) and result.choice(states=[1, 2]).states == (1, 2)
     with pytest.raises(BadInput, match=r"^--states: found "):
         result.choice(states="all")
+
+
+def test_a_grid_over_moduli_has_the_speed_that_the_scene_gives():
+    """The speed over that of shear waves follows from them: with it most of a grid would be NaN."""
+    scene = of_sections(
+        solid={"E": [1e11, 2e11, 3e11], "nu": 0.3, "rho": 7800.0}, punch={"half_width": 1e-3},
+        friction={"mu": 0.3}, motion={"speed": 100.0}, solve={"methods": ["closed_form"]},
+    )  # fmt: skip
+    K_I = compute(scene).grid.closed_form_K_I_right
+    assert K_I.size == 3 and np.isfinite(K_I).all()

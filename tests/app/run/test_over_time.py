@@ -11,6 +11,7 @@ import galinx
 from galinx.app.plan import over_time
 from galinx.app.results.check import faults
 from galinx.postprocess.compare import RULES, checked
+from galinx.postprocess.over_time import DONE, HELD, energy_imbalance
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.punch import Radau
 
@@ -198,6 +199,31 @@ COATED = {
     "friction.mu_c": 0.4, "solve.methods": ["sie", "fem"], "solve.tolerance": 1e-2,
     "output.quantities": ["friction", "time"],
 }  # fmt: skip
+
+
+#: A motion of half an a/c_s at c = 0.7 c_s.
+SHORT = QUICK | {
+    "motion.c": 0.7, "friction.model": "coulomb", "friction.mu_c": 0.3, "friction.sigma0_over_load": None,
+    "time.end": 0.5, "time.load_ramp": None, "output.quantities": ["friction", "time"],
+}  # fmt: skip
+
+
+def test_where_nothing_happens_there_is_no_work_to_miss_its_energy():
+    """In steady motion that stays steady both are rounding."""
+    done, held = (np.full((1, 3), of) for of in (1e-13, -1e-13))
+    data = {row.path: done for row in DONE} | {row.path: held for row in HELD}
+    assert np.abs(energy_imbalance(data)).max() < 1e-9
+
+
+def test_intensities_of_the_shortest_ramp_have_polynomials_enough():
+    loads = {"time.load_ramp": 0.5, "solve.methods": ["sie"]}
+    K, finer = (
+        computed("start_from_rest", SHORT | loads | {"solve.tolerance": of}).data for of in (1e-3, 1e-4)
+    )
+    for end in ("left", "right"):
+        at = np.interp(K["time/t"], finer["time/t"], finer[f"time/sie/K_I_{end}"][0])
+        off = np.abs(K[f"time/sie/K_I_{end}"][0] - at)[np.isin(K["time/t"], finer["time/t"])]
+        assert len(off) >= 2 and off.max() < 5e-4 * finer["time/sie/K_I_right"].max()
 
 
 def test_a_coating_starts_by_both_methods():

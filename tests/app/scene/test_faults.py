@@ -202,7 +202,7 @@ FAULTS = {
         ({"punch.profile": ["flat", "parabolic"]}, "expected flat, parabolic"),
         ({"solid.E": []}, "found an empty list"),
         ({"solid.nu": [0.2, 0.7]}, "solid.nu (Poisson's ratio): found 0.7"),
-        ({"layer.thickness": 1e-6}, "layers by their number from the top: the scene has 0"),
+        ({"layer.thickness": 1e-6}, "the scene has no layer…write a table [[layer]]"),
     ],
     "start_from_rest": [
         ({"solve.tolerance": 1e-7}, "found 1e-07, expected 1e-05 to 0.01"),

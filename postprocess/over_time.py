@@ -160,7 +160,10 @@ HELD = rows.STRAIN, rows.KINETIC, rows.RADIATED
 
 
 def energy_imbalance(data: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Work less energy, over the largest work of a motion, (motions, times); of no work over LEAST."""
+    """Work less energy, over the largest work of a motion, (motions, times).
+
+    Of hardly any work, as in steady motion that goes on, over LEAST.
+    """
     done, held = (sum(data[row.path] for row in kind) for kind in (DONE, HELD))
     return np.asarray((done - held) / np.abs(done).max(axis=1, keepdims=True, initial=LEAST))
 

@@ -187,7 +187,7 @@ class Fit(FittedLaw):
         elif self.samples < samples:
             said.append(
                 f"not fitted: {samples - self.samples} of {samples} samples, the first of each "
-                "file, before the motion, and those at rest"
+                "file, before the motion, and those at rest or at a smooth turn"
             )
         return tuple(said)
 

@@ -341,9 +341,8 @@ def _unusual_numbers(scene: Scene) -> Iterator[str]:
                 continue
             low, high = parameter.usual
             numbers = np.atleast_1d(values[key]).tolist()
-            odd = [
-                f"{value:g}" for value in numbers if value and not low <= abs(value) <= high
-            ]  # 0: no unit
+            # 0 has no unit.
+            odd = [f"{value:g}" for value in numbers if value and not low <= abs(value) <= high]
             if odd:
                 are, their = ("is", "its unit") if len(odd) == 1 else ("are", "their unit")
                 yield (

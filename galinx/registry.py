@@ -61,5 +61,5 @@ def _unlike(model: Any, kind: type) -> str:
         return f"found {model!r:.80}, expected a class with the members of {kind.__name__}"
     there = {*dir(model), *getattr(model, "__dataclass_fields__", ())}
     members = {name for name in (*vars(kind), *kind.__annotations__) if not name.startswith("_")}
-    lacking = sorted(members - there)
+    lacking = sorted((members - there) | {*getattr(model, "__abstractmethods__", ())})
     return f"{model.__name__} lacks {', '.join(lacking)} of {kind.__name__}" if lacking else ""

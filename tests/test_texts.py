@@ -8,6 +8,7 @@ import pytest
 import galinx
 from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
+from galinx.solvers.friction.law import FrictionLaw
 from galinx.texts import unseen
 
 
@@ -44,6 +45,7 @@ def test_a_scene_with_one_is_refused_at_the_start(text, fault):
     "registry, model, fault",
     [
         ("LAWS", 3, "found 3, expected a class with the members of FrictionLaw"),
+        ("LAWS", type("Silent", (FrictionLaw,), {"about": ""}), "Silent lacks friction of FrictionLaw"),
         ("SOLIDS", str, "str lacks about, above, c_s, "),
         ("PROFILES", object(), "expected a class with the members of Profile"),
         ("PROFILES", dict, "dict lacks about, height, slope, words of Profile"),

@@ -1,5 +1,6 @@
 """Protocol and registry of friction laws, with the field of Coulomb's coefficient that most have."""
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
@@ -75,6 +76,7 @@ class FrictionLaw(Protocol):
         """dz/d(slip) [1/m] in direction s = ±1 at the speed V >= 0 [m/s], (n,)."""
         raise NotImplementedError
 
+    @abstractmethod
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Friction coefficient f at states z (..., n), positive in forward motion: (...)."""
         raise NotImplementedError

@@ -154,6 +154,7 @@ FAULTS = {
         (_FIBRES | CLOSED | {"solid": _FIBRES["solid"] | {"yield_strength": "100 MPa"},
                     "output.quantities": ["yield"]}, "stiffness_Z"),
         (_SKEW | CLOSED | {"motion.c": 0.999}, "nothing decays with depth"),
+        (_PARABOLA | CLOSED | {"motion.c": 0.95}, "nothing holds the punch up there; take lower speeds"),
         (_SKEW | {"motion.c": 0.4276}, "m/s: the finite element form is indefinite"),
     ],
     "traction": [

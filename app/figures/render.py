@@ -472,6 +472,10 @@ def _entries(curves: Sequence[Curve]) -> list[Line2D]:
     return [Line2D([], [], label=curve.label, **_style(curve)) for curve in curves if curve.label]
 
 
+#: What is beside the texts of a legend, over the size of letters.
+_BESIDE_TEXTS = {"columnspacing": 1.2, "handletextpad": 0.5, "handlelength": 2.2}
+
+
 def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
     """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in]."""
     if not (handles := _entries(curves)):
@@ -486,15 +490,15 @@ def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
             continue
         figure.legends.clear()
         legend = figure.legend(
-            handles=handles, ncols=columns, loc="lower center", borderaxespad=0.15, columnspacing=1.2,
-            labelspacing=0.3, handletextpad=0.5, fontsize=SMALL, handlelength=2.2,
+            handles=handles, ncols=columns, loc="lower center", borderaxespad=0.15, labelspacing=0.3,
+            fontsize=SMALL, **_BESIDE_TEXTS,
         )  # fmt: skip
         box = legend.get_window_extent(renderer)
         if box.width <= room:
             break
         if rows == 1:
             texts = np.array([text.get_window_extent(renderer).width for text in legend.get_texts()])
-            beside = (1.2 + 0.5 + 2.2) * SMALL * dpi / 72.0
+            beside = sum(_BESIDE_TEXTS.values()) * SMALL * dpi / 72.0
             frame = box.width - texts.sum() - columns * beside
     for text in legend.get_texts() if box.width > room else ():
         fit_text(text, text.get_text(), width - 0.5)

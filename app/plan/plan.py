@@ -310,7 +310,7 @@ def _near_limit(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]
         reason = "a wave along the plate's surface is not faster than the contact; take lower speeds"
     elif scene.layers:
         reason = "a wave along the layers is not faster than the punch; take lower speeds"
-    elif scene.solve.mode == "contact" and (FINITE in scene.body.modes or scene.body.tips):
+    elif scene.between_free_ends:
         if fem or len(above) == len(speeds):  # by formulas others of a sweep have their answers
             reason = "between free ends nothing holds the punch up there; take lower speeds"
     elif fem:

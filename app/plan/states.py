@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.postprocess.quantities.validity import SIGNS
-from galinx.solvers.contact.solution import FINITE
+from galinx.solvers.contact.solution import Contact
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS, closely
 from galinx.solvers.friction.motion import follow, last_cycle, works
@@ -146,7 +146,7 @@ def speeds(scene: Scene) -> tuple[float, ...]:
     if fast := [f"{speed:g}" for speed in scene.motion.speed or () if speed >= c_s]:
         limit = f"the shear wave speed {c_s:.6g} m/s"
         if "fem" in scene.solve.methods:  # the lower limit
-            alone = f" (by closed_form alone, {limit})" * (FINITE not in scene.body.modes)
+            alone = f" (by closed_form alone, {limit})" * (not scene.between_free_ends)
             limit = f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s{alone}"
         fault = f"motion.speed = {listed(fast)} m/s: expected less than {limit}"
         raise BadInput("; ".join([*oddities(scene), fault]))  # what is unusual may be the cause
@@ -271,15 +271,14 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "wave_crossings": np.where((c > 0.0) & (not scene.steady), crossings, np.nan),  # of strokes
         "f": f,
         "g": (g := friction.stress_ratio * f + 0.0),
-        **({"g_largest": _largest(scene, g)} if scene.along else {}),
+        **({"g_largest": _largest(scene.body, g)} if scene.along else {}),
     }
 
 
-def _largest(scene: Scene, g: NDArray) -> NDArray[np.float64]:
+def _largest(body: Contact, g: NDArray) -> NDArray[np.float64]:
     """σ_XY/σ_YY of the largest size along the contact of states with the means ``g``, (states,)."""
-    means, along = np.array(list(scene.along)), [*scene.along.values()]
-    nearest = np.abs(g[:, None] - means).argmin(axis=1)
-    return np.array([each.largest for each in along])[nearest]
+    means, which = np.unique(g, return_inverse=True)
+    return np.array([body.friction(mean, body.half_width).largest for mean in means.tolist()])[which]
 
 
 def _flutter(solid: Solid, c: NDArray, ways: NDArray) -> NDArray[np.float64]:

@@ -19,15 +19,16 @@ from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 from ..errors import BadInput
 from ..scene import read as scenes
 
-#: Dimensions of tables, outermost first, with the word of output.quantities that asks for them.
-TABLES: dict[str, tuple[tuple[str, ...], str]] = {
-    "states": ((STATE,), ""),
-    "surface": ((STATE, POINT), ON_SURFACE),
-    "interfaces": ((STATE, INTERFACE, ALONG), AT_INTERFACES),
-    "inside": ((STATE, INSIDE), BELOW),
-    "histories": ((runs.LOOP, runs.STEP), FRICTION_ALONE),
-    "time": ((over_time.START, over_time.INSTANT), over_time.TIME),
-    "slider": ((runs.LAW, runs.TIME), runs.SLIDER),
+#: Dimensions of tables, outermost first, with the word of output.quantities that asks for them, and the
+#: section that it needs.
+TABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "states": ((STATE,), "", ""),
+    "surface": ((STATE, POINT), ON_SURFACE, ""),
+    "interfaces": ((STATE, INTERFACE, ALONG), AT_INTERFACES, "[[layer]]"),
+    "inside": ((STATE, INSIDE), BELOW, ""),
+    "histories": ((runs.LOOP, runs.STEP), FRICTION_ALONE, ""),
+    "time": ((over_time.START, over_time.INSTANT), over_time.TIME, "[time]"),
+    "slider": ((runs.LAW, runs.TIME), runs.SLIDER, "[slider]"),
 }
 #: Names of numbers of rows, by dimension.
 _NUMBERED = {
@@ -56,16 +57,15 @@ def pieces(
         UnreadableArchive: no archive, a damaged one, one that does not fit the schema, or of a newer one.
         BadInput: it holds no such table.
     """
-    (over, word), quantities = TABLES[which], table()
+    (over, word, section), quantities = TABLES[which], table()
     with reader.opened(path, verified) as archive:
         scene = scenes.parse(archive.data[runs.SCENE.path], "the scene of the archive")
         units = Units(scene.body, archive.data, dimensionless)
         rows = _rows(archive, over)
         if word and not any(row.over == over for row in rows):
             raise BadInput(
-                f"{path} holds nothing for --{which}; a scene "
-                + "with [[layer]] " * (word == "interfaces" and not scene.layers)
-                + f'asks for it by output.quantities = ["{word}"]'
+                f"{path} holds nothing for --{which}; a scene asks for it by "
+                f'output.quantities = ["{word}"]' + f" and {section}" * bool(section)
             )
         lengths = {STATE: len(archive.data[states.FRICTION.path])}
         for name, values in archive.data.items():

@@ -106,12 +106,12 @@ def read(path: Path) -> Table:
         f = force / np.abs(load)
     clock = numbers("time", "s") if timed else numbers("slip", "m")
     X = numbers("position", "m") if timed else clock
-    back = np.flatnonzero(np.diff(clock) <= 0.0)
-    if len(clock) < 3 or len(back):
-        row = int(back[0]) + 1 if len(clock) >= 3 else len(clock) - 1
+    back, few = np.flatnonzero(np.diff(clock) <= 0.0), len(clock) < 3
+    if few or len(back):
+        row = len(clock) - 1 if few else int(back[0]) + 1
         line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
         hint = "; where it falls, as in a loop, write time and position" * (len(back) > 0 and not timed)
-        found = f"a {name} that does not grow" if len(clock) >= 3 else f"{len(clock)} rows"
+        found = f"{len(clock)} rows" if few else f"a {name} that does not grow"
         raise BadInput(
             f"{path}, line {line}: found {found}, expected three or more rows in which the {name} grows"
             f"{hint}"

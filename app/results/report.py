@@ -298,7 +298,8 @@ def picture(drawing: Drawing, png: bytes | None = None) -> dict[str, Any]:
         source = embedded(content(drawing.figure, "svg", transparent=True), "svg+xml")
     return {
         "name": drawing.name, "caption": drawing.caption, "left_out": drawing.left_out,
-        "pixels": drawing.pixels, "charts": charts, "source": source, "width": width,
+        "all": drawing.full_caption, "pixels": drawing.pixels, "charts": charts, "source": source,
+        "width": width,
     }  # fmt: skip
 
 

@@ -22,7 +22,7 @@ from galinx.postprocess.units import engineering
 from galinx.solvers.contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD
 from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
-from galinx.solvers.contact.solution import FINITE, FREE, STRENGTH, Contact, make_contact
+from galinx.solvers.contact.solution import FINITE, FREE, PUNCH, STRENGTH, Contact, make_contact
 from galinx.solvers.friction.along import Along, advected, tabulated
 from galinx.solvers.friction.motion import Leg, legs, legs_of_path, positions
 from galinx.solvers.friction.slider import Slider
@@ -157,6 +157,11 @@ class Scene:
     def modes(self) -> tuple[str, ...]:
         """Names of the modes, by which quantities and rules that apply are selected."""
         return ("", self.solve.mode, *self.body.modes)
+
+    @property
+    def between_free_ends(self) -> bool:
+        """True for a punch without a sharp edge: beyond the Rayleigh speed nothing holds it up."""
+        return PUNCH in self.body.modes and (FINITE in self.body.modes or bool(self.body.tips))
 
     @property
     def sha256(self) -> str:

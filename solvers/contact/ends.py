@@ -44,7 +44,7 @@ _GROWTH, _STEP, _BEYOND = 2.0, 1.0, 1.1
 #: Farthest middle over the half-width, and change of the half-width's logarithm.
 _FARTHEST, _WIDEST = 1e12, 100.0
 #: Largest size of a function that is infinite; rounding of a root, and of a sum over its terms' sizes.
-_SIZE, _ROUNDING, _OF_SUMS = 200.0, 1e-16, 4e-16
+_SIZE, ROUNDING, _OF_SUMS = 200.0, 1e-16, 4e-16
 
 #: Points s of a quadrature over the contact, (n,), and their weights times ρ₁ and ρ₂, dimensionless, (n,)
 #: each, by the places over the half-width at which the slope or its derivative jumps.
@@ -89,7 +89,7 @@ def free_ends(
     rules: Callable[[float], Rule],
     h: float,
     m: float | None = None,
-    rounding: float = _ROUNDING,
+    rounding: float = ROUNDING,
 ) -> tuple[float, float]:
     """Middle and half-width of a contact with two free ends, in the unit of the punch.
 
@@ -139,7 +139,7 @@ def logarithm_of_load(carried: float) -> float:
 
 
 def half_width_of_load(
-    load: Callable[[float], float], h: float, punch: Punch, rounding: float = _ROUNDING
+    load: Callable[[float], float], h: float, punch: Punch, rounding: float = ROUNDING
 ) -> float:
     """Half-width at which a contact carries the load of its punch, one at which ``load`` was called.
 
@@ -176,7 +176,7 @@ def root(
     x: float,
     step: float,
     farthest: float,
-    rounding: float = _ROUNDING,
+    rounding: float = ROUNDING,
 ) -> float:
     """Root of a growing function, which may be infinite away from it, at a place where it was called.
 

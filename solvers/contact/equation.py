@@ -50,7 +50,7 @@ from ..profiles import check_reach, cusp, has_free_end, jumps, kinks
 from ..profiles.punches import Flat
 from .along import ExpansionAlong
 from .closed_form import FreeEnds, contacts, panels_of
-from .ends import Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
+from .ends import ROUNDING, Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
 from .panels import TO_BEND, Panels
 from .pressure import ENDS, Expansion, Functions, Pressure, off_tips
 
@@ -682,8 +682,8 @@ class LayersUnderPunch:
                 rules[own] = rule_of_ends(self._equation(g, own), resolution)
             return rules[own]
 
-        rounding = {} if share else {"rounding": _OF_LENGTHS * self.tolerance}
-        m, h = free_ends(self.punch, of_half_width, h, **rounding)
+        rounding = ROUNDING if share else _OF_LENGTHS * self.tolerance
+        m, h = free_ends(self.punch, of_half_width, h, rounding=rounding)
         equation = self._equation(g, h, self.punch.slope(m, h))
         places = self.punch.kinks(m, h)
         if places and not equation.friction.varies:

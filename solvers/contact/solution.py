@@ -22,7 +22,7 @@ from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
 from .extremes import extreme
 from .prescribed_pressure import LinearPressure
-from .stresses import Places, at_and_between, distances, extreme_in_plane, off_tips
+from .stresses import BESIDE_TIP, Places, at_and_between, distances, extreme_in_plane, off_tips
 from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
 
 #: Ends of a contact: sharp corners of the punch, both free, one that may lift off beside a sharp corner,
@@ -680,6 +680,22 @@ class Solution:
             if self._kinks_of_friction(state):
                 found[..., state] = self.between_kinks(state, lambda σ_XX, σ_YY, σ_XY: σ_XX)
         return None if np.isnan(found).all() else found
+
+    @cached_property
+    def beside_tips(self) -> NDArray[np.float64] | None:
+        """Places on both sides of tips from which on stresses count, and σ_XX there, (2, states, n).
+
+        None where there is no tip. Next to one stresses grow to where they no longer count.
+        """
+        if not self.body.tips:
+            return None
+        tips = (np.array(self.body.tips) - self.centre[:, None]) / self.half_width[:, None]
+        X = np.concatenate([tips - BESIDE_TIP, tips + BESIDE_TIP], axis=1)
+        σ = np.full(X.shape, np.nan)
+        for state, under in enumerate(np.abs(X) < 1.0):
+            if under.any():
+                σ[state, under] = self.at_surface(state, X[state, under])[0]
+        return np.array([X, σ])
 
     def _kinks_of_friction(self, state: int) -> Sequence[float]:
         """Positions over a at which the friction of a state is not smooth."""

@@ -182,7 +182,7 @@ NEAR = 1e-2
 NEAR_TIP = 0.02
 
 #: Distance over a from a tip of the nearest place that counts.
-_BESIDE_TIP = NEAR_TIP * (1.0 + 1e-9)
+BESIDE_TIP = NEAR_TIP * (1.0 + 1e-9)
 
 #: Share of the largest smooth factor of a pressure; where the factor is smaller, its error is relative to
 #: this share instead, since it may vanish.
@@ -384,8 +384,7 @@ def extreme_in_plane(
     surface = solution.surface
     sharp = body.infinite_ends(solution.local)
     infinite = [(np.where(sharp[:, i], side, np.nan), NEAR) for i, side in enumerate((-1.0, 1.0))]
-    tips = [(tip - solution.centre) / solution.half_width for tip in body.tips]
-    infinite += [(tip, NEAR_TIP) for tip in tips]
+    infinite += [((tip - solution.centre) / solution.half_width, NEAR_TIP) for tip in body.tips]
 
     def counted(X: NDArray, σ: NDArray) -> NDArray[np.float64]:
         near = [np.abs(X - place[:, None]) <= reach for place, reach in infinite]
@@ -403,12 +402,8 @@ def extreme_in_plane(
         candidates.append((counted(X, σ), X))
         curves = np.where(np.isfinite(σ) & surface.places.under, -np.inf, curves)
     candidates.append(on_surface(surface.places.X, curves, turns))
-    for tip in tips:  # next to it stresses grow to where they no longer count
-        for X in (tip - _BESIDE_TIP, tip + _BESIDE_TIP):
-            σ = np.full((len(X), 1), np.nan)
-            for state in np.flatnonzero(np.abs(X) < 1.0).tolist():
-                σ[state] = solution.at_surface(state, X[[state]])[0]
-            candidates.append((counted(X[:, None], σ), X[:, None]))
+    if (beside := solution.beside_tips) is not None:
+        candidates.append((counted(*beside), beside[0]))
     height, place = highest(*(np.concatenate(of, axis=1) for of in zip(*candidates)))
     return sign * height, place
 

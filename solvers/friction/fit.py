@@ -177,9 +177,9 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
     for at, beside in ((0, 1), (-1, -2)):  # the first and the last one as those beside, without a turn
         most = 2.0 * abs(v[at]) / seconds[at]
         slope[at] = np.clip(slope[beside], -most, most) if len(v) > 2 else 0.0
-    parts = []
-    for n, (mean, Δ) in enumerate(zip(v.tolist(), seconds.tolist())):
-        begin, end = mean - 0.5 * slope[n] * Δ, mean + 0.5 * slope[n] * Δ
+    parts, v, change, seconds = [], v.tolist(), change.tolist(), seconds.tolist()
+    for n, (mean, Δ, bend) in enumerate(zip(v, seconds, slope.tolist())):
+        begin, end = mean - 0.5 * bend * Δ, mean + 0.5 * bend * Δ
         one = [(mean, end, Δ)]
         if begin * end < 0.0:
             turn = begin / (begin - end)
@@ -192,7 +192,7 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
                 at = (mean - end) / (begin - end)
                 if 1e-3 < at < 1.0 - 1e-3:
                     one = [(begin, begin, at * Δ), (end, end, (1.0 - at) * Δ)]
-        parts.append([tuple(map(float, part)) for part in one])
+        parts.append(one)
     return parts
 
 

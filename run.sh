@@ -165,10 +165,11 @@ stop() {
   kill -TERM "${root:-$job}" || true
 }
 trap stop INT TERM HUP
-status=0
-while kill -0 $job 2>/dev/null; do
+# A trap ends a wait early; ranks that ended before it are waited for, too, or their status were lost.
+while :; do
   status=0
   wait $job 2>/dev/null || status=$?
+  kill -0 $job 2>/dev/null || break
 done
 case $status in
   0 | 2 | 3) exit $status ;;

@@ -70,3 +70,11 @@ def test_ranks_share_cores_only_where_there_are_too_few(mpirun_that_tells):
         assert done.returncode == 3
         assert done.stdout == f"{ranks} {told}\n"
         assert done.stderr.startswith("error: ranks could not be started, or were killed")
+
+
+def test_an_mpirun_that_ends_at_once_is_no_success(mpirun_that_tells, tmp_path):
+    """It may be gone before the script waits for it, as where the machine has other work."""
+    late = tmp_path / "late"
+    late.write_text("""trap '[ "$BASH_COMMAND" != status=0 ] || sleep 0.3' DEBUG""", encoding="utf-8")
+    done = command("-n", 2, "plan", SCENE, GALINX_PYTHON=str(mpirun_that_tells), BASH_ENV=str(late))
+    assert done.returncode == 3 and "ranks could not be started" in done.stderr

@@ -29,7 +29,7 @@ from . import options
 
 @click.command()
 @options.scene
-@click.option("-o", "output", type=options.FILE, help="Archive; default: the scene's name with .h5.")
+@click.option("-o", "output", type=options.ARCHIVE, help="Archive; default: the scene's name with .h5.")
 @options.changes
 @options.overwrite
 @click.option("--resume", is_flag=True, help="Go on with what an interrupted run left.")

@@ -25,8 +25,9 @@ class _Path(click.Path):
     """A path; one that no file can have is bad input, not a failure of the machine.
 
     Args:
-        of: ``"file"`` for a file alone, whose name does not end with a slash; ``"folder"`` for a folder,
-            whose name does not say a file: that is one of somebody who expects a single file.
+        of: ``"file"`` for a file alone, whose name does not end with a slash; ``"archive"`` for one whose
+            name says no other kind of file; ``"folder"`` for a folder, whose name does not say a file:
+            that is one of somebody who expects a single file.
     """
 
     def __init__(self, of: str = "") -> None:
@@ -37,15 +38,20 @@ class _Path(click.Path):
         for name in Path(value).parts:
             if len(os.fsencode(name)) > _LONGEST:
                 self.fail(f"found a name of {len(os.fsencode(name))} bytes, expected at most {_LONGEST}")
-        if self._of == "file" and str(value).endswith(os.sep):
+        if self._of in ("file", "archive") and str(value).endswith(os.sep):
             self.fail(f"found {value!r}, the name of a folder; expected a file's, as in {value}NAME")
         path = super().convert(value, param, ctx)
         if self._of == "folder" and path.suffix.lower() in _OF_FILES and not path.is_dir():
             self.fail(f"{value}: found a name that ends with {path.suffix}, expected a folder for files")
+        if self._of == "archive" and path.suffix.lower() in _OF_FILES - {".h5", ".hdf"}:
+            self.fail(
+                f"{value}: found a name that ends with {path.suffix}, expected an archive's, as "
+                f"{path.stem}.h5; other commands make tables, figures and pages of it"
+            )
         return path
 
 
-FILE, FOLDER, PATH = _Path("file"), _Path("folder"), _Path()
+FILE, FOLDER, ARCHIVE, PATH = _Path("file"), _Path("folder"), _Path("archive"), _Path()
 
 scene = click.argument("scene", type=FILE)
 archive = click.argument("archive", type=FILE)

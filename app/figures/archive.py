@@ -213,8 +213,8 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
     drawable = [name for name in selected if name == FILM or FIGURES[name].has(of)]
     if len(drawable) < len(named) or (choice.given and not drawable):
         raise BadInput(
-            f"the archive has nothing to draw for {_options(choice.given)} together; it has the figures "
-            f"{', '.join(available)}"
+            f"the archive has nothing to draw for {_options(choice.given)}"
+            f"{' together' * (len(choice.given) > 1)}; it has the figures {', '.join(available)}"
         )
     return drawable
 

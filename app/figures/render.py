@@ -18,12 +18,13 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
-from galinx.texts import folded, in_tex, plain
+from galinx.texts import folded, in_tex, number, plain
 
 from .style import DPI, GREY, PAGE, SMALL, TALLEST, Look, styled
 
@@ -264,6 +265,8 @@ class _Drawn:
             axis.axvline(x, color=GREY, linewidth=0.4, zorder=0)
         for y in panel.at_y:
             axis.axhline(y / 10.0**self.power, color=GREY, linewidth=0.4, zorder=0)
+        for name in panel.log:
+            getattr(axis, f"set_{name}scale")("log")
         lines = [self._curve(curve) for curve in panel.curves]
         if panel.map:
             image = _draw_map(axis, panel.map, panel.log)
@@ -277,8 +280,6 @@ class _Drawn:
             axis.axhline(y, color="black", linewidth=0.6, linestyle=(0, (5.0, 2.5)))
         if panel.bar:
             axis.plot(panel.bar, [0.0, 0.0], color="black", linewidth=2.5, clip_on=False)
-        for name in panel.log:
-            getattr(axis, f"set_{name}scale")("log")
         if panel.xlim:
             axis.set_xlim(panel.xlim)
         if panel.ylim:
@@ -435,12 +436,16 @@ def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
     half_X, half_Y = (abs(z[-1] - z[0]) / max(len(z) - 1, 1) / 2.0 for z in (X, Y))
     along, heights = (X[0] - half_X, X[-1] + half_X), np.array([Y[0] - half_Y, Y[-1] + half_Y])
     lowest, colours = (-shown.limit, "RdBu_r") if shown.signed else (0.0, "viridis")
+    if shown.lines and not shown.signed:
+        lowest = float(np.nanmin(shown.values))
     norm, locator = Normalize(lowest, shown.limit), MaxNLocator(9)
     if shown.log:
-        norm = LogNorm(lowest := float(np.nanmin(shown.values)), shown.limit)
+        norm = LogNorm(lowest, shown.limit)
         locator = LogLocator(subs=(1.0, 2.0, 5.0))
     if log:
         axis.tick_params(axis="x", pad=5.0)  # a power at the end of each axis
+    top = -Y[0] if shown.above else max(Y[-1], 0.0) if shown.equal else Y[-1]
+    axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], top))
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
         image: ScalarMappable
@@ -458,12 +463,15 @@ def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
             image.set_clip_path(Rectangle(corner, X[-1] - X[0], tall, transform=axis.transData))
         if shown.lines:
             levels = locator.tick_values(lowest, shown.limit)
-            axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
+            lines = axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
+            numbers = axis.clabel(lines, fmt=lambda of: f"${number(of)}$", fontsize=SMALL, inline_spacing=1)
+            for text in numbers:
+                text.set_path_effects([withStroke(linewidth=1.0, foreground="white")])
+                part = (axis.transData - axis.transAxes).transform(text.get_position())
+                text.set_visible(bool((np.abs(part - 0.5) < 0.46).all()))  # a frame cuts through others
         share = values / np.reshape(level, (-1, 1))
         if share.max() > 1.0:
             axis.contour(X, side * Y, share, [1.0], colors="white", linewidths=1.0)
-    top = -Y[0] if shown.above else max(Y[-1], 0.0) if shown.equal else Y[-1]
-    axis.set(xlim=(X[0], X[-1]), ylim=(Y[0], top))
     return image
 
 

@@ -7,6 +7,7 @@ scenes, by which editors complete and check TOML.
 """
 
 import dataclasses
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -534,6 +535,10 @@ class Output:
         return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
+def _words(text: str) -> list[str]:
+    return re.findall(r"[a-z]+", text.lower())
+
+
 @dataclass(frozen=True)
 class Section:
     """A section of a scene, and how its table is read.
@@ -636,6 +641,8 @@ class Section:
             if others:
                 have = "has it" if len(others) == 1 else "have it"
                 hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
+            elif meaning := [n for n, entry in keys.items() if key.lower() in _words(entry.about)]:
+                hint = f"; did you mean {' or '.join(meaning[:2])}?"
             elif len(elsewhere) == 1:
                 hint = f"; it is one of {elsewhere[0]}"
             own_faults.append(f"{name}.{short(key)}: no such key{hint}")

@@ -16,6 +16,7 @@ BAD = [
     (("init", "tabel1"), "init tabel1: no such scene; did you mean table1?"),
     (("init", "quite something else"), "no such scene; valid: along, box, "),
     (("paper", "-o", "figures.pdf"), "ends with .pdf, expected a folder"),
+    (("run", "bad.toml", "-o", "x.csv"), "ends with .csv, expected an archive's, as x.h5"),
     (("./bad.toml",), "No such command"),
 ]
 

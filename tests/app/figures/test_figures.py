@@ -161,6 +161,7 @@ def test_maps_over_numbers_that_are_apart_by_ratios_have_logarithmic_axes_and_co
     (drawing,) = computed(scene).drawings(figures=("parameters",))
     axis = drawing.figure.axes[0]
     assert (axis.get_xscale(), axis.get_yscale()) == ("log", "log")
+    assert {"$100$", "$1000$"} <= {text.get_text() for text in axis.texts if text.get_visible()}
     (image,) = (one for one in axis.collections if one.get_array() is not None and one.norm.vmin)
     assert isinstance(image.norm, LogNorm) and not [*faults(drawing.figure)]
     p = np.reshape(image.get_array(), (20, 20))

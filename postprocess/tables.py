@@ -415,7 +415,10 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     if asked and contact.yield_strength and FINITE not in contact.modes and not contact.solid.layers:
         words = words or _share(np.inf)  # at a tip, or beside an end that is free
     if words and not of_solid:
-        of_solid = [Column("yields", [words] * count, "none", "yields")]
+        depth = preferred(data, yielding.DEPTH)
+        deep = np.isnan(data[depth.path]) if depth else np.zeros(count, dtype=bool)
+        said = [words + ", deeper than 10 a" * bool(of_state) for of_state in deep]
+        of_solid = [Column("yields", said, "none", "yields")]
     of_punch = column_of(
         "punch yields", yielding.PUNCH_FIRST_LOAD, yielding.PUNCH_VON_MISES, "punch.solid.yield_strength",
         contact.solid.punch_strength,

@@ -35,7 +35,7 @@ from galinx.solvers.profiles import PROFILES, Profile, has_free_end
 from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
-from ..errors import excerpt, nearest, short
+from ..errors import excerpt, meant, nearest, short
 from ..methods import METHODS, MODES, OWN_METHODS
 from .library import LIBRARY
 from .values import (
@@ -637,11 +637,12 @@ class Section:
         for key in (key for key in given if key not in keys):
             others = [n for n, model in (self.models or {}).items() if key in parameters(model)]
             elsewhere = [f"[{section}]" for section, of in SECTIONS.items() if key in of.every]
+            meaning = [n for n, entry in keys.items() if key.lower() in _words(entry.about)]
             hint = nearest(key, [*keys])
             if others:
                 have = "has it" if len(others) == 1 else "have it"
                 hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
-            elif meaning := [n for n, entry in keys.items() if key.lower() in _words(entry.about)]:
+            elif meaning and not meant(key, keys):
                 hint = f"; did you mean {' or '.join(meaning[:2])}?"
             elif len(elsewhere) == 1:
                 hint = f"; it is one of {elsewhere[0]}"

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import xlogy
 
 from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.transient.punch import LEAST, ON_SURFACE
+from galinx.solvers.contact.stresses import NEAR
+from galinx.solvers.transient.punch import LEAST, ON_SURFACE, PLACES
 from galinx.solvers.transient.transform import Weighted
 
 from .compare import RULES, Rule, against, largest
@@ -25,9 +26,10 @@ from .quantities.quantity import FEM, SIE
 
 
 def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: int) -> NDArray[np.float64]:
-    """Centre of the pressure over a, and K_I at X = -a and X = a over N, dimensionless, (3, times).
+    """Centre of the pressure over a, K_I at X = -a and X = a over N, and tension, (4, times).
 
-    Consistent nodal forces of σ_YY, tested with smooth functions, give moments of the pressure.
+    The tension is the largest under the punch over N/(2a), see :func:`largest_tension`. Consistent nodal
+    forces of σ_YY, tested with smooth functions, give moments of the pressure.
 
     Args:
         X: positions of the contact nodes over a, (nodes,).
@@ -44,10 +46,21 @@ def contact_numbers(X: NDArray, forces: NDArray, α: float, β: float, degree: i
     basis = np.column_stack([np.eye(moments, polynomials), tests.polynomials(r).T @ (w * _logs(r)).T])
     factors = np.linalg.lstsq(basis, a.T, rcond=None)[0]
     ends = np.array([-1.0, 1.0])
-    K_left, K_right = (
-        -0.5 * np.column_stack([tests.polynomials(ends)[:, :polynomials], _logs(ends).T]) @ factors
+    at_ends, under = (
+        np.column_stack([tests.polynomials(at)[:, :polynomials], _logs(at).T]) @ factors
+        for at in (ends, PLACES)
     )
-    return np.array([(forces @ X) / forces.sum(axis=1), K_left, K_right])
+    σ_YY = ((1.0 - PLACES) ** α * (1.0 + PLACES) ** β)[:, None] * under
+    return np.array([(forces @ X) / forces.sum(axis=1), *(-0.5 * at_ends), largest_tension(σ_YY.T)])
+
+
+def largest_tension(σ_YY: NDArray) -> NDArray[np.float64]:
+    """Largest tension under the punch further than 0.01 a from its ends, 0 for none, (times,).
+
+    Args:
+        σ_YY: contact stress at ``PLACES``, (times, places).
+    """
+    return np.asarray(σ_YY[:, from_edge(PLACES) > NEAR].max(axis=1).clip(min=0.0))
 
 
 def _logs(X: NDArray) -> NDArray[np.float64]:
@@ -194,7 +207,7 @@ def largest_surface_change(stresses: Any, expected: Any) -> float:
     Args:
         stresses, expected: σ_XX and σ_YY by two methods, (motions, times, places) each.
     """
-    far = from_edge(ON_SURFACE) > 0.01  # at the edges stresses are infinite
+    far = from_edge(ON_SURFACE) > NEAR  # at the edges stresses are infinite
     stresses, expected = ([σ[..., far] for σ in method] for method in (stresses, expected))
     return _over_largest(stresses, expected, (-2, -1))
 
@@ -227,6 +240,17 @@ def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
     return largest_surface_change(fem, sie) if solved.any() else None
 
 
+def _pull(by: str, method: str) -> Rule:
+    """Rule that the punch never pulls: it would lift off."""
+    row = rows.TENSION[method]
+
+    def measure(data: dict[str, Any], _: Any) -> float | None:
+        return float(np.nanmax(data[row.path], initial=0.0)) or None
+
+    text = f"tension under the punch over time{by}, over N/(2a), where it would lift off"
+    return Rule(text, (row,), measure, tolerances=1.0)
+
+
 _AGAINST = "over time against the integral equation, over the largest"
 _FAR = "further than 0.01 a from the edges"
 
@@ -256,6 +280,8 @@ _RULES = {
         rows.SURFACE_ESTIMATE,
         f"estimated error of σ_XX and σ_YY along the surface over time, over the largest {_FAR}",
     ),
+    "tension over time": _pull("", FEM),
+    "tension over time, sie": _pull(" by the integral equation", SIE),
     # Its difference is reported, not judged: waves ahead of a fast punch are short.
     "ends over time": against(
         SIE, _until_turn, f"σ_XX 0.05 a beside both ends {_AGAINST}", rows.LEFT, rows.RIGHT,

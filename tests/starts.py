@@ -58,6 +58,6 @@ class ByFiniteElements:
             exact = FlatPunch(self.response, g(t) if callable(g) else g)
             at = self.motion.X, run.forces[n : n + 1], exact.α, exact.β, self.degree
             by_time.append(contact_numbers(*at))
-        centre, K_left, K_right = np.concatenate(by_time, axis=1)
+        centre, K_left, K_right, _ = np.concatenate(by_time, axis=1)
         load = -run.forces.sum(axis=1) / 2.0
         return SimpleNamespace(load=load, centre=centre, K_left=K_left, K_right=K_right)

@@ -16,7 +16,7 @@ from galinx.postprocess.quantities.states import RATIO
 from galinx.postprocess.quantities.validity import SIGNS
 from galinx.solvers.layers.flutter import thresholds_by_length
 from galinx.solvers.layers.layered import dispersion
-from galinx.solvers.profiles.punches import Flat
+from galinx.solvers.profiles.punches import is_level
 from galinx.solvers.solids import Solid
 from galinx.solvers.transient.harmonic import OscillatingPunch, Oscillation, highest
 from galinx.texts import plain
@@ -145,8 +145,8 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
         raise BadInput(
             "response: found layers or a solid with ν near 1/2, expected a uniform solid that waves pass"
         )
-    if not isinstance(scene.punch.profile, Flat):
-        raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a flat punch")
+    if not is_level(scene.punch.profile):
+        raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a level flat punch")
     if scene.elastic_punch or scene.along:
         raise BadInput(
             "response: found an elastic punch, or friction that varies along the contact, expected a "

@@ -19,7 +19,7 @@ from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.approximation import gauss_in_panels
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Leg, follow
-from galinx.solvers.profiles.punches import Flat
+from galinx.solvers.profiles.punches import is_level
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.transient.history import Drive, Load, Way
 from galinx.solvers.transient.line_load import fastest
@@ -126,8 +126,8 @@ def _check(scene: Scene, methods: tuple[str, ...]) -> None:
     thinnest = min((layer.thickness for layer in layers), default=np.inf) / scene.body.half_width
     by_law = scene.time.by_law
     faults = {
-        f"found a {scene.punch.profile.words()}; a start from rest is computed for flat punches":
-            not isinstance(scene.punch.profile, Flat),
+        f"found a {scene.punch.profile.words()}; a start from rest is computed for level flat punches":
+            not is_level(scene.punch.profile),
         "solve.methods has neither fem nor sie, which follow a start from rest": not methods,
         f"solve.tolerance: found {tolerance:g}, expected {_TIGHTEST:g} to {_COARSEST:g}, as in 1e-3":
             not _TIGHTEST <= tolerance <= _COARSEST,

@@ -395,8 +395,8 @@ def _fem_lines(plan: Plan, fem: FemPlan) -> list[str]:
         result.append(
             f"finite elements at {len(set(c))} speeds, c = {min(c):g} to {max(c):g} (over c_s): degree "
             f"{degree}, {unknowns(pattern, fem.cuts * degree)} unknowns{pressure}{by}; so many are "
-            f"solved as a fit needs to give the others, {LADDERS + BESIDES} or so; at each of these "
-            f"{solver} serves all states, at {LADDERS} {others} its error"
+            f"solved as a fit needs to give the others, {LADDERS + BESIDES} or so, or each where none is "
+            f"good enough; at each of these {solver} serves all states, at {LADDERS} {others} its error"
         )
         speeds = {}
     result += [

@@ -30,7 +30,7 @@ from galinx.postprocess.validity import Steady, Validity
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.slider import Ride, pull
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles.punches import Flat
+from galinx.solvers.profiles.punches import is_level
 from galinx.solvers.solids import SOLIDS
 from galinx.solvers.transient.late_time import approach
 from galinx.texts import counted
@@ -166,7 +166,7 @@ def _steady(scene: Scene) -> Steady | None:
     It is infinite from the speed of the wave along the surface on.
     """
     solid = scene.solid
-    if scene.layers or scene.elastic_punch or scene.variants or not isinstance(scene.punch.profile, Flat):
+    if scene.layers or scene.elastic_punch or scene.variants or not is_level(scene.punch.profile):
         return None
 
     def within(c: float, g: float) -> float:

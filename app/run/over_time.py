@@ -145,6 +145,7 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
             course = punches[drive.way].course(drive, starts.load, starts.time.steady)
             K_I = np.array([course.K_left, course.K_right]) * (1.0 if starts.smooth else np.nan)
             datasets = _contact(SIE, course.v0, course.centre, *K_I)
+            datasets[rows.TENSION[SIE].path] = over_time.largest_tension(course.σ_YY)
             if not starts.time.steady:
                 datasets |= {
                     rows.OF_LOAD[SIE].path: course.work_of_load,
@@ -250,13 +251,14 @@ def _at_level(
                     rows.STRAIN.path: strain, rows.KINETIC.path: kinetic,
                     rows.RADIATED.path: all_strain - strain + all_kinetic - kinetic + run.absorbed,
                 }  # fmt: skip
-            ratios, read = drive(run.t), np.empty((3, len(run.t)))  # by the exponents of each time
+            ratios, read = drive(run.t), np.empty((4, len(run.t)))  # by the exponents of each time
             for ratio in np.unique(ratios):
                 at, steady = ratios == ratio, FlatPunch(response, ratio)
                 of_nodes = motion.X, run.forces[at]
                 read[:, at] = contact_numbers(*of_nodes, steady.α, steady.β, level.degree)
-            K_I = read[1:] if starts.smooth else np.nan * read[1:]
-            motions.append(((run.v0, read[0], *K_I), datasets))
+            K_left, K_right, tension = read[1:] if starts.smooth else np.nan * read[1:]
+            datasets[rows.TENSION[FEM].path] = tension
+            motions.append(((run.v0, read[0], K_left, K_right), datasets))
     solver.destroy()
     return motions
 

@@ -79,6 +79,11 @@ K_I_LEFT, K_I_RIGHT = (
     )
     for side, at in (("left", "X = -a"), ("right", "X = a"))
 )  # fmt: skip
+TENSION = _by_method(
+    "tension", "N/(2a)",
+    "largest tension under the punch further than 0.01 a from its ends, 0 for none",
+    nan_allowed=ANYWHERE, range=NOT_NEGATIVE,
+)  # fmt: skip
 WORK = _row(
     "fem/work", "N^2/(4mu)", "work of the contact's forces by velocities seen from the punch",
     (START, INSTANT), method=FEM,

@@ -606,8 +606,8 @@ def _higher(peak: Peak, values: NDArray, X: NDArray, Y: Any = 0.0) -> Peak:
 
 #: Depths below the surface, or below the lowest interface, over a, at which the solid is sampled.
 _DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
-#: Relative depths within a thick layer, and within a thin one, up to a thickness over a.
-_WITHIN, _WITHIN_THIN, _THIN = np.array([0.2, 0.5, 0.8]), np.array([0.5]), 0.15
+#: Relative depths within a layer.
+_WITHIN = np.array([0.2, 0.5, 0.8])
 #: Positions X/a at each depth, and places around both ends of the contact over the depth.
 _ALONG, _NEAR = np.linspace(-2.5, 2.5, 41), np.linspace(-3.0, 3.0, 13)
 #: Accuracy of the depth over the distance of depths.
@@ -630,10 +630,7 @@ def sampled_depths(interfaces: NDArray) -> list[NDArray[np.float64]]:
         interfaces: depths of the interfaces over a, (layers,).
     """
     tops = np.concatenate([[0.0], interfaces])
-    each = [
-        _WITHIN_THIN * H if H <= _THIN else np.union1d(_DEPTHS[_DEPTHS < 0.9 * H], _WITHIN * H)
-        for H in np.diff(tops).tolist()
-    ]
+    each = [np.union1d(_DEPTHS[_DEPTHS < 0.9 * H], _WITHIN * H) for H in np.diff(tops).tolist()]
     return [top + depths for top, depths in zip(tops.tolist(), [*each, _DEPTHS])]
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,11 @@ class Flat(Profile):
     def words(self) -> str:
         tilted = f", tilted by {self.tilt:g}° counterclockwise" * bool(self.tilt)
         return f"flat punch, half-width {with_prefix(self.half_width, 'm')}{tilted}"
+
+
+def is_level(profile: Any) -> bool:
+    """Return True for a flat punch that is not tilted."""
+    return isinstance(profile, Flat) and not profile.tilt
 
 
 @dataclass(frozen=True)

@@ -52,5 +52,5 @@ def test_what_has_no_answer_is_refused(tmp_path):
         done = here("response", START, "-o", tmp_path, *words)
         assert done.returncode == 2 and said in done.stderr, done.stderr
     done = here("response", HOME / "scenes" / "cylinder.toml", "-o", tmp_path)
-    assert done.returncode == 2 and "expected a flat punch" in done.stderr
+    assert done.returncode == 2 and "expected a level flat punch" in done.stderr
     assert not list(tmp_path.iterdir())

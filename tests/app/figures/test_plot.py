@@ -107,7 +107,7 @@ def test_ffmpeg_is_used_where_it_is(strokes, tmp_path, monkeypatch):
     [
         ({"figures": ("surfase",)}, ".", r"figure 'surfase': there is none; did you mean surface\?"),
         ({"quantities": ("sgma_XX",)}, ".", "quantity 'sgma_XX': there is none; did you mean sigma_XX"),
-        ({"method": "fem"}, ".", r"nothing to draw for --method together"),
+        ({"method": "fem"}, ".", r"nothing to draw for --method; "),
         ({"states": (30,)}, ".", r"--states: found 30, expected numbers from 0 to 29; show lists them"),
         ({"x": "foo"}, ".", r"x 'foo': there is none; valid: c, mu_c"),
         ({"y": ("K_II",)}, ".", r"y 'K_II': there is none; did you mean K_I\?"),

@@ -112,6 +112,22 @@ def test_short_steps_and_ramps_let_no_wave_grow_under_friction():
     assert result.comparisons[ESTIMATE] < 1e-2, result.comparisons
 
 
+def test_a_punch_that_would_have_to_pull_fails_by_both_methods():
+    """The load falls before the surface can follow: both ends still press, the middle would be pulled."""
+    falls = {"time.load": [[0.0, 0.0], [0.5, 1.0], [1.0, 0.1]], "time.end": 1.5, "time.load_ramp": None,
+             "motion.c": 0.3, "friction.mu_c": 0.2}  # fmt: skip
+    result = computed("start_from_rest", QUICK | falls)
+    data, pressure = result.data, result.data["time/sie/sigma_YY"][0]
+    inside = 1.0 - np.abs(data["time/X_over_a"]) > 0.01
+    assert data["time/fem/K_I_left"].min() > 0.0
+    largest = pressure[:, inside].max(axis=1).clip(min=0.0)
+    assert largest.max() > 0.05
+    np.testing.assert_array_equal(data["time/sie/tension"][0], largest)
+    np.testing.assert_allclose(data["time/fem/tension"][0], largest, atol=3e-3)
+    assert result.verdict == "FAIL"
+    assert sum("tension under the punch" in text for text in result.comparisons) == 2
+
+
 def test_unloading_from_steady_motion_by_both_methods():
     changes = QUICK | {"time.start": "steady", "time.load": [[0.0, 1.0], [1.0, 0.5]], "time.end": 1.5}
     result = computed("start_from_rest", changes)

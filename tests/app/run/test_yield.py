@@ -171,6 +171,24 @@ def test_no_sample_is_larger_and_some_come_near(thickness):
     assert np.allclose(data[yielding.OVER_STRENGTH["sie"].path], share, rtol=1e-12)
 
 
+def test_a_thin_layer_is_sampled_between_its_middle_and_both_faces():
+    """It bends near the speed limit: there it bears less in its middle and at its faces than between."""
+    layers = [
+        {"thickness": 1e-4, "E": 5e10, "nu": 0.33, "rho": 4500},
+        {"thickness": 4e-5, "E": 4e11, "nu": 0.22, "rho": 5000},
+    ]
+    points = np.column_stack([np.full(26, -0.82), np.linspace(-0.5, -0.4, 26)]).tolist()
+    data = computed("coating", {
+        "solid": {"E": 2e11, "nu": 0.3, "rho": 7850}, "layer": layers, "motion": {"speed": 1902.0},
+        "punch": {"profile": "parabolic", "radius": 0.02, "load": 2e5}, "friction": {"mu": 0.0},
+        "solve": {"methods": ["sie"], "tolerance": 1e-4},
+        "output": {"quantities": ["sif", "yield", "interior"], "points": points},
+    }).data  # fmt: skip
+    largest = data["interior/sie/von_mises"][0].max()
+    assert largest <= data["layers/sie/von_mises"][0, 1] <= 1.0001 * largest
+    assert 1.002 * data["interior/sie/von_mises"][0, [0, -1]].max() < largest
+
+
 def test_points_beside_an_interface_keep_their_layer_on_a_mesh_for_a_contact_near_by():
     """The half-width of the mesh is off by less than the tolerance; a depth of that would be too much."""
     scene = {

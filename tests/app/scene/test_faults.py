@@ -215,6 +215,7 @@ FAULTS = {
         ({"friction.mu_c": [0.01 * i for i in range(1, 30)]}, "expected at most 24"),
         ({"output.quantities": ["friction"]}, "go together"),
         ({"time.step": "coarse"}, "time.step"),
+        ({"punch.tilt": 0.1}, "tilted by 0.1° counterclockwise; a start from rest is computed for level"),
         ({"time.load": [[0.0, 0.5], [1.0, 1.0]]}, "expected 0 where it starts at rest"),
         ({"time.load": [[0.0, 0.0], [1.0, -1.0]]}, "the punch stays down"),
         ({"time.load": [[1.0, 0.0], [0.5, 1.0]]}, "expected 0 first, then ever later ones"),

@@ -45,6 +45,7 @@ class Rule:
             that.
         mode: mode of solution in which the rule is applied, as of a quantity; "" for every mode.
         own_pressure: True where the rule is applied under a prescribed pressure, too.
+        remedy: change of a scene that does not pass; "" where that is another tolerance, if any.
     """
 
     text: str
@@ -54,6 +55,7 @@ class Rule:
     tolerances: float | None = None
     mode: str = ""
     own_pressure: bool = False
+    remedy: str = ""
 
     def allowed(self, tolerance: float) -> float | None:
         """Largest value of a PASS; None where the figure is reported and not judged."""
@@ -73,7 +75,8 @@ def _pull(by: str, method: str, **limits: Any) -> Rule:
         return tension if tension > _ROUNDED * (method != FEM) else None
 
     text = f"tension under the punch{by}, over N/(2a)"
-    return Rule(text, (pressure,), measure, own_pressure=True, **limits)
+    remedy = "the punch would lift off; let a load, profile or friction press everywhere"
+    return Rule(text, (pressure,), measure, own_pressure=True, remedy=remedy, **limits)
 
 
 def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
@@ -522,18 +525,19 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
         times = f", {value / limit:.3g} times what is wanted, {limit:g}" if limit else ""
         lines.append(f"{text}: {value:.3g}{times}{_worst_state(text, data, attributes)}")
     lines += [r for r in json.loads(attributes["verdict_reasons"]) if r.startswith("not solved")]
-    by_text = {rule.text: rule.tolerances for rule in RULES.values()}
+    rules = {rule.text: rule for rule in RULES.values() if rule.text in over}
+    remedies = dict.fromkeys(rule.remedy for rule in rules.values() if rule.remedy)
+    lines += [f"what to do: {remedy}" for remedy in remedies]
     # Tolerances that are wanted, and that would be enough, of figures whose limits follow the tolerance.
-    wanted, enough = (
-        [pair[i] / share for text, pair in over.items() if (share := by_text.get(text))] for i in (1, 0)
-    )
+    shares = {text: of.tolerances for text, of in rules.items() if of.tolerances and not of.remedy}
+    wanted, enough = ([over[text][i] / share for text, share in shares.items()] for i in (1, 0))
     if wanted:
         lines.append(f"what to do: {_finer(min(wanted), data, attributes)}")
         loosest = 10.0 ** np.ceil(np.log10(max(enough)))
         most = 1e-2 if in_time.TIMES.path in data else 0.1  # that a scene may have
         if len(wanted) == len(over) and loosest <= most:
             lines[-1] += f"; {loosest:.0e} accepts it"
-    elif over:
+    elif over and not remedies:
         lines.append("no solve.tolerance changes this: it has a limit of its own")
     return lines
 
@@ -544,7 +548,7 @@ def _finer(wanted: float, data: Mapping[str, Any], attributes: Mapping[str, Any]
     for key in ("degree", "mesh"):
         if key in solve and solve[key] != "confocal":
             return f"leave solve.{key} away, and finite elements follow the tolerance"
-    if in_time.DIRECTION.path in data and np.ptp(data[in_time.DIRECTION.path]):
+    if in_time.DIRECTION.path in data and np.ptp(data[in_time.DIRECTION.path], axis=-1).any():
         return "a time.end before the punch turns round; behind a turn finer steps hardly help"
     if "would remain on any cells" in attributes.get("warnings", ""):
         return "no finer solve.tolerance helps, as finite elements have no more digits here"

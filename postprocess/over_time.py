@@ -247,8 +247,9 @@ def _pull(by: str, method: str) -> Rule:
     def measure(data: dict[str, Any], _: Any) -> float | None:
         return float(np.nanmax(data[row.path], initial=0.0)) or None
 
-    text = f"tension under the punch over time{by}, over N/(2a), where it would lift off"
-    return Rule(text, (row,), measure, tolerances=1.0)
+    text = f"tension under the punch over time{by}, over N/(2a)"
+    remedy = "the punch would lift off; let time.load change more slowly, or end the motion earlier"
+    return Rule(text, (row,), measure, tolerances=1.0, remedy=remedy)
 
 
 _AGAINST = "over time against the integral equation, over the largest"

@@ -129,9 +129,9 @@ class Validity:
         if "ratio" in worst:
             up_to, steep = f"|σ_XY/σ_YY| is up to {worst['ratio']}", sorted(self._steep)
             if steep != [0.0]:
-                least = " or ".join(f"{threshold:.3g}" for threshold in steep)
+                least = " to ".join(dict.fromkeys(f"{end:.3g}" for end in (steep[0], steep[-1])))
                 yield (
-                    f"{up_to}, and at least {least} in {states['ratio']}: from there on such an "
+                    f"{up_to}, not below the flutter threshold, {least}, in {states['ratio']}: such an "
                     "interface may flutter at short waves"
                 )
             else:

@@ -139,6 +139,13 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
+#: Units of what people mean, by its name.
+_MEASURES = {
+    "a force": "N", "a force per depth": "N/m", "a pressure": "Pa", "a length": "m", "a time": "s",
+    "a speed": "m/s", "a mass": "kg", "a density": "kg/m^3",
+}  # fmt: skip
+
+
 def to_si(value: Any, unit: str) -> float:
     """A number in SI, or a string with a unit, as a number in ``unit``.
 
@@ -159,10 +166,11 @@ def to_si(value: Any, unit: str) -> float:
     try:
         if isinstance(value, str):
             (number, given), target = quantity(value), units(unit)
-            if unit == "N/m" and in_units(number, given, units("N")) is not None:
-                expected = "a force per depth, such as 100 N/mm"
-                raise ValueError("which is a force")
             metric = in_units(number, given, target)
+            if metric is None and (measure := _measure(given)):
+                if unit == "N/m":
+                    expected = "a force per depth, such as 100 N/mm"
+                raise ValueError(f"({measure})")
             number = _by_pint(number, given, target) if metric is None else metric
         else:
             number = float(value)
@@ -177,6 +185,12 @@ def to_si(value: Any, unit: str) -> float:
     if not isfinite(number):
         raise fault(form=" that is finite")
     return number
+
+
+def _measure(given: Units) -> str:
+    """What a number of these units measures, "" where it is nothing in ``_MEASURES``."""
+    own = (name for name, of in _MEASURES.items() if in_units(1.0, given, units(of)) is not None)
+    return next(own, "")
 
 
 def _by_pint(number: float, given: Units, target: Units) -> float:

@@ -52,7 +52,7 @@ def _strokes(*strokes, **more):
 FAULTS = {
     "tables4_5": [
         ({"solid.nu": None, "solid.nuu": 0.25}, "did you mean nu"),
-        ({"punch.load": "100 N"}, "which is a force, expected a force per depth, such as 100 N/mm"),
+        ({"punch.load": "100 N"}, "(a force), expected a force per depth, such as 100 N/mm"),
         ({"solid.E": "210 Gpa"}, "unknown unit 'Gpa' (did you mean GPa?), expected"),
         (_SPEED | {"motion.speed": 1, "solid.E": 210}, "as meant?…motion.speed = 1 m/s: expected less"),
         ({"sloid.nu": 0.25}, "did you mean solid"),
@@ -63,7 +63,7 @@ FAULTS = {
         ({"friction.model": "stribeck"}, "mu_s: missing"),
         ({"friction.sigma0": 1e9}, "has 1 fault…sigma0 and sigma0_over_load exclude each other"),
         (_APART | {"punch.load": [1e3, 2e3]}, "has 1 fault…found 2 loads, expected one punch.load"),
-        (_APART | {"friction.sigma0": "5 kg"}, "has 1 fault…of dimension"),
+        (_APART | {"friction.sigma0": "5 kg"}, "has 1 fault…(a mass), expected"),
         (_APART | {"punch.load": "1 m"}, "has 1 fault…punch.load"),
         (_APART | {"friction.model": "coulomb"}, "friction.sigma0: no such key"),
         ({"friction.vary": [{"mu": 0.3}]}, "found the key 'mu' in table 1; did you mean mu_c?"),

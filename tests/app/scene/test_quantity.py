@@ -58,7 +58,7 @@ def test_units_are_worth(text, unit, wanted):
     "text, unit, found",
     [
         ("30 deg", "", "in radian"), ("3 count", "", "in count"), ("2 bit", "", "in bit"),
-        ("2 byte/m", "1/m", "1 / "), ("1 mm", "Pa", r"\[length\]"), ("1 lb", "", r"\[mass\]"),
+        ("2 byte/m", "1/m", "1 / "), ("1 mm", "Pa", "(a length)"), ("1 lb", "", "mass"),
         ("1 GPz", "Pa", "unknown unit 'GPz'"),
         ("7 %", "m/s", "with %, which dimensionless numbers have"), ("1 degC*m", "K*m", "no zero"),
         ("1 None", "Pa", "unknown"), ("3", "Pa", "without a unit"),

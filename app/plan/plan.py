@@ -242,16 +242,21 @@ def _faults(
     if refusals and not methods:
         reasons = "; ".join(f"{name}: {why}" for name, why in refusals.items())
         yield f"solve.methods: none of them solves this contact: {reasons}"
-    if FEM in solve.methods and solve.assembler == DOLFINX:
-        if solve.own_pressure:
+    if FEM in solve.methods and solve.assembler == DOLFINX and solve.own_pressure:
+        yield (
+            'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": '
+            "its pieces are put together from the deformation of condensed cells"
+        )
+    if FEM in solve.methods and scene.time is not None:
+        usual: dict[str, tuple[str | None, ...]] = {"assembler": ("tensor",)}
+        if FEM not in methods:  # of steady motion
+            usual |= {"mesh": ("confocal",), "degree": (None,), "solver": ("auto", "direct")}
+        given = {key: getattr(solve, key) for key in usual}
+        wrong = [f"solve.{key} = {json.dumps(of)}" for key, of in given.items() if of not in usual[key]]
+        if wrong:
             yield (
-                'solve.assembler: found "dolfinx" with a solve.pressure of your own, expected "tensor": '
-                "its pieces are put together from the deformation of condensed cells"
-            )
-        if scene.time is not None:
-            yield (
-                'solve.assembler: found "dolfinx" with [time], expected "tensor": motions in time have '
-                "matrices of their own"
+                f"time: found {' and '.join(wrong)}, but motions in time have meshes, degrees and "
+                "matrices of their own; take that away"
             )
     if FEM in methods:
         yield from elements.faults(scene, places, alone={*methods} == {FEM})

@@ -249,7 +249,7 @@ def _pull(by: str, method: str) -> Rule:
 
     text = f"tension under the punch over time{by}, over N/(2a)"
     remedy = "the punch would lift off; let time.load change more slowly, or end the motion earlier"
-    return Rule(text, (row,), measure, tolerances=1.0, remedy=remedy)
+    return Rule(text, (row,), measure, limit=1e-3, tolerances=1.0, remedy=remedy)
 
 
 _AGAINST = "over time against the integral equation, over the largest"

@@ -251,7 +251,8 @@ def _of_derived(archive: Archive, plan: Plan, selected: NDArray[np.int64]) -> It
         if len(σ) > 1:
             given.inside, given.σ_ZZ = σ, body.σ_ZZ(σ, archive.data[stresses.INSIDE_Y.path])
         else:
-            given.surface = SimpleNamespace(places=plan.places, σ_YY=σ[0])
+            under = plan.places.under
+            given.pressed = plan.places.X[under], σ[0][:, under]
         for row in derived:
             assert row.of
             if not np.allclose(

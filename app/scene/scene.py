@@ -234,7 +234,10 @@ def contradictions(scene: Scene) -> list[str]:
         ),
     }
     of_keys = (text for text, holds in faults.items() if holds)
-    return [*_of_motion(scene), *of_keys, *_of_elastic_punch(scene), *_along_the_contact(scene)]
+    return [
+        *_of_motion(scene), *of_keys, *_of_planes(scene), *_of_elastic_punch(scene),
+        *_along_the_contact(scene),
+    ]  # fmt: skip
 
 
 def _along_the_contact(scene: Scene) -> Iterator[str]:
@@ -282,17 +285,33 @@ def _not_varying(scene: Scene) -> str:
         "strokes or positions on them with an advected state": (
             scene.friction.state == ADVECTED and not scene.steady
         ),
+        "friction.integrator with an advected state, whose law has a formula": (
+            scene.friction.state == ADVECTED and scene.friction.integrator != "exact"
+        ),
     }
     return " and ".join(reason for reason, holds in reasons.items() if holds)
+
+
+def _of_planes(scene: Scene) -> Iterator[str]:
+    """Faults of solids that are not in the plane of [solid], one sentence each."""
+    plane = scene.half_plane.solid.plane
+    for name, (solid, _) in _solids(scene).items():
+        if solid.plane != plane:
+            yield f'{name}.plane: found "{solid.plane}", expected that of [solid], "{plane}"'
+
+
+def _solids(scene: Scene) -> dict[str, tuple[Any, float | None]]:
+    """Solids of a scene by their sections, each with its yield strength [Pa], None for none."""
+    below, punch = scene.half_plane, scene.elastic_punch
+    layers = {f"layer {n}": (of.solid, of.yield_strength) for n, of in enumerate(scene.layers, 1)}
+    own = {"punch.solid": (punch.solid, punch.yield_strength)} if punch else {}
+    return {"solid": (below.solid, below.yield_strength)} | layers | own
 
 
 def _of_elastic_punch(scene: Scene) -> Iterator[str]:
     """Faults of section [punch.solid], one sentence each."""
     if scene.elastic_punch is None:
         return
-    solid = scene.elastic_punch.solid
-    if solid.plane != scene.half_plane.solid.plane:
-        yield f'punch.solid.plane: found "{solid.plane}", expected that of [solid], "{scene.solid.plane}"'
     if scene.solve.mode == "traction":
         yield 'solve.mode: found "traction" with an elastic punch, expected "contact"'
     if scene.time:
@@ -300,6 +319,10 @@ def _of_elastic_punch(scene: Scene) -> Iterator[str]:
             "punch.solid: found an elastic punch beside [time], expected a rigid one: two elastic bodies "
             "are solved in steady motion"
         )
+
+
+#: Keys of [motion] for which a path stands.
+_OF_STROKES = ("strokes", "X_over_L", "rest")
 
 
 def _of_motion(scene: Scene) -> Iterator[str]:
@@ -311,6 +334,10 @@ def _of_motion(scene: Scene) -> Iterator[str]:
         yield "motion: path gives the speed, too; take c and speed away"
     elif motion.path is None and motion.c is None and motion.speed is None:
         yield "motion: expected c (over the shear wave speed) or speed (m/s)"
+    usual = Motion()
+    others = [name for name in _OF_STROKES if getattr(motion, name) != getattr(usual, name)]
+    if motion.path is not None and others:
+        yield f"motion: path gives strokes, positions and rests; take {' and '.join(others)} away"
     try:
         own = [leg.speed for leg in scene.legs if leg.speed is not None]
     except ValueError as error:
@@ -332,13 +359,22 @@ def _unusual_numbers(scene: Scene) -> Iterator[str]:
     """Warnings about numbers beyond their usual range."""
     pre_sliding = Parameter("pre_sliding", "", "m", usual=(1e-10, 1.0))
     strength = Parameter("yield_strength", "", "Pa", usual=(1e4, 1e11))
-    models: dict[str, Any] = {"solid": scene.solid, "punch": scene.punch.profile}
-    if punch := scene.elastic_punch:
-        models |= {"solid": scene.half_plane.solid, "punch.solid": punch.solid}
+    thickness, profile = Parameter("thickness", "", "m", usual=(1e-9, 1.0)), scene.punch.profile
     for section, described, values in (
         ("friction", {pre_sliding.key: pre_sliding}, {pre_sliding.key: scene.friction.pre_sliding}),
-        *((name, parameters(model), constants(model)) for name, model in models.items()),
-        ("solid", {strength.key: strength}, {strength.key: scene.half_plane.yield_strength or 0.0}),
+        ("punch", parameters(profile), constants(profile)),
+        *(
+            (
+                name,
+                parameters(solid) | {strength.key: strength},
+                constants(solid) | {strength.key: of_yield or 0.0},
+            )
+            for name, (solid, of_yield) in _solids(scene).items()
+        ),
+        *(
+            (f"layer {n}", {thickness.key: thickness}, {thickness.key: layer.thickness})
+            for n, layer in enumerate(scene.layers, 1)
+        ),
         ("friction", parameters(scene.friction.law), scene.friction.values),
     ):
         for key, parameter in described.items():

@@ -367,7 +367,7 @@ class Motion:
     )
     path: tuple[tuple[float, float], ...] | None = key(
         Rows(("s", "m"), 2), "motion point by point, time and position", None,
-        "instead of `c` or `speed`, `strokes` and `X_over_L`; positions from 0 to "
+        "instead of `c` or `speed`, `strokes`, `X_over_L` and `rest`; positions from 0 to "
         "`friction.pre_sliding`, each piece at its own speed, with a state where it ends",
     )  # fmt: skip
     X_over_L: tuple[float, ...] = key(

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-from galinx.solvers.contact import ON_SURFACE
 from galinx.solvers.contact.solution import PUNCH
 from galinx.solvers.contact.stresses import tension
 from galinx.solvers.parameters import Range
@@ -76,13 +75,12 @@ STRAIN = _within(
 #: Largest tension under the punch, by method, and its place.
 TENSION = by_method(
     "tension", "N/(2a)", "largest tension under the punch, 0 for none",
-    lambda s, _: tension(s.surface)[0], (CLOSED_FORM, FEM, SIE), asked_by=ON_SURFACE,
-    range=NOT_NEGATIVE,
+    lambda s, _: tension(*s.pressed)[0], (CLOSED_FORM, FEM, SIE), range=NOT_NEGATIVE,
 )  # fmt: skip
 TENSION_X = by_method(
     "tension_X_over_a", "1", "place of the largest tension, over the half-width; NaN for none",
-    lambda s, _: tension(s.surface)[1], (CLOSED_FORM, FEM, SIE),
-    asked_by=ON_SURFACE, nan_allowed=ANYWHERE, range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
+    lambda s, _: tension(*s.pressed)[1], (CLOSED_FORM, FEM, SIE), nan_allowed=ANYWHERE,
+    range=Range(at_least=-1.0, at_most=1.0), scale=X_OVER_A,
 )  # fmt: skip
 
 QUANTITIES.add_all(globals())

@@ -153,6 +153,17 @@ class ExactSolution(Solution):
         surface = Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX)
         return replace(surface, turns=self._limits(surface)).of(self._rows)
 
+    @property
+    def pressed(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Positions X over a under the punch, and contact stress over N/(2a) there, (states, n).
+
+        None for a flat punch and powers of the distance on a uniform solid, where they press everywhere.
+        """
+        body, X = self._body, self.places.X[self.places.under]
+        if body.alike and not (body.knots or body.solid.layers):
+            return np.empty(0), np.empty((len(self.g), 0))
+        return X, self.contacts.joined(lambda group: group.contact_stress(X))[self._rows]
+
     def _limits(self, surface: Surface) -> Turns | None:
         """Limits of the stresses at ends, kinks and knots, wherever they are finite."""
         if self._body.knots:  # a prescribed pressure is that of all states

@@ -640,6 +640,8 @@ class Solution:
         local: the local analysis of the punch's edges: exponents α at X = a and β at X = -a, (states,).
         half_width: of each state's contact [m], (states,).
         surface: stresses on the surface.
+        pressed: positions X over a under the punch, and contact stress over N/(2a) there, (n,) and
+            (states, n).
         inside, σ_ZZ: σ_XX, σ_YY, σ_XY over N/(2a) at points inside, (3, states, m), and that out of the
             plane, (states, m).
         stresses: σ_XX, σ_YY, σ_XY, (3, states, n), at points over a with Y <= 0, (1 or states, n, 2), on

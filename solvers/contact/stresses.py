@@ -162,16 +162,20 @@ def principal(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.floa
     return np.array([middle + radius, middle - radius])
 
 
-def tension(surface: Any) -> NDArray[np.float64]:
+#: Positions X over a under the punch at which a pressure is looked at where no stresses are output.
+UNDER = -np.cos(np.pi * (np.arange(81) + 0.5) / 81)
+
+
+def tension(X: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:
     """Largest tension under the punch over N/(2a), and its X over a; 0 and NaN for none, (2, states).
 
     Args:
-        surface: :class:`galinx.solvers.contact.solution.Surface`.
+        X: positions over a under the punch, (n,); none where it presses everywhere.
+        σ_YY: contact stress over N/(2a) there, (states, n).
     """
-    places = surface.places
-    under, X = surface.σ_YY[:, places.under], places.X[places.under]
-    size = np.maximum(under.max(axis=1), 0.0)
-    return np.array([size, np.where(size > 0.0, X[under.argmax(axis=1)], np.nan)])
+    size = σ_YY.max(axis=1, initial=0.0)
+    place = X[σ_YY.argmax(axis=1)] if len(X) else np.nan
+    return np.array([size, np.where(size > 0.0, place, np.nan)])
 
 
 #: Distance over a from an edge of the punch, where stresses are infinite; nearer stresses are no measure

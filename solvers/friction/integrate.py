@@ -62,7 +62,7 @@ def runge_kutta(
     if h * stiffness > RK4_STABILITY_LIMIT:
         raise ValueError(
             f"Runge-Kutta is unstable here: step times stiffness, {h * stiffness:.4g}, exceeds "
-            f'{RK4_STABILITY_LIMIT:.3f}; use integrator = "exact", or more steps than {steps}'
+            f'{RK4_STABILITY_LIMIT:.3f}; use integrator = "exact"'
         )
     states, k = np.empty((steps + 1, len(z))), np.empty((steps + 1, 4, len(z)))
     for i in range(steps + 1):

@@ -33,6 +33,14 @@ def test_what_is_unusual_is_warned_of(changes, message):
     assert message in warning
 
 
+def test_what_is_unusual_of_layers_is_warned_of():
+    solids = {"solid.rho": 7.8, "layer[0].yield_strength": 600.0, "layer[0].thickness": 1000.0}
+    changes = {"solve.methods": ["sie"], "solid.material": "steel"} | solids
+    warnings = " ".join(make_plan(template("coating", changes)).warnings)
+    for key in ("solid.rho", "layer 1.yield_strength", "layer 1.thickness"):
+        assert f"{key} = " in warnings
+
+
 def test_the_plan_skips_what_is_not_asked_for():
     friction = make_plan(template("tables4_5", {"output.quantities": ["friction"]}))
     assert not (friction.fem or friction.methods or friction.quantities)

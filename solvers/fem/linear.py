@@ -213,7 +213,7 @@ class LinearSolver:
         if self._ksp.getConvergedReason() <= 0:
             raise SolveError(
                 f"conjugate gradients left |b - Ax|/|b| = {residual:.3g} after {steps} steps, "
-                f"expected {TOLERANCE:g}; near the Rayleigh speed the matrix is nearly singular: use "
+                f"expected {TOLERANCE:g}; the matrix is nearly singular, as near the Rayleigh speed: use "
                 'solver = "direct"'
             )
         self.iterations = max(self.iterations, steps)

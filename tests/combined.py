@@ -134,6 +134,7 @@ class Case:
         mirrored, scaled: is it the mirror image, is it in other units?
         tolerance: of the scene.
         c: speed over that of shear waves.
+        strokes: of the motion, a state each.
     """
 
     solid: str
@@ -144,6 +145,7 @@ class Case:
     scaled: bool = False
     tolerance: float = 1e-3
     c: float = 0.25
+    strokes: tuple[str, ...] = ("forward", "backward")
 
     def __str__(self):
         return f"{self.solid}, {self.punch}" + ("" if len(self.words) > 1 else f", {self.words[0]}")
@@ -184,7 +186,7 @@ class Case:
             "solid": solid | {"yield_strength": 1e7 * self._unit("Pa")},
             "punch": punch | {"load": 8e3 * self._unit("N/m")},
             "friction": {"model": "coulomb", "mu_c": 0.4, "pre_sliding": 1e-4 * self._unit("m")},
-            "motion": {"c": self.c, "strokes": ["forward", "backward"], "X_over_L": [0.5]},
+            "motion": {"c": self.c, "strokes": list(self.strokes), "X_over_L": [0.5]},
             "solve": solve,
             "output": output,
         }

@@ -105,16 +105,20 @@ KEPT = {
     "yield": ("tables4_5", CLOSED_FORM | {
         "output.quantities": ["sif", "surface", "yield"], "solid.yield_strength": 6e8,
     }),
-    "cylinder": ("cylinder", CLOSED_FORM | {"output.quantities": ["sif", "surface", "interior"]}),
+    "cylinder": ("cylinder", CLOSED_FORM | {
+        "motion.c": [0.0, 0.3, 0.6], "output.map": {"X": [-2, 2, 21], "Y": [-2, -0.1, 20]},
+        "output.quantities": ["sif", "surface", "interior"],
+    }),
     "laws": ("tables4_5", CLOSED_FORM | {
         "friction.mu_c": [0.3, 0.7], "friction.sigma0_over_load": [1e4, 4e4],
     }),
     "coating": ("coating", SIE),
-    "from rest": ("start_from_rest", SIE),
+    "from rest": ("start_from_rest", SIE | {"time.end": 5.0}),
+    "slider": ("slider", {"slider.duration": "16 s"}),
 } | {
     name: (name, changes)
     for name, changes in {
-        "slider": {}, "fibres": CLOSED_FORM, "shoulders": CLOSED_FORM, "minor_loops": {},
+        "fibres": CLOSED_FORM, "shoulders": CLOSED_FORM, "minor_loops": {},
         "velocity_steps": {}, "fig6": {}, "sinusoidal": {}, "own_material": CLOSED_FORM,
         "cylinder_on_steel": {}, "parameter_study": CLOSED_FORM, "traction": CLOSED_FORM,
         "high_speed": CLOSED_FORM, "study": CLOSED_FORM, "table1": {},

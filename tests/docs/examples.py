@@ -158,7 +158,7 @@ def _needed(words, page, quoted):
     if name in _DRAWING:
         words = words[2:] if own else words
         place, stem = words[words.index("-o") + 1] if "-o" in words else words[1], Path(words[1]).stem
-        return any(f": {place}" in quote and stem in quote for quote in quotes(page))
+        return quoted and any(f": {place}" in quote and stem in quote for quote in quotes(page))
     if own or quoted or name not in _COMPUTING:
         return True
     shown = "\n".join([*quotes(page), *blocks(page, "python")])

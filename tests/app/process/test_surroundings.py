@@ -94,7 +94,7 @@ def test_a_python_that_optimises_too_much_is_refused(tmp_path):
 
 def test_warnings_of_libraries_are_no_errors(tmp_path):
     assert galinx(tmp_path, *RUN, PYTHONWARNINGS="error").returncode == 0
-    done = galinx(tmp_path, "plot", "x.h5", PYTHONWARNINGS="error")
+    done = galinx(tmp_path, "plot", "x.h5", "--figure", "surface", PYTHONWARNINGS="error")
     assert done.returncode == 0 and not done.stderr
 
 

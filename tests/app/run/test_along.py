@@ -40,12 +40,12 @@ def test_one_friction_along_a_tilted_punch_is_a_number(tilt):
 
 def test_an_edge_is_free_where_its_intensity_vanishes():
     """The edge of a tilted punch lifts off at another tilt than with the mean friction all along."""
-    tilts = {"from": "0.0225 deg", "to": "0.0235 deg", "number": 11}
+    tilts = {"from": "0.0225 deg", "to": "0.0235 deg", "number": 5}
     punch = {"half_width": "1 mm", "load": "20 N/mm", "tilt": tilts}
     friction = {"along": [[-1, 0.0], [0.6, 0.0], [1, 0.9]]}
     data = slid(friction, c=0.6, punch=punch, solve={"methods": ["sie"]}).data
     free = data["states/sie/K_I_right"] == 0.0
-    assert 0 < free.sum() < 11
+    assert 0 < free.sum() < 5
     np.testing.assert_array_equal(data["states/alpha"] > 0.0, free)
 
 

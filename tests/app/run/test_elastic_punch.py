@@ -47,7 +47,7 @@ STEEL = {"material": "steel", "speed": "300 m/s"}
 #: Punches, and what a contact of each has of the bodies' stresses.
 PUNCHES = {
     "parabolic": ({"radius": "20 mm"}, ["surface", "yield", "interior"]),
-    "power": ({"exponent": 3, "coefficient": 1000.0}, ["surface", "yield", "interior"]),
+    "power": ({"exponent": 3, "coefficient": 1000.0}, ["surface"]),
     "flat": ({"half_width": "0.2 mm"}, ["surface"]), "wedge": ({"slope": 0.01}, ["surface"]),
 }  # fmt: skip
 

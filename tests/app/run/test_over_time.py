@@ -25,7 +25,7 @@ QUICK = {"time.end": 3.0, "time.load_ramp": 2.0, "solve.tolerance": 1e-2}
 def test_works_of_a_short_motion_are_integrals_of_its_load_and_indentation():
     """Few times are archived of it, but works are sums over more: they were 5 % off."""
     short = {"time.end": 0.5, "solve.methods": ["sie"], "solve.tolerance": 1e-2}
-    few, many = (computed("start_from_rest", short | {"time.step": step}).data for step in (0.25, 0.05))
+    few, many = (computed("start_from_rest", short | {"time.step": step}).data for step in (0.25, 0.0625))
     for name in ("work_of_load", "work_of_friction"):
         path = f"time/sie/{name}"
         np.testing.assert_allclose(few[path][:, -1], many[path][:, -1], rtol=1e-4)
@@ -35,7 +35,7 @@ def test_works_of_a_short_motion_are_integrals_of_its_load_and_indentation():
 
 
 def test_a_start_is_archived_judged_and_drawn(tmp_path):
-    changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.every": 0.75}).items()]
+    changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.every": 1.5}).items()]
     done = here("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)
     assert done.returncode == 0, done.stdout + done.stderr
     assert faults(tmp_path / "s.h5") == []
@@ -69,9 +69,6 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
     assert [drawing.name for drawing in result.drawings(figures=("all",))] == [
         "time", "pressures", "stresses", "energies",
     ]  # fmt: skip
-    words = ["--figure", "film", "--format", "gif", "-o", tmp_path / "film.gif"]
-    assert here("plot", tmp_path / "s.h5", *words).returncode == 0
-    assert (tmp_path / "film.gif").read_bytes()[:4] == b"GIF8"
     shown = here("show", tmp_path / "s.h5").stdout
     assert "In time, at the end" in shown and "after the end" in shown
     assert re.search(r"by formula +59 µs", shown)
@@ -79,12 +76,12 @@ def test_a_start_is_archived_judged_and_drawn(tmp_path):
 
 def surface_and_energies_are_told(data):
     """Both methods know nothing of each other; all work of the punch is found again."""
-    np.testing.assert_allclose(data["time/surface/t"], [0.75, 1.5, 2.25, 3.0])
+    np.testing.assert_allclose(data["time/surface/t"], [1.5, 3.0])
     X = data["time/surface/X_over_a"]
     far = np.abs(np.abs(X) - 1.0) > 0.01
     for name in ("sigma_XX", "sigma_YY", "sigma_XY"):
         fem, sie = (data[f"time/surface/{method}/{name}"][..., far] for method in ("fem", "sie"))
-        assert fem.shape == (1, 4, far.sum())
+        assert fem.shape == (1, 2, far.sum())
         np.testing.assert_allclose(fem, sie, atol=3e-3 * np.abs(sie).max())
     assert data["time/surface/fem/estimate"][0] < 1e-2
     done = sum(data[f"time/fem/work_of_{name}"] for name in ("load", "friction", "carrying"))
@@ -107,14 +104,15 @@ def test_a_wrong_answer_of_one_method_fails(friction, monkeypatch):
 
 
 def test_short_steps_and_ramps_let_no_wave_grow_under_friction():
-    changes = {"time.load_ramp": 1.0, "time.step": 0.04, "friction.mu_c": 0.8, "solve.methods": ["fem"]}
+    changes = {"time.load_ramp": 1.0, "time.step": 0.04, "time.end": 1.5, "friction.mu_c": 0.8,
+               "solve.methods": ["fem"]}  # fmt: skip
     result = computed("start_from_rest", QUICK | changes)
     assert result.comparisons[ESTIMATE] < 1e-2, result.comparisons
 
 
 def test_a_punch_that_would_have_to_pull_fails_by_both_methods():
     """The load falls before the surface can follow: both ends still press, the middle would be pulled."""
-    falls = {"time.load": [[0.0, 0.0], [0.5, 1.0], [1.0, 0.1]], "time.end": 1.5, "time.load_ramp": None,
+    falls = {"time.load": [[0.0, 0.0], [0.5, 1.0], [1.0, 0.1]], "time.end": 1.0, "time.load_ramp": None,
              "motion.c": 0.3, "friction.mu_c": 0.2}  # fmt: skip
     result = computed("start_from_rest", QUICK | falls)
     data, pressure = result.data, result.data["time/sie/sigma_YY"][0]
@@ -129,7 +127,7 @@ def test_a_punch_that_would_have_to_pull_fails_by_both_methods():
 
 
 def test_unloading_from_steady_motion_by_both_methods():
-    changes = QUICK | {"time.start": "steady", "time.load": [[0.0, 1.0], [1.0, 0.5]], "time.end": 1.5}
+    changes = QUICK | {"time.start": "steady", "time.load": [[0.0, 1.0], [1.0, 0.5]], "time.end": 1.0}
     result = computed("start_from_rest", changes)
     data = result.data
     assert result.attributes["verdict"] == "PASS"
@@ -232,7 +230,7 @@ def test_where_nothing_happens_there_is_no_work_to_miss_its_energy():
 
 
 def test_intensities_of_the_shortest_ramp_have_polynomials_enough():
-    loads = {"time.load_ramp": 0.5, "solve.methods": ["sie"]}
+    loads = {"time.load_ramp": 0.5, "time.step": 0.125, "solve.methods": ["sie"]}
     K, finer = (
         computed("start_from_rest", SHORT | loads | {"solve.tolerance": of}).data for of in (1e-3, 1e-4)
     )

@@ -122,10 +122,10 @@ HARDEST = {
     # The pressure has logarithms next to the edges.
     **{f"a thick top graded to {E:g}":
        (on(_STIFF, 4.0, _GRADED, Isotropic(E, 0.15, 5.5)), 0.0, 0.4856549287, 2e-6)
-       for E in (200.0, *[40.0] * THOROUGH)},
+       for E in [200.0, 40.0] * THOROUGH},
     # What the pressure's moments and the layer move reaches ever farther.
     "thin near its limit": (on(SOFT, 0.1, HARD), 0.98, 0.4, 1e-4),
-    "thick near its limit": (on(SOFT, 3.0, HARD), 0.99, 0.4, 1e-4),
+    **({"thick near its limit": (on(SOFT, 3.0, HARD), 0.99, 0.4, 1e-4)} if THOROUGH else {}),
     # No degree mends innermost cells there.
     **{f"innermost cells under a graded top, {tolerance:g}":
        (on(Isotropic(1.3846, 0.3821, 0.5685), 2.312, _TOP, _BELOW), 0.06, 0.0077, tolerance)
@@ -142,7 +142,7 @@ def test_the_hardest_stacks_are_within_their_estimates(solid, share, f, toleranc
 
 @pytest.mark.parametrize(
     ("thickness", "ratio", "f", "R"),
-    [*[(4.0, 30.0, 0.5, 5e3), (4.0, 100.0, 0.5, 1.6e4)] * THOROUGH, (2.0, 100.0, 0.5, 8e3),
+    [*[(4.0, 30.0, 0.5, 5e3), (4.0, 100.0, 0.5, 1.6e4), (2.0, 100.0, 0.5, 8e3)] * THOROUGH,
      (1.0, 30.0, -0.3, 150.0)],
 )  # fmt: skip
 def test_the_far_boundary_under_stiff_thick_layers_is_in_the_estimate(
@@ -191,7 +191,7 @@ def sweep(solid, c, f, quantities, tolerance):
 )
 def test_a_dozen_speeds_tell_all_up_to_the_limit(top, below, tolerance, quantities):
     solid = on(below, 0.7, top)
-    solved = sweep(solid, np.linspace(0.0, 0.98, 24) * solid.limit(), 0.4, quantities, tolerance)
+    solved = sweep(solid, np.linspace(0.0, 0.98, 16) * solid.limit(), 0.4, quantities, tolerance)
     # Eleven for the fit, and two that measure its error at the ends of the sweep.
     assert solved <= 13
 

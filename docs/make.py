@@ -502,6 +502,8 @@ def _limit(rule: Any) -> str:
     """Largest value of a PASS."""
     if rule.tolerances is not None:
         limit = "T" if rule.tolerances == 1.0 else f"{rule.tolerances:g} T"
+        if rule.limit is not None:
+            limit = f"{limit} and {rule.limit:g}" if rule.limit else "0"
     elif rule.limit is None:
         limit = "shown only"
     else:

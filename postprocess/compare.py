@@ -67,17 +67,28 @@ class Rule:
 _ROUNDED = 1e-12
 
 
-def _pull(by: str, method: str, **limits: Any) -> Rule:
-    """Rule that the punch does not pull: it would lift off there."""
-    largest = validity.TENSION[method]
+def pull(by: str, largest: Quantity, remedy: str, limit: float = 1e-3) -> Rule:
+    """Rule that the punch does not pull: it would lift off there.
+
+    Args:
+        by: beginning of the text, what the tension is of.
+        largest: the largest tension over N/(2a).
+        remedy: change of a scene that does not pass.
+        limit: largest value of a PASS, however coarse the tolerance.
+    """
 
     def measure(data: dict[str, Any], _: Any) -> float | None:
         tension = float(np.nanmax(data[largest.path], initial=0.0))
-        return tension if tension > _ROUNDED * (method != FEM) else None
+        return tension if tension > _ROUNDED * (largest.method != FEM) else None
 
-    text = f"tension under the punch{by}, over N/(2a)"
-    remedy = "the punch would lift off; let a load, profile or friction press everywhere"
-    return Rule(text, (largest,), measure, own_pressure=True, remedy=remedy, **limits)
+    return Rule(
+        f"tension under the punch{by}, over N/(2a)", (largest,), measure, limit, 1.0, own_pressure=True,
+        remedy=f"the punch would lift off; {remedy}",
+    )  # fmt: skip
+
+
+#: Change of a scene in which a punch in steady motion pulls.
+_PRESS = "let a load, profile or friction press everywhere"
 
 
 def _off_tips(data: Mapping[str, Any], inside: float = 1.0) -> NDArray[np.bool_]:
@@ -391,9 +402,9 @@ RULES: Registry[Rule] = Registry(
             "fitted edge exponents, absolute",
             (of.FITTED_ALPHA, of.FITTED_BETA, of.ALPHA, of.BETA), _exponents,
         ),
-        "tension": _pull("", FEM, limit=0.0),
-        "tension, sie": _pull(" by the integral equation", SIE, limit=1e-3, tolerances=1.0),
-        "tension, closed form": _pull(" in closed form", CLOSED_FORM, limit=1e-3, tolerances=1.0),
+        "tension": pull("", validity.TENSION[FEM], _PRESS, 0.0),
+        "tension, sie": pull(", by the integral equation", validity.TENSION[SIE], _PRESS),
+        "tension, closed form": pull(", in closed form", validity.TENSION[CLOSED_FORM], _PRESS),
         # Under a prescribed pressure there is no raw one, and nothing to compare.
         "sigma_YY": against(
             CLOSED_FORM, _pressure, "σ_YY pointwise, relative",

@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import xlogy
 
 from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.contact.stresses import NEAR
-from galinx.solvers.transient.punch import LEAST, ON_SURFACE, PLACES
+from galinx.solvers.contact.stresses import NEAR, PLACES
+from galinx.solvers.transient.punch import LEAST, ON_SURFACE
 from galinx.solvers.transient.transform import Weighted
 
-from .compare import RULES, Rule, against, largest
+from .compare import RULES, Rule, against, largest, pull
 from .quantities import over_time as rows
 from .quantities.over_time import SHARES
 from .quantities.quantity import FEM, SIE
@@ -240,21 +240,11 @@ def _along(fem: list[NDArray], sie: list[NDArray], *_: Any) -> float | None:
     return largest_surface_change(fem, sie) if solved.any() else None
 
 
-def _pull(by: str, method: str) -> Rule:
-    """Rule that the punch never pulls: it would lift off."""
-    row = rows.TENSION[method]
-
-    def measure(data: dict[str, Any], _: Any) -> float | None:
-        return float(np.nanmax(data[row.path], initial=0.0)) or None
-
-    text = f"tension under the punch over time{by}, over N/(2a)"
-    remedy = "the punch would lift off; let time.load change more slowly, or end the motion earlier"
-    return Rule(text, (row,), measure, limit=1e-3, tolerances=1.0, remedy=remedy)
-
-
 _AGAINST = "over time against the integral equation, over the largest"
 _FAR = "further than 0.01 a from the edges"
 
+#: Change of a scene in which a punch pulls for a while.
+_SLOWER = "let time.load change more slowly, or end the motion earlier"
 #: Name of the rule on estimates of stresses along the surface.
 OF_SURFACE = "estimate on the surface over time"
 
@@ -281,8 +271,8 @@ _RULES = {
         rows.SURFACE_ESTIMATE,
         f"estimated error of σ_XX and σ_YY along the surface over time, over the largest {_FAR}",
     ),
-    "tension over time": _pull("", FEM),
-    "tension over time, sie": _pull(" by the integral equation", SIE),
+    "tension over time": pull(" over time", rows.TENSION[FEM], _SLOWER),
+    "tension over time, sie": pull(" over time, by the integral equation", rows.TENSION[SIE], _SLOWER),
     # Its difference is reported, not judged: waves ahead of a fast punch are short.
     "ends over time": against(
         SIE, _until_turn, f"σ_XX 0.05 a beside both ends {_AGAINST}", rows.LEFT, rows.RIGHT,

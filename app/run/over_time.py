@@ -20,11 +20,12 @@ from galinx.solvers.approximation import polynomial_through
 from galinx.solvers.contact.closed_form import FlatPunch
 from galinx.solvers.contact.ends import Punch
 from galinx.solvers.contact.equation import LayersUnderPunch
+from galinx.solvers.contact.stresses import PLACES
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.transient.history import Drive, Way
 from galinx.solvers.transient.late_time import approach
-from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, PLACES, Course, StartingPunch
+from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, Course, StartingPunch
 
 from .. import ranks
 from ..errors import finite_elements_installed

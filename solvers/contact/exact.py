@@ -153,7 +153,7 @@ class ExactSolution(Solution):
         surface = Surface(places, np.where(places.under, σ_YY, np.nan), σ_XX)
         return replace(surface, turns=self._limits(surface)).of(self._rows)
 
-    @property
+    @cached_property
     def pressed(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Positions X over a under the punch, and contact stress over N/(2a) there, (states, n).
 

@@ -162,8 +162,8 @@ def principal(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray) -> NDArray[np.floa
     return np.array([middle + radius, middle - radius])
 
 
-#: Positions X over a under the punch at which a pressure is looked at where no stresses are output.
-UNDER = -np.cos(np.pi * (np.arange(81) + 0.5) / 81)
+#: Places X over a under the punch, closer towards the ends.
+PLACES = -np.cos(np.pi * (np.arange(81) + 0.5) / 81)
 
 
 def tension(X: NDArray, σ_YY: NDArray) -> NDArray[np.float64]:

@@ -19,7 +19,7 @@ from ..contact.pressure import Contacts, between_ends
 from ..contact.recovery import on_panels
 from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
-from ..contact.stresses import UNDER, Surface, Turns, together
+from ..contact.stresses import PLACES, Surface, Turns, together
 from ..contact.yielding import InSolid
 from .fields import Displacement
 from .punch import ContactStates
@@ -207,11 +207,11 @@ class Solution(solution.Solution):
         turns = together([surface.turns for surface in each if surface.turns])
         return Surface(self.task.places, σ_YY, σ_XX, None, v_X, turns).of(self.rows)
 
-    @property
+    @cached_property
     def pressed(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Positions X over a under the punch, and contact stress over N/(2a) there, (states, n)."""
         output = self.task.places
-        X = output.X[output.under] if output.under.any() else UNDER
+        X = output.X[output.under] if output.under.any() else PLACES
         σ_YY = self._joined(lambda of: np.broadcast_to(of.pressure.σ_YY(X), (len(of.contact.g), len(X))))
         return X, σ_YY
 

@@ -36,6 +36,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..approximation import chebyshev_nodes, gauss_in_panels, polynomial_through
+from ..contact.stresses import PLACES
 from ..solids.half_plane import HalfPlane
 from .history import History
 from .line_load import both_sides, interpolation
@@ -111,8 +112,6 @@ class Radau:
         return weights
 
 
-#: Places X over a under the punch at which the pressure is computed, closer towards the ends.
-PLACES = -np.cos(pi * (np.arange(81) + 0.5) / 81)
 #: Accuracy over the largest pressure there, frictions at most, and frictions at which it is tested.
 _ACCURACY, _MOST, _TESTED = 1e-10, 24, 7
 #: Half-range of friction below which friction is constant: differences are rounding.

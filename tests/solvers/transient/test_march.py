@@ -9,11 +9,11 @@ from starts import SOLID, by_integral_equation
 from support import THOROUGH
 
 from galinx.solvers.contact.closed_form import FlatPunch
+from galinx.solvers.contact.stresses import PLACES
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.history import smooth
 from galinx.solvers.transient.punch import (
     ON_SURFACE,
-    PLACES,
     AlongSurface,
     FrictionInterpolation,
     Radau,

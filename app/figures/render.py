@@ -464,8 +464,8 @@ def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
         if shown.lines:
             levels = locator.tick_values(lowest, shown.limit)
             lines = axis.contour(X, side * Y, values, levels, colors="black", linewidths=0.3)
-            named = {"fmt": lambda level: f"${number(level)}$", "fontsize": SMALL}
-            for text in axis.clabel(lines, inline_spacing=1, **named):
+            style = {"fmt": lambda level: f"${number(level)}$", "fontsize": SMALL, "inline_spacing": 1}
+            for text in axis.clabel(lines, **style):
                 text.set_path_effects([withStroke(linewidth=1.0, foreground="white")])
                 part = (axis.transData - axis.transAxes).transform(text.get_position())
                 text.set_visible(bool((np.abs(part - 0.5) < 0.46).all()))  # a frame cuts through others

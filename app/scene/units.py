@@ -139,7 +139,7 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-#: Units of what people mean, by its name.
+#: Measures that people give for one another, with their units.
 _MEASURES = {
     "a force": "N", "a force per depth": "N/m", "a pressure": "Pa", "a length": "m", "a time": "s",
     "a speed": "m/s", "a mass": "kg", "a density": "kg/m^3",
@@ -188,7 +188,7 @@ def to_si(value: Any, unit: str) -> float:
 
 
 def _measure(given: Units) -> str:
-    """What a number of these units measures, "" where it is nothing in ``_MEASURES``."""
+    """Name of the measure that has these units, "" where it is none of ``_MEASURES``."""
     own = (name for name, of in _MEASURES.items() if in_units(1.0, given, units(of)) is not None)
     return next(own, "")
 

@@ -157,11 +157,9 @@ class ExactSolution(Solution):
     def pressed(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Positions X over a under the punch, and contact stress over N/(2a) there, (states, n).
 
-        None for a flat punch and powers of the distance on a uniform solid, where they press everywhere.
+        None for a punch that presses everywhere.
         """
-        body, X = self._body, self.places.X[self.places.under]
-        if body.alike and not (body.knots or body.solid.layers):
-            return np.empty(0), np.empty((len(self.g), 0))
+        X = np.empty(0) if self._body.presses else self.places.X[self.places.under]
         return X, self.contacts.joined(lambda group: group.contact_stress(X))[self._rows]
 
     def _limits(self, surface: Surface) -> Turns | None:

@@ -113,6 +113,11 @@ class Contact:
         return self.growth_exponent is not None
 
     @property
+    def presses(self) -> bool:
+        """True if it presses everywhere: flat, or a power of the distance, on a uniform solid."""
+        return self.growth_exponent is not None and not (self.knots or self.solid.layers)
+
+    @property
     def no_closed_form(self) -> str:
         """Reason why no closed form solves the contact, "" where one does."""
         if self.solid.layers:

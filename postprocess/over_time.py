@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import xlogy
 
 from galinx.solvers.contact.edges import from_edge
-from galinx.solvers.contact.stresses import NEAR, PLACES
+from galinx.solvers.contact.stresses import NEAR, PLACES, tension
 from galinx.solvers.transient.punch import LEAST, ON_SURFACE
 from galinx.solvers.transient.transform import Weighted
 
@@ -60,7 +60,8 @@ def largest_tension(σ_YY: NDArray) -> NDArray[np.float64]:
     Args:
         σ_YY: contact stress at ``PLACES``, (times, places).
     """
-    return np.asarray(σ_YY[:, from_edge(PLACES) > NEAR].max(axis=1).clip(min=0.0))
+    far = from_edge(PLACES) > NEAR
+    return tension(PLACES[far], σ_YY[:, far])[0]
 
 
 def _logs(X: NDArray) -> NDArray[np.float64]:

@@ -88,7 +88,7 @@ class Map:
         limit: largest number with a colour of its own.
         signed: zero is in the middle of the colours.
         extend: ends of the bar at which colours are clipped.
-        lines: draw lines of equal numbers.
+        lines: draw lines of equal numbers; colours begin at the least of all.
         level: number of each Y that is reached along a white line, (rows,); infinite for none.
         above: numbers at -Y, (rows, columns), and their level; None for nothing above Y = 0.
         equal: both axes have one scale.

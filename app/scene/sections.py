@@ -535,10 +535,6 @@ class Output:
         return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
-def _words(text: str) -> list[str]:
-    return re.findall(r"[a-z]+", text.lower())
-
-
 @dataclass(frozen=True)
 class Section:
     """A section of a scene, and how its table is read.
@@ -637,7 +633,8 @@ class Section:
         for key in (key for key in given if key not in keys):
             others = [n for n, model in (self.models or {}).items() if key in parameters(model)]
             elsewhere = [f"[{section}]" for section, of in SECTIONS.items() if key in of.every]
-            meaning = [n for n, entry in keys.items() if key.lower() in _words(entry.about)]
+            word = rf"\b{re.escape(key)}\b"
+            meaning = [n for n, entry in keys.items() if re.search(word, entry.about, re.IGNORECASE)]
             hint = nearest(key, [*keys])
             if others:
                 have = "has it" if len(others) == 1 else "have it"

@@ -23,7 +23,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ..approximation import legendre_panel
-from .pressure import Functions
+from .pressure import Functions, log_beside
 
 #: Points of a panel, and of one of a slope, which is exact to the last digits.
 NODES, _OF_SLOPES = 14, 20
@@ -309,7 +309,7 @@ class Panels(Functions):
         for end, rate, ξ, factor in beyond:
             for power in (rate, rate + 1.0):
                 integral = integral + factor * ends[..., end] * np.exp(power * ξ) / power
-        return integral * (1.0 + np.exp(-y)) ** δ
+        return integral * np.exp(δ * log_beside(1.0 + np.exp(-y)))
 
     def hilbert_of_weight(self, x: NDArray) -> NDArray[np.float64]:
         """(1/π) ⨍ w(t)/(t - t(x)) dt over w at x, (len(x),); for exponents whose sum is -1 cot(πα)."""

@@ -236,7 +236,7 @@ class Expansion(Pressure):
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         flat = np.ravel(z).astype(complex)
-        y, right = np.log((1.0 + flat) / (1.0 - flat)), np.log(1.0 - flat)
+        y, right = np.log((1.0 + flat) / (1.0 - flat)), log_beside(1.0 - flat)
         # The weight is continuous across the surface beside the contact, as fields near a plane need it.
         y = y.real - 1j * (-y.imag % (2.0 * np.pi))
         weight = np.exp(self.α * right + self.β * (y + right))
@@ -329,6 +329,11 @@ class Group:
             on_surface = [σ_XX, σ_YY, g[:, None] * ratios * σ_YY]
             σ[..., columns] = np.where(on[:, columns], on_surface, σ[..., columns])
         return σ
+
+
+def log_beside(z: NDArray) -> NDArray[Any]:
+    """Logarithm of 1 - z or 1/(1 + z), continuous across the surface beside the contact."""
+    return np.log(-1j * z) + 0.5j * np.pi if np.iscomplexobj(z) else np.log(z)
 
 
 def off_tips(r: NDArray, tips: Sequence[float]) -> NDArray[np.float64]:

@@ -137,3 +137,14 @@ def test_constant_friction_over_layers_is_one_number(profile, thickness):
     assert contact.half_width == pytest.approx(one.half_width, rel=1e-9)
     assert contact.centre == pytest.approx(one.centre, abs=1e-9)
     np.testing.assert_allclose(contact.pressure.σ_YY(PLACES), one.pressure.σ_YY(PLACES), atol=2e-8)
+
+
+@pytest.mark.parametrize("profile", [Flat(2e-3), CYLINDER])
+def test_no_traction_acts_next_to_the_surface_beside_the_contact(profile):
+    """Exponents whose sum is no whole number need logarithms that are continuous across it there."""
+    friction = tabulated([(-1, 0.2), (1, 0.5)], -1.0)
+    contact, _, response = solved(ISOTROPIC, friction, profile, tolerance=1e-3)
+    X, depths = np.meshgrid([-1.3, -1.01, 1.01, 1.3], np.geomspace(1e-9, 1e-4, 6))
+    _, σ_YY, σ_XY = contact.pressure.inside(response, 0.0, X.ravel(), -depths.ravel())
+    by_depth = np.array([σ_YY, σ_XY]).reshape(2, *X.shape) / depths
+    np.testing.assert_allclose(by_depth, np.broadcast_to(by_depth[:, -2:-1], by_depth.shape), rtol=0.1)

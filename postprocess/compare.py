@@ -241,9 +241,10 @@ def _depth(fem: Any, exact: Any, data: dict[str, Any], load: Any) -> float | Non
         power = -np.minimum(data[of.ALPHA.path], data[of.BETA.path])
         return _relative((np.maximum(fem, _NO_REACH) / np.maximum(exact, _NO_REACH)) ** power, np.ones(1))
     apart, deep = np.abs(np.subtract(fem, exact)), np.maximum(np.maximum(fem, exact), _NO_REACH)
-    if to.FIRST_LOAD[CLOSED_FORM].path not in data:
+    method = next((method for method in (CLOSED_FORM, SIE) if to.FIRST_LOAD[method].path in data), None)
+    if method is None:
         return _worst((apart / deep) ** 2)
-    first, top = (data[row[CLOSED_FORM].path] for row in (to.FIRST_LOAD, to.VON_MISES_Y))
+    first, top = (data[row[method].path] for row in (to.FIRST_LOAD, to.VON_MISES_Y))
     below = np.maximum(deep + top, _NO_REACH)  # the place of the largest stress, Y < 0
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.minimum(apart / below, 1.0)
@@ -430,8 +431,9 @@ RULES: Registry[Rule] = Registry(
         "estimate of sigma_XX": _estimate(at.ESTIMATE_IN_PLANE[FEM], "σ_XX"),
         **_both("stresses inside", _inside, "stresses inside{}, relative to themselves or the largest",
                 at.STRESSES_INSIDE, beside=(at.INSIDE_X, at.INSIDE_Y), own_pressure=True),
-        "stresses in the punch": against(
-            CLOSED_FORM, _inside, "stresses in the elastic punch, relative to themselves or the largest",
+        **_both(
+            "stresses in the punch", _inside,
+            "stresses in the elastic punch{}, relative to themselves or the largest",
             {method: of_all[:3] for method, of_all in at.STRESSES_IN_PUNCH.items()},
             beside=(at.INSIDE_X, at.INSIDE_Y),
         ),
@@ -440,13 +442,12 @@ RULES: Registry[Rule] = Registry(
             CLOSED_FORM, _relative, "largest von Mises and shear stress, relative",
             to.VON_MISES, to.SHEAR, own_pressure=True,
         ),
-        "largest stresses of the punch": against(
-            CLOSED_FORM, _relative, "largest von Mises stress of the elastic punch, relative",
-            to.PUNCH_VON_MISES,
-        ),
+        **_both("largest stresses of the punch", _relative,
+                "largest von Mises stress of the elastic punch{}, relative", to.PUNCH_VON_MISES),
         "largest stresses over layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress{_SIE}, relative", to.VON_MISES
         ),
+        "largest shear": against(SIE, _relative, f"largest shear stress{_SIE}, relative", to.SHEAR),
         "largest stresses of layers": against(
             SIE, _relative_everywhere, f"largest von Mises stress of each layer{_SIE}, relative",
             to.OF_LAYERS,
@@ -456,10 +457,8 @@ RULES: Registry[Rule] = Registry(
             "distance from the edges within which yield is passed, as a stress, relative",
             to.REACH_LEFT, to.REACH_RIGHT, beside=(of.ALPHA, of.BETA),
         ),
-        "depth of yield": against(
-            CLOSED_FORM, _depth, "depth of the yielded zone, as a stress, relative",
-            to.DEPTH, own_pressure=True,
-        ),
+        **_both("depth of yield", _depth, "depth of the yielded zone{}, as a stress, relative",
+                to.DEPTH, own_pressure=True),
         "estimate of yield": _estimate(to.ESTIMATE_YIELD, "stresses from which yield is computed"),
         # In the traction mode v,X under the punch has to vanish. It is a derivative of the displacement,
         # with about half the digits of the moments to which the tolerance refers.

@@ -281,7 +281,6 @@ def _not_varying(scene: Scene) -> str:
         f'solve.mode = "{solve.mode}"': solve.mode != "contact",
         f'solve.mesh = "{solve.mesh}"': solve.mesh != "confocal",
         f'solve.solver = "{solve.solver}"': solve.solver not in ("auto", "direct"),
-        'the quantity "yield"': YIELD in scene.output.quantities,
         "strokes or positions on them with an advected state": (
             scene.friction.state == ADVECTED and not scene.steady
         ),

@@ -39,9 +39,9 @@ _INFINITE = "NaN where infinite: with friction, at a jump of the pressure"
 _BEYOND = "NaN beyond 10 a"
 
 
-#: Quantity of a state by both methods of uniform solids.
+#: Quantity of a state by the methods of uniform solids.
 _both = partial(
-    by_method, own=(CLOSED_FORM, FEM), asked_by=YIELD, range=NOT_NEGATIVE, nan_allowed=ANYWHERE,
+    by_method, own=(CLOSED_FORM, SIE, FEM), asked_by=YIELD, range=NOT_NEGATIVE, nan_allowed=ANYWHERE,
     requires=(UNIFORM,),
 )  # fmt: skip
 #: Quantity of each layer and the solid below, by both methods of layered solids.
@@ -82,7 +82,6 @@ def _largest(
 
 VON_MISES, VON_MISES_X, VON_MISES_Y = _largest(
     "von_mises", "von Mises stress", lambda s: s.strength.von_mises, requires=(),
-    own=(CLOSED_FORM, SIE, FEM),
 )  # fmt: skip
 SHEAR, SHEAR_X, SHEAR_Y = _largest(
     "max_shear", "shear stress", lambda s: s.strength.shear, direction=" in the plane"
@@ -96,7 +95,7 @@ def _in_punch(s: Any) -> Peak:
 
 PUNCH_VON_MISES, PUNCH_VON_MISES_X, PUNCH_VON_MISES_Y = _largest(
     "punch_von_mises", "von Mises stress in the elastic punch", _in_punch, heights=NOT_NEGATIVE,
-    requires=(IN_PUNCH,), own=(CLOSED_FORM, SIE, FEM),
+    requires=(IN_PUNCH,),
 )  # fmt: skip
 PUNCH_FIRST_LOAD = _both(
     "punch_first_yield_load", "N/m", "load at first yield of the elastic punch, N per depth",

@@ -25,32 +25,56 @@ from scipy.special import xlogy
 from ..friction.along import Along, constant
 from ..solids.half_plane import HalfPlane
 from .edges import EdgeExponents, from_edge, under_punch
-from .panels import stretched
+from .panels import Panels, stretched
 from .pressure import ENDS, Expansion, Functions, Pressure
 from .residual import Rule
 
 #: Distance from an end within which the pressure less its power is that of the end; distance of places,
 #: over that from the ends, at which a quotient is a derivative, and the step of that.
 _NEXT_TO_END, _SAME, _STEP = 1e-13, 1e-9, 1e-6
+#: Longest panel of a pressure by its values, and number and grading of those towards kinks of friction.
+_OF_FIELD = 0.5, 12, 0.2
 #: Integrals that are held in memory at once.
 _AT_ONCE = 500
 
 
+class Varying(Pressure):
+    """Pressure of one state whose friction varies along the contact.
+
+    Attributes:
+        friction: σ_XY/σ_YY over X/a.
+    """
+
+    friction: Along
+
+    def _transforms(self, r: NDArray) -> tuple[NDArray, NDArray]:
+        """H[σ_YY] and H[σ_XY] beyond the product with σ_XY/σ_YY, at r (n,): (n,) each."""
+        raise NotImplementedError
+
+    def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        shape = np.atleast_2d(r).shape
+        H, C = self._transforms(r.ravel())
+        return self.friction(r).reshape(shape), H.reshape(shape), C.reshape(shape)
+
+    def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
+        return np.ones_like(g), self.friction(t)
+
+
 @dataclass(frozen=True)
-class FlatAlong(Pressure):
+class FlatAlong(Varying):
     """Pressure of a flat punch with friction that varies along the contact, at one speed.
 
     Attributes:
         response: of the half-plane at that speed.
-        along: σ_XY/σ_YY over X/a.
+        friction: σ_XY/σ_YY over X/a.
     """
 
     response: HalfPlane
-    along: Along
+    friction: Along
 
     def _local(self, r: NDArray) -> EdgeExponents:
         """Exponents of sharp edges with the friction at r."""
-        return EdgeExponents(self.response, self.along(r))
+        return EdgeExponents(self.response, self.friction(r))
 
     @cached_property
     def α(self) -> float:  # type: ignore[override]
@@ -61,7 +85,7 @@ class FlatAlong(Pressure):
         return float(self._local(-np.ones(1)).β[0])
 
     def series(self, r: NDArray) -> NDArray[np.float64]:
-        return self._amplitude * self._shape(r)
+        return self._amplitude * self._shape(r.ravel()).reshape(r.shape)
 
     def _shape(self, r: NDArray) -> NDArray[np.float64]:
         """Pressure without its weight and amplitude, (n,)."""
@@ -69,7 +93,7 @@ class FlatAlong(Pressure):
 
     def _compliance(self, r: NDArray) -> NDArray[np.float64]:
         """N̂ = n + g n₁₂ at r."""
-        return np.asarray(self.response.n + self.along(r) * self.response.n12)
+        return np.asarray(self.response.n + self.friction(r) * self.response.n12)
 
     def _bounded(self, r: NDArray) -> NDArray[np.float64]:
         """E without its logarithms of the distances from both ends, (n,)."""
@@ -82,7 +106,7 @@ class FlatAlong(Pressure):
     @cached_property
     def rule(self) -> Rule:
         """Quadrature over the contact, graded towards kinks of friction."""
-        return Rule((*self.along.kinks, *self.along.weak_kinks))
+        return Rule((*self.friction.kinks, *self.friction.weak_kinks))
 
     def _divided(self, function: Callable[[NDArray], NDArray], r: NDArray, dμ: NDArray) -> NDArray:
         """∫ (f(t) - f(r))/(t - r) dμ(t) at places r, (n,)."""
@@ -116,7 +140,7 @@ class FlatAlong(Pressure):
     @property
     def resultant_ratio(self) -> float:
         """Resultant of σ_XY over that of σ_YY."""
-        return float(self.forces @ self.along(self.rule.t)) / -2.0
+        return float(self.forces @ self.friction(self.rule.t)) / -2.0
 
     @property
     def pressure_centre(self) -> float:
@@ -124,15 +148,30 @@ class FlatAlong(Pressure):
         return float(self.forces @ self.rule.t) / -2.0
 
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
-        return self.transforms(None, np.asarray(r, dtype=float))[1][0]
+        return self._transforms(np.asarray(r, dtype=float))[0]
 
-    def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        local, C = self._local(r), self._divided(self.along, r, self.forces) / np.pi
+    @property
+    def opposed(self) -> Pressure:
+        return self._on_panels.opposed
+
+    @cached_property
+    def _on_panels(self) -> "ExpansionAlong":
+        """The pressure by its values, with the field below it."""
+        kinks = tuple(sorted({*self.friction.kinks, *self.friction.weak_kinks}))
+        longest, *towards_kinks = _OF_FIELD
+        panels = Panels(self.α, self.β, longest, kinks, *towards_kinks)
+        return ExpansionAlong(self.α, self.β, self.series(panels.t), panels, friction=self.friction)
+
+    def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
+        return self._on_panels.inside(response, g, X, Y)
+
+    def _transforms(self, r: NDArray) -> tuple[NDArray, NDArray]:
+        local, C = self._local(r), self._divided(self.friction, r, self.forces) / np.pi
         with np.errstate(invalid="ignore", divide="ignore"):
             size = np.abs(1.0 - r) ** self.α * np.abs(1.0 + r) ** self.β * np.exp(self._bounded(r))
         τ = self._amplitude * size * np.where(under_punch(r), local._cot * local._sin, np.sign(r))
         τ = np.where(from_edge(r) == 0.0, np.nan, τ)
-        return self.along(r)[None], ((τ - self.response.n12 * C) / self._compliance(r))[None], C[None]
+        return (τ - self.response.n12 * C) / self._compliance(r), C
 
 
 class BentExpansion(Expansion):
@@ -144,7 +183,7 @@ class BentExpansion(Expansion):
 
 
 @dataclass(frozen=True)
-class ExpansionAlong(BentExpansion):
+class ExpansionAlong(Varying, BentExpansion):
     """Pressure by its values on panels with friction that varies along the contact.
 
     Attributes:
@@ -179,17 +218,18 @@ class ExpansionAlong(BentExpansion):
     def hilbert(self, r: NDArray) -> NDArray[np.float64]:
         return self._hilbert(self.c, r)
 
-    def transforms(self, g: Any, r: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        ratio, H = self.friction(r), self.hilbert(r)
-        return ratio[None], H[None], (self._hilbert(self._shear, r) - ratio * H)[None]
+    def _transforms(self, r: NDArray) -> tuple[NDArray, NDArray]:
+        H = self.hilbert(r)
+        return H, self._hilbert(self._shear, r) - self.friction(r) * H
 
     def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         shear = replace(self, c=self._shear)
         of_shear = response.inside(shear, 1.0, X, Y) - response.inside(shear, 0.0, X, Y)
         return np.asarray(response.inside(self, 0.0, X, Y) + of_shear)
 
-    def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, NDArray]:
-        return np.ones_like(g), self.friction(t)
+    @property
+    def opposed(self) -> "ExpansionAlong":
+        return replace(self, friction=self.friction.opposed)
 
     def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
         of_shear = replace(self, c=self._shear).integral(kernel, r)[:, 0]

@@ -24,7 +24,7 @@ from .prescribed_pressure import COARSE, FINE
 from .pressure import ENDS, Contacts, Group, Pressure
 from .residual import indentation, of_contact, of_field, places
 from .solution import Solution, Task, solved_once
-from .stresses import Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
+from .stresses import Places, Surface, Turns, at_and_between, together, turns_at_ends, turns_at_knots
 from .yielding import InSolid
 
 #: Most points inside whose potentials are held in memory at a time.
@@ -136,9 +136,10 @@ class ExactSolution(Solution):
         """Residual of stresses inside against line loads and equilibrium, relative, (states,)."""
 
         def of_group(group: Group) -> NDArray[np.float64]:
-            kinks = np.append(group.pressure.kinks, group.pressure.breaks)
+            pressure = group.pressure
+            kinks = np.array([*pressure.kinks, *pressure.breaks, *self.body.jumps_of_friction])
             return of_field(
-                self.task.response, group.g, (group.α, group.β), group.contact_stress,
+                self.task.response, group.ratio, (group.α, group.β), group.contact_stress,
                 lambda X, Y: group.stresses(X[None], Y[None]),
                 self.places.points, kinks,
             )  # fmt: skip
@@ -252,13 +253,18 @@ class ExactSolution(Solution):
         return self._each.contacts.stresses(points[..., 0], points[..., 1])
 
 
+#: Positions over a beside a contact from which stresses at its free ends are extrapolated.
+_BESIDE_ENDS = np.multiply.outer(ENDS, 1.0 + np.geomspace(1e-8, 2e-4, 24)).ravel()
+
+
 def _turns_of(contacts: Contacts) -> Turns | None:
     """Exact stresses at free ends and under kinks, wherever they are finite; None where nowhere."""
     each = []
     for group in contacts.groups:
         kinks = sorted(group.pressure.bends)
         # A weight that is infinite at a free end, times 0 there, has no value at that end.
-        known = np.array([group.β[0], group.α[0]]) > 0.0
+        exponents = np.column_stack([group.β, group.α])
+        known = exponents[0] > 0.0
         X = np.concatenate([ENDS[known], kinks])
         σ_XX, σ_YY = group.surface(X)
         between = None
@@ -267,10 +273,16 @@ def _turns_of(contacts: Contacts) -> Turns | None:
             left, right = ~group.free[0]
             infinite = np.array([left, *[False] * len(kinks), right])
             _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
-        σ = np.array([σ_XX, σ_YY, group.g[:, None] * σ_YY])
-        each.append(Turns(np.tile(X, (len(group.rows), 1)), σ, between))
-    turns = together(each)
-    return turns.of(contacts.order) if turns and turns.X.size else None
+        σ = np.array([σ_XX, σ_YY, group.ratio(X) * σ_YY])
+        turns = Turns(np.tile(X, (len(group.rows), 1)), σ, between)
+        hidden = np.where(group.free & ~known, exponents + 1.0, np.nan)
+        if np.isfinite(hidden).any():
+            in_plane, contact = group.surface(_BESIDE_ENDS)
+            beside = Surface(Places(_BESIDE_ENDS, np.empty((0, 2))), contact, in_plane)
+            turns = turns_at_ends(beside, Exponents(hidden[:, 1], hidden[:, 0])).joined(turns)
+        each.append(turns)
+    all_turns = together(each)
+    return all_turns.of(contacts.order) if all_turns and all_turns.X.size else None
 
 
 @dataclass(frozen=True)

@@ -117,6 +117,11 @@ class Pressure:
         """σ_XY/σ_YY at r, H[σ_YY], and H[σ_XY] beyond the product of both; ``g`` is a state's ratio."""
         return g, self.hilbert(r), 0.0
 
+    @property
+    def opposed(self) -> "Pressure":
+        """The pressure with friction of the other sign, as it acts on an elastic punch."""
+        return self
+
     def ratios(self, g: NDArray, t: NDArray) -> tuple[NDArray, Any]:
         """σ_XY/σ_YY at t: a number of each state, (states,), times a function of t; g: the states'."""
         return g, 1.0
@@ -313,6 +318,11 @@ class Group:
         """Strain μ u,X over N/(2a) that layers add on the surface at r, (rows, points)."""
         return 0.0
 
+    def ratio(self, r: NDArray) -> NDArray[np.float64]:
+        """σ_XY/σ_YY at r, (rows, points) or (rows, 1)."""
+        g, ratios = self.pressure.ratios(self.g, r)
+        return np.asarray(g[:, None] * ratios)
+
     def inside(self, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
         """σ_XX, σ_YY, σ_XY at points (1, n) or (rows, n) below the surface: (3, rows, n)."""
         σ = self.pressure.inside(self.response, self.g[:, None], X, Y)
@@ -325,8 +335,7 @@ class Group:
         columns = on.any(axis=0)
         if columns.any():
             σ_XX, σ_YY = self.surface(X[:, columns])
-            g, ratios = self.pressure.ratios(self.g, X[:, columns])
-            on_surface = [σ_XX, σ_YY, g[:, None] * ratios * σ_YY]
+            on_surface = [σ_XX, σ_YY, self.ratio(X[:, columns]) * σ_YY]
             σ[..., columns] = np.where(on[:, columns], on_surface, σ[..., columns])
         return σ
 
@@ -378,7 +387,7 @@ class Contacts:
         """
         return Contacts(
             tuple(
-                Group(of.response.punch, of.rows, -of.g, of.pressure, of.half_width, of.centre)
+                Group(of.response.punch, of.rows, -of.g, of.pressure.opposed, of.half_width, of.centre)
                 for of in self.groups
             )
         )

@@ -35,6 +35,8 @@ from scipy.linalg import solveh_banded
 from scipy.special import beta, roots_legendre
 
 from ..approximation import lagrange
+from ..friction.along import Along
+from .along import ExpansionAlong
 from .edges import under_punch
 from .estimate import SAFETY
 from .extremes import between, largest
@@ -511,8 +513,10 @@ class KinkedPressure(Pressure):
         return self._facets.stress(self._density, r)
 
 
-def on_panels(pressure: Pressure, row: int, α: float, β: float) -> Expansion:
-    """Pressure of one of several states by its values on panels, with the field below it; without kinks.
+def on_panels(pressure: Pressure, row: int, α: float, β: float, friction: Along) -> Expansion:
+    """Pressure of one of several states by its values on panels, with the field below it.
+
+    It has no kinks but those of friction.
 
     Where an end is free a factor 1 - r or 1 + r of the weight is one of the values.
 
@@ -520,11 +524,15 @@ def on_panels(pressure: Pressure, row: int, α: float, β: float) -> Expansion:
         pressure: of several states.
         row: number of the state among these.
         α, β: exponents of its pressure at the right and the left end.
+        friction: σ_XY/σ_YY over X/a.
     """
     sharp_α, sharp_β = α - (α > 0.0), β - (β > 0.0)
-    panels = replace(panels_of_slope(-sharp_α, (), False), β=sharp_β)
+    panels = replace(panels_of_slope(-sharp_α, friction.kinks, friction.varies), β=sharp_β)
     inner = np.clip(panels.t, -pressure.near, pressure.near)
     # 1 - t = 2/(1 + e^x) has all its digits next to an end.
     right, left = (2.0 / (1.0 + np.exp(sign * panels.x)) for sign in (1.0, -1.0))
     factor = np.atleast_2d(pressure.series(inner))[row]
-    return Expansion(sharp_α, sharp_β, factor * right ** (α - sharp_α) * left ** (β - sharp_β), panels)
+    c = factor * right ** (α - sharp_α) * left ** (β - sharp_β)
+    if friction.varies:
+        return ExpansionAlong(sharp_α, sharp_β, c, panels, friction=friction)
+    return Expansion(sharp_α, sharp_β, c, panels)

@@ -168,8 +168,7 @@ def of_contact(
     if len(response.depths):  # one kernel, for the widest, serves all
         kernel = Kernel(response.stack(float(h.max())), _OF_KERNEL)  # type: ignore[attr-defined]
         layers = [Scaled(kernel, size) for size in (h / h.max()).tolist()]
-    of_friction = {kink for along in body.along.values() for kink in (*along.kinks, *along.weak_kinks)}
-    kinks = [*kinks, *of_friction]
+    kinks = [*kinks, *body.jumps_of_friction]
     exponents = local.α, local.β
     return of_pressure(
         response, lambda r: body.ratio(g, r, h), exponents, slope, pressure, kinks, breaks, layers
@@ -193,7 +192,7 @@ class _LineLoads:
 
 def of_field(
     response: Any,
-    g: NDArray,
+    ratio: Stress,
     exponents: tuple[NDArray, NDArray],
     pressure: Stress,
     inside: Callable[[NDArray, NDArray], NDArray],
@@ -203,7 +202,8 @@ def of_field(
     """Residual of stresses inside against line loads and equilibrium, over the largest, (states,).
 
     Args:
-        response, g, exponents, pressure, kinks: as in :func:`of_pressure`.
+        response, exponents, pressure, kinks: as in :func:`of_pressure`.
+        ratio: σ_XY/σ_YY at positions (n,): (states, n) or (states, 1).
         inside: σ_XX, σ_YY, σ_XY at X and Y (n,), (3, states, n).
         points: positions X, Y, (m, 2), at a few of which line loads are summed.
     """
@@ -217,9 +217,12 @@ def of_field(
     sizes = np.concatenate([np.full(len(kinks), _SHORTEST), *(0.3 * np.abs(z.imag) for z in feet)])
     rule = Rule(at, sizes)
     loads = rule.weights(α, β) * rule.smooth(pressure, α, β)
-    off = np.zeros(len(g))
+    shear = ratio(rule.t) * loads
+    off = np.zeros(len(loads))
     if len(samples):
-        reference = response.inside(_LineLoads(rule.t, loads), g[:, None], X[None], Y[None])
+        normal, tangential = (_LineLoads(rule.t, of) for of in (loads, shear))
+        reference = response.inside(normal, 0.0, X[None], Y[None])
+        reference += np.subtract(*(response.inside(tangential, g, X[None], Y[None]) for g in (1.0, 0.0)))
         size = np.abs(reference).max(axis=(0, 2))
         off = np.abs(inside(X, Y) - reference).max(axis=(0, 2)) / size
     # Along a line below the surface: X = L tan θ, in which what is analytic in 1/X is periodic.
@@ -228,8 +231,8 @@ def of_field(
     count = int(np.ceil(_ALONG * max(L, 1.0)))
     θ = np.pi * ((np.arange(count) + 0.5) / count - 0.5)
     _, σ_YY, σ_XY = inside(L * np.tan(θ), np.full(count, -depth))
-    weights, N = np.pi / count * L / np.cos(θ) ** 2, loads.sum(axis=1)
-    balance = np.maximum(np.abs(σ_YY @ weights - N), np.abs(σ_XY @ weights - g * N))
+    weights, N, T = np.pi / count * L / np.cos(θ) ** 2, loads.sum(axis=1), shear.sum(axis=1)
+    balance = np.maximum(np.abs(σ_YY @ weights - N), np.abs(σ_XY @ weights - T))
     return np.asarray(np.maximum(off, balance / np.abs(loads).sum(axis=1)))
 
 

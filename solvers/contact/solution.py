@@ -158,7 +158,7 @@ class Contact:
         else:
             reasons[LAYERED] = "the solid has no layers"
         if self.along:
-            reasons |= dict.fromkeys((FLAT, YIELD, IN_PUNCH), "friction varies along the contact")
+            reasons[FLAT] = "friction varies along the contact"
         return reasons
 
     @property
@@ -260,6 +260,12 @@ class Contact:
     def friction_kinks(self) -> tuple[float, ...]:
         """Positions X/a at which friction along the contact is not smooth, in any state."""
         return tuple(sorted({kink for along in self.along.values() for kink in along.kinks}))
+
+    @property
+    def jumps_of_friction(self) -> tuple[float, ...]:
+        """Positions X/a of :attr:`friction_kinks`, and those at which a higher derivative jumps."""
+        every = {kink for along in self.along.values() for kink in (*along.kinks, *along.weak_kinks)}
+        return tuple(sorted(every))
 
     @property
     def _friction_has_length(self) -> bool:

@@ -693,7 +693,8 @@ class StrengthOfLayers:
         turns = turns_at_ends(surface, solution.local)
         if surface.turns:
             turns = turns.joined(surface.turns)
-        curves = stress(surface.σ_XX, σ_YY, solution.g[:, None] * σ_YY)
+        σ_XY = self.body.ratio(solution.g, X, solution.half_width) * σ_YY
+        curves = stress(surface.σ_XX, σ_YY, σ_XY)
         samples = Peak(curves.max(axis=1), X[curves.argmax(axis=1)], np.zeros(len(curves)))
         at_turns = np.nan_to_num(stress(*turns.σ), nan=-np.inf), turns.X
         places, values = np.full((2, len(curves), 1), -np.inf)

@@ -21,6 +21,7 @@ from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
 from ..contact.stresses import PLACES, Surface, Turns, together
 from ..contact.yielding import InSolid
+from ..friction.along import Along
 from .fields import Displacement
 from .punch import ContactStates
 
@@ -66,6 +67,12 @@ class SolvedStates:
     def ratio(self, X: NDArray) -> NDArray[np.float64]:
         """σ_XY/σ_YY at X over a, (states, n) or (states, 1)."""
         return np.asarray(self.body.ratio(self.contact.g, X, self.contact.half_width))
+
+    @property
+    def frictions(self) -> list[Along]:
+        """σ_XY/σ_YY over the contact of each state."""
+        each = zip(self.contact.g.tolist(), self.contact.half_width.tolist())
+        return [self.body.friction(g, a) for g, a in each]
 
     def in_plane(self, X: NDArray) -> NDArray[np.float64]:
         """σ_XX under the punch at X over a, off its ends, (states, n)."""
@@ -215,10 +222,16 @@ class Solution(solution.Solution):
         σ_YY = self._joined(lambda of: np.broadcast_to(of.pressure.σ_YY(X), (len(of.contact.g), len(X))))
         return X, σ_YY
 
-    @property
+    @cached_property
     def yield_turns(self) -> Turns | None:
         """Limits of stresses at ends and kinks, where an end is free."""
-        return self.surface.turns if any(states.contact.free.any() for states in self.solved) else None
+        turns, X = self.surface.turns, np.array(self.body.friction_kinks)
+        if not turns or not any(states.contact.free.any() for states in self.solved):
+            return None
+        states = range(len(self.rows))
+        σ_XX, σ_YY = np.stack([self.at_surface(state, X) for state in states], axis=1)
+        σ = np.array([σ_XX, σ_YY, self.body.ratio(self.g, X, self.half_width) * σ_YY])
+        return turns.joined(Turns(np.tile(X, (len(states), 1)), σ))
 
     @property
     def nearest(self) -> float:
@@ -229,9 +242,9 @@ class Solution(solution.Solution):
     def _in_punch(self) -> Contacts:
         """Contacts on an elastic punch, mirrored at Y = 0."""
         pressures = [
-            on_panels(states.pressure, i, α, β)
+            on_panels(states.pressure, i, α, β, friction)
             for states in self.solved
-            for i, (α, β) in enumerate(zip(states.local.α, states.local.β))
+            for i, (α, β, friction) in enumerate(zip(states.local.α, states.local.β, states.frictions))
         ]
         each = [pressures[row] for row in self.rows]
         return between_ends(self.task.response, self.g, each, 1.0).in_punch
@@ -250,7 +263,8 @@ class Solution(solution.Solution):
     @cached_property
     def strength_of_punch(self) -> Any:
         """Yield of an elastic punch, whose heights Y have the other sign."""
-        each, response = np.tile([-1.0, 1.0], (len(self.rows), 1)), self.task.response.punch  # type: ignore[attr-defined]
+        each = np.tile([-1.0, *self.body.friction_kinks, 1.0], (len(self.rows), 1))
+        response = self.task.response.punch  # type: ignore[attr-defined]
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
         punch = InSolid(
             response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST

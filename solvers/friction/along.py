@@ -5,7 +5,7 @@ slipped their distance from that end: f over X/a is f of the law over its slip.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -64,6 +64,11 @@ class Along:
     def has_length(self) -> bool:
         """True if it depends on the half-width of the contact."""
         return self.over is not None
+
+    @property
+    def opposed(self) -> "Along":
+        """Friction of the other sign."""
+        return replace(self, mean=-self.mean, ratio=lambda X: -self.ratio(X), over=None)
 
     def at(self, a: float) -> "Along":
         """σ_XY/σ_YY over a contact of another half-width a [m]."""

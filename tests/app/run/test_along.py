@@ -68,3 +68,56 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert row["mean_f"] == pytest.approx([0.44], rel=1e-12)
     # Loops are those of the law alone: their work and force are none of this contact.
     assert not loops_sheet(result.data, result.units()).rows
+
+
+YIELDING = {"quantities": ["sif", "surface", "interior", "yield"]}
+
+
+def test_one_friction_along_the_contact_yields_as_a_number():
+    """The largest shear is the limit at a free end, which the pressure's weight hides."""
+    by = {
+        "punch": {"profile": "parabolic", "radius": "10 mm", "load": "500 N/mm"},
+        "output": YIELDING | {"points": [[0.3, -0.4]]},
+    }
+    solid = {"E": "210 GPa", "nu": 0.3, "rho": 7850, "yield_strength": "500 MPa"}
+    along = slid({"along": [[-1, 0.4], [1, 0.4]]}, solid, solve={"methods": ["sie"]}, **by).data
+    number = slid({"mu": 0.4}, solid, solve={"methods": ["closed_form"]}, **by).data
+    assert number["states/closed_form/max_shear_X_over_a"] == -1.0
+    for name in ("von_mises", "max_shear", "first_yield_load", "yield_depth"):
+        of_along, of_number = along[f"states/sie/{name}"], number[f"states/closed_form/{name}"]
+        np.testing.assert_allclose(of_along, of_number, rtol=1e-7, err_msg=name)
+
+
+def test_yield_below_varying_friction_by_both_methods_in_both_bodies():
+    """No sample is larger, and some come near; where friction bends stresses have the shape of a peak."""
+    near = np.add.outer([0.3], [-0.01, -1e-3, -1e-4, 0.0, 1e-4, 1e-3, 0.01]).ravel()
+    points = [[x, -y] for x in [*np.linspace(-1.2, 1.2, 25), *near] for y in (1e-4, 1e-3, 0.03, 0.2, 0.5)]
+    punch = {
+        "profile": "parabolic",
+        "radius": "10 mm",
+        "load": "500 N/mm",
+        "solid": {"material": "steel"},
+    }
+    result = slid(
+        {"along": [[-1, 0.2], [0.3, 0.7], [1, 0.5]]}, punch=punch, solve={"tolerance": 1e-3},
+        output=YIELDING | {"points": points},
+    )  # fmt: skip
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    for of in ("", "punch_"):
+        fem, sie = (result.data[f"states/{method}/{of}von_mises"] for method in ("fem", "sie"))
+        np.testing.assert_allclose(fem, sie, rtol=1e-4)
+        samples = result.data[f"interior/sie/{of}von_mises"]
+        assert 0.99 * sie < samples.max() <= sie * (1.0 + 1e-9)
+
+
+def test_yield_at_the_edges_of_a_flat_punch_is_known_in_closed_form():
+    solid = ISOTROPIC | {"yield_strength": "200 MPa"}
+    data = slid(
+        {"along": [[-1, 0.2], [0.3, 0.7], [1, 0.5]]}, solid, solve={"tolerance": 1e-4},
+        punch={"half_width": "1 mm", "load": "100 N/mm"},
+        output=YIELDING | {"points": [[0.9, -1e-3], [0.3, -0.2]]},
+    ).data  # fmt: skip
+    for name in ("states/{}/yield_reach_left", "states/{}/yield_depth", "interior/{}/sigma_XX"):
+        fem, exact = (data[name.format(method)] for method in ("fem", "closed_form"))
+        np.testing.assert_allclose(fem, exact, rtol=1e-4, err_msg=name)
+        assert (fem != exact).all() and np.abs(exact).min() > 1e-3

@@ -9,6 +9,7 @@ from loaded import punch_of, under
 
 from galinx.solvers.contact.closed_form import contacts
 from galinx.solvers.contact.recovery import on_panels
+from galinx.solvers.friction.along import constant
 from galinx.solvers.profiles.punches import Flat, Parabolic
 from galinx.solvers.solids.half_plane import mean_and_difference
 from galinx.solvers.solids.isotropic import Isotropic, MovingFrame
@@ -27,7 +28,7 @@ def test_stresses_below_a_pressure_that_is_known_on_the_surface_alone(profile):
     response, g = Isotropic(1.0, 0.3, 1.0).response(0.3), np.array([-0.4])
     exact = contacts(response, g, profile, 0.5)
     (group,) = exact.groups
-    below = replace(group, pressure=on_panels(group.pressure, 0, group.α[0], group.β[0]))
+    below = replace(group, pressure=on_panels(group.pressure, 0, group.α[0], group.β[0], constant(0.0)))
     X, depths = [-3.0, -2.0, -1.2, -0.999, 0.2, 0.99, 1.01, 1.5], [0.0, 1e-9, 1e-3, 0.02, 0.5]
     points = np.array([(x, -depth) for x in X for depth in depths])
     expected = exact.stresses(*points.T)[:, 0]

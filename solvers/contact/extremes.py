@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 #: places at which the polynomial is compared first; most tops of a curve that are refined.
 NODES, _THROUGH, _COMPARED, _TOPS = np.cos(np.pi * (np.arange(12) + 0.5) / 12.0), 8, 65, 3
 #: Samples that a polynomial goes through along an interface, where they are an eighth of its depth apart,
-#: and in log(d/d') of two turns, where they are a quarter apart.
-ALONG = 14
+#: and in log(d/d') of two turns, where they are a quarter apart; fewer, which show the error of these.
+ALONG, FEWER = 14, 12
 #: log(d/d') between two turns at the distances d and d', at which a curve between them is known.
 GRADED, FINER = np.linspace(-14.0, 14.0, 113), np.linspace(-18.0, 18.0, 109)
 #: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
@@ -29,6 +29,9 @@ _COINCIDE = 0.1
 _CLOSEST = 1e4 * np.finfo(float).eps
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
 _SAME_HEIGHT, _SAME_TOP = 1e-10, 0.05
+#: Samples that may be next to the largest value lie below the highest by at most so many times what fewer
+#: samples are off, and twice what the largest is above.
+_NEARLY = 100.0
 
 
 def summit(u: NDArray, values: NDArray, low: NDArray, high: NDArray) -> tuple[NDArray, NDArray]:
@@ -144,18 +147,63 @@ def highest(heights: NDArray, places: NDArray) -> tuple[NDArray[np.float64], NDA
     return height, place
 
 
-def extreme(values: NDArray, X: NDArray, sign: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def extreme(
+    values: NDArray, X: NDArray, sign: float, through: int = ALONG
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Largest (sign 1) or smallest (-1) value of smooth curves along X, and its place, (...) each.
 
     Args:
         values: (..., n).
         X: rising positions, (n,).
+        through: number of samples that a polynomial goes through.
     """
-    curves, gaps = sign * values.reshape(-1, len(X)), np.diff(X)
-    # Of two samples that all but coincide one is left out: no polynomial goes through both.
-    apart = np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
-    heights, places = tops(X[apart], curves[:, apart], through=ALONG)
+    curves, apart = sign * values.reshape(-1, len(X)), _apart(X)
+    heights, places = tops(X[apart], curves[:, apart], through=through)
     heights = np.column_stack([curves.max(axis=1), heights])
     places = np.column_stack([X[curves.argmax(axis=1)], places])
     height, place = (of.reshape(values.shape[:-1]) for of in highest(heights, places))
     return sign * height, place
+
+
+def _apart(X: NDArray) -> NDArray[np.bool_]:
+    """True at rising positions but one of two that all but coincide: no polynomial goes through both."""
+    gaps = np.diff(X)
+    return np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
+
+
+def settled(
+    function: Callable[[NDArray], NDArray], X: NDArray, values: NDArray, ends: NDArray, accuracy: float
+) -> NDArray[np.float64]:
+    """Largest and smallest values of curves, where samples do not settle them by the function itself.
+
+    Args:
+        function: of positions, (n,): (curves, n).
+        X, values: rising positions, and its values there, (n,) and (curves, n).
+        ends: largest and smallest value, each with its place, by samples, and by fewer of them,
+            (2, 2, 2, curves): largest or smallest, value or place, by more or fewer.
+        accuracy: difference by fewer samples, over the largest of all, up to which these settle it.
+
+    Returns:
+        Largest and smallest value, each with its place, (2, 2, curves).
+    """
+    apart = _apart(X)
+    X, values = X[apart], values[:, apart]
+    best, off = ends[:, :, 0].copy(), np.abs(ends[:, 0, 0] - ends[:, 0, 1])
+    windows: list[tuple[int, int, float, float]] = []
+    for end, curve in np.argwhere(off > accuracy * np.abs(values).max(axis=1)).tolist():
+        y = np.pad((1 - 2 * end) * values[curve], 1, constant_values=-np.inf)
+        above = (1 - 2 * end) * best[end, 0, curve] - y.max()
+        high = y[1:-1] >= y.max() - 2.0 * above - _NEARLY * off[end, curve]
+        for i in np.flatnonzero(high & (y[1:-1] >= y[:-2]) & (y[1:-1] >= y[2:])).tolist():
+            windows.append((end, curve, X[max(i - 1, 0)], X[min(i + 1, len(X) - 1)]))
+    if not windows:
+        return best
+    end, curve, low, high = map(np.array, zip(*windows))
+    u = ((low + high) / 2.0)[:, None] + ((high - low) / 2.0)[:, None] * NODES
+    of_windows = function(u.ravel()).reshape(len(values), *u.shape)[curve, np.arange(len(u))]
+    heights, places = summit(u, (1 - 2 * end)[:, None] * of_windows, low, high)
+    for key in {*zip(end.tolist(), curve.tolist())}:
+        own = (end == key[0]) & (curve == key[1])
+        top = np.where(own, heights, -np.inf).argmax()
+        best[key[0], :, key[1]] = (1 - 2 * key[0]) * heights[top], places[top]
+    return best

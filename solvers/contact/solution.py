@@ -20,7 +20,7 @@ from ..solids import Solid
 from ..solids.half_plane import HalfPlane
 from . import FREE_ENDS, OWN_PRESSURE, VARYING, VARYING_FREE, YIELD
 from .edges import EdgeExponents, Exponents
-from .extremes import extreme
+from .extremes import ALONG, FEWER, extreme, settled
 from .prescribed_pressure import LinearPressure
 from .stresses import BESIDE_TIP, Places, at_and_between, distances, extreme_in_plane, off_tips
 from .yielding import SMOOTH, Levels, Strength, StrengthOfLayers, places_in_layers, places_on_rays
@@ -639,6 +639,8 @@ def solved_once(
 
 #: Distance over a up to which two kinks are one.
 _COINCIDE = 1e-9
+#: Difference of the largest by fewer samples, over the largest of all, up to which samples settle it.
+_SETTLED = 1e-8
 
 
 class Solution:
@@ -750,21 +752,48 @@ class Solution:
         """Largest and smallest stresses along every interface, over N/(2a), and their places over a.
 
         The array is (2, 2, 4, states, interfaces): largest or smallest, stress or place, then as
-        ``interfaces``. Kinks have places of their own in each state, and these as many samples as edges.
+        ``interfaces``.
         """
-        X, σ = self.places.along, self.interfaces
-        extremes = np.array([extreme(σ, X, sign) for sign in (1.0, -1.0)])
-        for state, places in enumerate(self.kinks):
-            for i, depth in enumerate(self.body.solid.depths / self.half_width[state]):
+        count = len(self.body.solid.depths)
+        return np.stack([self.extremes_along(i, lambda σ: σ) for i in range(count)], axis=-1)
+
+    def extremes_along(
+        self, interface: int, measure: Callable[[NDArray], NDArray]
+    ) -> NDArray[np.float64]:
+        """Largest and smallest measures along an interface, each and its place, (2, 2, m, states).
+
+        Kinks have places of their own in each state, and these as many samples as edges.
+
+        Args:
+            interface: its number.
+            measure: of stresses (4, ..., n), see ``interfaces``: (m, ..., n).
+        """
+
+        def ends(curves: NDArray, X: NDArray) -> NDArray[np.float64]:
+            each = [[extreme(curves, X, s, n) for n in (ALONG, FEWER)] for s in (1.0, -1.0)]
+            return np.swapaxes(each, 1, 2)
+
+        X, σ = self.places.along, self.interfaces[:, :, interface]
+        curves = measure(σ)
+        of_all = ends(curves, X)
+        best = of_all[:, :, 0]
+        depths = self.body.solid.depths[interface] / self.half_width
+        for state, (places, depth) in enumerate(zip(self.kinks, depths.tolist())):
+
+            def at(X: NDArray) -> NDArray[np.float64]:
+                return self.at_interface(state, interface, X)  # noqa: B023
+
+            positions, along, of_state = X, curves[:, state], of_all[..., state]
+            if len(places):
                 apart = distances(depth, depth)
                 near = np.add.outer(places, np.concatenate([-apart, apart])).ravel()
-                if not len(near):
-                    continue
-                every, first = np.unique(np.concatenate([X, near]), return_index=True)
-                along = np.concatenate([σ[:, state, i], self.at_interface(state, i, near)], axis=1)
-                for end, sign in enumerate((1.0, -1.0)):
-                    extremes[end, :, :, state, i] = extreme(along[:, first], every, sign)
-        return extremes
+                positions, first = np.unique(np.concatenate([X, near]), return_index=True)
+                along = measure(np.concatenate([σ[:, state], at(near)], axis=1)[:, first])
+                of_state = ends(along, positions)
+            best[..., state] = settled(
+                lambda X: measure(at(X)), positions, along, of_state, _SETTLED
+            )  # fmt: skip
+        return best
 
 
 #: σ_YY over N/(2a) at positions X over a under the punch.

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ..profiles import exponent
 from ..solids.half_plane import HalfPlane
-from .extremes import NODES, extreme, largest, summit
+from .extremes import NODES, largest, summit
 from .stresses import Turns, maximum_shear, on_surface, turns_at_ends, von_mises
 
 #: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
@@ -650,17 +650,21 @@ class StrengthOfLayers:
     def peaks(self) -> Peak:
         """Largest von Mises stress over N/(2a) of every layer and the solid below, (states, parts)."""
         depths, solid = self.body.solid.depths, self.body.solid
-        along, half_width = self.solution.places.along, self.solution.half_width
+        half_width = self.solution.half_width
         of_layers = [self._on_surface()] + [
             Peak(*np.full((3, len(self.solution.g)), -np.inf)) for _ in depths
         ]
         for i, depth in enumerate(depths.tolist()):
+            beside = solid.beside(i)  # type: ignore[attr-defined]
+
+            def on_both_sides(σ: NDArray) -> NDArray[np.float64]:
+                each = ((σ[2 + side], σ[0], σ[1]) for side in (0, 1))
+                return np.array([von_mises(*of, own.σ_ZZ(*of)) for own, of in zip(beside, each)])  # noqa: B023
+
+            value, X = self.solution.extremes_along(i, on_both_sides)[0]
             for side in (0, 1):
-                σ_YY, σ_XY, σ_XX = self.solution.interfaces[[0, 1, 2 + side], :, i]
-                of_side = solid.beside(i)[side]  # type: ignore[attr-defined]
-                stress = von_mises(σ_XX, σ_YY, σ_XY, of_side.σ_ZZ(σ_XX, σ_YY, σ_XY))
-                value, X = (of[:, None] for of in extreme(stress, along, 1.0))
-                of_layers[i + side] = _higher(of_layers[i + side], value, X, -depth / half_width)
+                at = value[side, :, None], X[side, :, None]
+                of_layers[i + side] = _higher(of_layers[i + side], *at, -depth / half_width)
         for layer, faces in enumerate(of_layers):
             searched = [self._searched(i, layer, float(value)) for i, value in enumerate(faces.value)]
             value, X, Y = np.array(searched).T

@@ -138,6 +138,32 @@ def test_largest_stresses_along_an_interface_lie_inside_the_window(modulus, thic
         assert max(σ[0], σ[-1]) < 0.9 * largest
 
 
+def test_largest_stresses_below_stiff_fibres_are_those_of_the_mirror_image():
+    """Stresses along the interface vary there over a third of its depth, which samples alone miss."""
+    fibres = {
+        "kind": "orthotropic", "E1": 126e9, "E2": 11e9, "E3": 11e9, "nu12": 0.28, "nu13": 0.28,
+        "nu23": 0.4, "G12": 6.6e9, "rho": 1600,
+    }  # fmt: skip
+
+    def interface(way, along):
+        data = computed(changes={
+            "solid": fibres | {"angle": 25 * way},
+            "layer": [fibres | {"angle": -60 * way, "thickness": 4e-4}],
+            "punch": {"half_width": 1e-3, "load": 4e5}, "motion": {"speed": 1200}, "output": None,
+            "friction": {"along": along, "sign": "physical" if way > 0 else "eq25"},
+            "solve": {"methods": ["sie"], "tolerance": 1e-4},
+            "output.quantities": ["interfaces"],
+        }).data  # fmt: skip
+        named = {"sigma_YY_max": 1, "sigma_YY_min": 1, "sigma_XY_max": way, "sigma_XX_above_max": 1}
+        return [
+            sign * data[f"interfaces/sie/{name if sign > 0 else name.replace('max', 'min')}"][0, 0]
+            for name, sign in named.items()
+        ]
+
+    one = interface(1, [[-1, 0.6], [-0.3, 0.1], [1, 0.4]])
+    np.testing.assert_allclose(interface(-1, [[-1, 0.4], [0.3, 0.1], [1, 0.6]]), one, rtol=1e-7)
+
+
 @pytest.mark.parametrize("wrong, verdict", [(0.0, "PASS"), (0.2, "FAIL")])
 def test_alone_they_are_put_into_the_equation_of_layers(wrong, verdict, monkeypatch):
     """A pressure that leans leaves a part of the equation."""

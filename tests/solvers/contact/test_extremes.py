@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact import stresses
-from galinx.solvers.contact.extremes import FINER, between, highest, largest, tops
+from galinx.solvers.contact.extremes import (
+    ALONG,
+    FEWER,
+    FINER,
+    between,
+    extreme,
+    highest,
+    largest,
+    settled,
+    tops,
+)
 from galinx.solvers.contact.stresses import at_and_between
 from galinx.solvers.solids.isotropic import Isotropic
 
@@ -101,3 +111,22 @@ def test_no_polynomial_goes_through_samples_of_two_pieces():
     heights, places = tops(u, curve, (u >= 0.0)[None].astype(int))
     height, place = highest(heights, places)
     assert height[0] == pytest.approx(1.0, abs=1e-12) and place[0] == pytest.approx(-0.12, abs=1e-9)
+
+
+@pytest.mark.parametrize("width", [0.6, 0.5])
+def test_what_samples_do_not_settle_the_function_does(width):
+    """Peaks that are hardly wider than samples are apart; two all but tie."""
+    X = 0.31 * np.arange(-12.0, 13.0)
+
+    def function(x):
+        one, other = (np.cosh((x - at) / width) ** -2.0 for at in (-1.0, 1.13))
+        return np.array([one + 1.0001 * other, -one - 1.0002 * other])
+
+    values, places = function(X), np.linspace(1.1, 1.2, 100001)
+    ends = np.array([[extreme(values, X, s, n) for n in (ALONG, FEWER)] for s in (1.0, -1.0)])
+    best = settled(function, X, values, np.swapaxes(ends, 1, 2), 1e-8)
+    for end, curve, sign in ((0, 0, 1.0), (1, 1, -1.0)):
+        exact = (sign * function(places)[curve]).max()
+        assert abs(sign * best[end, 0, curve] - exact) < 1e-8 * exact
+        assert abs(best[end, 1, curve] - 1.13) < 0.01
+        assert abs(ends[end, 0, 0, curve] - best[end, 0, curve]) > 1e-7

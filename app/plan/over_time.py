@@ -4,11 +4,12 @@
 their finite elements.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from math import ceil, log10, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,28 +86,69 @@ def _drives_by_law(scene: Scene, c: float) -> tuple[Drive, ...]:
     Raises:
         BadInput: the law refuses its parameters.
     """
-    from scipy.interpolate import PchipInterpolator  # a slow import
-
-    friction, shares = scene.friction, np.linspace(0.0, 1.0, 801)  # interpolated between these
-    places = [leg.start + (leg.end - leg.start) * shares for leg in scene.legs]
-    durations = _durations(scene, scene.legs, c)
-    starts = (0.0, *np.cumsum(durations)[:-1].tolist())
+    assert scene.time
+    friction, end = scene.friction, scene.time.end
+    durations = np.array(_durations(scene, scene.legs, c))
+    starts = np.concatenate([[0.0], np.cumsum(durations)[:-1]])
+    # A stroke is followed as long as the motion lasts; later ones have no part in it.
+    lasting = np.clip(end - starts, _LEAST_LASTING * durations, durations)
     (way,) = headings(scene, [scene.legs[0].s]).tolist()
     drives = []
     try:
         for law in friction.laws():
-            strokes = follow(
-                law, scene.legs, friction.pre_sliding, places, c * scene.solid.c_s,
-                INTEGRATORS[friction.integrator],
-            )  # fmt: skip
-            along = [
-                PchipInterpolator(shares * duration, friction.stress_ratio * stroke.f)
-                for stroke, duration in zip(strokes, durations)
-            ]
-            drives.append(Drive(way, None, starts, tuple(along)))
+
+            def over_time(times: list[NDArray]) -> list[NDArray]:
+                shares = (t / duration for t, duration in zip(times, durations))
+                places = [leg.start + (leg.end - leg.start) * of for leg, of in zip(scene.legs, shares)]
+                strokes = follow(
+                    law, scene.legs, friction.pre_sliding, places, c * scene.solid.c_s,  # noqa: B023
+                    INTEGRATORS[friction.integrator],
+                )  # fmt: skip
+                return [friction.stress_ratio * stroke.f for stroke in strokes]
+
+            along = _interpolated(over_time, lasting)
+            drives.append(Drive(way, None, tuple(starts.tolist()), along))
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
     return tuple(drives)
+
+
+#: Least part of a stroke that is followed; intervals of time at first; accuracy of friction between two
+#: times, most halvings of an interval, and most times of a stroke.
+_LEAST_LASTING, _INTERVALS, _FOLLOWED, _HALVED, _TIMES = 1e-6, 128, 1e-7, 30, 20_000
+
+
+def _interpolated(
+    over_time: Callable[[list[NDArray]], list[NDArray]], lasting: NDArray
+) -> tuple[Any, ...]:
+    """Friction of each stroke over the time since its beginning, SciPy's polynomials by pieces.
+
+    Intervals of time are halved until the middle of each is what its neighbours say.
+
+    Args:
+        over_time: friction of all strokes at rising times of each, (n,) each.
+        lasting: time for which each stroke is followed, (strokes,).
+    """
+    from scipy.interpolate import PchipInterpolator  # a slow import
+
+    times = [np.linspace(0.0, duration, 1 + _INTERVALS) for duration in lasting.tolist()]
+    along = [PchipInterpolator(*of) for of in zip(times, over_time(times))]
+    rough = [np.ones(_INTERVALS, dtype=bool) for _ in times]
+    for _ in range(_HALVED):
+        middles = [(t[1:] + t[:-1])[some] / 2.0 for t, some in zip(times, rough)]
+        expected = [g(t) for g, t in zip(along, middles)]
+        times = [np.union1d(t, more) for t, more in zip(times, middles)]
+        g = over_time(times)
+        along = [PchipInterpolator(*of) for of in zip(times, g)]
+        rough = []
+        for t, of, middle, was in zip(times, g, middles, expected):
+            at = np.searchsorted(t, middle)
+            off = at[np.abs(of[at] - was) > _FOLLOWED]
+            around = np.clip(np.add.outer(off, [-2, -1, 0, 1]).ravel(), 0, len(t) - 2)
+            rough.append(np.isin(np.arange(len(t) - 1), around) & (len(t) < _TIMES))
+        if not any(some.any() for some in rough):
+            break
+    return tuple(along)
 
 
 #: Tightest and loosest tolerance of motions in time.

@@ -9,6 +9,7 @@ from support import THOROUGH, computed, here, scene_of
 
 import galinx
 from galinx.app.plan import over_time
+from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.postprocess.compare import RULES, checked
 from galinx.postprocess.over_time import DONE, HELD, energy_imbalance
@@ -32,6 +33,26 @@ def test_works_of_a_short_motion_are_integrals_of_its_load_and_indentation():
     N, v0 = many["time/load"], many["time/sie/v0"][0]
     work = np.trapz(N, v0) * 2.0
     assert many["time/sie/work_of_load"][0, -1] == pytest.approx(work, rel=3e-2)
+
+
+@pytest.mark.parametrize("L", [1e-3, 10.0])
+def test_friction_is_that_of_the_law_however_long_strokes_are(L):
+    """Springs that slip one after the other, there and back; strokes of 10 m last 250 000 a/c_s."""
+    springs = (3000.0, 0.3), (500.0, 0.15)
+    scene = scene_of("start_from_rest", {
+        "friction": {
+            "model": "maxwell_slip", "pre_sliding": L,
+            "elements": [[f"{k} 1/m", f] for k, f in springs],
+        },
+        "punch.half_width": 1e-3, "time": {"friction": "law", "end": 3.8},
+        "motion": {"c": 0.2, "strokes": [{"to": 4e-4 / L}, {"to": 0.4e-4 / L}, "forward"]},
+    })  # fmt: skip
+    (drive,) = make_plan(scene).starts.drives[0.2]
+    t = np.linspace(0.0, 3.8, 777)
+    there, back = np.minimum(2e-4 * t, 4e-4), np.maximum(2e-4 * t - 4e-4, 0.0)
+    f = sum(np.minimum(k * there, limit) for k, limit in springs)
+    f -= sum(np.minimum(k * back, limit + min(limit, k * 4e-4)) for k, limit in springs)
+    np.testing.assert_allclose(-drive(t), f, atol=2e-7)
 
 
 def test_a_start_is_archived_judged_and_drawn(tmp_path):

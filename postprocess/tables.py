@@ -32,7 +32,7 @@ from .quantities import (
     yielding,
 )
 from .quantities import states as of
-from .quantities.quantity import CONTACT, FEM, OVER_A, SIE, TEXT
+from .quantities.quantity import CLOSED_FORM, CONTACT, FEM, OVER_A, SIE, TEXT
 from .units import Units, engineering, number, solved
 
 
@@ -540,8 +540,12 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         if len(units.contact.solid.depths) and not any("shear" in head for head in heads):
             lacking.append('"interfaces" (their shear)')
         computed = any(word in head for head in heads for word in ("yields", "von Mises"))
-        bears = FINITE in units.contact.modes or STRENGTH not in units.contact.lacks
-        if not computed and bears and YIELD not in units.contact.lacks:
+        contact = units.contact
+        bears = FINITE in contact.modes or STRENGTH not in contact.lacks
+        # The integral equation leaves uniform solids with one friction to the closed form.
+        by_others = any(f"/{method}/" in path for method in (CLOSED_FORM, FEM) for path in data)
+        knows = by_others or bool(contact.solid.layers) or bool(contact.along)
+        if not computed and bears and knows and YIELD not in contact.lacks:
             lacking.append('"yield" (von Mises, yields or not)')
     # What a scene asks for, and no method of it gives, is in its plan.
     scene = str(data.get(runs.SCENE.path, ""))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.meshes import MESHES
 from galinx.postprocess.quantities.states import RATIO
 from galinx.postprocess.quantities.validity import SIGNS
 from galinx.solvers.layers.flutter import thresholds_by_length
@@ -147,11 +148,13 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
         )
     if not is_level(scene.punch.profile):
         raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a level flat punch")
-    if scene.elastic_punch or scene.along:
+    if scene.elastic_punch or scene.along or scene.solve.own_pressure:
         raise BadInput(
-            "response: found an elastic punch, or friction that varies along the contact, expected a "
-            "rigid punch with one friction"
+            "response: found an elastic punch, a prescribed pressure, or friction that varies along the "
+            "contact, expected a rigid punch with one friction"
         )
+    if MESHES[scene.solve.mesh].walls:
+        raise BadInput(f'response: found solve.mesh = "{scene.solve.mesh}", expected no walls')
     states = enumerate_states(scene)
     ways = headings(scene, states.directions) * (states.columns["c"] > 0.0)
     different = np.unique(np.column_stack([states.columns["c"], ways, states.g]), axis=0)

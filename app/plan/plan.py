@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from galinx.meshes import MESHES
 from galinx.postprocess.compare import RULES
 from galinx.postprocess.quantities import QUANTITIES, Quantity, layers, stresses
 from galinx.postprocess.quantities.quantity import (
@@ -258,8 +259,25 @@ def _faults(
                 f"time: found {' and '.join(wrong)}, but motions in time have meshes, degrees and "
                 "matrices of their own; take that away"
             )
+    if methods and FEM not in methods and MESHES[solve.mesh].walls:
+        why = f", and {refusals[FEM]}" if refusals.get(FEM) else ""
+        yield (
+            f'solve.mesh: found "{solve.mesh}", whose walls finite elements alone have, and they do not '
+            f"solve this contact{why}; take the mesh away{'' if why else ', or add fem to solve.methods'}"
+        )
+    if FEM in methods and solve.mode == "traction" and solve.solver not in ("auto", "direct"):
+        yield (
+            f'solve.solver: found "{solve.solver}" with mode = "traction", where one factorisation '
+            'solves all; expected "direct"'
+        )
     if FEM in methods:
         yield from elements.faults(scene, places, alone={*methods} == {FEM})
+
+
+def _of_elements(scene: Scene) -> list[str]:
+    """Keys of finite elements that a scene gives."""
+    usual = {"mesh": "confocal", "degree": None, "cuts": 1, "solver": "auto", "assembler": "tensor"}
+    return [f"solve.{key}" for key, value in usual.items() if getattr(scene.solve, key) != value]
 
 
 #: Least depth over a of points inside layers by the integral equation: memory goes as its inverse.
@@ -493,6 +511,10 @@ def make_plan(
     left_out = [name for name in named if others.get(name)]
     if methods and not {*OWN_METHODS} <= {*named}:
         warnings += [f"solve.methods: {name} does not solve this: {others[name]}" for name in left_out]
+    if methods and FEM not in methods and not scene.time and (unused := _of_elements(scene)):
+        warnings.append(
+            f"{listed(unused)}: without effect, because no finite elements solve this contact"
+        )
     friction, fem = enumerate_states(scene, done) if FEM in methods or scene.time else None, None
     if friction and FEM in methods:
         responses = [body.response(c) for c in order_.speeds]

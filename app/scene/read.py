@@ -257,7 +257,8 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
 
     Speeds, loads and the parameters of friction laws have several values in any scene, and one solution
     serves many of them. A number of a solid, a layer or a punch makes another problem: a scene with
-    several values of it stands for a scene for each combination. The last key changes fastest.
+    several values of it stands for a scene for each combination. The last key changes fastest. A list of
+    one value is that value, and takes its place.
 
     Args:
         tree: the scene as TOML gives it, with the constants of materials.
@@ -269,6 +270,9 @@ def _swept(tree: Mapping[str, Any], faults: list[str]) -> dict[str, tuple[float,
             a_range = isinstance(given, dict) and given.keys() & {"from", "to", "number"}
             several = isinstance(given, list) or a_range
             if several and key in keys and type(number := keys[key].kind) is Number:
+                if isinstance(given, list) and len(given) == 1:
+                    (table[key],) = given
+                    continue
                 try:
                     numbers = Numbers(number.unit, number.bounds)(given)
                     values[f"{path}.{key}"] = tuple(dict.fromkeys(numbers))

@@ -478,6 +478,11 @@ class Time:
                 raise ValueError(
                     f"load: found {lifted[0]} of N, expected more than 0: the punch stays down"
                 )
+        if self.steady and not self.load and self.load_ramp != Time.load_ramp:
+            raise ValueError(
+                f'load_ramp: found {self.load_ramp:g} with start = "steady", where the load is on from '
+                "t = 0; take it away, or give load over time"
+            )
         if self.every and not self.end / MOST_OUTPUTS <= self.every <= self.end:
             raise ValueError(
                 f"every: found {self.every:g}, expected at least {self.end / MOST_OUTPUTS:g} and at most "

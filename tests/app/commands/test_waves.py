@@ -51,6 +51,12 @@ def test_what_has_no_answer_is_refused(tmp_path):
     ):
         done = here("response", START, "-o", tmp_path, *words)
         assert done.returncode == 2 and said in done.stderr, done.stderr
-    done = here("response", HOME / "scenes" / "cylinder.toml", "-o", tmp_path)
-    assert done.returncode == 2 and "expected a level flat punch" in done.stderr
+    hump = ["--set", "solve.pressure=[[-1, 0], [0, -2], [1, 0]]"]
+    for name, words, said in (
+        ("cylinder", [], "expected a level flat punch"),
+        ("traction", hump, "found an elastic punch, a prescribed pressure"),
+        ("box", [], 'found solve.mesh = "box", expected no walls'),
+    ):
+        done = here("response", HOME / "scenes" / f"{name}.toml", "-o", tmp_path, *words)
+        assert done.returncode == 2 and said in done.stderr, done.stderr
     assert not list(tmp_path.iterdir())

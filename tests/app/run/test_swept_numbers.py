@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import THOROUGH, computed
+from support import THOROUGH, computed, scene_of
 
 from galinx.app.results import check
 from galinx.app.results.result import load
@@ -55,6 +55,11 @@ def test_every_state_is_that_of_a_scene_with_single_numbers():
         half_width = single.scene.body.half_width
         assert (result.data[swept.HALF_WIDTH.path][rows] == half_width).all()
         assert (result.data[swept.WAVE_SPEED.path][rows] == single.scene.solid.c_s).all()
+
+
+def test_a_list_of_one_number_is_that_number():
+    scene = scene_of("start_from_rest", {"punch.half_width": ["1 mm"], "solid.E": ["200 GPa"]})
+    assert not scene.variants and scene.body.half_width == 1e-3
 
 
 def test_a_number_of_one_variant_that_is_changed_is_a_fault(tmp_path):

@@ -11,7 +11,6 @@ from typing import Any
 from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.postprocess.quantities.validity import SLIP_REVERSED
-from galinx.postprocess.quantities.yielding import REACH_LEFT, REACH_RIGHT
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
 from galinx.solvers.contact.fem_plan import (
@@ -88,16 +87,13 @@ _OF_FLAT_PUNCHES = {
     PUNCH: "known of flat punches with one friction only",
 }
 
-#: Reach of yield from sharp edges, which is known of flat punches with any friction.
-_REACH = {row[CLOSED_FORM].path: "" for row in (REACH_LEFT, REACH_RIGHT)}
-
 
 def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     if body.no_closed_form:
         return body.no_closed_form
     lacks = _OF_FLAT_PUNCHES if FLAT in body.lacks and body.ends == SHARP else {}
     if body.along:
-        lacks = {word: why for word, why in lacks.items() if word not in (BELOW, YIELD)} | _REACH
+        lacks = {word: why for word, why in lacks.items() if word != BELOW}
     if scene.elastic_punch and scene.elastic_punch.speed:
         lacks = lacks | {row.path: "the punch's surface moves, too" for row in SLIP_REVERSED}
     return _refusal(quantity, body, lacks)

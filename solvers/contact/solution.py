@@ -159,6 +159,8 @@ class Contact:
             reasons[LAYERED] = "the solid has no layers"
         if self.along:
             reasons[FLAT] = "friction varies along the contact"
+            if not self.found:
+                reasons[YIELD] = "where friction varies, the solid may yield apart from the edges"
         return reasons
 
     @property

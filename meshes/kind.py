@@ -280,9 +280,7 @@ class MeshKind:
     def _innermost(self, required: Requirements) -> float:
         """Size of the innermost cells in the chart that meets the requirements."""
         tolerance = self._of_cells(required)
-        # The energy in a ring falls with this power of its size.
-        power = 4.0 * (1.0 + max(required.exponent, _STRONGEST))
-        size = float((self.innermost * tolerance) ** (1.0 / power))
+        size = float((self.innermost * tolerance) ** (1.0 / self._decay(required)))
         if required.nearest is not None:
             # The innermost cells cannot resolve the singularity. Beside them that shows in the stresses,
             # like the square of their size over the distance, both in this chart. Near the limit fields
@@ -362,7 +360,7 @@ class MeshKind:
         the cell's coordinates: it falls with the degree's fourth power only. Measured at degree 12, over
         all κ and speeds: 0.2 to 6 at rest, ten times as much at 0.99 of the Rayleigh speed. Straight
         cells have an error of 0.1 to 0.2 of their size squared at rest, 0.6 to 0.9 at that speed, at any
-        degree.
+        degree. At free ends it falls with a higher power of the size, as the energy there does.
 
         Args:
             required: requirements on the mesh.
@@ -373,7 +371,11 @@ class MeshKind:
             share = 0.3 / margin**0.4
         else:
             share = 6.0 / (cuts**2 * degree**4 * margin ** (2.0 / 3.0))
-        return share * self._innermost(required) ** 2
+        return share * self._innermost(required) ** max(self._decay(required), 2.0)
+
+    def _decay(self, required: Requirements) -> float:
+        """Power of the size of a ring with which the energy in it falls."""
+        return 4.0 * (1.0 + max(required.exponent, _STRONGEST))
 
     def _outer_ξ(self, required: Requirements) -> float:
         """Elliptic coordinate of the far boundary; its radius is a e^ξ/2."""

@@ -142,3 +142,16 @@ def test_a_contact_over_layers_that_leans_beyond_what_is_known_of_the_punch_is_r
     changes = {"punch": punch, "solve.methods": ["fem"], "solve.tolerance": 0.1}
     with pytest.raises(SolveError, match=r"known from -0\.001 m to 0\.00046 m only"):
         computed("coating", changes | {"friction.mu_c": 0.4, "motion.strokes": ["backward"]})
+
+
+@pytest.mark.parametrize("tolerance, mu", [(1e-6, 0.15), (1e-3, 0.9)])
+def test_a_point_inside_asks_for_few_cells_and_is_within_its_estimate(tolerance, mu):
+    """At free ends the energy in the innermost cells falls faster than the square of their size."""
+    result = computed("cylinder_on_steel", {
+        "friction.mu": mu, "solve.tolerance": tolerance,
+        "output": {"quantities": ["interior"], "points": [[0.0, -1.0]]},
+    })  # fmt: skip
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    fem, exact = (result.data[f"interior/{method}/von_mises"] for method in ("fem", "closed_form"))
+    assert np.abs(fem / exact - 1.0).max() < result.data["states/fem/estimate_inside"][0] < tolerance
+    assert result.data["run/fem/cells"][0] < 60

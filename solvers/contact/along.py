@@ -32,8 +32,8 @@ from .residual import Rule
 #: Distance from an end within which the pressure less its power is that of the end; distance of places,
 #: over that from the ends, at which a quotient is a derivative, and the step of that.
 _NEXT_TO_END, _SAME, _STEP = 1e-13, 1e-9, 1e-6
-#: Longest panel of a pressure by its values, and number and grading of those towards kinks of friction.
-_OF_FIELD = 0.5, 12, 0.2
+#: Longest panel of a pressure by its values, and number of those towards kinks of friction.
+_LONGEST, _TO_KINKS = 0.5, 12
 #: Integrals that are held in memory at once.
 _AT_ONCE = 500
 
@@ -106,7 +106,7 @@ class FlatAlong(Varying):
     @cached_property
     def rule(self) -> Rule:
         """Quadrature over the contact, graded towards kinks of friction."""
-        return Rule((*self.friction.kinks, *self.friction.weak_kinks))
+        return Rule(self.friction.jumps)
 
     def _divided(self, function: Callable[[NDArray], NDArray], r: NDArray, dμ: NDArray) -> NDArray:
         """∫ (f(t) - f(r))/(t - r) dμ(t) at places r, (n,)."""
@@ -157,9 +157,7 @@ class FlatAlong(Varying):
     @cached_property
     def _on_panels(self) -> "ExpansionAlong":
         """The pressure by its values, with the field below it."""
-        kinks = tuple(sorted({*self.friction.kinks, *self.friction.weak_kinks}))
-        longest, *towards_kinks = _OF_FIELD
-        panels = Panels(self.α, self.β, longest, kinks, *towards_kinks)
+        panels = Panels(self.α, self.β, _LONGEST, self.friction.jumps, _TO_KINKS)
         return ExpansionAlong(self.α, self.β, self.series(panels.t), panels, friction=self.friction)
 
     def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:

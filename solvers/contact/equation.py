@@ -270,7 +270,7 @@ class Equation:
         one oscillation of every panel as good as free where friction is small.
         """
         friction, response = self.friction, self.response
-        kinks = tuple(sorted({*self.kinks, *friction.kinks, *friction.weak_kinks}))
+        kinks = tuple(sorted({*self.kinks, *friction.jumps}))
         grading = _TO_KINKS_ALONG[bool(self.kinks)] if friction.varies else TO_BEND
         panels = Panels(
             self.α, self.β, finest, kinks, *grading, rough=self.kernel.rough, settled=_SETTLED,
@@ -387,8 +387,7 @@ def rule_of_ends(equation: Equation, resolution: Resolution) -> Rule:
         equation: of such a contact; its slope is not used.
         resolution: number of polynomials, or longest panel.
     """
-    adjoint, friction = replace(equation, adjoint=True), equation.friction
-    of_friction = (*friction.kinks, *friction.weak_kinks)
+    adjoint, of_friction = replace(equation, adjoint=True), equation.friction.jumps
     ρ = adjoint.pressures(resolution, (np.zeros_like, np.ones_like), (-2.0, 0.0))
 
     def rule(kinks: tuple[float, ...]) -> tuple[NDArray, NDArray, NDArray]:

@@ -266,8 +266,7 @@ class Contact:
     @property
     def jumps_of_friction(self) -> tuple[float, ...]:
         """Positions X/a of :attr:`friction_kinks`, and those at which a higher derivative jumps."""
-        every = {kink for along in self.along.values() for kink in (*along.kinks, *along.weak_kinks)}
-        return tuple(sorted(every))
+        return tuple(sorted({jump for along in self.along.values() for jump in along.jumps}))
 
     @property
     def _friction_has_length(self) -> bool:

@@ -55,9 +55,14 @@ class Along:
         return np.asarray(self.ratio(X.ravel())).reshape(X.shape)
 
     @property
+    def jumps(self) -> tuple[float, ...]:
+        """Positions inside at which it, or a derivative, jumps, rising."""
+        return tuple(sorted({*self.kinks, *self.weak_kinks}))
+
+    @property
     def largest(self) -> float:
         """σ_XY/σ_YY of the largest size."""
-        g = self(np.unique([*np.linspace(-1.0, 1.0, _SAMPLES), *self.kinks, *self.weak_kinks]))
+        g = self(np.unique([*np.linspace(-1.0, 1.0, _SAMPLES), *self.jumps]))
         return float(g[np.abs(g).argmax()])
 
     @property

@@ -21,7 +21,7 @@ TREES = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in
 PLANNED = (
     "along", "along_a_cylinder", "coating", "cylinder", "elastic_punch", "elastic_punch_on_coating",
     "flat", "own_pressure", "pressure_on_coating", "speeds_of_a_cylinder", "steady", "third_power",
-    "tilted_on_coating",
+    "tilted_on_coating", "yield_along",
 )  # fmt: skip
 #: Known solids are constants, and no code of their own.
 CONSTANTS = ("solid.material", "layer.material")

@@ -113,7 +113,7 @@ REACH_LEFT, REACH_RIGHT = (
         f"yield_reach_{side}", "1",
         f"reach of yield from {at}, the largest distance on its side of the middle, at the load, over "
         f"the half-width; {_BEYOND}",
-        entry(lambda s: s.strength.reach, ..., i), mode=PUNCH, scale=OVER_A,
+        entry(lambda s: s.strength.reach, ..., i), mode=PUNCH, scale=OVER_A, own=(CLOSED_FORM, FEM),
     )
     for i, (side, at) in enumerate((("left", "X = -a"), ("right", "X = a")))
 )  # fmt: skip

@@ -73,19 +73,22 @@ def test_friction_in_the_table_is_the_force_over_the_load():
 YIELDING = {"quantities": ["sif", "surface", "interior", "yield"]}
 
 
-def test_one_friction_along_the_contact_yields_as_a_number():
-    """The largest shear is the limit at a free end, which the pressure's weight hides."""
+@pytest.mark.parametrize("of", ["", "punch_"])
+def test_one_friction_along_the_contact_yields_as_a_number(of):
+    """The largest shear under a rigid punch is the limit at a free end, which the weight hides."""
+    punch = {"profile": "parabolic", "radius": "10 mm", "load": "500 N/mm"}
     by = {
-        "punch": {"profile": "parabolic", "radius": "10 mm", "load": "500 N/mm"},
+        "solid": {"E": "210 GPa", "nu": 0.3, "rho": 7850, "yield_strength": "500 MPa"},
+        "punch": punch | ({"solid": ISOTROPIC} if of else {}),
         "output": YIELDING | {"points": [[0.3, -0.4]]},
     }
-    solid = {"E": "210 GPa", "nu": 0.3, "rho": 7850, "yield_strength": "500 MPa"}
-    along = slid({"along": [[-1, 0.4], [1, 0.4]]}, solid, solve={"methods": ["sie"]}, **by).data
-    number = slid({"mu": 0.4}, solid, solve={"methods": ["closed_form"]}, **by).data
-    assert number["states/closed_form/max_shear_X_over_a"] == -1.0
-    for name in ("von_mises", "max_shear", "first_yield_load", "yield_depth"):
-        of_along, of_number = along[f"states/sie/{name}"], number[f"states/closed_form/{name}"]
+    along = slid({"along": [[-1, 0.4], [1, 0.4]]}, solve={"methods": ["sie"]}, **by).data
+    number = slid({"mu": 0.4}, solve={"methods": ["closed_form"]}, **by).data
+    names = "von_mises", "max_shear", "first_yield_load", "yield_depth", f"{of}von_mises"
+    for name in (*(f"states/{{}}/{name}" for name in names), f"interior/{{}}/{of}sigma_XY"):
+        of_along, of_number = along[name.format("sie")], number[name.format("closed_form")]
         np.testing.assert_allclose(of_along, of_number, rtol=1e-7, err_msg=name)
+    assert of or number["states/closed_form/max_shear_X_over_a"] == -1.0
 
 
 def test_yield_below_varying_friction_by_both_methods_in_both_bodies():

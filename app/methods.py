@@ -137,6 +137,8 @@ def fem_mode(scene: Any) -> str:
 
 def _fem_along_refusal(scene: Any, body: Contact) -> str:
     """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
+    if crowded := crowded_kinks(body.friction_kinks):
+        return f"friction has {crowded}"
     if body.friction_kinks and body.found and len(kinks(body.profile)):
         return "friction and the punch both have kinks"
     moving = body.found and any(along.has_length for along in scene.along.values())
@@ -146,7 +148,7 @@ def _fem_along_refusal(scene: Any, body: Contact) -> str:
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
     if VARYING in body.modes and (why := _fem_along_refusal(scene, body)):
-        return f"{why}; sie takes it"
+        return f"{why}; {SIE if body.no_closed_form else CLOSED_FORM} takes it"
     lacks = _LACKING.get(mode, {})
     if body.solid.nearly_incompressible:
         lacks = lacks | dict.fromkeys((BELOW, YIELD), "finite elements give none inside for ν > 0.49")

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import declared
 from galinx.postprocess.quantities.over_time import TIME
-from galinx.postprocess.quantities.quantity import FEM, FRICTION_ALONE
+from galinx.postprocess.quantities.quantity import FRICTION_ALONE
 from galinx.postprocess.quantities.runs import SLIDER
 from galinx.postprocess.units import engineering
 from galinx.solvers.contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, YIELD
-from galinx.solvers.contact.fem_plan import crowded_kinks
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import FINITE, FREE, PUNCH, STRENGTH, Contact, make_contact
 from galinx.solvers.friction.along import Along, advected, tabulated
@@ -258,13 +257,6 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
                 "expected a law with f >= 0 at its start"
             )
             return
-    if FEM in scene.solve.methods:
-        try:
-            crowded = crowded_kinks(scene.body.friction_kinks)
-        except ValueError as error:
-            crowded = str(error)
-        if crowded:
-            yield f'friction along the contact: found {crowded}; or take solve.methods = ["closed_form"]'
 
 
 def _not_varying(scene: Scene) -> str:

@@ -294,7 +294,9 @@ class Equation:
         b = np.vstack([np.stack([slope(r) * scale for slope in slopes], axis=-1), loads])
         # No column is nearly dependent: without pivots it takes a third of the time.
         size, _ = dgels_lwork(*A.shape, b.shape[1])
-        _, x, _ = dgels(A, b, lwork=int(size))
+        _, x, dependent = dgels(A, b, lwork=int(size))
+        if dependent:
+            raise SolveError("the integral equation on panels is singular")
         c = x[: A.shape[1]].T
         if friction.varies:
             return ExpansionAlong(self.α, self.β, c, panels, friction=friction)

@@ -527,7 +527,7 @@ def on_panels(pressure: Pressure, row: int, α: float, β: float, friction: Alon
         friction: σ_XY/σ_YY over X/a.
     """
     sharp_α, sharp_β = α - (α > 0.0), β - (β > 0.0)
-    panels = replace(panels_of_slope(-sharp_α, friction.kinks, friction.varies), β=sharp_β)
+    panels = replace(panels_of_slope(-sharp_α, friction.jumps, friction.varies), β=sharp_β)
     inner = np.clip(panels.t, -pressure.near, pressure.near)
     # 1 - t = 2/(1 + e^x) has all its digits next to an end.
     right, left = (2.0 / (1.0 + np.exp(sign * panels.x)) for sign in (1.0, -1.0))

@@ -19,7 +19,7 @@ from galinx.postprocess.over_time import IN_TIME, OF_SURFACE
 from galinx.postprocess.quantities.quantity import FEM, SIE
 from galinx.solvers.approximation import gauss_in_panels
 from galinx.solvers.friction.integrate import INTEGRATORS
-from galinx.solvers.friction.motion import Leg, follow
+from galinx.solvers.friction.motion import Leg, Stroke, follow
 from galinx.solvers.profiles.punches import is_level
 from galinx.solvers.solids.half_plane import HalfPlane
 from galinx.solvers.transient.history import Drive, Load, Way
@@ -87,62 +87,68 @@ def _drives_by_law(scene: Scene, c: float) -> tuple[Drive, ...]:
         BadInput: the law refuses its parameters.
     """
     assert scene.time
-    friction, end = scene.friction, scene.time.end
+    friction, V = scene.friction, c * scene.solid.c_s
     durations = np.array(_durations(scene, scene.legs, c))
     starts = np.concatenate([[0.0], np.cumsum(durations)[:-1]])
     # A stroke is followed as long as the motion lasts; later ones have no part in it.
-    lasting = np.clip(end - starts, _LEAST_LASTING * durations, durations)
+    lasting = np.clip(scene.time.end - starts, _LEAST_LASTING * durations, durations)
     (way,) = headings(scene, [scene.legs[0].s]).tolist()
     drives = []
     try:
         for law in friction.laws():
 
-            def over_time(times: list[NDArray]) -> list[NDArray]:
+            def over_time(times: list[NDArray]) -> list[Stroke]:
                 shares = (t / duration for t, duration in zip(times, durations))
                 places = [leg.start + (leg.end - leg.start) * of for leg, of in zip(scene.legs, shares)]
-                strokes = follow(
-                    law, scene.legs, friction.pre_sliding, places, c * scene.solid.c_s,  # noqa: B023
-                    INTEGRATORS[friction.integrator],
-                )  # fmt: skip
-                return [friction.stress_ratio * stroke.f for stroke in strokes]
+                integrator = INTEGRATORS[friction.integrator]
+                return follow(law, scene.legs, friction.pre_sliding, places, V, integrator)  # noqa: B023
 
-            along = _interpolated(over_time, lasting)
+            begun, times = over_time([np.zeros(1)] * len(lasting)), list[NDArray]()
+            for leg, stroke, end in zip(scene.legs, begun, lasting.tolist()):
+                kinks = law.kinks(stroke.z[0], leg.s, V) / (c * scene.body.half_width)
+                within = kinks[(kinks > 0.0) & (kinks < end)]
+                times.append(np.union1d(np.linspace(0.0, end, 1 + _INTERVALS), within))
+            along = _interpolated(
+                lambda times: [friction.stress_ratio * stroke.f for stroke in over_time(times)],
+                times,
+            )
             drives.append(Drive(way, None, tuple(starts.tolist()), along))
     except ValueError as error:
         raise BadInput(f"friction: {error}") from None
     return tuple(drives)
 
 
-#: Least part of a stroke that is followed; intervals of time at first; accuracy of friction between two
-#: times, most halvings of an interval, and most times of a stroke.
-_LEAST_LASTING, _INTERVALS, _FOLLOWED, _HALVED, _TIMES = 1e-6, 128, 1e-7, 30, 20_000
+#: Least part of a stroke that is followed; intervals of time at first, and where they are cut: in their
+#: middle a polynomial between two kinks would meet a straight line.
+_LEAST_LASTING, _INTERVALS, _CUT = 1e-6, 128, 0.382
+#: Accuracy of friction between two times, most cuts of an interval, and most times of a stroke.
+_FOLLOWED, _CUTS, _TIMES = 1e-7, 40, 20_000
 
 
 def _interpolated(
-    over_time: Callable[[list[NDArray]], list[NDArray]], lasting: NDArray
+    over_time: Callable[[list[NDArray]], list[NDArray]], times: list[NDArray]
 ) -> tuple[Any, ...]:
     """Friction of each stroke over the time since its beginning, SciPy's polynomials by pieces.
 
-    Intervals of time are halved until the middle of each is what its neighbours say.
+    Intervals of time are cut until a place in each is what its neighbours say.
 
     Args:
         over_time: friction of all strokes at rising times of each, (n,) each.
-        lasting: time for which each stroke is followed, (strokes,).
+        times: rising times of each stroke to begin with, from 0 on, kinks of friction among them.
     """
     from scipy.interpolate import PchipInterpolator  # a slow import
 
-    times = [np.linspace(0.0, duration, 1 + _INTERVALS) for duration in lasting.tolist()]
     along = [PchipInterpolator(*of) for of in zip(times, over_time(times))]
-    rough = [np.ones(_INTERVALS, dtype=bool) for _ in times]
-    for _ in range(_HALVED):
-        middles = [(t[1:] + t[:-1])[some] / 2.0 for t, some in zip(times, rough)]
-        expected = [g(t) for g, t in zip(along, middles)]
-        times = [np.union1d(t, more) for t, more in zip(times, middles)]
+    rough = [np.ones(len(t) - 1, dtype=bool) for t in times]
+    for _ in range(_CUTS):
+        places = [(t[:-1] + _CUT * np.diff(t))[some] for t, some in zip(times, rough)]
+        expected = [g(t) for g, t in zip(along, places)]
+        times = [np.union1d(t, more) for t, more in zip(times, places)]
         g = over_time(times)
         along = [PchipInterpolator(*of) for of in zip(times, g)]
         rough = []
-        for t, of, middle, was in zip(times, g, middles, expected):
-            at = np.searchsorted(t, middle)
+        for t, of, place, was in zip(times, g, places, expected):
+            at = np.searchsorted(t, place)
             off = at[np.abs(of[at] - was) > _FOLLOWED]
             around = np.clip(np.add.outer(off, [-2, -1, 0, 1]).ravel(), 0, len(t) - 2)
             rough.append(np.isin(np.arange(len(t) - 1), around) & (len(t) < _TIMES))

@@ -55,6 +55,19 @@ def test_friction_is_that_of_the_law_however_long_strokes_are(L):
     np.testing.assert_allclose(-drive(t), f, atol=2e-7)
 
 
+def test_friction_of_a_table_is_followed_through_peaks_narrower_than_the_first_intervals():
+    shape = [[0.0, 0.1], [3.13e-5, 0.1], [3.14e-5, 0.5], [3.15e-5, 0.1], [9e-5, 0.1]]
+    scene = scene_of("start_from_rest", {
+        "friction": {"model": "table", "shape": shape, "pre_sliding": 8e-5}, "punch.half_width": 1e-3,
+        "time": {"friction": "law", "end": 0.8}, "motion": {"c": 0.2, "strokes": ["forward", "backward"]},
+    })  # fmt: skip
+    (drive,) = make_plan(scene).starts.drives[0.2]
+    slip = np.array([1e-5, 3.135e-5, 3.14e-5, 3.1425e-5, 3.2e-5, 7e-5])
+    f = np.interp(slip, *np.transpose(shape))
+    np.testing.assert_allclose(-drive(slip / 2e-4), f, atol=2e-7)
+    np.testing.assert_allclose(drive((8e-5 + slip[:-2]) / 2e-4), f[:-2], atol=2e-7)
+
+
 def test_a_start_is_archived_judged_and_drawn(tmp_path):
     changes = [f"--set={key}={value}" for key, value in (QUICK | {"time.every": 1.5}).items()]
     done = here("run", "scenes/start_from_rest.toml", "-o", tmp_path / "s.h5", *changes)

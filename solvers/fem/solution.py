@@ -21,7 +21,6 @@ from ..contact.residual import of_contact
 from ..contact.solution import Contact, Task, solved_once
 from ..contact.stresses import PLACES, Surface, Turns, together
 from ..contact.yielding import InSolid
-from ..friction.along import Along
 from .fields import Displacement
 from .punch import ContactStates
 
@@ -69,8 +68,8 @@ class SolvedStates:
         return np.asarray(self.body.ratio(self.contact.g, X, self.contact.half_width))
 
     @property
-    def frictions(self) -> list[Along]:
-        """σ_XY/σ_YY over the contact of each state."""
+    def frictions(self) -> list[Any]:
+        """σ_XY/σ_YY over the contact of each state, objects of :class:`.along.Along`."""
         each = zip(self.contact.g.tolist(), self.contact.half_width.tolist())
         return [self.body.friction(g, a) for g, a in each]
 

@@ -159,14 +159,15 @@ class Contact:
             reasons[LAYERED] = "the solid has no layers"
         if self.along:
             reasons[FLAT] = "friction varies along the contact"
-            if not self.found:
-                reasons[YIELD] = "where friction varies, the solid may yield apart from the edges"
         return reasons
 
     @property
     def _lacks(self) -> dict[str, str]:
         """Reasons of :attr:`lacks` by the ends of the contact."""
-        return {} if self.flat else {FLAT: "the punch is not flat"}
+        reasons = {} if self.flat else {FLAT: "the punch is not flat"}
+        if self.along:
+            reasons[YIELD] = "where friction varies, the solid may yield apart from the edges"
+        return reasons
 
     @property
     def strengths(self) -> tuple[float | None, ...]:

@@ -492,13 +492,15 @@ def checked(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
         attributes: attributes of the archive's root.
     """
     figures = judged(attributes)
-    kinds: dict[str, list[float]] = {"two methods agree to": [], "estimated error": [], "residual": []}
-    kinds["stresses inside against line loads"] = []
+    agree, line_loads = "two methods agree to", "stresses inside against line loads"
+    kinds: dict[str, list[float]] = {
+        kind: [] for kind in (agree, "estimated error", "residual", line_loads)
+    }
     by_text = {rule.text: rule for rule in RULES.values()}
     for text, (value, _) in figures.items():
         kind = next((kind for kind in kinds if text.startswith(kind)), "")
         if text in by_text and len({row.method for row in by_text[text].needs} - {""}) > 1:
-            kind = "two methods agree to"
+            kind = agree
         if kind:
             kinds[kind].append(value)
     limits = [limit for text, (_, limit) in figures.items() if "nodal forces" not in text]

@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,7 @@ from .. import ranks
 from ..errors import BadInput, listed
 from ..methods import METHODS, OWN_METHODS
 from ..scene.scene import FRICTIONS, Scene, oddities
+from ..scene.sections import Solve
 from . import elements
 from .over_time import Starts, starts
 from .states import Order, States, enumerate_states, order
@@ -249,12 +251,10 @@ def _faults(
             "its pieces are put together from the deformation of condensed cells"
         )
     if FEM in solve.methods and scene.time is not None:
-        usual: dict[str, tuple[str | None, ...]] = {"assembler": ("tensor",)}
-        if FEM not in methods:  # of steady motion
-            usual |= {"mesh": ("confocal",), "degree": (None,), "solver": ("auto", "direct")}
-        given = {key: getattr(solve, key) for key in usual}
-        wrong = [f"solve.{key} = {json.dumps(of)}" for key, of in given.items() if of not in usual[key]]
-        if wrong:
+        # Those of steady motion may have a mesh.
+        keys = ("assembler",) if FEM in methods else ("mesh", "degree", "solver", "assembler")
+        given = _given(solve, keys).items()
+        if wrong := [f"solve.{key} = {json.dumps(of)}" for key, of in given if of != "direct"]:
             yield (
                 f"time: found {' and '.join(wrong)}, but motions in time have meshes, degrees and "
                 "matrices of their own; take that away"
@@ -274,10 +274,14 @@ def _faults(
         yield from elements.faults(scene, places, alone={*methods} == {FEM})
 
 
-def _of_elements(scene: Scene) -> list[str]:
-    """Keys of finite elements that a scene gives."""
-    usual = {"mesh": "confocal", "degree": None, "cuts": 1, "solver": "auto", "assembler": "tensor"}
-    return [f"solve.{key}" for key, value in usual.items() if getattr(scene.solve, key) != value]
+#: Keys of [solve] that finite elements alone follow.
+_OF_ELEMENTS = ("mesh", "degree", "cuts", "solver", "assembler")
+
+
+def _given(solve: Solve, keys: Iterable[str]) -> dict[str, Any]:
+    """Those of some keys of [solve] that do not have their usual values, with their values."""
+    values = {key: getattr(solve, key) for key in keys}
+    return {key: value for key, value in values.items() if value != getattr(Solve, key)}
 
 
 #: Least depth over a of points inside layers by the integral equation: memory goes as its inverse.
@@ -297,11 +301,10 @@ def _faults_of_layers(scene: Scene) -> Iterator[str]:
         reasons.append(
             'solve.mode is "traction" with the pressure of a closed form, which layers do not have'
         )
-    for key, default in {"mesh": "confocal", "degree": None}.items():
-        if FEM in solve.methods and (value := getattr(solve, key)) != default:
-            reasons.append(
-                f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
-            )
+    reasons += [
+        f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
+        for key, value in _given(solve, ("mesh", "degree") if FEM in solve.methods else ()).items()
+    ]
     if reasons:
         yield (
             f"layer: found layers, and {'; '.join(reasons)}. Over layers methods = "
@@ -511,10 +514,14 @@ def make_plan(
     left_out = [name for name in named if others.get(name)]
     if methods and not {*OWN_METHODS} <= {*named}:
         warnings += [f"solve.methods: {name} does not solve this: {others[name]}" for name in left_out]
-    if methods and FEM not in methods and not scene.time and (unused := _of_elements(scene)):
-        warnings.append(
-            f"{listed(unused)}: without effect, because no finite elements solve this contact"
-        )
+    if (
+        methods
+        and FEM not in methods
+        and not scene.time
+        and (unused := _given(scene.solve, _OF_ELEMENTS))
+    ):
+        keys = listed([f"solve.{key}" for key in unused])
+        warnings.append(f"{keys}: without effect, because no finite elements solve this contact")
     friction, fem = enumerate_states(scene, done) if FEM in methods or scene.time else None, None
     if friction and FEM in methods:
         responses = [body.response(c) for c in order_.speeds]

@@ -180,11 +180,12 @@ def settled(
         function: of positions, (n,): (curves, n).
         X, values: rising positions, and its values there, (n,) and (curves, n).
         ends: largest and smallest value, each with its place, by samples, and by fewer of them,
-            (2, 2, 2, curves): largest or smallest, value or place, by more or fewer.
+            (2, 2, 2, curves): largest or smallest, value or place, by more or fewer; or the largest
+            alone, (1, 2, 2, curves).
         accuracy: difference by fewer samples, over the largest of all, up to which these settle it.
 
     Returns:
-        Largest and smallest value, each with its place, (2, 2, curves).
+        The values, each with its place, (2, 2, curves) or (1, 2, curves).
     """
     apart = _apart(X)
     X, values = X[apart], values[:, apart]

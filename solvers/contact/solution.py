@@ -760,7 +760,7 @@ class Solution:
         return np.stack([self.extremes_along(i, lambda σ: σ) for i in range(count)], axis=-1)
 
     def extremes_along(
-        self, interface: int, measure: Callable[[NDArray], NDArray]
+        self, interface: int, measure: Callable[[NDArray], NDArray], signs: Sequence[float] = (1.0, -1.0)
     ) -> NDArray[np.float64]:
         """Largest and smallest measures along an interface, each and its place, (2, 2, m, states).
 
@@ -769,10 +769,11 @@ class Solution:
         Args:
             interface: its number.
             measure: of stresses (4, ..., n), see ``interfaces``: (m, ..., n).
+            signs: 1 alone for the largest alone, (1, 2, m, states).
         """
 
         def ends(curves: NDArray, X: NDArray) -> NDArray[np.float64]:
-            each = [[extreme(curves, X, s, n) for n in (ALONG, FEWER)] for s in (1.0, -1.0)]
+            each = [[extreme(curves, X, s, n) for n in (ALONG, FEWER)] for s in signs]
             return np.swapaxes(each, 1, 2)
 
         X, σ = self.places.along, self.interfaces[:, :, interface]

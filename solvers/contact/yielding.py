@@ -661,7 +661,7 @@ class StrengthOfLayers:
                 each = ((σ[2 + side], σ[0], σ[1]) for side in (0, 1))
                 return np.array([von_mises(*of, own.σ_ZZ(*of)) for own, of in zip(beside, each)])  # noqa: B023
 
-            value, X = self.solution.extremes_along(i, on_both_sides)[0]
+            ((value, X),) = self.solution.extremes_along(i, on_both_sides, (1.0,))
             for side in (0, 1):
                 at = value[side, :, None], X[side, :, None]
                 of_layers[i + side] = _higher(of_layers[i + side], *at, -depth / half_width)

@@ -191,7 +191,7 @@ class Punch:
 
     profile: Profile
     loads: tuple[float, ...] = key(
-        Numbers("N/m", _POSITIVE), "normal load N per depth", None,
+        Numbers("N/m", _POSITIVE), "normal force N per depth", None,
         "dimensionless results do not depend on it where the contact is that of a flat punch",
         name="load", without="needed; of a flat punch the study's 55.3 N/mm",
     )  # fmt: skip
@@ -354,7 +354,7 @@ class Motion:
         "finite elements want it below the Rayleigh speed", without="one of `c` and `speed`",
     )  # fmt: skip
     speed: tuple[float, ...] | None = key(
-        Numbers("m/s", _NOT_NEGATIVE), "speed V", None,
+        Numbers("m/s", _NOT_NEGATIVE), "velocity V", None,
         "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
     )  # fmt: skip
     strokes: tuple[str | Partial, ...] = key(
@@ -638,14 +638,13 @@ class Section:
         for key in (key for key in given if key not in keys):
             others = [n for n, model in (self.models or {}).items() if key in parameters(model)]
             elsewhere = [f"[{section}]" for section, of in SECTIONS.items() if key in of.every]
-            word = rf"\b{re.escape(key)}\b"
-            meaning = [n for n, entry in keys.items() if re.search(word, entry.about, re.IGNORECASE)]
+            meaning = _meaning(key, keys)
             hint = nearest(key, [*keys])
             if others:
                 have = "has it" if len(others) == 1 else "have it"
                 hint = f' of {self.chosen} = "{self.model(given)}"; {", ".join(others)} {have}'
             elif meaning and not meant(key, keys):
-                hint = f"; did you mean {' or '.join(meaning[:2])}?"
+                hint = f"; did you mean {' or '.join(f'{n} ({keys[n].about})' for n in meaning[:2])}?"
             elif len(elsewhere) == 1:
                 hint = f"; it is one of {elsewhere[0]}"
             own_faults.append(f"{name}.{short(key)}: no such key{hint}")
@@ -723,6 +722,16 @@ class Section:
             if default is not REQUIRED:
                 default = (default,)
         return Key(value, parameter.about, default, parameter.note)
+
+
+def _meaning(key: str, keys: Mapping[str, Key]) -> list[str]:
+    """Keys whose meaning has most words of one that is not a key; long words as far as they go."""
+    words = key.lower().split("_")
+    patterns = [rf"\b{re.escape(word)}" + r"\b" * (len(word) < 4) for word in words if word]
+    about = {name: entry.about.lower().replace("'", "") for name, entry in keys.items()}
+    hits = {name: sum(bool(re.search(one, text)) for one in patterns) for name, text in about.items()}
+    most = max(hits.values(), default=0)
+    return [name for name, hit in hits.items() if hit == most > 0]
 
 
 class LayerSections(Section):

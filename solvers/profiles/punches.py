@@ -133,9 +133,9 @@ class Wedge(Profile):
     exponent: ClassVar[float] = 1.0
 
     slope_of_flanks: float = parameter(
-        "slope", "slope of both flanks", "rad", symbol="s", above=0.0, usual=(1e-6, 0.2),
-        note='a number, or an angle to the surface as `"1 deg"`, which linear theory takes for the '
-        "slope; it has to be small",
+        "slope", "slope of both flanks, their angle", "rad", symbol="s", above=0.0, usual=(1e-6, 0.2),
+        note='a number, or an angle as `"1 deg"`, which linear theory takes for the slope; '
+        "it has to be small",
     )  # fmt: skip
 
     def height(self, X: NDArray) -> NDArray[np.float64]:

@@ -237,7 +237,7 @@ def test_places_ask_for_stresses_inside_and_these_have_places(given):
         ),
         ("mu = 0.15", "mu = 0.15\nmu_c = 0.15", "1 fault:\n  friction: mu and mu_c exclude each other"),
         ("mu = 0.15", "mu = 0.15\nsigma0 = 1e9", "friction.sigma0: no such key"),
-        ("mu = 0.15", "coefficient = 0.15", "coefficient: no such key; did you mean mu_c or mu?"),
+        ("mu = 0.15", "coefficient = 0.15", "coefficient: no such key; did you mean mu_c (Coulomb's"),
     ],
 )
 def test_messages_say_what_to_write(old, new, message):

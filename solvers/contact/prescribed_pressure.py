@@ -91,11 +91,14 @@ class LinearPressure(Pressure):
         return self._weighted(self._cut(self.knots, finest))
 
     def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        whole = self.points(self.length)
+        if not self.rough:
+            t, σ = self.points(self.length)
+            return np.array([σ @ kernel(place - t) for place in r])
         integrals = []
         for place in r.tolist():
-            t, σ = self._weighted(self._towards(place)) if self.rough else whole
-            integrals.append(σ @ kernel(place - t))
+            # Distances from the place: differences of positions may round to 0, an infinite kernel.
+            away, σ = self._weighted(self._from(place), place)
+            integrals.append(σ @ kernel(-away))
         return np.array(integrals)
 
     def _cut(self, ends: NDArray, finest: float) -> NDArray[np.float64]:
@@ -107,19 +110,20 @@ class LinearPressure(Pressure):
             panels.append(low + (high - low) * np.arange(1, count + 1) / count)
         return np.concatenate(panels)
 
-    def _towards(self, place: float) -> NDArray[np.float64]:
-        """Ends of panels that get shorter towards a place."""
+    def _from(self, place: float) -> NDArray[np.float64]:
+        """Ends of panels as distances from a place, towards which the panels get shorter."""
         near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
-        knots = self.knots
-        more = np.concatenate([place - near, place + near])
+        knots, more = self.knots - place, np.concatenate([-near, near])
         inside = more[(more > knots[0]) & (more < knots[-1])]
         return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
 
-    def _weighted(self, ends: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _weighted(
+        self, ends: NDArray, place: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         x, w = np.polynomial.legendre.leggauss(self.nodes)
         half = np.diff(ends) / 2.0
         t = ((ends[1:] + ends[:-1])[:, None] / 2.0 + half[:, None] * x).ravel()
-        return t, (half[:, None] * w).ravel() * self(t)
+        return t, (half[:, None] * w).ravel() * self(place + t)
 
     def _integral(self, z: NDArray) -> NDArray[Any]:
         """Φ, or its real part on the surface, by pieces that are loaded, as many as memory allows."""

@@ -1,5 +1,6 @@
 """The exact solution of a pressure that is linear between knots, against integrals in 60 digits."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import mpmath as mp
@@ -82,3 +83,29 @@ def test_under_the_pressure_the_field_meets_the_surface(name):
     np.testing.assert_allclose(-below.imag, pressure(X), atol=1e-9)
     uneven = pressure.hilbert(np.array([-0.7])) - pressure.hilbert(np.array([-0.7 + 1e-9]))
     assert np.abs(uneven) < 1e-6
+
+
+@pytest.mark.parametrize("name", PRESSURES)
+def test_kernels_that_are_infinite_at_a_place_are_integrated_there(name):
+    """Logarithm and jump of graded layers: differences of positions far from 0 round to 0."""
+    pressure = replace(pressure_of(name), rough=True, length=0.3)
+    r = np.concatenate([pressure.knots, np.linspace(-1.1, 1.1, 301), [0.9999999]])
+
+    def kernel(x):
+        return np.column_stack([np.log(np.abs(x)), np.sign(x)])
+
+    def primitives(x):
+        """∫ and ∫ x of both functions from 0."""
+        log = np.log(np.abs(x), where=x != 0.0, out=np.zeros_like(x))
+        return (x * (log - 1.0), np.abs(x)), (x**2 * (log / 2.0 - 0.25), x * np.abs(x) / 2.0)
+
+    wanted, steepest = 0.0, 0.0
+    for (a, σ_a), (b, σ_b) in pairwise(PRESSURES[name]):
+        slope = (σ_b - σ_a) / (b - a)
+        steepest = max(steepest, abs(slope))
+        ends = primitives(r - a), primitives(r - b)
+        (of_1, of_x) = (np.stack(upper, -1) - np.stack(lower, -1) for upper, lower in zip(*ends))
+        wanted += (σ_a + slope * (r - a))[:, None] * of_1 - slope * of_x
+    # Primitives cancel in narrow pieces.
+    atol = 1e-12 + 1e-15 * steepest
+    np.testing.assert_allclose(pressure.integral(kernel, r), wanted, rtol=0.0, atol=atol)

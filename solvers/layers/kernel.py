@@ -238,6 +238,10 @@ def wavenumbers(stack: LayersAtSpeed) -> float:
     return _FIRST / float(stack.depths[-1])
 
 
+#: Least power of the depth with which a graded top changes, whose kernel polynomials follow.
+_SMOOTH = 3.0
+
+
 @dataclass(frozen=True)
 class Kernel:
     """Kernels of layers on a substrate: u,X by σ_XY, u,X by σ_YY, v,X by σ_XY, v,X by σ_YY, times μ.
@@ -262,8 +266,9 @@ class Kernel:
 
     @property
     def rough(self) -> bool:
-        """True where the kernel has a logarithm and a jump at 0."""
-        return bool(np.any(self.order))
+        """True where no polynomial follows the kernel next to 0: a logarithm, a jump, a low power."""
+        graded = any(1.0 < layer.power < _SMOOTH for layer in self.stack.layers[:1])
+        return graded or bool(np.any(self.order))
 
     @property
     def length(self) -> float:
@@ -319,7 +324,7 @@ class Scaled:
 
     @property
     def rough(self) -> bool:
-        """True where the kernel has a logarithm and a jump at 0."""
+        """True where no polynomial follows the kernel next to 0."""
         return self.kernel.rough
 
     @property

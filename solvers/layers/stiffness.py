@@ -33,7 +33,7 @@ difference δ = Z - Z₋ and the displacement u that belongs to it obey
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -111,10 +111,13 @@ class Uniform:
     Attributes:
         medium: its solid.
         H: thickness over a.
+        power: of the depth with which it changes; infinite, as it does not.
     """
 
     medium: Medium
     H: float
+
+    power: ClassVar[float] = np.inf
 
     @property
     def top(self) -> Medium:

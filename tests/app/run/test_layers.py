@@ -63,6 +63,13 @@ def test_flat_punches_over_graded_tops_reach_the_usual_tolerance_by_finite_eleme
     assert result.data["states/fem/estimate"].max() < 5e-7
 
 
+@pytest.mark.parametrize("exponent", [1.5, 1.75, 2.0] if THOROUGH else [2.0])
+def test_low_powers_of_the_depth_reach_the_usual_tolerance(exponent):
+    """Their kernels go with a low power of the distance, which no polynomial follows."""
+    powers = {"layer[0].grading": "power", "layer[0].exponent": exponent, "solve.methods": ["sie"]}
+    assert coated(GRADED, powers, {"output.quantities": ["sif", "surface"]}).verdict == "PASS"
+
+
 def test_rows_by_depth_are_linear_grading():
     rows = [[0, "7.5 GPa", 0.3, 1200], ["0.4 mm", "5.5 GPa", 0.28, 1120], ["1 mm", "2.5 GPa", 0.25, 1000]]
     of_rows = {"layer": [{"properties": rows, "yield_strength": "30 MPa"}]}

@@ -42,8 +42,8 @@ _INSTANT = 1e-16
 #: motion: the tolerance leaves about as much in a cycle. Most crossings of the drive's speed in a cycle.
 _CYCLES, _SAME, _MOST_CROSSINGS = 8, 1e-8, 32
 #: Differences of the spring between the ends of a cycle, over its swing, up to which it is one: of the
-#: last cycle of any motion, and of a periodic one.
-_ALIKE, _CLOSE = 1e-2, 1e-5
+#: last cycle of any motion, and of a periodic one; and what it may still lose or gain in all.
+_ALIKE, _CLOSE, _LEFT = 1e-2, 1e-5, 0.1
 #: Share of the largest velocity from which on a mass slips.
 _SLIPS = 1e-3
 #: Shares of the drive's speed: difference of a speed from it in steady sliding, and speed of a mass that
@@ -153,9 +153,12 @@ class Ride:
         # Of two crossings one ends a cycle; of more there are two cycles.
         for k in range(1, min(len(e), max((len(e) + 1) // 2, 2))):
             swing = np.ptp(E[np.searchsorted(self.t, self.crossings[-1 - k]) :])
-            before = e[: len(e) - k]
-            if (np.abs(e[k:] - before)[-2:] <= closely * swing).all():
-                return k
+            changes = np.abs(e[k:] - e[: len(e) - k])
+            if (changes[-2:] > closely * swing).any():
+                continue
+            # A swing that dies out changes little in a cycle, too: by a share of what is left of it.
+            falls = 1.0 - changes[-1] / changes[-1 - k] if len(changes) > k and changes[-1 - k] else 1.0
+            return k if changes[-1] <= max(_LEFT * falls, _CLOSE) * swing else 0
         return 0
 
     def _since(self, crossings: int) -> tuple[float, float]:

@@ -349,7 +349,7 @@ def _checked(
         swept=swept, elastic_punch=read.pop("punch.solid"), free_ends=free_ends, **read,
     )  # fmt: skip
     if not named:
-        usual = steady and bool(scene.solve.methods)
+        usual = scene.time or scene.slider or (steady and scene.solve.methods)
         quantities = usual_quantities(scene) if usual else scene.output.quantities
         quantities += (BELOW,) * scene.output.has_places
         scene = replace(scene, output=replace(scene.output, quantities=quantities))
@@ -380,7 +380,7 @@ def _fill_in_motion(tree: dict[str, Any]) -> bool:
     memory = LAWS[SECTIONS["friction"].model(friction)].has_memory
     if memory and friction.get("state") != ADVECTED:
         return False
-    if motion.keys() & {"strokes", "X_over_L", "path", "rest"} or tree.keys() & {"time", "slider"}:
+    if motion.keys() & {"strokes", "X_over_L", "path", "rest"} or "slider" in tree:
         return False
     tree["motion"] = motion | {"strokes": ["forward"], "X_over_L": [1.0]}
     return True

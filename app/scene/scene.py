@@ -190,7 +190,9 @@ _ATOMS = 1e-9
 
 
 def usual_quantities(scene: Scene) -> tuple[str, ...]:
-    """Quantities of steady sliding that a scene does not name: those that say what the solid bears."""
+    """Quantities that a scene does not name: its motions', or what the solid bears in steady sliding."""
+    if motions := [TIME] * bool(scene.time) + [SLIDER] * bool(scene.slider):
+        return (FRICTION_ALONE, *motions)
     body, quantities = scene.body, [FRICTION_ALONE, INTENSITIES, ON_SURFACE]
     quantities += [AT_INTERFACES] * bool(scene.layers)
     known = scene.solid.knows_σ_ZZ and YIELD not in body.lacks

@@ -511,7 +511,8 @@ class Output:
         List(Choice(WORDS), 'a list of names, as ["yield"]'),
         "quantities to compute", ("friction", "sif", "surface"),
         "without strokes also `interfaces` and `yield`, where there are any, with `points` or `map` "
-        "also `interior`; `sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
+        "also `interior`, with [slider] or [time] `friction` and these; "
+        "`sif`: K_I and exponents; `surface`: stresses on Y = 0; `interior`: inside; "
         "`yield`: where and at which load the solid yields; `slider`: stick-slip of [slider]; "
         "`interfaces`: where layers meet; `time`: from rest to steady motion, of [time]",
     )  # fmt: skip

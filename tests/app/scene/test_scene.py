@@ -207,6 +207,18 @@ def test_mu_alone_is_coulombs_law_and_a_scene_without_strokes_is_steady():
     assert yielding.FIRST_LOAD["closed_form"].path not in result.data  # without a yield strength
 
 
+SLIDER = "[slider]\nmass = 1\nstiffness = 1e4\ndrive_speed = 1\nduration = 1"
+
+
+@pytest.mark.parametrize("motion, word, strokes", [("[time]\nend = 1", "time", 1), (SLIDER, "slider", 3)])
+def test_a_scene_with_a_motion_asks_for_it(motion, word, strokes):
+    text = STEADY.replace('profile = "parabolic"\nradius = "5 mm"', 'half_width = "1 mm"')
+    scene = parse("solve = { tolerance = 1e-3 }\n" + text + motion)
+    assert scene.output.quantities == ("friction", word)
+    # Friction without memory starts in one direction.
+    assert len(scene.motion.strokes) == strokes
+
+
 @pytest.mark.parametrize(
     "given", ["points = [[0.0, -1.0]]", "map = { X = [-1, 1, 3], Y = [-1, -0.5, 2] }"]
 )

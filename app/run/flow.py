@@ -44,7 +44,6 @@ from ..plan.states import States
 from ..plan.variants import joined_positions, joined_states, lines_of, make_plans
 from ..scene.scene import Scene
 from .over_time import solve_motions
-from .share import shared_out
 from .solve import Work
 
 
@@ -386,7 +385,7 @@ def _parts(
             continue
         if to_do := sorted(tasks, key=lambda task: -task.response.c):  # the fastest are the dearest
             work.begin()
-        yield from shared_out(to_do, work.parts)
+        yield from ranks.shared_out(to_do, work.parts)
 
 
 def _put_records(sink: Sink, plans: Sequence[Plan], records: Sequence[dict[str, Any]]) -> list[str]:

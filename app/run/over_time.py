@@ -30,7 +30,6 @@ from galinx.solvers.transient.punch import BESIDE, ON_SURFACE, Course, StartingP
 from .. import ranks
 from ..errors import finite_elements_installed
 from ..plan.over_time import Level, Starts
-from .share import shared_out
 
 _Datasets = dict[str, NDArray[np.float64]]
 #: A method and a speed.
@@ -59,7 +58,7 @@ def solve_motions(
     jobs = [(name, c) for name in (FEM, SIE) if name in starts.methods
             for c in sorted(starts.drives, reverse=True)]  # fmt: skip
     by_job: dict[_Job, list[_Datasets]] = {}
-    for job, motions in shared_out(jobs, solve):
+    for job, motions in ranks.shared_out(jobs, solve):
         by_job[job] = motions
         done(sum(map(len, by_job.values())), len(starts.methods) * starts.count)
     return _joined(starts, by_job) if ranks.is_root() else {}

@@ -727,8 +727,8 @@ class Section:
 
 def _meaning(key: str, keys: Mapping[str, Key]) -> list[str]:
     """Keys whose meaning has most words of one that is not a key; long words as far as they go."""
-    words = key.lower().split("_")
-    patterns = [rf"\b{re.escape(word)}" + r"\b" * (len(word) < 4) for word in words if word]
+    words = [word for word in key.lower().split("_") if len(word) > 2] or [key.lower()]
+    patterns = [rf"\b{re.escape(word)}" + r"\b" * (len(word) < 4) for word in words]
     about = {name: entry.about.lower().replace("'", "") for name, entry in keys.items()}
     hits = {name: sum(bool(re.search(one, text)) for one in patterns) for name, text in about.items()}
     most = max(hits.values(), default=0)

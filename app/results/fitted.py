@@ -134,6 +134,8 @@ def read(path: Path) -> Table:
 
 #: Name that stands for every law.
 ALL = "all"
+#: What a law leaves of friction over its size from which on it does not follow it.
+_FOLLOWS = 0.5
 
 
 @dataclass(frozen=True, repr=False)
@@ -179,9 +181,16 @@ class Fit(FittedLaw):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on assumptions and samples left out."""
-        samples = sum(len(table.measured.t) for table in self.tables)
+        """Sentences on assumptions, samples left out, and friction that the law does not follow."""
+        f = np.concatenate([table.measured.f for table in self.tables])
+        samples, size = len(f), float(np.sqrt(np.nanmean(f**2)))
         said = [note for table in self.tables for note in table.notes]
+        if self.rms >= _FOLLOWS * size:
+            said.append(
+                f"{self.model} does not follow the data: {self.rms:.3g} is left of f, whose root mean "
+                f"square is {size:.3g}, dimensionless; f has the sign of the motion and no offset: is it "
+                "so there?"
+            )
         if self.every > 1:
             said.append(f"every {self.every}th sample is fitted, and those where the motion turns")
         elif self.samples < samples:

@@ -155,3 +155,11 @@ def test_speeds_are_those_of_the_tables(tmp_path):
         galinx.fit(files, "coulomb", speed=[1.0, 2.0, 3.0])
     found = galinx.fit(files, ALL)
     assert "give --speed" in found.failed["lugre"]
+
+
+@pytest.mark.parametrize("offset, said", [(0.3, True), (0.0, False)])
+def test_friction_that_no_law_follows_is_called_so(offset, said):
+    """As one of one sign in a motion to and fro."""
+    swung = swing("coulomb", {"mu_c": 0.0 if offset else 0.3})
+    found = galinx.fit(galinx.Measured(swung.t, swung.X, swung.f + offset), "coulomb")
+    assert any("does not follow the data" in note for note in found.notes) == said

@@ -264,11 +264,15 @@ class Kernel:
         Y = inverse(self.stack.top.down)
         return np.asarray((-1j * Y @ self.stack.layers[0].first_order() @ Y).ravel())
 
+    @cached_property
+    def infinite(self) -> bool:
+        """True where the kernel has a logarithm and a jump at 0."""
+        return bool(np.any(self.order))
+
     @property
     def rough(self) -> bool:
         """True where no polynomial follows the kernel next to 0: a logarithm, a jump, a low power."""
-        graded = any(1.0 < layer.power < _SMOOTH for layer in self.stack.layers[:1])
-        return graded or bool(np.any(self.order))
+        return self.infinite or any(1.0 < layer.power < _SMOOTH for layer in self.stack.layers[:1])
 
     @property
     def length(self) -> float:
@@ -284,7 +288,7 @@ class Kernel:
 
     def _regular(self, k: NDArray) -> NDArray[Any]:
         regular = self.stack.admittance(k).reshape(-1, 4)
-        if self.rough:
+        if self.infinite:
             regular = regular + self.order * (np.expm1(-k * self.stack.layers[0].H) / k)[:, None]
         return regular
 
@@ -301,9 +305,9 @@ class Kernel:
         return self.table.error
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
-        """The kernels at positions over a, none of them 0 where it is rough, (..., 4)."""
+        """The kernels at positions over a, none of them 0 where it is infinite, (..., 4)."""
         kernels = self.table(x)
-        if self.rough:
+        if self.infinite:
             ratio = self.stack.layers[0].H / np.asarray(x, dtype=float)[..., None]
             log = 0.5 * np.log1p(ratio**2)
             kernels = kernels + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi

@@ -336,13 +336,13 @@ def response(
 
 @click.command()
 @options.archive
-@click.option("--states", is_flag=True, help="A row a state; this is the default.")
+@click.option("--states", is_flag=True, help="A row a state; the default, but for motions.")
 @click.option("--surface", is_flag=True, help="A row for each state and point on the surface.")
 @click.option("--interfaces", is_flag=True, help="A row for each state, interface and point.")
 @click.option("--inside", is_flag=True, help="A row for each state and point inside.")
 @click.option("--histories", is_flag=True, help="Friction along the strokes of every law.")
-@click.option("--time", is_flag=True, help="Motions in time, a row for each time.")
-@click.option("--slider", is_flag=True, help="Motions of sliders, a row for each time.")
+@click.option("--time", is_flag=True, help="Motions in time, a row for each time; their default.")
+@click.option("--slider", is_flag=True, help="Motions of sliders, a row for each time; their default.")
 @options.dimensionless
 @click.option("-o", "output", type=options.FILE, help="File; default: standard output.")
 @options.overwrite
@@ -354,15 +354,15 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
 
     Example: ./run.sh csv tables.h5 --surface -o surface.csv
     """
-    from ..results.csv import pieces
+    from ..results.csv import pieces, usual
 
-    chosen = [name for name, is_set in tables.items() if is_set] or ["states"]
+    chosen = [name for name, is_set in tables.items() if is_set]
     if len(chosen) > 1:
         raise click.UsageError(
             f"{' and '.join(f'--{name}' for name in chosen)} exclude each other; keep one"
         )
-    _loaded(archive, stresses=False)
-    made = pieces(archive, chosen[0], dimensionless, verified=True)
+    scene = _loaded(archive, stresses=False).scene
+    made = pieces(archive, *chosen or [usual(scene)], dimensionless=dimensionless, verified=True)
     if not ranks.is_root():
         return
     if output is None or str(output) == "-":

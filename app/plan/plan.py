@@ -275,7 +275,7 @@ def _faults(
 
 
 #: Keys of [solve] that finite elements alone follow.
-_OF_ELEMENTS = ("mesh", "degree", "cuts", "solver", "assembler")
+_OF_ELEMENTS = ("mesh", "degree", "cuts", "sweep", "solver", "assembler")
 
 
 def _given(solve: Solve, keys: Iterable[str]) -> dict[str, Any]:

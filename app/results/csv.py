@@ -18,6 +18,7 @@ from galinx.solvers.contact import AT_INTERFACES, BELOW, ON_SURFACE
 
 from ..errors import BadInput
 from ..scene import read as scenes
+from ..scene.scene import Scene
 
 #: Dimensions of tables, outermost first, with the word of output.quantities that asks for them, and the
 #: section that it needs.
@@ -39,6 +40,13 @@ _TOGETHER = 20_000
 
 #: Head of a column, and its values, with an axis for each dimension of the table.
 _Column = tuple[str, NDArray]
+
+
+def usual(scene: Scene) -> str:
+    """Name of the table of what a scene computes: motions in time, of sliders, or states."""
+    return next(
+        (name for name in (over_time.TIME, runs.SLIDER) if name in scene.output.quantities), "states"
+    )
 
 
 def pieces(

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from support import computed, here
+from support import computed, here, kept
 
 from galinx.app.results import csv as tables
 from galinx.postprocess.hdf5 import archive
@@ -133,3 +133,11 @@ def test_histories_tell_their_laws(load, tmp_path):
     assert {*numbers(found[f"{head} [N/mm]"])} == {first}
     assert len([head for head in found if "load" in head]) == 2  # the other is sigma0_over_load
     np.testing.assert_allclose(numbers(found["f [1]"]), loops.ravel(), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "name, head", [("from rest", "t [µs]"), ("slider", "time [s]"), ("flat", "state")]
+)
+def test_the_table_of_a_motion_is_that_of_its_times(name, head, tmp_path):
+    kept(name).save(tmp_path / "a.h5")
+    assert head in here("csv", tmp_path / "a.h5").stdout.splitlines()[0].split(",")

@@ -345,7 +345,10 @@ class SolvedContact:
 
 
 def converged(
-    equation: Equation, at_resolution: Callable[[Resolution], SolvedContact], tolerance: float
+    equation: Equation,
+    at_resolution: Callable[[Resolution], SolvedContact],
+    tolerance: float,
+    enough: float = 0.0,
 ) -> SolvedContact:
     """Contact to a relative tolerance, by finer and finer resolutions.
 
@@ -353,6 +356,7 @@ def converged(
         equation: of its pressure.
         at_resolution: gives the contact at a resolution.
         tolerance: the tolerance.
+        enough: a change that is allowed with the most unknowns.
 
     Raises:
         SolveError: the tolerance was not reached; the message says by how much. Or an exponent is too
@@ -372,6 +376,8 @@ def converged(
             if error <= allowed:
                 return replace(now, before=before.pressure, change=error)
         before = now
+    if error <= enough:
+        return now
     reasons, units = ["friction varies much over the contact's width"] * equation.friction.varies, ""
     if equation.kernel is not UNIFORM:
         reasons.append("the uppermost layer is very thin beside the contact's width")
@@ -533,8 +539,8 @@ def kinked(
 
 #: Accuracy of half-widths over the tolerance, where each has an equation of its own.
 _OF_LENGTHS = 1e-4
-#: Accuracy of a half-width at rest, over which others are given.
-_AT_REST = 1e-5
+#: Accuracy of a contact at rest, over whose half-width others are given, and the least that serves.
+_AT_REST, _NEARLY = 1e-5, 0.1
 #: Accuracy with which an edge counts as lifted off.
 OF_ENDS = 1e-6
 #: Reach of tabulated kernels over that which the largest contact so far needs.
@@ -639,13 +645,16 @@ class LayersUnderPunch:
         """Solved contacts by friction."""
         return {}
 
-    def contact(self, g: float, h: float = 1.0, checked: bool = True) -> SolvedContact:
+    def contact(
+        self, g: float, h: float = 1.0, checked: bool = True, enough: float = 0.0
+    ) -> SolvedContact:
         """The contact with a friction.
 
         Args:
             g: σ_XY/σ_YY.
             h: half-width to begin with.
             checked: the contact may not be wider than what is known of the punch.
+            enough: a relative change of the pressure that is allowed with the most unknowns.
 
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
@@ -661,7 +670,7 @@ class LayersUnderPunch:
             h = contact.half_width
             return contact
 
-        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance)
+        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance, enough)
         m, h = contact.centre, contact.half_width
         if checked:
             check_reach(profile, unit * (m - h), unit * (m + h))
@@ -752,7 +761,7 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
-    return unit * layers.contact(0.0, checked=False).half_width
+    return unit * layers.contact(0.0, checked=False, enough=_NEARLY).half_width
 
 
 def _unresolved(each: Sequence[SolvedContact]) -> float:

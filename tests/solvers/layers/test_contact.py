@@ -1,5 +1,6 @@
 """Punches of every profile on layered and graded half-planes by the singular integral equation."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from types import SimpleNamespace
@@ -19,6 +20,7 @@ from galinx.solvers.contact.equation import (
     Jacobi,
     LayersUnderPunch,
     SolvedContact,
+    half_width_at_rest,
     under_punch,
 )
 from galinx.solvers.contact.exact import LayeredSolution, Nodes, groups_of
@@ -311,3 +313,16 @@ def test_lengths_of_a_contact_between_frictions_are_those_of_one_solved_there():
     lengths = np.array([exact.half_width, exact.centre]) * layers.punch.unit
     assert (h[1], m[1]) == pytest.approx(lengths, rel=1e-6)
     assert np.ptp(h) > 1e-3 * h[0]
+
+
+def test_a_length_to_measure_by_needs_no_pressure_that_is_resolved(monkeypatch):
+    """Over a thin film: no tolerance would help where this is refused."""
+    contact = make_contact(Layered((Layer(1e-2, COAT),), SUBSTRATE), PROFILES["parabolic"](50.0), 1.0)
+    exact = contact.half_width
+    half_width_at_rest.cache_clear()
+    monkeypatch.setattr("galinx.solvers.contact.equation._TERMS", [16, 24])
+    monkeypatch.setattr("galinx.solvers.contact.equation._AT_REST", 1e-12)
+    assert make_contact(film, PROFILES["parabolic"](50.0), 1.0).half_width == pytest.approx(
+        exact, rel=1e-2
+    )
+    half_width_at_rest.cache_clear()

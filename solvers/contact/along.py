@@ -229,9 +229,9 @@ class ExpansionAlong(Varying, BentExpansion):
     def opposed(self) -> "ExpansionAlong":
         return replace(self, friction=self.friction.opposed)
 
-    def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        of_shear = replace(self, c=self._shear).integral(kernel, r)[:, 0]
-        return (self.integral(kernel, r)[:, 1] + of_shear)[None]
+    def strain(self, g: NDArray, kernel: Any, r: NDArray) -> NDArray[np.float64]:
+        of_shear = replace(self, c=self._shear).integral(kernel, r, kernel.length)[:, 0]
+        return (self.integral(kernel, r, kernel.length)[:, 1] + of_shear)[None]
 
     @property
     def resultant_ratio(self) -> float:

@@ -51,11 +51,13 @@ from ..profiles.punches import Flat
 from .along import ExpansionAlong
 from .closed_form import FreeEnds, contacts, panels_of
 from .ends import ROUNDING, Punch, Rule, free_ends, half_width_of_load, logarithm_of_load
-from .panels import TO_BEND, Panels
+from .panels import PER_LENGTH, TO_BEND, Panels, summed
 from .pressure import ENDS, Expansion, Functions, Pressure, off_tips
 
 #: |r| up to which few polynomials have not grown, by how much many may, and points of the rule beyond it.
 _NEAR, _GROWN, _FINE = 1.1, 1e3, 96
+#: Points of a rule over the contact, times the length over which a kernel varies, that resolve it.
+_RESOLVED = 16.0
 
 
 def jacobi(count: int, α: float, β: float, r: NDArray) -> NDArray[np.float64]:
@@ -122,11 +124,13 @@ class Jacobi(Functions):
         return np.asarray(((p - taken[:, None]) / np.where(on, np.inf, difference)) @ w / np.pi)
 
     def integral(
-        self, c: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray
+        self, c: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
     ) -> NDArray[np.float64]:
         """Integrals with a kernel, see :meth:`.pressure.Pressure.integral`."""
         t, w, p = self._rule(c)
-        return np.asarray(np.einsum("rtf,t->rf", kernel(r[:, None] - t), w * p))
+        if len(t) * length < _RESOLVED:
+            return summed(kernel, r, *self.points(c, PER_LENGTH * length))
+        return summed(kernel, r, t, w * p)
 
     def points(self, c: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Rule for other integrals, see :meth:`.pressure.Pressure.points`."""
@@ -476,8 +480,10 @@ class Kinked(Pressure):
         values[~under] += self.alone.hilbert(r[~under])
         return values
 
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        return self.more.integral(kernel, r) + self.on_panels.integral(kernel, r)
+    def integral(
+        self, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
+    ) -> NDArray[np.float64]:
+        return self.more.integral(kernel, r, length) + self.on_panels.integral(kernel, r, length)
 
     def at(self, z: NDArray) -> NDArray[np.complex128]:
         return self.alone.at(z) + self.more.at(z)
@@ -529,7 +535,7 @@ def kinked(
     on_panels = _on_panels(alone, fine)
 
     def of_layers(r: NDArray) -> NDArray[np.float64]:
-        return mean - on_panels.integral(equation.K, r)[:, 0]
+        return mean - on_panels.integral(equation.K, r, equation.kernel.length)[:, 0]
 
     more = replace(equation, slope=of_layers, kinks=places)
     tips = places if jumps(profile) else ()

@@ -37,8 +37,10 @@ _TO_KINK, TO_TIP, TO_BEND, _TO_KINK_OF_SLOPES, _STEPS_OF_SLOPES = 0.2, 18, (5, 0
 #: Panels towards a place where a kernel is rough: their grading and number; distance over a panel's
 #: length within which a place is near it, and below which it is at its end.
 _GRADING, _STEPS, _NEAR, _CLOSEST = 0.2, 22, 1.0, 1e-16
-#: Positions on which kernels are held at once, over those of a rule.
-_TOGETHER = 200
+#: Kernels that are held at once.
+_TOGETHER = 2_000_000
+#: Longest panel over the length over which a kernel varies.
+PER_LENGTH = 2.0
 #: Distance from a free end within which a pressure is continued, and up to which it is fitted for that.
 _MENDED, _KNOWN = 1e-4, 1e-2
 _ξ, _ω = legendre.leggauss(14)
@@ -331,17 +333,13 @@ class Panels(Functions):
         return values / np.pi
 
     def integral(
-        self, p: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray
+        self, p: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
     ) -> NDArray[np.float64]:
         """Integrals with a kernel, see :meth:`.pressure.Pressure.integral`."""
-        under, forces = (np.abs(r) < 1.0) & self.rough, self.weights * p
-        rows = np.flatnonzero(~under)
-        parts = [
-            np.einsum("rtf,t->rf", kernel(r[some, None] - self.t), forces)
-            for some in np.array_split(rows, len(rows) // _TOGETHER + 1)
-        ]
-        integrals = np.empty((len(r), parts[0].shape[-1]))
-        integrals[rows] = np.concatenate(parts)
+        under = (np.abs(r) < 1.0) & self.rough
+        beside = summed(kernel, r[~under], *self.points(p, np.inf if self.rough else PER_LENGTH * length))
+        integrals = np.empty((len(r), beside.shape[-1]))
+        integrals[~under] = beside
         places = np.flatnonzero(under)
         for some in self.blocks(len(places)):
             at = places[some]
@@ -350,7 +348,9 @@ class Panels(Functions):
 
     def points(self, p: NDArray, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Rule for other integrals, see :meth:`.pressure.Pressure.points`."""
-        fine = replace(self, finest=min(finest, self.finest))
+        if finest >= self.finest:
+            return self.t, self.weights * p
+        fine = replace(self, finest=finest)
         return fine.t, fine.weights * self.interpolated(p, fine.x)
 
     def continued(
@@ -369,6 +369,18 @@ class Panels(Functions):
             c, *_ = np.linalg.lstsq(_to_end(d[fitted]), p[fitted] / d[fitted], rcond=None)
             continued[near] = d[near] * (_to_end(d[near]) @ c)
         return continued
+
+
+def summed(
+    kernel: Callable[[NDArray], NDArray], r: NDArray, t: NDArray, forces: NDArray
+) -> NDArray[np.float64]:
+    """Σ kernel(r - t) forces over t, (len(r), functions); kernels of few positions are held at once."""
+    return np.concatenate(
+        [
+            np.einsum("rtf,t->rf", kernel(some[:, None] - t), forces)
+            for some in np.array_split(r, len(r) * len(t) // _TOGETHER + 1)
+        ]
+    )
 
 
 def _to_end(d: NDArray) -> NDArray[np.float64]:

@@ -90,7 +90,9 @@ class LinearPressure(Pressure):
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return self._weighted(self._cut(self.knots, finest))
 
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+    def integral(
+        self, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
+    ) -> NDArray[np.float64]:
         if not self.rough:
             t, σ = self.points(self.length)
             return np.array([σ @ kernel(place - t) for place in r])

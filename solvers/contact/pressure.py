@@ -126,9 +126,9 @@ class Pressure:
         """σ_XY/σ_YY at t: a number of each state, (states,), times a function of t; g: the states'."""
         return g, 1.0
 
-    def strain(self, g: NDArray, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
+    def strain(self, g: NDArray, kernel: Any, r: NDArray) -> NDArray[np.float64]:
         """Strain by kernels of σ_XY and of σ_YY, the first ones, (states, len(r))."""
-        by_kernel = self.integral(kernel, r)
+        by_kernel = self.integral(kernel, r, kernel.length)
         return np.asarray(by_kernel[:, 1] + g[:, None] * by_kernel[:, 0])
 
     def inside(self, response: Any, g: Any, X: NDArray, Y: NDArray) -> NDArray[np.float64]:
@@ -153,8 +153,10 @@ class Pressure:
         """(1/π) ∫ σ/(t - r) dt, less p(r) times that of the weight where |r| <= near, (len(r),)."""
         raise NotImplementedError
 
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        """∫ kernel(r - t) σ(t) dt, (len(r), functions)."""
+    def integral(
+        self, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
+    ) -> NDArray[np.float64]:
+        """∫ kernel(r - t) σ(t) dt with kernels that vary over a length, (len(r), functions)."""
         raise NotImplementedError
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -232,8 +234,10 @@ class Expansion(Pressure):
     def rest(self, r: NDArray, near: float) -> NDArray[np.float64]:
         return np.reshape(self.functions.rest(self.c, r.ravel(), near), (*self.c.shape[:-1], *r.shape))
 
-    def integral(self, kernel: Callable[[NDArray], NDArray], r: NDArray) -> NDArray[np.float64]:
-        return np.asarray(self.functions.integral(self.c, kernel, r))
+    def integral(
+        self, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
+    ) -> NDArray[np.float64]:
+        return np.asarray(self.functions.integral(self.c, kernel, r, length))
 
     def points(self, finest: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         t, forces = self.functions.points(self.c, finest)

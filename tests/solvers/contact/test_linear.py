@@ -108,4 +108,4 @@ def test_kernels_that_are_infinite_at_a_place_are_integrated_there(name):
         wanted += (σ_a + slope * (r - a))[:, None] * of_1 - slope * of_x
     # Primitives cancel in narrow pieces.
     atol = 1e-12 + 1e-15 * steepest
-    np.testing.assert_allclose(pressure.integral(kernel, r), wanted, rtol=0.0, atol=atol)
+    np.testing.assert_allclose(pressure.integral(kernel, r, np.inf), wanted, rtol=0.0, atol=atol)

@@ -5,7 +5,9 @@ from scipy.special import roots_jacobi
 
 from galinx.meshes import MESHES
 from galinx.solvers.contact import recovery as pressure
-from galinx.solvers.contact.pressure import NEXT_TO_TIP, off_tips
+from galinx.solvers.contact.equation import Jacobi
+from galinx.solvers.contact.panels import Panels
+from galinx.solvers.contact.pressure import NEXT_TO_TIP, Expansion, off_tips
 
 α = np.array([-0.5, -0.42, -0.7])
 β = -1.0 - α
@@ -94,3 +96,18 @@ def test_places_at_a_tip_are_moved_off_it_on_their_own_side():
     r = np.array([-1.0, tip - 2.0 * d, tip - 0.5 * d, tip + 0.1 * d, tip + 3.0 * d, 0.9])
     moved = np.array([-1.0, tip - 2.0 * d, tip - d, tip + d, tip + 3.0 * d, 0.9])
     np.testing.assert_allclose(off_tips(r, (tip,)), moved, rtol=0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("functions", [Jacobi(0.5, 0.5), Panels(0.5, 0.5, 1.0, rough=False)])
+@pytest.mark.parametrize("length", [3e-4, 1e-2, 0.3])
+def test_kernels_of_thin_films_are_integrated_however_few_functions_the_pressure_has(functions, length):
+    """∫ ℓ √(1 - t²)/((r - t)² + ℓ²) dt = Im π (√(z² - 1) - z) at z = r + iℓ."""
+    c = np.ones_like(functions.t) if isinstance(functions, Panels) else np.array([1.0, 0.0])
+    pressure, r = (
+        Expansion(0.5, 0.5, c, functions),
+        np.array([-1.3, -1.0, -0.999, -0.2, 0.077, 0.5, 1.01]),
+    )
+    found = pressure.integral(lambda x: (length / (x**2 + length**2))[..., None], r, length)
+    z = r + 1j * length
+    wanted = np.pi * (np.sqrt(z - 1.0) * np.sqrt(z + 1.0) - z).imag
+    np.testing.assert_allclose(found[:, 0], wanted, rtol=0.0, atol=1e-9)

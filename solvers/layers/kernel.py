@@ -276,10 +276,14 @@ class Kernel:
 
     @property
     def length(self) -> float:
-        """Length over which the kernel varies next to 0, over a: that of the grading of a graded top."""
+        """Length over a over which the kernel varies next to 0.
+
+        That of the grading of a graded top, or the depth of a top as its slowest decaying waves feel it.
+        """
         if not self.stack.layers:
             return np.inf
-        return float(1.0 / max(np.abs(self.order).max() / self._size, 1.0 / self.stack.layers[0].H))
+        felt = self.stack.layers[0].H * min(1.0, *(p.imag for p in self.stack.top.response.roots.each))
+        return float(1.0 / max(np.abs(self.order).max() / self._size, 1.0 / felt))
 
     @property
     def _size(self) -> float:

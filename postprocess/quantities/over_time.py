@@ -50,7 +50,9 @@ SPEED = _row(
 RATIO = _row("g", "1", "sigma_XY/sigma_YY under the punch of the start, at its end", (START,))
 RATIOS = _row("ratio", "1", "sigma_XY/sigma_YY under the punch over time", (START, INSTANT))
 DIRECTION = _row("direction", "1", "direction of motion along X over time, 1 or -1", (START, INSTANT))
-TIMES = _row("t", "a/c_s", "times since the punch touched", (INSTANT,), range=NOT_NEGATIVE)
+TIMES = _row(
+    "t", "a/c_s", "times since the punch touched, after each step", (INSTANT,), range=NOT_NEGATIVE
+)
 LOAD = _row("load", "1", "load at that time over N", (INSTANT,), range=NOT_NEGATIVE, scale=OVER_N)
 STEADY_CENTRE = _row(
     "steady_centre", "1", "centre of the pressure in steady motion over the half-width", (START,),

@@ -160,7 +160,10 @@ _ROUNDING = 2e-12
 #: punch there, at which the pressure may be infinite.
 _TO_KINKS_ALONG = (12, 0.2), (18, 0.35)
 #: Finer and finer resolutions: numbers of polynomials, and, where the kernel is rough, longest panels.
-_TERMS: list[Resolution] = [16, 24, 36, 54, 81, 121, 181, 271, 406, 609, 913, 1369, 1400]
+_TERMS: list[int] = [16, 24, 36, 54, 81, 121, 181, 271, 406, 609, 913, 1369, 1400]
+#: Least number of polynomials times the root of a kernel's length: next to ends their points are as far
+#: apart as the inverse of their number squared.
+_AT_EDGES = 2.0
 _PANELS: list[Resolution] = (1.4 * 0.7 ** np.arange(14)).tolist()
 #: Longest panel below which panels get shorter in t only: in x shorter ones add unknowns and rounding.
 _SETTLED = 0.5
@@ -366,14 +369,16 @@ def converged(
         SolveError: the tolerance was not reached; the message says by how much. Or an exponent is too
             close to -1 to be resolved.
     """
-    least = 1.0 + min(equation.α, equation.β)
-    if not least >= _STRONGEST:
+    weakest = 1.0 + min(equation.α, equation.β)
+    if not weakest >= _STRONGEST:
         raise SolveError(
-            f"the pressure's exponent at an edge is -1 + {least:.2g}, expected at least -1 + "
+            f"the pressure's exponent at an edge is -1 + {weakest:.2g}, expected at least -1 + "
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
     before, error, allowed = None, np.inf, max(tolerance / 4.0, _ROUNDING)
-    for resolution in _PANELS if equation.rough else _TERMS:
+    # Two numbers of polynomials that both miss what a thin film does at an edge agree.
+    least = _AT_EDGES / np.sqrt(equation.kernel.length)
+    for resolution in _PANELS if equation.rough else [count for count in _TERMS if count >= least]:
         now = at_resolution(resolution)
         if before is not None:
             error = max(now.moved(before), now.change)
@@ -382,10 +387,16 @@ def converged(
         before = now
     if error <= enough:
         return now
+    look = "look at the units of the punch and the layers"
+    if not np.isfinite(error):
+        raise SolveError(
+            "the uppermost layer is so thin beside the contact's width that even the most unknowns miss "
+            f"what it does at the edges: leave it out, or {look}"
+        )
     reasons, units = ["friction varies much over the contact's width"] * equation.friction.varies, ""
     if equation.kernel is not UNIFORM:
         reasons.append("the uppermost layer is very thin beside the contact's width")
-        units = ", and look at the units of the punch and the layers"
+        units = f", and {look}"
     raise SolveError(
         f"with the most unknowns the pressure still changes by {error:.2g}, expected {allowed:.2g}: "
         f"{', or '.join(reasons)}; take a larger tolerance{units}"

@@ -339,5 +339,5 @@ def test_a_loose_tolerance_sees_what_a_thin_film_does_at_an_edge(thickness, rati
 
 def test_a_film_that_no_number_of_unknowns_sees_is_refused():
     body = make_contact(Layered((Layer(1e-7, COAT),), SUBSTRATE), Flat(1.0), 1.0)
-    with pytest.raises(SolveError, match="so thin .* leave it out"):
+    with pytest.raises(SolveError, match=r"so thin .* leave it out"):
         under_punch(body, body.response(0.0), 0.1).contact(-0.5)

@@ -161,10 +161,10 @@ _ROUNDING = 2e-12
 _TO_KINKS_ALONG = (12, 0.2), (18, 0.35)
 #: Finer and finer resolutions: numbers of polynomials, and, where the kernel is rough, longest panels.
 _TERMS: list[int] = [16, 24, 36, 54, 81, 121, 181, 271, 406, 609, 913, 1369, 1400]
+_PANELS: list[Resolution] = (1.4 * 0.7 ** np.arange(14)).tolist()
 #: Least number of polynomials times the root of a kernel's length: next to ends their points are as far
 #: apart as the inverse of their number squared.
 _AT_EDGES = 2.0
-_PANELS: list[Resolution] = (1.4 * 0.7 ** np.arange(14)).tolist()
 #: Longest panel below which panels get shorter in t only: in x shorter ones add unknowns and rounding.
 _SETTLED = 0.5
 

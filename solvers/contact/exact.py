@@ -302,9 +302,8 @@ class Layers:
         layers = under_punch(body, task.response, self.tolerance, every or bool(body.along))
         if body.knots:  # a prescribed pressure needs no equation
             pressure: Any = body.pressure
-            length, rough = float(layers.stack.layers[0].H), layers.kernel.rough  # type: ignore[union-attr]
             fine, coarse = (
-                replace(pressure, nodes=nodes, length=length, rough=rough) for nodes in (FINE, COARSE)
+                replace(pressure, nodes=nodes, rough=layers.kernel.rough) for nodes in (FINE, COARSE)
             )
             known: Any = [SolvedContact(0.0, fine, before=coarse)], [], 0.0
         elif layers.interpolates(g):

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .edges import from_edge
+from .panels import summed
 from .pressure import Pressure
 
 #: |w| from which Gauss's rule serves, and that rule: its error there is below rounding.
@@ -45,7 +46,6 @@ class LinearPressure(Pressure):
         knots: positions X/a that grow from -1 to 1, (n,).
         values: σ_YY there, not all of them 0, (n,).
         nodes: number of points of such a piece.
-        length: length over a over which a kernel on the surface varies.
         rough: True where the kernel has a logarithm at 0.
     """
 
@@ -54,7 +54,6 @@ class LinearPressure(Pressure):
     knots: NDArray[np.float64]
     values: NDArray[np.float64]
     nodes: int = FINE
-    length: float = 1.0
     rough: bool = False
 
     @property
@@ -94,12 +93,11 @@ class LinearPressure(Pressure):
         self, kernel: Callable[[NDArray], NDArray], r: NDArray, length: float
     ) -> NDArray[np.float64]:
         if not self.rough:
-            t, σ = self.points(self.length)
-            return np.array([σ @ kernel(place - t) for place in r])
+            return summed(kernel, r, *self.points(length))
         integrals = []
         for place in r.tolist():
             # Distances from the place: differences of positions may round to 0, an infinite kernel.
-            away, σ = self._weighted(self._from(place), place)
+            away, σ = self._weighted(self._from(place, length), place)
             integrals.append(σ @ kernel(-away))
         return np.array(integrals)
 
@@ -112,12 +110,12 @@ class LinearPressure(Pressure):
             panels.append(low + (high - low) * np.arange(1, count + 1) / count)
         return np.concatenate(panels)
 
-    def _from(self, place: float) -> NDArray[np.float64]:
+    def _from(self, place: float, length: float) -> NDArray[np.float64]:
         """Ends of panels as distances from a place, towards which the panels get shorter."""
-        near = self.length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
+        near = length * np.append(_GRADING ** np.arange(_STEPS), 0.0)
         knots, more = self.knots - place, np.concatenate([-near, near])
         inside = more[(more > knots[0]) & (more < knots[-1])]
-        return self._cut(np.unique(np.concatenate([knots, inside])), self.length)
+        return self._cut(np.unique(np.concatenate([knots, inside])), length)
 
     def _weighted(
         self, ends: NDArray, place: float = 0.0

@@ -103,10 +103,8 @@ def test_places_at_a_tip_are_moved_off_it_on_their_own_side():
 def test_kernels_of_thin_films_are_integrated_however_few_functions_the_pressure_has(functions, length):
     """∫ ℓ √(1 - t²)/((r - t)² + ℓ²) dt = Im π (√(z² - 1) - z) at z = r + iℓ."""
     c = np.ones_like(functions.t) if isinstance(functions, Panels) else np.array([1.0, 0.0])
-    pressure, r = (
-        Expansion(0.5, 0.5, c, functions),
-        np.array([-1.3, -1.0, -0.999, -0.2, 0.077, 0.5, 1.01]),
-    )
+    r = np.array([-1.3, -1.0, -0.999, -0.2, 0.077, 0.5, 1.01])
+    pressure = Expansion(0.5, 0.5, c, functions)
     found = pressure.integral(lambda x: (length / (x**2 + length**2))[..., None], r, length)
     z = r + 1j * length
     wanted = np.pi * (np.sqrt(z - 1.0) * np.sqrt(z + 1.0) - z).imag

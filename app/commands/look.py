@@ -362,7 +362,8 @@ def csv(archive: Path, dimensionless: bool, output: Path | None, overwrite: bool
             f"{' and '.join(f'--{name}' for name in chosen)} exclude each other; keep one"
         )
     scene = _loaded(archive, stresses=False).scene
-    made = pieces(archive, *chosen or [usual(scene)], dimensionless=dimensionless, verified=True)
+    which = chosen[0] if chosen else usual(scene)
+    made = pieces(archive, which, dimensionless, verified=True)
     if not ranks.is_root():
         return
     if output is None or str(output) == "-":

@@ -380,7 +380,7 @@ def _fill_in_motion(tree: dict[str, Any]) -> bool:
     memory = LAWS[SECTIONS["friction"].model(friction)].has_memory
     if memory and friction.get("state") != ADVECTED:
         return False
-    if motion.keys() & {"strokes", "X_over_L", "path", "rest"} or "slider" in tree:
+    if motion.keys() & {"strokes", "X_over_L", "path"} or "slider" in tree:
         return False
     tree["motion"] = motion | {"strokes": ["forward"], "X_over_L": [1.0]}
     return True

@@ -344,8 +344,25 @@ def _of_motion(scene: Scene) -> Iterator[str]:
 
 
 def oddities(scene: Scene) -> list[str]:
-    """Warnings about unusual values, one sentence a key: the unit may be another than meant."""
-    return [*_unusual_numbers(scene), *_unusual_contact(scene)]
+    """Warnings about unusual values, one sentence a key, and about keys without effect."""
+    return [*_unusual_numbers(scene), *_unusual_contact(scene), *_without_strokes(scene)]
+
+
+def _without_strokes(scene: Scene) -> Iterator[str]:
+    """Warning about keys without effect in steady sliding."""
+    if not scene.steady:
+        return
+    friction, motion = scene.friction, scene.motion
+    given = {
+        "friction.pre_sliding": friction.pre_sliding != Friction.pre_sliding,
+        "friction.state": friction.state == ADVECTED and not friction.law.has_memory,
+        "motion.rest": motion.rest != Motion.rest,
+    }
+    if unused := [name for name, of in given.items() if of]:
+        yield (
+            f"{listed(unused)}: without effect, because the punch slides steadily; give motion.strokes "
+            "for a motion to and fro"
+        )
 
 
 def _unusual_numbers(scene: Scene) -> Iterator[str]:

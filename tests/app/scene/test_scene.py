@@ -275,3 +275,15 @@ def test_slopes_that_are_not_small_are_warned_about():
     a = wide.body.half_width
     assert a > 1e-3 and any(f"slopes of {a / 5e-3:.2g}, " in text for text in oddities(wide))
     assert not any("slopes of" in text for text in oddities(narrow))
+
+
+def test_keys_of_strokes_are_warned_of_where_the_punch_slides_steadily():
+    """A rest alone makes no strokes of it."""
+    mu = next(line for line in STEADY.splitlines() if line.startswith("mu"))
+    scene = parse(STEADY.replace(mu, f'{mu}\npre_sliding = "3 µm"') + '\nrest = "1 s"\n')
+    assert scene.steady
+    assert any(
+        text.startswith("friction.pre_sliding, motion.rest: without effect") for text in oddities(scene)
+    )
+    to_and_fro = parse(scene.text + 'strokes = ["forward", "backward"]\n')
+    assert not any("without effect" in text for text in oddities(to_and_fro))

@@ -371,7 +371,7 @@ class OnLayers(Group):
 
     def _along(self, X: NDArray, level: Level, sides: int) -> NDArray[np.float64]:
         """σ_YY, σ_XY and σ_XX above a depth, or on both sides: (2 + sides, rows, n)."""
-        t, forces = self.pressure.points(level.depth / self.size)
+        t, forces = self.pressure.points(level.length / self.size)
         g, ratios = self.pressure.ratios(self.g, t)
         u_X, σ_YY, σ_XY = level.read(t, forces, g, X, self.size, ratios)
         media = [(medium.modulus, medium.response) for medium in level.media[:sides]]

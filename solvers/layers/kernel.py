@@ -238,6 +238,22 @@ def wavenumbers(stack: LayersAtSpeed) -> float:
     return _FIRST / float(stack.depths[-1])
 
 
+def felt_depth(stack: LayersAtSpeed, depth: float) -> float:
+    """A depth over a as its slowest decaying waves feel it; fields of a line load vary over it there."""
+    felt, top = 0.0, 0.0
+    for layer in stack.layers:
+        felt += min(layer.H, depth - top) * min(map(_slowest, (layer.top, layer.bottom)))
+        top += layer.H
+        if top >= depth:
+            return felt
+    return felt + (depth - top) * _slowest(stack.substrate)
+
+
+def _slowest(medium: Medium) -> float:
+    """Decay of the slowest decaying waves of a solid over their wavenumber, at most 1."""
+    return min(1.0, *(float(p.imag) for p in medium.response.roots.each))
+
+
 #: Least power of the depth with which a graded top changes, whose kernel polynomials follow.
 _SMOOTH = 3.0
 
@@ -282,7 +298,7 @@ class Kernel:
         """
         if not self.stack.layers:
             return np.inf
-        felt = self.stack.layers[0].H * min(1.0, *(p.imag for p in self.stack.top.response.roots.each))
+        felt = felt_depth(self.stack, self.stack.layers[0].H)
         return float(1.0 / max(np.abs(self.order).max() / self._size, 1.0 / felt))
 
     @property
@@ -382,6 +398,11 @@ class Level:
                 return i, [*layer.cut(self.depth - top)]
             top = bottom
         return len(self.stack.layers), [Uniform(self.stack.substrate, self.depth - top)]
+
+    @cached_property
+    def length(self) -> float:
+        """Length over a over which the stresses of a line load vary there."""
+        return felt_depth(self.stack, self.depth)
 
     @property
     def media(self) -> tuple[Medium, Medium]:

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
-from support import THOROUGH, areas, computed, scene_of
+from support import THOROUGH, areas, computed, of_sections, scene_of
 
 import galinx
 from galinx.meshes.kind import Requirements, check_cells
@@ -120,6 +120,32 @@ def test_interfaces_and_inside():
     # Tractions along the interface carry the load but for what lies beyond the positions.
     far = np.abs(trapezoid(data["interfaces/sie/sigma_YY"][0, 0], X) + 2.0)
     assert far <= 0.05
+
+
+def test_steep_fibres_as_a_layer_on_themselves_are_one_solid():
+    """Stress goes along them in a narrow beam: points of the pressure lie as close as its width."""
+    fibres = {
+        "kind": "orthotropic", "E1": "200 GPa", "E2": "3 GPa", "E3": "3 GPa", "G12": "2 GPa", "nu12": 0.3,
+        "nu13": 0.3, "nu23": 0.3, "rho": "1600 kg/m^3", "angle": 70,
+    }  # fmt: skip
+    σ = {}
+    for method, layer in (("sie", [{"thickness": "0.03 mm"} | fibres]), ("closed_form", None)):
+        result = galinx.compute(of_sections(
+            solid=fibres, layer=layer, friction={"mu": 0.3}, motion={"speed": "400 m/s"},
+            punch={"half_width": "1 mm", "load": "100 N/mm"},
+            solve={
+                "mode": "traction", "pressure": [[-1, 0], [-0.2, -1], [0.3, -0.5], [1, 0]],
+                "methods": [method],
+            },
+            output={
+                "quantities": ["interior"],
+                "points": [[x, -0.03] for x in np.linspace(-1.5, 1.5, 13).tolist()],
+            },
+        ))  # fmt: skip
+        assert result.verdict == "PASS"
+        σ[method] = [result.data[f"interior/{method}/sigma_{name}"][0] for name in ("XX", "YY", "XY")]
+    size = np.abs(σ["closed_form"]).max()
+    np.testing.assert_allclose(σ["sie"], σ["closed_form"], rtol=0, atol=1e-12 * size)
 
 
 @pytest.mark.parametrize(

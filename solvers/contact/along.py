@@ -291,21 +291,33 @@ class Splines(Functions):
     def sum(self, c: NDArray, r: NDArray) -> NDArray[np.float64]:
         return c @ self.values(np.ravel(r)).T
 
-    def fitted(
-        self, moments: NDArray, α: NDArray, β: NDArray, tests: Callable[[NDArray], NDArray]
-    ) -> Expansion:
+
+class FittedSplines:
+    """Pressures of splines by their moments.
+
+    Args:
+        splines: as many as tests.
+        nodal: their values at the nodes, (nodes, splines), which tests interpolate.
+        tests: values of these at r, (points, splines).
+    """
+
+    def __init__(
+        self, splines: Splines, nodal: NDArray[np.float64], tests: Callable[[NDArray], NDArray]
+    ) -> None:
+        self.nodal, self._splines, self._rule = nodal, splines, Rule(splines.knots, 1.0)
+        self._f, self._tests = splines.values(self._rule.t), tests(self._rule.t)
+
+    def pressure(self, moments: NDArray, α: NDArray, β: NDArray) -> Expansion:
         """Pressure with given moments.
 
         Args:
-            moments: ∫ σ_YY f_k dr of each state over N/(2a), (states, splines).
+            moments: integrals of σ_YY of each state over N/(2a) times the tests, (states, splines).
             α, β: exponents at X = a and X = -a, (states,).
-            tests: functions f_k at r, as many as splines, (points, splines).
         """
-        rule = Rule(self.knots, 1.0)
-        f, f_test, c = self.values(rule.t), tests(rule.t), np.empty_like(moments)
+        f, c = self._f, np.empty_like(moments)
         exponents, which = np.unique(np.column_stack([α, β]), axis=0, return_inverse=True)
-        for i, w in enumerate(rule.weights(*exponents.T)):
+        for i, w in enumerate(self._rule.weights(*exponents.T)):
             size, states = np.sqrt(w @ f**2), which == i
-            gram = (f_test / size).T @ (w[:, None] * f / size)
+            gram = (self._tests / size).T @ (w[:, None] * f / size)
             c[states] = np.linalg.solve(gram, (moments[states] / size).T).T / size
-        return BentExpansion(α[:, None], β[:, None], c, self)
+        return BentExpansion(α[:, None], β[:, None], c, self._splines)

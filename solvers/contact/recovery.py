@@ -27,6 +27,7 @@ smooth function, and a smooth function times a power of the distance or its loga
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -163,10 +164,15 @@ class ContactFacets:
         basis, _ = lagrange(self.nodes, (t + 1.0) / 2.0)
         s = self.start[:, None] + self.length[:, None] * (t + 1.0) / 2.0
         f = np.reshape(factor(self._chart.surface_position(s.ravel())), s.shape)
-        density, product = self.density(np.eye(len(self._s))), np.zeros((len(self._s), len(self._s)))
+        product = np.zeros((len(self._s), len(self._s)))
         for facet, length, values in zip(self.facets, self.length, f):
-            product[facet] += (basis.T * (values * w / 2.0 * length)) @ basis @ density[facet]
+            product[facet] += (basis.T * (values * w / 2.0 * length)) @ basis @ self._densities[facet]
         return product
+
+    @cached_property
+    def _densities(self) -> NDArray[np.float64]:
+        """Densities of unit forces, (n, n)."""
+        return self.density(np.eye(len(self._s)))
 
     def density(self, forces: NDArray) -> NDArray[np.float64]:
         """Density σ_YY dX/ds at the nodes by nodal forces, (n, ...) each, with the mass matrix."""

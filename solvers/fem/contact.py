@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact import FREE_ENDS, INTENSITIES, VARYING, VARYING_FREE
-from ..contact.along import Splines
+from ..contact.along import FittedSplines, Splines
 from ..contact.edges import EdgeExponents
 from ..contact.ends import SHAPES, end_conditions, heights_of_shapes, slopes_of_shapes
 from ..contact.fem_plan import SHARP_ON_LAYERS
@@ -260,6 +260,10 @@ COARSE, _SURE = 4.0 * NEXT, 1.5
 _ALL_ACROSS, _SMALL = np.cos(np.pi * (np.arange(64) + 0.5) / 64.0), 0.1
 
 
+#: Splines that are kept with their tests.
+_FITTED = 4
+
+
 class SplineLevel(PunchLevel):
     """Contacts whose pressures are splines: over layers, or with friction that varies along them."""
 
@@ -319,11 +323,19 @@ class SplineLevel(PunchLevel):
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         of_splines = max(degree - _LESS, 0)
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), of_splines, self._graded)
-        local, at_nodes = body.edges(self.task.response, g, half_width, free), splines.values(self.r)
-        # Nodal forces know of tests their interpolants only.
-        return splines.fitted(
-            tested(at_nodes), local.α, local.β, lambda r: self.facets.interpolated(at_nodes.T, r).T
-        )
+        fitted, local = self._fitted(splines), body.edges(self.task.response, g, half_width, free)
+        return fitted.pressure(tested(fitted.nodal), local.α, local.β)
+
+    @cached_property
+    def _fitted(self) -> Callable[[Splines], FittedSplines]:
+        """Splines with their tests; the last ones are kept, as a search for ends asks for them often."""
+
+        def fitted(splines: Splines) -> FittedSplines:
+            # Nodal forces know of tests their interpolants only.
+            nodal = splines.values(self.r)
+            return FittedSplines(splines, nodal, lambda r: self.facets.interpolated(nodal.T, r).T)
+
+        return lru_cache(_FITTED)(fitted)
 
     @cached_property
     def _analytic(self) -> float:

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, isfinite, log
 from typing import Any
 
@@ -23,9 +25,9 @@ _FEW, _MOST = 150, 3000
 _WIDE = 1e-3
 #: Tolerance and most steps of the search from a start, and of the fit from the best of them.
 _SEARCH, _FIT = (1e-4, 30), (1e-7, 40)
-#: Relative difference of sums of squares below which two starts led to one law, and times that this
-#: happens until the search ends.
-_AGAIN, _ENOUGH = 1e-4, 2
+#: Relative difference of sums of squares below which two starts led to one law, and times that starts
+#: lead to the best one again until the search ends.
+_AGAIN, _ENOUGH = 1e-4, 4
 #: Residual where a law rejects its parameters.
 _REJECTED = 1e3
 #: Distance from the bounds of an open range that a fit keeps.
@@ -51,14 +53,6 @@ class Measured:
     t: NDArray[np.float64]
     X: NDArray[np.float64]
     f: NDArray[np.float64]
-
-    def every(self, n: int) -> "Measured":
-        """Every n-th sample, with those at which the motion turns, stops or starts."""
-        way = np.sign(np.diff(self.X))
-        kept = np.zeros(len(self.X), dtype=bool)
-        kept[::n] = kept[-1] = True
-        kept[1:-1] |= way[1:] != way[:-1]
-        return Measured(self.t[kept], self.X[kept], self.f[kept])
 
 
 @dataclass
@@ -159,6 +153,31 @@ def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]
     return result
 
 
+def thinned(motion: Sequence[Move], n: int) -> list[Move]:
+    """Moves with every n-th sample, and the last one, of each way in one direction.
+
+    Between these samples the speed is the mean one; at them it is that of the motion.
+    """
+    result: list[Move] = []
+    for move in motion:
+        last = result[-1] if result and move.samples and move.rest == 0.0 and not move.first else None
+        if last and last.s == move.s and len(last.samples) < n:
+            seconds, before = last.way / last.V + move.way / move.V, last.way
+            last.way, last.end = before + move.way, move.end
+            last.V = last.way / seconds
+            last.slip += [before + slip for slip in move.slip]
+            last.samples += move.samples
+            last.turns += move.turns
+        else:
+            lists = {"slip": [*move.slip], "samples": [*move.samples], "turns": [*move.turns]}
+            result.append(replace(move, **lists))
+    for move in result:
+        kept = sorted({*range(n - 1, len(move.samples), n), len(move.samples) - 1} - {-1})
+        move.slip = [move.slip[k] for k in kept]
+        move.samples = [move.samples[k] for k in kept]
+    return result
+
+
 def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
     """Parts of the way to each sample after the first: mean speed, speed at its end [m/s], time [s].
 
@@ -214,7 +233,9 @@ def friction(
     return f
 
 
-def measured_friction(motion: Sequence[Move], f: NDArray, rows: int) -> MeasuredFriction:
+def measured_friction(
+    motion: Sequence[Move], f: NDArray, rows: int, fitted: Callable[[type[FrictionLaw]], dict[str, Any]]
+) -> MeasuredFriction:
     """Summary of measured friction f, (samples,), for a guess of parameters with tables of ``rows``."""
     sliding = np.abs(np.concatenate([f[move.samples] for move in motion if move.samples]))
     first = next(move for move in motion if move.samples)
@@ -226,7 +247,7 @@ def measured_friction(motion: Sequence[Move], f: NDArray, rows: int) -> Measured
     level = float(np.quantile(sliding, 0.95)) or 1.0
     speed = float(np.exp(np.mean(np.log([max(move.V, 1e-12) for move in motion]))))
     least = float(np.quantile(sliding, 0.3)) or level
-    return MeasuredFriction(level, least, slope or level / longest, longest, speed, rows)
+    return MeasuredFriction(level, least, slope or level / longest, longest, speed, rows, fitted)
 
 
 def fit(
@@ -239,7 +260,7 @@ def fit(
 ) -> FittedLaw:
     """Law nearest to measured friction, by least squares over its parameters.
 
-    Several starts search through some 250 samples; from the best of them all samples are fitted, or every
+    Several starts search through some 150 samples; from the best of them all samples are fitted, or every
     n-th of more than 3000.
 
     Args:
@@ -255,16 +276,19 @@ def fit(
             anywhere.
     """
     whole = _Fitted(kind, measured)
-    search = _Search(kind, measured_friction(whole.motion, whole.f, rows), fixed, start)
+    look = measured_friction(
+        whole.motion, whole.f, rows, lambda kind: fit(kind, measured, {}, {}, rows).parameters
+    )
+    search = _Search(kind, look, fixed, start)
     used = len(whole.used)
     if used <= len(search.names):
         raise ValueError(
             f"found {used} samples in motion for {len(search.names)} parameters, expected more"
         )
     every = -(-used // _MOST)
-    fitted = _Fitted(kind, [one.every(every) for one in measured]) if every > 1 else whole
+    fitted = whole.thinned(every) if every > 1 else whole
     if search.names:
-        few = _Fitted(kind, [one.every(-(-used // _FEW)) for one in measured])
+        few = whole.thinned(-(-used // _FEW))
         θ = _best_start(few if len(few.used) > 2 * len(search.names) else fitted, search, step)
         θ = _least(fitted, search, θ, *_FIT).x
     else:
@@ -301,10 +325,19 @@ class _Fitted:
             self.motion += moves(one.t, one.X, kind.depends_on_speed, before)
             before += len(one.t)
         self.f = np.concatenate([one.f for one in measured])
-        self.used = np.array(
-            [n for move in self.motion for n in move.samples if n not in move.turns], dtype=int
-        )
         self._at_once = kind.broadcasts or kind.batched
+
+    @cached_property
+    def used(self) -> NDArray[np.int64]:
+        each = [n for move in self.motion for n in move.samples if n not in move.turns]
+        return np.array(each, dtype=int)
+
+    def thinned(self, n: int) -> "_Fitted":
+        """The same measurements with every n-th sample."""
+        fewer = copy(self)
+        fewer.motion = thinned(self.motion, n)
+        vars(fewer).pop("used", None)
+        return fewer
 
     def residuals(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
         """Friction of laws less the measured one, (laws, used), at unknowns θ (laws, unknowns)."""
@@ -336,8 +369,10 @@ def _best_start(
         step(n, _STARTS)
         θ = search.begin + search.reach * rng.uniform(-1.0, 1.0, len(search.begin))
         result = _least(data, search, np.clip(θ, search.low, search.high), *_SEARCH)
-        again += abs(result.cost - best.cost) <= _AGAIN * best.cost
-        best = min(best, result, key=lambda one: one.cost)
+        if result.cost < (1.0 - _AGAIN) * best.cost:
+            best, again = result, 0
+        else:
+            again += result.cost <= (1.0 + _AGAIN) * best.cost
         steps += result.nfev
         if again == _ENOUGH or steps * len(data.motion) > _SEARCHED:
             break

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..parameters import parameter
 from .law import LAWS, MeasuredFriction
-from .maxwell_slip import Elements
+from .maxwell_slip import Elements, MaxwellSlip
 from .stribeck import StribeckCurve
 
 
@@ -39,8 +39,10 @@ class GeneralisedMaxwellSlip(Elements, StribeckCurve):
 
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+        """Springs of Maxwell slip, whose search among many minima is quick."""
+        springs = seen.fitted(MaxwellSlip)["elements"]
         rate = 10.0 * seen.speed / seen.length
-        return super().guess(seen) | {"attraction_rate": rate}
+        return super().guess(seen) | {"elements": springs, "attraction_rate": rate}
 
     @property
     def α(self) -> NDArray[np.float64]:

@@ -1,6 +1,7 @@
 """Protocol and registry of friction laws, with the field of Coulomb's coefficient that most have."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
@@ -22,6 +23,7 @@ class MeasuredFriction:
         length: slip between reversals [m].
         speed: mean speed [m/s].
         rows: number of rows of tables to be fitted.
+        fitted: parameters by key of another law, of this class, that is fitted to the same data.
     """
 
     level: float
@@ -30,6 +32,7 @@ class MeasuredFriction:
     length: float
     speed: float
     rows: int
+    fitted: Callable[[type["FrictionLaw"]], dict[str, Any]]
 
 
 class FrictionLaw(Protocol):

@@ -232,3 +232,24 @@ def test_too_few_samples_and_unknown_parameters_are_refused():
         fit(LAWS["dahl"], few, {}, {})
     with pytest.raises(ValueError, match="the parameter 'mu', expected mu_c, sigma0_over_load, delta"):
         fit(LAWS["dahl"], few, {"mu": 1.0}, {})
+
+
+@pytest.mark.parametrize(
+    ("name", "true", "samples"),
+    [
+        ("stribeck", {"mu_c": 0.268, "mu_s": 0.402, "stribeck_velocity": 2.45e-5,
+                      "stribeck_exponent": 1.0}, 800),
+        ("maxwell_slip", {"elements": ((9.56e3, 0.194), (4.77e4, 0.159), (3.55e4, 0.234))}, 800),
+        ("gms", {"mu_c": 0.4, "mu_s": 0.6, "stribeck_velocity": 5e-5, "attraction_rate": 8.0,
+                 "elements": ((3e4, 0.2), (1e4, 0.3), (3e3, 0.5))}, 300),
+    ],
+)  # fmt: skip
+def test_the_search_passes_by_minima_that_leave_more(name, true, samples):
+    """Most starts end in one of several times the noise, or one that fewer samples have alone."""
+    kind, t = LAWS[name], np.linspace(0.0, 10.0, samples)
+    X = 1e-4 * (1.0 - np.cos(0.9 * t) + 0.3 * (1.0 - np.cos(2.9 * t)))
+    law = build_model(kind, true)
+    f = friction(law, moves(t, X, kind.depends_on_speed), samples)
+    f[0] = 0.0
+    f += NOISE * np.random.default_rng(0).standard_normal(samples)
+    assert fit(kind, [Measured(t, X, f)], {}, {}).rms < 1.1 * NOISE

@@ -216,9 +216,15 @@ def _stiffness_at(
 
 
 def _zero(f: Callable[[float], NDArray], low: float, high: float, accuracy: float) -> float:
-    """Number, to an accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond."""
+    """Number, to an accuracy, at which a falling function, (1,), vanishes; it may be -∞ beyond.
+
+    It is one of the ends where the function, which has errors of its own, has no zero between them.
+    """
     from scipy.optimize import brentq  # a slow import
 
+    for end, beside in ((high, f(high)[0] > 0.0), (low, f(low)[0] <= 0.0)):
+        if beside:
+            return end
     return float(brentq(lambda x: max(f(x)[0], _BEYOND), low, high, xtol=accuracy * high))
 
 

@@ -96,6 +96,16 @@ def test_speed_limit_of_an_incompressible_graded_layer_is_the_limit_of_others():
     assert limit(0.5) == pytest.approx(Isotropic(1.0, 0.5, 1.0).limit(), rel=1e-9)
 
 
+def test_speed_limit_where_stiffness_vanishes_within_its_own_error():
+    """A wave's stiffness by itself is 1e-9 there, that among other waves -1e-10."""
+    top, bottom = Isotropic(200.0, 0.3, 5.0), Isotropic(100.0, 0.3, 4.0)
+    linear, limit = (
+        Layered((Layer(1.0, top, bottom, "power", power),), Isotropic(70.0, 0.3, 2.7)).limit()
+        for power in (1.0, 1.1)
+    )
+    assert linear < limit < (1.0 + 5e-4) * linear
+
+
 def test_speed_limit_at_a_wavenumber_inside_is_found():
     """Of a heavy plate on a light solid of the same wave speed."""
     light = Isotropic(1.0, 0.3, 1.0)

@@ -24,6 +24,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from math import comb, gamma
 from typing import Any
 
 import numpy as np
@@ -254,8 +255,11 @@ def _slowest(medium: Medium) -> float:
     return min(1.0, *(float(p.imag) for p in medium.response.roots.each))
 
 
-#: Least power of the depth with which a graded top changes, whose kernel polynomials follow.
-_SMOOTH = 3.0
+#: Factors 1 - e^(-kH) by which a power of 1/k that is no whole number is smooth enough at k = 0.
+_FACTORS = 4
+#: Powers of the depth with which a graded top changes: from which on integrals over wavenumbers
+#: converge fast, and from which on polynomials follow the kernel.
+_CONVERGES, _SMOOTH = 2.0, 3.0
 
 
 @dataclass(frozen=True)
@@ -274,21 +278,29 @@ class Kernel:
 
     @cached_property
     def order(self) -> NDArray[Any]:
-        """Limit A of k ΔŶ for large k, (4,); 0 under a uniform layer."""
-        if not self.stack.layers:
+        """Limit A of kᵖ ΔŶ for large k, p the power of a graded top, (4,); 0 under a uniform layer.
+
+        It is 0, too, for powers from 2 on, whose integrals converge without it.
+        """
+        if not self.stack.layers or not self._power < _CONVERGES:
             return np.zeros(4, dtype=complex)
         Y = inverse(self.stack.top.down)
         return np.asarray((-1j * Y @ self.stack.layers[0].first_order() @ Y).ravel())
 
     @cached_property
-    def infinite(self) -> bool:
-        """True where the kernel has a logarithm and a jump at 0."""
+    def singular(self) -> bool:
+        """True where the kernel has a logarithm and a jump at 0, or a power of the distance below 1."""
         return bool(np.any(self.order))
+
+    @property
+    def _power(self) -> float:
+        """Power of the depth with which the top layer changes."""
+        return float(self.stack.layers[0].power)
 
     @property
     def rough(self) -> bool:
         """True where no polynomial follows the kernel next to 0: a logarithm, a jump, a low power."""
-        return self.infinite or any(1.0 < layer.power < _SMOOTH for layer in self.stack.layers[:1])
+        return self.singular or (bool(self.stack.layers) and 1.0 < self._power < _SMOOTH)
 
     @property
     def length(self) -> float:
@@ -299,7 +311,8 @@ class Kernel:
         if not self.stack.layers:
             return np.inf
         felt = felt_depth(self.stack, self.stack.layers[0].H)
-        return float(1.0 / max(np.abs(self.order).max() / self._size, 1.0 / felt))
+        change = np.abs(self.order).max() / self._size
+        return float(1.0 / max(change ** (1.0 / self._power), 1.0 / felt))
 
     @property
     def _size(self) -> float:
@@ -308,8 +321,9 @@ class Kernel:
 
     def _regular(self, k: NDArray) -> NDArray[Any]:
         regular = self.stack.admittance(k).reshape(-1, 4)
-        if self.infinite:
-            regular = regular + self.order * (np.expm1(-k * self.stack.layers[0].H) / k)[:, None]
+        if self.singular:
+            leading = (-np.expm1(-k * self.stack.layers[0].H)) ** self._smooth / k**self._power
+            regular = regular - self.order * leading[:, None]
         return regular
 
     @cached_property
@@ -324,13 +338,27 @@ class Kernel:
         """Absolute error of the kernel."""
         return self.table.error
 
+    @property
+    def _smooth(self) -> int:
+        """Number m of factors 1 - e^(-kH) by which e^(ikx)/kᵖ becomes smooth enough at k = 0."""
+        return 1 if self._power == 1.0 else _FACTORS
+
+    def _leading(self, x: NDArray) -> NDArray[Any]:
+        """∫ (1 - e^(-kH))ᵐ e^(ikx)/kᵖ dk over k > 0, in the shape of x."""
+        m, ε, total = self._smooth, self._power - 1.0, np.zeros(x.shape, dtype=complex)
+        for j in range(m + 1):  # of each e^(-jkH), but for what is the same in all
+            s = j * self.stack.layers[0].H - 1j * x
+            logarithm = np.log(np.where(s == 0.0, 1.0, s))
+            power = np.where(s == 0.0, -1.0, np.expm1(ε * logarithm))  # s^ε - 1
+            total += (-1) ** j * comb(m, j) * (gamma(-ε) * power if ε else -logarithm)
+        return total
+
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The kernels at positions over a, none of them 0 where it is infinite, (..., 4)."""
         kernels = self.table(x)
-        if self.infinite:
-            ratio = self.stack.layers[0].H / np.asarray(x, dtype=float)[..., None]
-            log = 0.5 * np.log1p(ratio**2)
-            kernels = kernels + (self.order.real * log - self.order.imag * np.arctan(ratio)) / np.pi
+        if self.singular:
+            leading = self._leading(np.asarray(x, dtype=float)[..., None])
+            kernels = kernels + (self.order * leading).real / np.pi
         return kernels
 
 

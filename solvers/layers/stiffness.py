@@ -33,6 +33,7 @@ difference δ = Z - Z₋ and the displacement u that belongs to it obey
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import gamma
 from typing import Any, ClassVar
 
 import numpy as np
@@ -178,7 +179,7 @@ class Uniform:
         return Uniform(self.medium, depth), Uniform(self.medium, self.H - depth)
 
     def first_order(self) -> NDArray[Any]:
-        """Limit of k δ for large k, (2, 2): zero, for δ falls exponentially."""
+        """Limit of kᵖ δ for large k and any p, (2, 2): zero, for δ falls exponentially."""
         return np.zeros((2, 2), dtype=complex)
 
 
@@ -290,13 +291,18 @@ class Graded:
         """N, T⁻¹ and dZ₋/dY at depths, (n, 2, 2) each."""
         relative = np.maximum((self.offset + depth) / self._whole, 0.0)
         share = relative if self.power == 1.0 else relative**self.power
-        angle = np.arccos(np.minimum(2.0 * share - 1.0, 1.0))
-        values = np.cos(angle[:, None] * self._orders) @ self._packed
         rate = np.full_like(relative, 1.0 / self._whole)
         if self.power != 1.0:
             rate *= self.power * relative ** (self.power - 1.0)
+        N, T, slope = self._at_share(share)
+        return N, T, rate[:, None, None] * slope
+
+    def _at_share(self, share: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """N, T⁻¹ and -dZ₋/ds at shares s of the change, (n, 2, 2) each."""
+        angle = np.arccos(np.minimum(2.0 * share - 1.0, 1.0))
+        values = np.cos(angle[:, None] * self._orders) @ self._packed
         G, T, slope = values.view(complex).reshape(-1, 3, 2, 2).swapaxes(0, 1)
-        return -1j * G, T.real, -rate[:, None, None] * slope
+        return -1j * G, T.real, -slope
 
     @cached_property
     def _orders(self) -> NDArray[np.float64]:
@@ -377,12 +383,15 @@ class Graded:
         return swept.y[:, -1].reshape(-1, 2, 2) / size, by_top
 
     def first_order(self) -> NDArray[Any]:
-        """Limit of k δ on top for large k, (2, 2)."""
-        N, _, slope = (part[0] for part in self._properties(np.zeros(1)))
-        I = np.eye(2)
-        # Nᴴ δ + δ N = Z₋' by rows.
-        system = np.kron(N.conj().T, I) + np.kron(I, N.T)
-        return np.asarray(np.linalg.solve(system, slope.ravel()).reshape(2, 2))
+        """Limit of kᵖ δ on top for large k, p the power, (2, 2)."""
+        from scipy.linalg import fractional_matrix_power  # a slow import
+
+        N, _, slope = (part[0] for part in self._at_share(np.zeros(1)))
+        I, p = np.eye(2), self.power
+        # δ = -∫ exp(kNᴴd) Z₋'(d) exp(kNd) dd by rows, where Z₋' goes with the power p - 1 of the depth d.
+        falling = -np.kron(N.conj().T, I) - np.kron(I, N.T)
+        of_power = gamma(p + 1.0) / self._whole**p * fractional_matrix_power(falling, -p)
+        return np.asarray(-(of_power @ slope.ravel()).reshape(2, 2))
 
     def min_stiffness(self, k: NDArray, below: NDArray) -> NDArray[np.float64]:
         """Smallest stiffness at faces inside where those above are held, by uniform slices, (n,)."""

@@ -1,5 +1,7 @@
 """Layered and graded half-planes: stiffness, stresses inside and at interfaces, speeds of waves."""
 
+from dataclasses import replace
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -67,6 +69,19 @@ def test_a_power_of_the_depth_that_is_no_whole_number_leaves_no_error_of_the_ker
     near = 10.0 ** np.array([-7.0, -6.0, -5.0, -4.0])
     rise = np.abs(kernel(near) - kernel(np.array([1e-12])))[:, 3]
     assert np.diff(np.log10(rise)) == pytest.approx(0.5, abs=0.02)  # 1.5 less 1
+
+
+@pytest.mark.parametrize("power", [1.0, 1.02, 1.5])
+def test_waves_much_shorter_than_a_graded_top_feel_the_power_of_the_depth(power):
+    """Their stiffness goes to its limit, and the kernel is that of the layer in two parts."""
+    bottom = Isotropic(2.0, 0.2, 1.0)
+    stack = Layered((Layer(0.8, COAT, bottom, "power", power),), bottom).response(0.2).stack(1.0)
+    top, k = stack.layers[0], 1e5
+    δ = k**power * stack.excess(np.array([k]))[0]
+    np.testing.assert_allclose(top.first_order(), δ, rtol=0, atol=1e-4 * np.abs(δ).max())
+    parts = replace(stack, layers=top.cut(0.3))
+    x = np.array([-2.0, -0.3, -1e-3, 1e-6, 1e-3, 0.7])
+    np.testing.assert_allclose(Kernel(stack, 1e-8)(x), Kernel(parts, 1e-8)(x), rtol=0, atol=1e-7)
 
 
 def test_speed_limit_of_uniform_half_planes_and_of_soft_layers_inside():

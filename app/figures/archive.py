@@ -188,7 +188,10 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
     if choice.method:
         require_one_of("method", choice.method, METHODS)
     plain, of = Archive(data, scene, Choice(units=choice.units)), Archive(data, scene, choice)
-    available = [name for name, figure in FIGURES.items() if figure.has(plain)]
+    # Axes that are named have a figure where two values alone would have none.
+    available = [
+        name for name, figure in FIGURES.items() if figure.has(plain) or (choice.given and figure.has(of))
+    ]
     whole = choice.figures == (ALL,)
     named = () if whole else choice.figures
     for name in named:

@@ -76,8 +76,8 @@ def slowest_waves(scene: Scene) -> tuple[list[str], list[str], Drawing]:
     notes = ["k is the wavenumber, H the thickness of all layers"]
     if np.isnan(speed).any():
         notes.append(
-            "none: no wave of that length is slower than the waves inside the solids; one that is "
-            "faster radiates into them, and is no limit of the punch"
+            "none: no wave of that length is slower than the waves inside all solids; one that is "
+            "faster than those inside a layer, as a wave guided by it, is no limit of the punch"
         )
     notes.append(f"highest speed of a punch: {limit:.8g} m/s")
     # Waves along the substrate, and along the surface's solid.

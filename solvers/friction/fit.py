@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, isfinite, log
@@ -169,8 +168,8 @@ def thinned(motion: Sequence[Move], n: int) -> list[Move]:
             last.samples += move.samples
             last.turns += move.turns
         else:
-            lists = {"slip": [*move.slip], "samples": [*move.samples], "turns": [*move.turns]}
-            result.append(replace(move, **lists))
+            own = replace(move, slip=[*move.slip], samples=[*move.samples], turns=[*move.turns])
+            result.append(own)
     for move in result:
         kept = sorted({*range(n - 1, len(move.samples), n), len(move.samples) - 1} - {-1})
         move.slip = [move.slip[k] for k in kept]
@@ -275,7 +274,7 @@ def fit(
         ValueError: a parameter has no start, there are fewer samples than numbers, or no start leads
             anywhere.
     """
-    whole = _Fitted(kind, measured)
+    whole = _Fitted.of(kind, measured)
     look = measured_friction(
         whole.motion, whole.f, rows, lambda kind: fit(kind, measured, {}, {}, rows).parameters
     )
@@ -286,7 +285,7 @@ def fit(
             f"found {used} samples in motion for {len(search.names)} parameters, expected more"
         )
     every = -(-used // _MOST)
-    fitted = whole.thinned(every) if every > 1 else whole
+    fitted = whole.thinned(every)
     if search.names:
         few = whole.thinned(-(-used // _FEW))
         θ = _best_start(few if len(few.used) > 2 * len(search.names) else fitted, search, step)
@@ -309,35 +308,38 @@ def fit(
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
 class _Fitted:
     """Measurements one after the other, as a law sees them, and its residuals there.
 
     Attributes:
         motion: moves of all.
         f: measured friction coefficient, (samples,).
-        used: numbers of the samples in motion, but for those at a smooth turn.
+        at_once: True for laws of which one object can stand for many.
     """
 
-    def __init__(self, kind: type[FrictionLaw], measured: Sequence[Measured]) -> None:
-        self.motion: list[Move] = []
-        before = 0
+    motion: Sequence[Move]
+    f: NDArray[np.float64]
+    at_once: bool
+
+    @classmethod
+    def of(cls, kind: type[FrictionLaw], measured: Sequence[Measured]) -> "_Fitted":
+        """Measurements as laws of a kind see them."""
+        motion, before = list[Move](), 0
         for one in measured:
-            self.motion += moves(one.t, one.X, kind.depends_on_speed, before)
+            motion += moves(one.t, one.X, kind.depends_on_speed, before)
             before += len(one.t)
-        self.f = np.concatenate([one.f for one in measured])
-        self._at_once = kind.broadcasts or kind.batched
+        return cls(motion, np.concatenate([one.f for one in measured]), kind.broadcasts or kind.batched)
 
     @cached_property
     def used(self) -> NDArray[np.int64]:
+        """Numbers of the samples in motion, but for those at a smooth turn."""
         each = [n for move in self.motion for n in move.samples if n not in move.turns]
         return np.array(each, dtype=int)
 
     def thinned(self, n: int) -> "_Fitted":
         """The same measurements with every n-th sample."""
-        fewer = copy(self)
-        fewer.motion = thinned(self.motion, n)
-        vars(fewer).pop("used", None)
-        return fewer
+        return replace(self, motion=thinned(self.motion, n)) if n > 1 else self
 
     def residuals(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
         """Friction of laws less the measured one, (laws, used), at unknowns θ (laws, unknowns)."""
@@ -348,7 +350,7 @@ class _Fitted:
 
     def _friction(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:
         samples = len(self.f)
-        if self._at_once and len(θ) > 1:
+        if self.at_once and len(θ) > 1:
             with suppress(ValueError):  # one of them is rejected
                 return friction(search.law(θ), self.motion, samples, len(θ))
         f = np.full((len(θ), samples), np.nan)

@@ -40,6 +40,12 @@ def strokes():
     return computed("inside", motion | places | CLOSED_FORM)
 
 
+def test_two_values_are_drawn_over_where_they_are_named(tmp_path):
+    """By themselves they tell curves apart, and make none."""
+    run = computed("cylinder", {"punch.load": ["100 N/mm", "300 N/mm"]} | CLOSED_FORM)
+    assert write(run.data, run.scene, Choice(x="load", y=("half_width",)), Files(tmp_path))
+
+
 def test_what_a_figure_leaves_out_is_said(fast, tmp_path):
     """The last speed is the point of the scene: it is never the one that is left out."""
     drawing = drawn(fast, "surface")

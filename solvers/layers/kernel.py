@@ -5,9 +5,12 @@ The kernel by which a layered half-plane differs from one of its surface's solid
     K(x) = (1/π) Re ∫₀^∞ ΔŶ(k) e^(ikx) dk,
 
 four functions that do not depend on friction. ΔŶ falls exponentially under uniform layers. Where the
-solid at the surface is graded it falls like A/k: that part, with (1 - e^(-bk))/k for 1/k, is
+solid at the surface changes with the power p of the depth it falls like A/kᵖ: that part, with
+(1 - e^(-kH))ᵐ/kᵖ for 1/kᵖ, is
 
-    (1/π) [Re A log(1 + b²/x²)/2 - Im A arctan(b/x)].
+    (1/π) Re A Γ(1-p) Σ_j (-1)^j (m over j) (jH - ix)^(p-1),
+
+with -log(jH - ix) for Γ(1-p) (…)^(p-1) where p = 1: a logarithm and a jump at x = 0.
 
 Integrals (1/π) Re ∫₀^∞ f(k) e^(ikx) dk of functions that are smooth piece by piece (:class:`Transform`)
 are taken on panels. There f is a sum of Legendre polynomials, whose integrals with e^(ikx) are spherical

@@ -187,11 +187,10 @@ def names(data: dict[str, Any], scene: Scene, choice: Choice = PLAIN) -> list[st
             raise BadInput(f"--states: found {state}, which has no solution; show says why")
     if choice.method:
         require_one_of("method", choice.method, METHODS)
-    plain, of = Archive(data, scene, Choice(units=choice.units)), Archive(data, scene, choice)
-    # Axes that are named have a figure where two values alone would have none.
-    available = [
-        name for name, figure in FIGURES.items() if figure.has(plain) or (choice.given and figure.has(of))
-    ]
+    # Axes that are named have a figure where two values by themselves have none.
+    axes = Choice(units=choice.units, x=choice.x, y=choice.y, by=choice.by)
+    plain, of = Archive(data, scene, axes), Archive(data, scene, choice)
+    available = [name for name, figure in FIGURES.items() if figure.has(plain)]
     whole = choice.figures == (ALL,)
     named = () if whole else choice.figures
     for name in named:

@@ -338,7 +338,7 @@ class _Fitted:
         return np.array(each, dtype=int)
 
     def thinned(self, n: int) -> "_Fitted":
-        """The same measurements with every n-th sample."""
+        """Measurements with every n-th sample alone."""
         return replace(self, motion=thinned(self.motion, n)) if n > 1 else self
 
     def residuals(self, search: "_Search", θ: NDArray) -> NDArray[np.float64]:

@@ -349,7 +349,7 @@ def oddities(scene: Scene) -> list[str]:
 
 
 def _without_strokes(scene: Scene) -> Iterator[str]:
-    """Warning about keys without effect in steady sliding."""
+    """Warning about keys without effect where there are no strokes."""
     if not scene.steady:
         return
     friction, motion = scene.friction, scene.motion
@@ -360,7 +360,7 @@ def _without_strokes(scene: Scene) -> Iterator[str]:
     }
     if unused := [name for name, of in given.items() if of]:
         yield (
-            f"{listed(unused)}: without effect, because the punch slides steadily; give motion.strokes "
+            f"{listed(unused)}: without effect, because the punch makes no strokes; give motion.strokes "
             "for a motion to and fro"
         )
 

@@ -11,7 +11,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +52,7 @@ from .. import ranks
 from ..errors import BadInput, listed
 from ..methods import METHODS, OWN_METHODS
 from ..scene.scene import FRICTIONS, Scene, oddities
-from ..scene.sections import Solve
+from ..scene.sections import keys_set
 from . import elements
 from .over_time import Starts, starts
 from .states import Order, States, enumerate_states, order
@@ -253,8 +252,8 @@ def _faults(
     if FEM in solve.methods and scene.time is not None:
         # Those of steady motion may have a mesh.
         keys = ("assembler",) if FEM in methods else ("mesh", "degree", "solver", "assembler")
-        given = _given(solve, keys).items()
-        if wrong := [f"solve.{key} = {json.dumps(of)}" for key, of in given if of != "direct"]:
+        values = keys_set(solve, keys).items()
+        if wrong := [f"solve.{key} = {json.dumps(of)}" for key, of in values if of != "direct"]:
             yield (
                 f"time: found {' and '.join(wrong)}, but motions in time have meshes, degrees and "
                 "matrices of their own; take that away"
@@ -278,12 +277,6 @@ def _faults(
 _OF_ELEMENTS = ("mesh", "degree", "cuts", "sweep", "solver", "assembler")
 
 
-def _given(solve: Solve, keys: Iterable[str]) -> dict[str, Any]:
-    """Those of some keys of [solve] that do not have their usual values, with their values."""
-    values = {key: getattr(solve, key) for key in keys}
-    return {key: value for key, value in values.items() if value != getattr(Solve, key)}
-
-
 #: Least depth over a of points inside layers by the integral equation: memory goes as its inverse.
 _SHALLOWEST = 1e-4
 
@@ -303,7 +296,7 @@ def _faults_of_layers(scene: Scene) -> Iterator[str]:
         )
     reasons += [
         f"solve.{key} is {json.dumps(value)}, but layers have meshes and degrees of their own"
-        for key, value in _given(solve, ("mesh", "degree") if FEM in solve.methods else ()).items()
+        for key, value in keys_set(solve, ("mesh", "degree") if FEM in solve.methods else ()).items()
     ]
     if reasons:
         yield (
@@ -518,7 +511,7 @@ def make_plan(
         methods
         and FEM not in methods
         and not scene.time
-        and (unused := _given(scene.solve, _OF_ELEMENTS))
+        and (unused := keys_set(scene.solve, _OF_ELEMENTS))
     ):
         keys = listed([f"solve.{key}" for key in unused])
         warnings.append(f"{keys}: without effect, because no finite elements solve this contact")

@@ -32,7 +32,18 @@ from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
 from ..errors import BadInput, listed
-from .sections import ADVECTED, ElasticPunch, Friction, GivenSolid, Motion, Output, Punch, Solve, Time
+from .sections import (
+    ADVECTED,
+    ElasticPunch,
+    Friction,
+    GivenSolid,
+    Motion,
+    Output,
+    Punch,
+    Solve,
+    Time,
+    keys_set,
+)
 
 
 @dataclass(frozen=True)
@@ -327,8 +338,7 @@ def _of_motion(scene: Scene) -> Iterator[str]:
         yield "motion: path gives the speed, too; take c and speed away"
     elif motion.path is None and motion.c is None and motion.speed is None:
         yield "motion: expected c (over the shear wave speed) or speed (m/s)"
-    usual = Motion()
-    others = [name for name in _OF_STROKES if getattr(motion, name) != getattr(usual, name)]
+    others = keys_set(motion, _OF_STROKES)
     if motion.path is not None and others:
         yield f"motion: path gives strokes, positions and rests; take {' and '.join(others)} away"
     try:
@@ -352,13 +362,9 @@ def _without_strokes(scene: Scene) -> Iterator[str]:
     """Warning about keys without effect where there are no strokes."""
     if not scene.steady:
         return
-    friction, motion = scene.friction, scene.motion
-    given = {
-        "friction.pre_sliding": friction.pre_sliding != Friction.pre_sliding,
-        "friction.state": friction.state == ADVECTED and not friction.law.has_memory,
-        "motion.rest": motion.rest != Motion.rest,
-    }
-    if unused := [name for name, of in given.items() if of]:
+    of_friction = ["pre_sliding"] + ["state"] * (not scene.friction.law.has_memory)
+    unused = [f"friction.{key}" for key in keys_set(scene.friction, of_friction)]
+    if unused := unused + [f"motion.{key}" for key in keys_set(scene.motion, ["rest"])]:
         yield (
             f"{listed(unused)}: without effect, because the punch makes no strokes; give motion.strokes "
             "for a motion to and fro"

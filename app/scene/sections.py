@@ -541,6 +541,12 @@ class Output:
         return np.concatenate([np.column_stack([X.ravel(), Y.ravel()]), single])
 
 
+def keys_set(section: Any, keys: Iterable[str]) -> dict[str, Any]:
+    """Values by key, of some keys of a section, that are not the usual ones."""
+    values = {key: getattr(section, key) for key in keys}
+    return {key: value for key, value in values.items() if value != getattr(type(section), key)}
+
+
 @dataclass(frozen=True)
 class Section:
     """A section of a scene, and how its table is read.

@@ -305,7 +305,7 @@ class Kernel:
         """True where no polynomial follows the kernel next to 0: a logarithm, a jump, a low power."""
         return self.singular or (bool(self.stack.layers) and 1.0 < self._power < _SMOOTH)
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Length over a over which the kernel varies next to 0.
 
@@ -351,9 +351,12 @@ class Kernel:
         m, ε, total = self._smooth, self._power - 1.0, np.zeros(x.shape, dtype=complex)
         for j in range(m + 1):  # of each e^(-jkH), but for what is the same in all
             s = j * self.stack.layers[0].H - 1j * x
-            logarithm = np.log(np.where(s == 0.0, 1.0, s))
-            power = np.where(s == 0.0, -1.0, np.expm1(ε * logarithm))  # s^ε - 1
-            total += (-1) ** j * comb(m, j) * (gamma(-ε) * power if ε else -logarithm)
+            if ε:
+                power = np.where(s == 0.0, -1.0, np.expm1(ε * np.log(np.where(s == 0.0, 1.0, s))))
+                of_exponential = gamma(-ε) * power  # s^ε - 1 is exact for small ε
+            else:
+                of_exponential = -np.log(s)
+            total += (-1) ** j * comb(m, j) * of_exponential
         return total
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:

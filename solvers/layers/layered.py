@@ -23,7 +23,7 @@ logarithm, the others fall like 1/X; the remainder falls like its square.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -222,10 +222,11 @@ def _zero(f: Callable[[float], NDArray], low: float, high: float, accuracy: floa
     """
     from scipy.optimize import brentq  # a slow import
 
-    for end, beside in ((high, f(high)[0] > 0.0), (low, f(low)[0] <= 0.0)):
+    value = cache(lambda x: max(float(f(x)[0]), _BEYOND))
+    for end, beside in ((high, value(high) > 0.0), (low, value(low) <= 0.0)):
         if beside:
             return end
-    return float(brentq(lambda x: max(f(x)[0], _BEYOND), low, high, xtol=accuracy * high))
+    return float(brentq(value, low, high, xtol=accuracy * high))
 
 
 #: Speeds over the highest at which each wave's stiffness is evaluated first.

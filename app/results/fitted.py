@@ -72,7 +72,11 @@ def read(path: Path) -> Table:
         if kind == "friction" and n in forces:  # F [N] is a force, N without a unit of one no load
             kind = "force"
         if name != "n" or n in forces:
-            columns.setdefault(kind, n)
+            first = columns.setdefault(kind, n)
+            if kind and first != n:
+                notes.append(
+                    f"{path}: columns {first + 1} and {n + 1} are both {kind}: the first is read"
+                )
 
     def numbers(kind: str, unit: str) -> NDArray[np.float64]:
         column = columns[kind]
@@ -100,9 +104,10 @@ def read(path: Path) -> Table:
             found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
             raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")
         force, load = (table.numbers(n, unit) for n in both)
-        if not load.all():
-            line, _ = table.rows[int(np.flatnonzero(load == 0.0)[0])]
-            raise BadInput(f"{path}, line {line}: found no load, expected one")
+        if no_load := np.flatnonzero(load * load[:1] <= 0.0).tolist():
+            line, _ = table.rows[no_load[0]]
+            what = "loads of two signs" if load[no_load[0]] else "no load"
+            raise BadInput(f"{path}, line {line}: found {what}, expected loads of one sign")
         f = force / np.abs(load)
     clock = numbers("time", "s") if timed else numbers("slip", "m")
     X = numbers("position", "m") if timed else clock
@@ -134,8 +139,9 @@ def read(path: Path) -> Table:
 
 #: Name that stands for every law.
 ALL = "all"
-#: What a law leaves of friction over its size from which on it does not follow it.
-_FOLLOWS = 0.5
+#: What a law leaves of friction over its size from which on it does not follow it; the same where the
+#: scatter from sample to sample is so many times less, and shows that more than noise is left.
+_FOLLOWS, _MORE, _THAN_SCATTER = 0.5, 0.05, 3.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -185,11 +191,15 @@ class Fit(FittedLaw):
         f = np.concatenate([table.measured.f for table in self.tables])
         samples, size = len(f), float(np.sqrt(np.nanmean(f**2)))
         said = [note for table in self.tables for note in table.notes]
-        if self.rms >= _FOLLOWS * size:
+        left = [table.measured.f - f for table, f in zip(self.tables, self.f)]
+        steps = np.abs(np.concatenate([np.diff(one) for one in left]))
+        scatter = float(np.nanmedian(steps))
+        more = self.rms >= max(_MORE * size, _THAN_SCATTER * scatter)
+        if more or self.rms >= _FOLLOWS * size:
             said.append(
                 f"{self.model} does not follow the data: {self.rms:.3g} is left of f, whose root mean "
-                f"square is {size:.3g}, dimensionless; f has the sign of the motion and no offset: is it "
-                "so there?"
+                f"square is {size:.3g}, and {np.nanmean(np.concatenate(left)):.3g} of it on average, "
+                "dimensionless; f has the sign of the motion and no offset: is it so there?"
             )
         if self.every > 1:
             said.append(f"every {self.every}th sample is fitted, and those where the motion turns")

@@ -259,8 +259,8 @@ class Friction:
     )
     integrator: str = key(
         Choice(INTEGRATORS), "integrator", "exact",
-        '`"exact"`: to the last digits; `"rk4"`: Runge-Kutta with 20 steps a stroke, refused where it is '
-        "unstable",
+        '`"exact"`: to the last digits; `"rk4"`: Runge-Kutta with 20 steps a stroke, refused unless '
+        "surely stable",
     )  # fmt: skip
     sign: str = key(
         Choice(("physical", "eq25")), "sign of σ_XY", "physical",

@@ -378,7 +378,7 @@ class VaryingLevel(SplineLevel, SharpLevel):
         gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, COARSE)
         # Without knots next to ends and kinks, splines of all degrees are off alike.
         off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
-        return replace(gauge, unresolved=gauge.unresolved + off)
+        return replace(gauge, unresolved=gauge.unresolved + _SURE * off)
 
 
 class OnLayersLevel(SplineLevel, SharpLevel):

@@ -125,6 +125,7 @@ def test_tables_of_all_conventions_are_one_measurement(tmp_path):
         ("slip [mm],force [N],load [N/m]\n0,1,1\n1,1,1\n", "expected both in N, or both in N/m"),
         ("slip [mm],force,load\n0,1,1\n1,1,1\n", "expected both in N, or both in N/m"),
         ("slip [mm],force [N],load [N]\n0,1,1\n1,1,0\n2,1,1\n", "line 3: found no load"),
+        ("slip [mm],force [N],load [N]\n0,1,1\n1,1,1\n2,1,-1\n", "line 4: found loads of two signs"),
         ("slip [mm],f\n", "three or more rows"),
         ("a,b\n1,2\n", r'expected "slip \[mm\],f", "time \[s\],position \[mm\],f", or with "force'),
         ("slip,f\n0,0\n1,x\n2,1\n", "line 3, f: found 'x', expected a finite number"),
@@ -144,6 +145,13 @@ def test_faults_of_tables_are_told(tmp_path, text, said):
         read(tmp_path / "a.csv")
 
 
+def test_of_two_columns_of_a_kind_the_first_is_read(tmp_path):
+    (tmp_path / "a.csv").write_text("slip [mm],f,mu\n0,0,1\n1,1,1\n2,1,2\n", encoding="utf-8")
+    table = read(tmp_path / "a.csv")
+    assert table.measured.f.tolist() == [0.0, 1.0, 1.0]
+    assert "columns 2 and 3 are both friction" in table.notes[0]
+
+
 def test_speeds_are_those_of_the_tables(tmp_path):
     for n in (1, 2):
         (tmp_path / f"{n}.csv").write_text("slip [mm],f\n0,0\n0.1,0.2\n0.2,0.3\n", encoding="utf-8")
@@ -157,9 +165,14 @@ def test_speeds_are_those_of_the_tables(tmp_path):
     assert "give --speed" in found.failed["lugre"]
 
 
-@pytest.mark.parametrize("offset, said", [(0.3, True), (0.0, False)])
-def test_friction_that_no_law_follows_is_called_so(offset, said):
-    """As one of one sign in a motion to and fro."""
-    swung = swing("coulomb", {"mu_c": 0.0 if offset else 0.3})
-    found = galinx.fit(galinx.Measured(swung.t, swung.X, swung.f + offset), "coulomb")
+@pytest.mark.parametrize("model, parameters, offset", [
+    ("coulomb", {"mu_c": 0.0}, 0.3), ("coulomb", {"mu_c": 0.3}, 0.0),
+    ("dahl", {"mu_c": 0.4, "sigma0_over_load": 2e4}, 0.1),
+    ("dahl", {"mu_c": 0.4, "sigma0_over_load": 2e4}, 0.0),
+])  # fmt: skip
+def test_friction_that_no_law_follows_is_called_so(model, parameters, offset):
+    """As one of one sign in a motion to and fro, or one of which an offset was not taken off."""
+    swung = swing(model, parameters)
+    found = galinx.fit(galinx.Measured(swung.t, swung.X, swung.f + offset), model)
+    said = offset > 0.0
     assert any("does not follow the data" in note for note in found.notes) == said

@@ -70,6 +70,19 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert not loops_sheet(result.data, result.units()).rows
 
 
+def test_estimates_over_a_layer_cover_what_splines_leave_out_at_the_edges():
+    layer = [{"thickness": "2 mm", "E": "0.8 GPa", "nu": 0.3, "rho": 1200}]
+    solid, friction = {"E": "2.5 GPa", "nu": 0.25, "rho": 1000}, [[-1, 0.9], [0.8, 0.0], [1, 0.9]]
+    of = {"layer": layer, "output": {"quantities": ["sif"]}, "punch": {"half_width": "1 mm"}}
+    sie, fem = (
+        slid({"along": friction}, solid, 0.2, solve={"methods": [method]} | by, **of).data
+        for method, by in (("sie", {}), ("fem", {"tolerance": 0.1}))
+    )
+    for end in ("left", "right"):
+        off = abs(fem[f"states/fem/K_I_{end}"] / sie[f"states/sie/K_I_{end}"] - 1.0)
+        assert off > 1e-3 and off < fem["states/fem/estimate"]
+
+
 YIELDING = {"quantities": ["sif", "surface", "interior", "yield"]}
 
 

@@ -35,8 +35,9 @@ _INSIDE = 1e-6
 _FARTHEST = 1e5
 #: Change of speed over those before and after from which on it is a jump.
 _JUMPS = 3.0
-#: Least speed at a sample over the mean one before it: at a turn neither sign nor logarithm are known.
-_SLOWEST = 0.1
+#: Speed at a sample over its change since the one before below which neither its sign nor its logarithm
+#: are known, as at a smooth turn; and least speed at the end of a move over the mean one.
+_TURNS, _SLOWEST = 0.5, 0.1
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,7 @@ def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]
     result: list[Move] = []
     rest = 0.0
     for number, parts in enumerate(_parts(X, t), before + 1):
-        for n, (v, end, seconds) in enumerate(parts, 1):
+        for n, (v, end, seconds, change) in enumerate(parts, 1):
             if v == 0.0:
                 rest += seconds
                 continue
@@ -148,7 +149,7 @@ def moves(t: NDArray, X: NDArray, by_speed: bool, before: int = 0) -> list[Move]
             if n == len(parts):
                 last.slip.append(way)
                 last.samples.append(number)
-                last.turns += [number] * (abs(end) < _SLOWEST * V)
+                last.turns += [number] * (abs(end) < _TURNS * abs(change))
     return result
 
 
@@ -177,8 +178,11 @@ def thinned(motion: Sequence[Move], n: int) -> list[Move]:
     return result
 
 
-def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
-    """Parts of the way to each sample after the first: mean speed, speed at its end [m/s], time [s].
+def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float, float]]]:
+    """Parts of the way to each sample after the first.
+
+    Each has its mean speed and that at its end [m/s], its time [s], and the smooth change of speed along
+    the whole way [m/s].
 
     From sample to sample the speed is linear, with the smaller one of the slopes to the neighbours, and
     none where these have two signs (B. van Leer, J. Comput. Phys. 32 (1979) 101). Where it changes by far
@@ -198,10 +202,11 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
     parts, v, change, seconds = [], v.tolist(), change.tolist(), seconds.tolist()
     for n, (mean, Δ, bend) in enumerate(zip(v, seconds, slope.tolist())):
         begin, end = mean - 0.5 * bend * Δ, mean + 0.5 * bend * Δ
-        one = [(mean, end, Δ)]
+        smooth = end - begin
+        one = [(mean, end, Δ, smooth)]
         if begin * end < 0.0:
             turn = begin / (begin - end)
-            one = [(0.5 * begin, 0.0, turn * Δ), (0.5 * end, end, (1.0 - turn) * Δ)]
+            one = [(0.5 * begin, 0.0, turn * Δ, smooth), (0.5 * end, end, (1.0 - turn) * Δ, smooth)]
         if 2 <= n < len(v) - 2:
             begin = v[n - 1] + 0.5 * change[n - 2] * seconds[n - 1]
             end = v[n + 1] - 0.5 * change[n + 1] * seconds[n + 1]
@@ -209,7 +214,7 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float]]]:
             if abs(end - begin) > _JUMPS * noise and min(abs(mean - begin), abs(mean - end)) > noise:
                 at = (mean - end) / (begin - end)
                 if 1e-3 < at < 1.0 - 1e-3:
-                    one = [(begin, begin, at * Δ), (end, end, (1.0 - at) * Δ)]
+                    one = [(begin, begin, at * Δ, 0.0), (end, end, (1.0 - at) * Δ, 0.0)]
         parts.append(one)
     return parts
 

@@ -10,7 +10,8 @@ solid at the surface changes with the power p of the depth it falls like A/kᵖ:
 
     (1/π) Re A Γ(1-p) Σ_j (-1)^j (m over j) (jH - ix)^(p-1),
 
-with -log(jH - ix) for Γ(1-p) (…)^(p-1) where p = 1: a logarithm and a jump at x = 0.
+with -log(jH - ix) for Γ(1-p) (…)^(p-1) where p = 1: a logarithm and a jump at x = 0. The terms after the
+first are smooth and tabulated with what is left of the integral.
 
 Integrals (1/π) Re ∫₀^∞ f(k) e^(ikx) dk of functions that are smooth piece by piece (:class:`Transform`)
 are taken on panels. There f is a sum of Legendre polynomials, whose integrals with e^(ikx) are spherical
@@ -192,12 +193,13 @@ class Table:
 
 def tabulated(
     f: Callable[[NDArray], NDArray], first: float, finest: float, reach: float, accuracy: float,
-    scale: float = 0.0,
+    scale: float = 0.0, more: Callable[[NDArray], NDArray] = lambda x: np.zeros((*x.shape, 1)),
 ) -> Table:  # fmt: skip
     """Transform of f, tabulated by position over [-reach, reach].
 
     Args:
         f, first, scale: see :func:`transform`.
+        more: functions of positions to be added to it, (..., functions).
         finest: size of the panels next to 0, where it may be rough; the others double.
         reach: where the table ends.
         accuracy: of the transform and of the table, over the integral of |f|.
@@ -214,7 +216,8 @@ def tabulated(
     done: list[tuple[float, NDArray, float]] = []
     while len(waiting):
         middle, half = waiting.mean(axis=1), np.diff(waiting, axis=1)[:, 0] / 2.0
-        c = _TO_CHEBYSHEV @ integrals(middle[:, None] + half[:, None] * _x)
+        x = middle[:, None] + half[:, None] * _x
+        c = _TO_CHEBYSHEV @ (integrals(x) + more(x))
         tail = np.abs(c[:, -_LAST:]).max(axis=(1, 2))
         # A power of the distance is followed to where it weighs nothing, under any pressure d^(-1/2).
         at_0 = np.any(waiting == 0.0, axis=1)
@@ -331,10 +334,11 @@ class Kernel:
 
     @cached_property
     def table(self) -> Table:
-        """The kernel without the logarithm and the jump, tabulated by position."""
+        """The kernel without what is singular at 0, tabulated by position."""
         finest = min(float(self.stack.layers[0].H), 1.0) / 4.0 * (1e-6 if self.rough else 1.0)
         accuracy = max(self.tolerance, 100.0 * ROUNDING if self.rough else ROUNDING)
-        return tabulated(self._regular, wavenumbers(self.stack), finest, self.reach, accuracy, self._size)
+        given = self._regular, wavenumbers(self.stack), finest, self.reach, accuracy, self._size
+        return tabulated(*given, self._of_shifts) if self.singular else tabulated(*given)
 
     @property
     def error(self) -> float:
@@ -346,26 +350,39 @@ class Kernel:
         """Number m of factors 1 - e^(-kH) by which e^(ikx)/kᵖ becomes smooth enough at k = 0."""
         return 1 if self._power == 1.0 else _FACTORS
 
-    def _leading(self, x: NDArray) -> NDArray[Any]:
-        """∫ (1 - e^(-kH))ᵐ e^(ikx)/kᵖ dk over k > 0, in the shape of x."""
-        m, ε, total = self._smooth, self._power - 1.0, np.zeros(x.shape, dtype=complex)
-        for j in range(m + 1):  # of each e^(-jkH), but for what is the same in all
+    def _power_of(self, log: NDArray, s: NDArray) -> NDArray[Any]:
+        """Γ(1-p) s^(p-1) by log s, but for a constant or a multiple of s, of which the sum has none.
+
+        It would be lost beside these where p is near 1 or 2.
+        """
+        ε = self._power - 1.0
+        if ε == 0.0:
+            return -log
+        if ε < 0.5:
+            return gamma(-ε) * np.expm1(ε * log)
+        return gamma(-ε) * s * np.expm1((ε - 1.0) * log)
+
+    def _of_shifts(self, x: NDArray) -> NDArray[np.float64]:
+        """Terms with e^(-jkH), j > 0, at positions, (..., 4)."""
+        m, total = self._smooth, np.zeros(x.shape, dtype=complex)
+        for j in range(1, m + 1):
             s = j * self.stack.layers[0].H - 1j * x
-            if ε:
-                power = np.where(s == 0.0, -1.0, np.expm1(ε * np.log(np.where(s == 0.0, 1.0, s))))
-                of_exponential = gamma(-ε) * power  # s^ε - 1 is exact for small ε
-            else:
-                of_exponential = -np.log(s)
-            total += (-1) ** j * comb(m, j) * of_exponential
-        return total
+            total += (-1) ** j * comb(m, j) * self._power_of(np.log(s), s)
+        return np.asarray((self.order * total[..., None]).real / np.pi)
+
+    def _of_surface(self, x: NDArray) -> NDArray[np.float64]:
+        """The term without e^(-kH), singular at 0, at positions, (..., 4)."""
+        ε, at_0 = self._power - 1.0, x == 0.0
+        log = np.log(np.where(at_0, 1.0, np.abs(x))) - 0.5j * np.pi * np.sign(x)
+        term = self._power_of(log, -1j * x)
+        if 0.0 < ε < 0.5:
+            term = np.where(at_0, -gamma(-ε), term)
+        return np.asarray((self.order * term[..., None]).real / np.pi)
 
     def __call__(self, x: NDArray) -> NDArray[np.float64]:
         """The kernels at positions over a, none of them 0 where it is infinite, (..., 4)."""
         kernels = self.table(x)
-        if self.singular:
-            leading = self._leading(np.asarray(x, dtype=float)[..., None])
-            kernels = kernels + (self.order * leading).real / np.pi
-        return kernels
+        return kernels + self._of_surface(np.asarray(x, dtype=float)) if self.singular else kernels
 
 
 @dataclass(frozen=True, eq=False)

@@ -355,7 +355,6 @@ def converged(
     equation: Equation,
     at_resolution: Callable[[Resolution], SolvedContact],
     tolerance: float,
-    enough: float = 0.0,
 ) -> SolvedContact:
     """Contact to a relative tolerance, by finer and finer resolutions.
 
@@ -363,7 +362,6 @@ def converged(
         equation: of its pressure.
         at_resolution: gives the contact at a resolution.
         tolerance: the tolerance.
-        enough: a change that is allowed with the most unknowns.
 
     Raises:
         SolveError: the tolerance was not reached; the message says by how much. Or an exponent is too
@@ -376,20 +374,29 @@ def converged(
             f"{_STRONGEST:g}: all of it acts at that edge; take less friction"
         )
     before, error, allowed = None, np.inf, max(tolerance / 4.0, _ROUNDING)
-    # Two numbers of polynomials that both miss what a thin film does at an edge agree.
-    least = _AT_EDGES / np.sqrt(equation.kernel.length)
-    for resolution in _PANELS if equation.rough else [count for count in _TERMS if count >= least]:
+    for resolution in resolutions(equation):
         now = at_resolution(resolution)
         if before is not None:
             error = max(now.moved(before), now.change)
             if error <= allowed:
                 return replace(now, before=before.pressure, change=error)
         before = now
-    if error <= enough:
-        return now
+    raise _not_resolved(equation, error, allowed)
+
+
+def resolutions(equation: Equation) -> list[Resolution]:
+    """Finer and finer resolutions: longest panels, or numbers of polynomials."""
+    if equation.rough:
+        return _PANELS
+    # Two numbers of polynomials that both miss what a thin film does at an edge agree.
+    least = _AT_EDGES / np.sqrt(equation.kernel.length)
+    return [count for count in _TERMS if count >= least]
+
+
+def _not_resolved(equation: Equation, error: float, allowed: float) -> SolveError:
     look = "look at the units of the punch and the layers"
     if not np.isfinite(error):
-        raise SolveError(
+        return SolveError(
             "the uppermost layer is so thin beside the contact's width that even the most unknowns miss "
             f"what it does at the edges: leave it out, or {look}"
         )
@@ -397,7 +404,7 @@ def converged(
     if equation.kernel is not UNIFORM:
         reasons.append("the uppermost layer is very thin beside the contact's width")
         units = f", and {look}"
-    raise SolveError(
+    return SolveError(
         f"with the most unknowns the pressure still changes by {error:.2g}, expected {allowed:.2g}: "
         f"{', or '.join(reasons)}; take a larger tolerance{units}"
     )
@@ -556,7 +563,7 @@ def kinked(
 
 #: Accuracy of half-widths over the tolerance, where each has an equation of its own.
 _OF_LENGTHS = 1e-4
-#: Accuracy of a contact at rest, over whose half-width others are given, and the least that serves.
+#: Accuracy of the half-width at rest, over which others are given, and the least that serves.
 _AT_REST, _NEARLY = 1e-5, 0.1
 #: Accuracy with which an edge counts as lifted off.
 OF_ENDS = 1e-6
@@ -662,16 +669,13 @@ class LayersUnderPunch:
         """Solved contacts by friction."""
         return {}
 
-    def contact(
-        self, g: float, h: float = 1.0, checked: bool = True, enough: float = 0.0
-    ) -> SolvedContact:
+    def contact(self, g: float, h: float = 1.0, checked: bool = True) -> SolvedContact:
         """The contact with a friction.
 
         Args:
             g: σ_XY/σ_YY.
             h: half-width to begin with.
             checked: the contact may not be wider than what is known of the punch.
-            enough: a relative change of the pressure that is allowed with the most unknowns.
 
         Raises:
             SolveError: no contact carries the load, or it is not resolved.
@@ -687,11 +691,32 @@ class LayersUnderPunch:
             h = contact.half_width
             return contact
 
-        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance, enough)
+        contact = converged(self._equation(g, 1.0), at_resolution, self.tolerance)
         m, h = contact.centre, contact.half_width
         if checked:
             check_reach(profile, unit * (m - h), unit * (m + h))
         return contact
+
+    def half_width(self) -> float:
+        """Half-width without friction, whatever the pressure needs, of a contact with a free end.
+
+        Raises:
+            SolveError: no contact carries the load, or the half-width is not resolved.
+        """
+        equation, h, change = self._equation(0.0, 1.0), 1.0, np.inf
+        tilted = isinstance(self.punch.profile, Flat)
+        for resolution in resolutions(equation):
+            before = h
+            if tilted:
+                h = self._tilted(0.0, h, resolution).half_width
+            else:
+                h = self._free_ends(0.0, h, resolution)[1]
+            change = abs(h / before - 1.0)
+            if change <= self.tolerance:
+                break
+        if change > _NEARLY:
+            raise _not_resolved(equation, change, self.tolerance)
+        return h
 
     def _equation(self, g: float, h: float, slope: Any = np.zeros_like) -> Equation:
         friction = self.friction(g, self.punch.unit * h)
@@ -701,8 +726,8 @@ class LayersUnderPunch:
         """Contact between two sharp corners at a resolution."""
         return SolvedContact(g, self._equation(g, 1.0, self.punch.slope(0.0, 1.0)).pressure(resolution))
 
-    def _between_free_ends(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
-        """Contact between two free ends at a resolution, from the half-width h on."""
+    def _free_ends(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
+        """Centre and half-width of a contact between two free ends, from the half-width h on."""
         rules: dict[float, Rule] = {}
         # On a uniform solid all half-widths share one rule, unless friction has a length.
         share = not self.stack and not self.friction(g, self.punch.unit).has_length
@@ -714,7 +739,11 @@ class LayersUnderPunch:
             return rules[own]
 
         rounding = ROUNDING if share else _OF_LENGTHS * self.tolerance
-        m, h = free_ends(self.punch, of_half_width, h, rounding=rounding)
+        return free_ends(self.punch, of_half_width, h, rounding=rounding)
+
+    def _between_free_ends(self, g: float, h: float, resolution: Resolution) -> SolvedContact:
+        """Contact between two free ends at a resolution, from the half-width h on."""
+        m, h = self._free_ends(g, h, resolution)
         equation = self._equation(g, h, self.punch.slope(m, h))
         places = self.punch.kinks(m, h)
         if places and not equation.friction.varies:
@@ -778,7 +807,7 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
-    return unit * layers.contact(0.0, checked=False, enough=_NEARLY).half_width
+    return unit * layers.half_width()
 
 
 def _unresolved(each: Sequence[SolvedContact]) -> float:

@@ -48,6 +48,12 @@ def faults(figure):
     yield from _under_legends(figure, renderer)
 
 
+def legible(drawings):
+    """Assert that no figure has a fault."""
+    found = [f"{drawing.name}: {fault}" for drawing in drawings for fault in faults(drawing.figure)]
+    assert not found, "\n".join(found)
+
+
 def _beyond(figure):
     """Labels of ticks that lie beyond the limits of their axis, which are not drawn."""
     found = set()

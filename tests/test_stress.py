@@ -19,7 +19,7 @@ def test_rows_keep_their_word(tmp_path, capsys, monkeypatch):
         matrix, "ROWS", (friction_law.exact_law, friction_law.runge_kutta_steps, resolution.degrees)
     )
     # The first scene of this seed, and the random ones of the other, are solved in a moment.
-    monkeypatch.setattr(matrix, "all_kinds", lambda *_: all_kinds.all_kinds(2, 1))
+    monkeypatch.setattr(matrix, "all_kinds", lambda *_: all_kinds.all_kinds(5, 1))
     assert matrix.stress(Folder(tmp_path), seed=266, scenes=2)
     printed = capsys.readouterr().out
     assert "verdict: PASS" in printed and "FAILS" not in printed

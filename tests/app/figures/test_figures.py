@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from legible import LEAST, faults
+from legible import LEAST, faults, legible
 from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
@@ -11,25 +11,13 @@ from support import THOROUGH, computed, kept
 from galinx.app.figures.choice import size
 from galinx.app.figures.files import content
 from galinx.app.figures.render import Curve, Panel, Size, TooSmall, render
-from galinx.app.figures.style import COLUMN, PAGE, looks
-from galinx.app.study.drawings import of_study
-
-
-@pytest.fixture(scope="module")
-def study_run():
-    """The study by the closed form."""
-    return kept("study")
+from galinx.app.figures.style import looks
 
 
 @pytest.fixture(scope="module")
 def drawings(map_run):
     """Every figure of one result, by name."""
     return {d.name: d for d in map_run.drawings(dimensionless=True, figures=("all",))}
-
-
-def legible(drawings):
-    found = [f"{drawing.name}: {fault}" for drawing in drawings for fault in faults(drawing.figure)]
-    assert not found, "\n".join(found)
 
 
 def test_every_figure_shows_what_it_says(map_run, drawings):
@@ -52,7 +40,7 @@ def test_every_figure_shows_what_it_says(map_run, drawings):
 
 #: Scenes of all kinds of figures, by the quickest methods; the first one is drawn over a page, too.
 KINDS = (
-    "map", "high_speed", "laws", "cylinder", "coating", "slider", "from rest", "minor_loops",
+    "laws", "map", "high_speed", "cylinder", "coating", "slider", "from rest", "minor_loops",
     "velocity_steps", "parameter_study",
     *("fibres", "shoulders", "fig6", "sinusoidal", "own_material", "cylinder_on_steel") * THOROUGH,
 )  # fmt: skip
@@ -64,16 +52,6 @@ def test_figures_of_every_kind_fit_a_column_and_a_page(name):
         shown = list(kept(name).drawings(size=size(width), figures=("all",)))
         legible(shown)
         assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0 + 1e-6
-
-
-def test_the_studys_figures_are_legible(study_run):
-    shown = list(of_study(study_run.data, study_run.scene))
-    named = [f"fig{n}" for n in range(1, 11)]
-    assert [drawing.name for drawing in shown] == [*named, "sinusoidal", "laws"]
-    legible(shown)
-    widths = {round(drawing.figure.get_figwidth(), 2) for drawing in shown}
-    assert widths == {round(width, 2) for width in (COLUMN, 5.0, PAGE)}
-    assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0  # of a page, in mm
 
 
 def test_what_is_not_legible_is_found():

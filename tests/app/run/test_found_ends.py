@@ -14,6 +14,7 @@ from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 
 CYLINDER = {"profile": "parabolic", "radius": 0.02}
+SOLID = {"E": 1e9, "nu": 0.3, "rho": 1000.0}
 
 
 def scene(punch, words=("sif",), points=None, c=0.4, mu=0.6, X_over_L=(0.1, 0.7), solve=None, **solid):
@@ -75,11 +76,11 @@ def test_kinks_with_no_room_for_cells_between_them_are_refused():
 @pytest.mark.parametrize("load, gap", [*[(50.0, 0.02)] * THOROUGH, (4.0, 0.004)])
 def test_kinks_next_to_the_ends_of_a_contact(load, gap):
     """A flat whose shoulders hardly touch: splines and cells follow the pressure beside kinks."""
-    solid = {"E": 1e9, "nu": 0.3, "rho": 1000.0}
     punch = {"profile": "rounded_flat", "flat_half_width": 1e-3, "radius": 0.05, "load": load}
     result = galinx.compute(of_sections(
-        solid=solid, punch=punch, friction={"model": "coulomb", "mu_c": 0.3}, motion={"c": 0.4},
-        solve={"methods": ["closed_form", "fem"]}, output={"quantities": ["sif", "surface"]},
+        solid=SOLID, punch=punch, friction={"model": "coulomb", "mu_c": 0.3}, motion={"c": 0.4},
+        solve={"methods": ["closed_form", "fem"], "tolerance": 1e-4},
+        output={"quantities": ["sif", "surface"]},
     ))  # fmt: skip
     assert result.verdict == "PASS", result.comparisons
     ends = 1e-3 / result.data["states/fem/half_width"]
@@ -125,12 +126,11 @@ def test_a_parabola_is_one_by_every_name():
 
 def test_a_mesh_that_another_replaced_gives_no_warning():
     """Over layers the first mesh of a cusp is for a half-width near by, and its tip is not resolved."""
-    layer = {"kind": "cubic", "c11": 1.66e9, "c12": 0.64e9, "c44": 0.8e9, "rho": 1e3, "angle": 25.0}
     result = galinx.compute(of_sections(
-        solid={"E": 1e9, "nu": 0.3, "rho": 1e3}, layer=[layer | {"thickness": 9e-4}],
+        solid=SOLID, layer=[SOLID | {"E": 2e9, "thickness": 9e-4}],
         punch={"profile": "power", "exponent": 1.5, "coefficient": 0.17, "load": 1608.0},
         friction={"model": "coulomb", "mu_c": 0.9}, motion={"c": 0.05},
-        solve={"methods": ["fem"], "tolerance": 2.26e-3}, output={"quantities": ["sif", "interfaces"]},
+        solve={"methods": ["fem"], "tolerance": 2.26e-3}, output={"quantities": ["interfaces"]},
     ))  # fmt: skip
     assert result.verdict == "PASS" and "do not reach" not in result.attributes["warnings"]
 

@@ -124,9 +124,8 @@ BOTH = ["closed_form", "fem"]
 STROKES = ("forward", "backward")
 #: Seeds, methods and strokes; finite elements under most profiles take their time.
 CASES = [
-    (0, BOTH, STROKES),
+    *((seed, BOTH, STROKES[:1]) for seed in (0, 11)),
     *((seed, BOTH[:1], STROKES[:1]) for seed in (1, 2, 3)),
-    (11, BOTH, STROKES[:1]),
 ]
 if THOROUGH:
     CASES = [(seed, BOTH, STROKES) for seed in range(50)]
@@ -365,9 +364,9 @@ def test_the_surface_of_a_layer_yields_beside_a_kink_as_that_of_the_same_solid_w
     asked = {
         "solid": solid, "friction": {"model": "coulomb", "mu_c": 0.6}, "motion": {"c": 0.0},
         "punch": {"profile": "table", "shape": blunt_wedge, "load": 8e3},
-        "output": {"quantities": ["surface", "yield"]},
+        "output": {"quantities": ["yield"]},
     }  # fmt: skip
-    layer, by = [solid | {"thickness": 3e-3}], {"tolerance": 1e-4}
+    layer, by = [solid | {"thickness": 3e-3}], {"tolerance": 1e-2}
     layered = galinx.compute(of_sections(**asked, layer=layer, solve=by | {"methods": ["sie"]})).data
     uniform = galinx.compute(of_sections(**asked, solve=by | {"methods": ["closed_form"]})).data
     for name, allowed in (("von_mises", {"rel": 1e-6}), ("von_mises_X_over_a", {"abs": 1e-5})):

@@ -151,7 +151,7 @@ def test_no_sample_is_larger_and_some_come_near(thickness):
         "solve.tolerance": 1e-5,
         "friction": {"mu": [0.05, 0.5]},
         "output.quantities": ["friction", "sif", "surface", "interfaces", "interior", "yield"],
-        "output.map": {"X": [-2, 2, 81], "Y": [-3, -0.05, 60]},
+        "output.map": {"X": [-2, 2, 41], "Y": [-3, -0.05, 60]},
     }
     data = coated(TIN, thickness, changes).data
     depth = data[of_layers.INTERFACE_DEPTH_IN_M.path][0] / data[HALF_WIDTH["sie"].path]

@@ -6,10 +6,12 @@ formulas of their own.
 
 import numpy as np
 import pytest
+from legible import legible
 from study_reference import f_of, stresses
 from support import HOME, paper_run
 
 import galinx
+from galinx.app.figures.style import COLUMN, PAGE
 from galinx.app.study.drawings import of_study
 
 SS, HS = 4.786e-7, 0.6
@@ -190,3 +192,12 @@ def test_what_leans_is_as_the_page_of_signs_says():
         for X in (0.2, 0.5, 1.0)
     ]
     np.testing.assert_allclose(differences, [[0.44, 0.17], [0.47, 0.47], [0.0, 0.59]], atol=5e-3)
+
+
+def test_the_studys_figures_are_legible(drawings):
+    assert [*drawings] == [*(f"fig{n}" for n in range(1, 11)), "sinusoidal", "laws"]
+    shown = [*drawings.values()]
+    legible(shown)
+    widths = {round(drawing.figure.get_figwidth(), 2) for drawing in shown}
+    assert widths == {round(width, 2) for width in (COLUMN, 5.0, PAGE)}
+    assert max(drawing.figure.get_figheight() for drawing in shown) * 25.4 <= 230.0  # of a page, in mm

@@ -209,11 +209,11 @@ def test_deviations_of_laws_with_kinks_are_no_smaller_than_their_errors():
         "mu_c": 0.4, "mu_s": 0.6, "stribeck_velocity": 1e-3, "attraction_rate": 20.0,
         "elements": ((4e4, 0.25), (1e4, 0.375), (4e3, 0.375)),
     }  # fmt: skip
-    t = np.linspace(0.0, 0.6, 16001)
+    t = np.linspace(0.0, 0.6, 2001)
     X, by = sum(a * (1.0 - np.cos(ω * t)) for a, ω in TWO), {"stribeck_exponent": 2.0}
     f = friction(build_model(LAWS["gms"], true | by), moves(t, X, True), len(t))
-    f = np.nan_to_num(f[::40]) + 2e-3 * np.random.default_rng(7).standard_normal(401)
-    found = fit(LAWS["gms"], [Measured(t[::40], X[::40], f)], by, true, 3)
+    f = np.nan_to_num(f[::10]) + 2e-3 * np.random.default_rng(7).standard_normal(201)
+    found = fit(LAWS["gms"], [Measured(t[::10], X[::10], f)], by, true, 3)
     stiffness = found.names.index("elements[2, 0]")
     assert abs(found.best[stiffness] - 4e3) < 5.0 * found.deviations["elements[2, 0]"]
 

@@ -197,9 +197,9 @@ class Fit(FittedLaw):
         more = self.rms >= max(_MORE * size, _THAN_SCATTER * scatter)
         if more or self.rms >= _FOLLOWS * size:
             said.append(
-                f"{self.model} does not follow the data: {self.rms:.3g} is left of f, whose root mean "
-                f"square is {size:.3g}, and {np.nanmean(np.concatenate(left)):.3g} of it on average, "
-                "dimensionless; f has the sign of the motion and no offset: is it so there?"
+                f"{self.model} does not follow the data: {self.rms:.3g} is left of f, "
+                f"{np.nanmean(np.concatenate(left)):.3g} on average, where the root mean square of f is "
+                f"{size:.3g}, dimensionless; f has the sign of the motion and no offset: is it so there?"
             )
         if self.every > 1:
             said.append(f"every {self.every}th sample is fitted, and those where the motion turns")

@@ -698,7 +698,7 @@ class LayersUnderPunch:
         return contact
 
     def half_width(self) -> float:
-        """Half-width without friction, whatever the pressure needs, of a contact with a free end.
+        """Half-width over the unit, without friction, of a contact with a free end; no pressure is solved.
 
         Raises:
             SolveError: no contact carries the load, or the half-width is not resolved.

@@ -698,7 +698,7 @@ class LayersUnderPunch:
         return contact
 
     def half_width(self) -> float:
-        """Half-width over the unit, without friction, of a contact with a free end; no pressure is solved.
+        """Half-width over the unit, without friction, of a contact with a free end, without its pressure.
 
         Raises:
             SolveError: no contact carries the load, or the half-width is not resolved.

@@ -474,12 +474,12 @@ class Level:
         carried = inverse(surface)
         for by_top in moved[:whole]:
             carried = by_top @ carried
-        # Under the layer that the depth cuts, or that ends there.
-        Z = under[min(whole, len(under) - 1) if parts else whole - 1]
-        if parts:
-            upper, *lower = parts
-            Z = lower[0].top.down + lower[0].excess(k, Z) if lower else Z
-            carried = upper.carried(k, Z)[1] @ carried
+        Z = under[whole - 1]
+        if len(parts) == 2:  # of a layer
+            Z, by_top = self.stack.inside(k, whole, parts[0].H)
+            carried = by_top @ carried
+        elif parts:  # of the substrate
+            carried = parts[0].carried(k, Z)[1] @ carried
         tractions = Z @ carried
         return np.stack(
             [*(1j * self._modulus * carried[:, 0].T), *tractions[:, 1].T, *tractions[:, 0].T], axis=-1

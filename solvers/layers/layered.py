@@ -21,6 +21,7 @@ a height inside the layers by ∫ (T⁻¹ - i Bᵀ Z₋⁻¹) dY t more. The fir
 logarithm, the others fall like 1/X; the remainder falls like its square.
 """
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property, partial
@@ -38,7 +39,7 @@ from ..errors import SolveError
 from ..parameters import build_model, parameters, values
 from ..solids.half_plane import DATUM, LOADS, HalfPlane, Potential, UniformHalfPlane
 from ..solids.solid import Composite, Solid
-from .stiffness import STEP, Graded, Medium, Uniform, inverse, least
+from .stiffness import STEP, Field, Graded, Medium, Uniform, inverse, least
 
 
 @dataclass(frozen=True)
@@ -74,11 +75,13 @@ class LayersAtSpeed:
         """
         new = np.setdiff1d(k, self._crossed[0])
         if len(new):
-            Z, found = np.broadcast_to(self.substrate.down, (len(new), 2, 2)), []
+            self._keep()
+            Z, found, fields = np.broadcast_to(self.substrate.down, (len(new), 2, 2)), [], []
             for layer in self.layers[::-1]:
-                δ, moved = layer.carried(new, Z)
-                found += [moved, Z]
-                Z = layer.top.down + δ
+                fields.append(layer.field(new, Z))
+                found += [fields[-1](layer.H)[1], Z]
+                Z = fields[-1](0.0)[0]
+            self._fields.append((new, fields[::-1]))
             known = np.concatenate([self._crossed[0], new])
             values = np.concatenate([self._crossed[1], np.array([Z, *found[::-1]]).swapaxes(0, 1)])
             order = np.argsort(known)
@@ -90,6 +93,39 @@ class LayersAtSpeed:
     def _crossed(self) -> list[NDArray[Any]]:
         """Wavenumbers, rising, and what :meth:`crossed` has for them, (n, 1 + 2 layers, 2, 2)."""
         return [np.empty(0), np.empty((0, 1 + 2 * len(self.layers), 2, 2), dtype=complex)]
+
+    def _keep(self) -> None:
+        """Keep what crosses these layers, and forget it of others but the last ones."""
+        if not any(stack is self for stack in _KEEPING):
+            _KEEPING.append(self)
+        if len(_KEEPING) > _MOST:
+            oldest = vars(_KEEPING.popleft())
+            for name in ("_crossed", "_fields"):
+                oldest.pop(name, None)
+
+    @cached_property
+    def _fields(self) -> list[tuple[NDArray[np.float64], list[Field]]]:
+        """Rising wavenumbers, and for these the fields in each layer; new ones are added to the list."""
+        return []
+
+    def inside(self, k: NDArray, i: int, depth: float) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Stiffness at a depth of a layer, and displacements there by those of its upper face.
+
+        Args:
+            k: wavenumbers times a, (n,).
+            i: number of the layer, from the top down.
+            depth: over a, below its upper face.
+
+        Returns:
+            Both, (n, 2, 2) each.
+        """
+        self.crossed(k)
+        found = np.empty((2, len(k), 2, 2), dtype=complex)
+        for known, fields in self._fields:
+            here = np.isin(k, known)
+            if here.any():
+                found[:, here] = np.array(fields[i](depth))[:, np.searchsorted(known, k[here])]
+        return found[0], found[1]
 
     def excess(self, k: NDArray) -> NDArray[Any]:
         """Stiffness of the surface less that of a half-plane of the solid there, (n, 2, 2)."""
@@ -135,6 +171,9 @@ class LayersAtSpeed:
         smallest[going] = np.minimum(smallest[going], np.where(np.isnan(surface), -np.inf, surface))
         return smallest
 
+
+#: Layers at a speed that keep their fields, and how many do: those in graded layers take 50 MB and more.
+_KEEPING, _MOST = deque[LayersAtSpeed](), 2
 
 #: Wavenumbers per octave at which stiffness is evaluated, and their range: kH of all layers, of the
 #: thinnest layer.

@@ -34,7 +34,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import gamma
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -103,6 +103,8 @@ class Medium:
 
 
 _ONE = np.eye(2)
+#: Stiffness and displacements at a depth of a layer, (n, 2, 2) each.
+Field: TypeAlias = Callable[[float], tuple[NDArray[Any], NDArray[Any]]]
 
 
 @dataclass(frozen=True)
@@ -173,6 +175,20 @@ class Uniform:
         W = up @ r @ down
         turned = inverse(_ONE + W)
         return (self.medium.up - self.medium.down) @ W @ turned, (_ONE + r) @ down @ turned
+
+    def field(self, k: NDArray, below: NDArray) -> Field:
+        """Stiffness at a depth over a, and the displacement there by that of the upper face.
+
+        Args:
+            k, below: see :meth:`excess`.
+        """
+
+        def at(depth: float) -> tuple[NDArray, NDArray]:
+            upper, lower = self.cut(depth)
+            Z = self.medium.down + lower.excess(k, below)
+            return Z, upper.carried(k, Z)[1]
+
+        return at
 
     def cut(self, depth: float) -> tuple["Uniform", "Uniform"]:
         """The parts of the layer above and below a depth over a."""
@@ -360,27 +376,41 @@ class Graded:
         solution = self._swept(k, below, dense=False)
         return np.asarray(solution.y[:, -1].reshape(-1, 2, 2) / (1.0 + k * self.H)[:, None, None])
 
-    def carried(self, k: NDArray, below: NDArray) -> tuple[NDArray, NDArray]:
-        """δ on top, and the displacement of the lower face by that of the upper one, (n, 2, 2) each.
+    def field(self, k: NDArray, below: NDArray) -> Field:
+        """Stiffness at a depth over a, and the displacement there by that of the upper face.
 
         It is 0 where it has decayed.
+
+        Args:
+            k, below: see :meth:`excess`.
         """
         from scipy.integrate import solve_ivp
 
-        swept, size = self._swept(k, below, dense=True), (1.0 + k * self.H)[:, None, None]
-        reach, dense = self._reach(k), swept.sol
+        reach, size = self._reach(k), (1.0 + k * self.H)[:, None, None]
+        swept = self._swept(k, below, dense=True).sol
 
         def rate(fallen: float, flat: NDArray) -> NDArray[Any]:
             N, T, _ = self._properties(reach * fallen)
-            δ = dense(1.0 - fallen).reshape(-1, 2, 2) / size
+            δ = swept(1.0 - fallen).reshape(-1, 2, 2) / size
             return np.asarray(((reach * k)[:, None, None] * (N - T @ δ) @ flat.reshape(-1, 2, 2)).ravel())
 
         start = np.tile(np.eye(2, dtype=complex), (len(k), 1, 1)).ravel()
-        solution = solve_ivp(rate, (0.0, 1.0), start, method="DOP853", rtol=self.rtol, atol=1e-14)
+        solution = solve_ivp(
+            rate, (0.0, 1.0), start, method="DOP853", rtol=self.rtol, atol=1e-14, dense_output=True
+        )
         if not solution.success:
             raise SolveError(f"the field in a graded layer was not found: {solution.message}")
-        by_top = np.where((reach >= self.H)[:, None, None], solution.y[:, -1].reshape(-1, 2, 2), 0.0)
-        return swept.y[:, -1].reshape(-1, 2, 2) / size, by_top
+
+        def at(depth: float) -> tuple[NDArray, NDArray]:
+            shares, which = np.unique(np.minimum(depth / reach, 1.0), return_inverse=True)
+            δ, by_top = (
+                of(places).T.reshape(-1, len(k), 2, 2)[which, np.arange(len(k))]
+                for of, places in ((swept, 1.0 - shares), (solution.sol, shares))
+            )
+            felt = (reach >= depth)[:, None, None]
+            return self.medium_at(depth).down + δ / size, np.where(felt, by_top, 0.0)
+
+        return at
 
     def first_order(self) -> NDArray[Any]:
         """Limit of kᵖ δ on top for large k, p the power, (2, 2)."""

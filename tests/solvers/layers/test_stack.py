@@ -203,6 +203,19 @@ def test_layers_of_one_solid_have_the_field_of_the_half_plane(depth):
     assert np.abs(np.array([σ_XX, σ_YY, σ_XY]) - exact).max() <= 1e-9 * np.abs(exact).max()
 
 
+def test_depths_inside_a_graded_layer_are_interfaces_of_its_parts():
+    """Fields are kept for all depths, but for the last layers alone; of others they are found again."""
+    stack = Layered((Layer(0.3, COAT, SUBSTRATE),), SUBSTRATE).response(0.3).stack(1.0)
+    k, depths = np.geomspace(0.1, 200.0, 24), (0.01, 0.1, 0.29)
+    inside = [Level(stack, depth, 4.0, 1e-9)._of(k) for depth in depths]
+    for depth, rows in zip(depths, inside):
+        parts = replace(stack, layers=stack.layers[0].cut(depth))
+        at_interface = Level(parts, depth, 4.0, 1e-9)._of(k)
+        np.testing.assert_allclose(rows, at_interface, rtol=0, atol=1e-9 * np.abs(rows).max())
+    assert "_fields" not in vars(stack)
+    np.testing.assert_array_equal(Level(stack, depths[1], 4.0, 1e-9)._of(k), inside[1])
+
+
 @pytest.mark.parametrize("graded", [False, True])
 def test_field_is_that_of_the_reference(graded):
     """At some wavenumbers, at an interface and inside the substrate."""

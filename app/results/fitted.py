@@ -104,9 +104,9 @@ def read(path: Path) -> Table:
             found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
             raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")
         force, load = (table.numbers(n, unit) for n in both)
-        if no_load := np.flatnonzero(load * load[:1] <= 0.0).tolist():
-            line, _ = table.rows[no_load[0]]
-            what = "loads of two signs" if load[no_load[0]] else "no load"
+        if wrong := np.flatnonzero(load * load[:1] <= 0.0).tolist():
+            line, _ = table.rows[wrong[0]]
+            what = "loads of two signs" if load[wrong[0]] else "no load"
             raise BadInput(f"{path}, line {line}: found {what}, expected loads of one sign")
         f = force / np.abs(load)
     clock = numbers("time", "s") if timed else numbers("slip", "m")

@@ -199,10 +199,10 @@ def tabulated(
 
     Args:
         f, first, scale: see :func:`transform`.
-        more: functions of positions to be added to it, (..., functions).
         finest: size of the panels next to 0, where it may be rough; the others double.
         reach: where the table ends.
         accuracy: of the transform and of the table, over the integral of |f|.
+        more: functions of positions that are added to it, (..., functions).
 
     Raises:
         SolveError: f, or its transform, is not smooth.

@@ -22,7 +22,7 @@ logarithm, the others fall like 1/X; the remainder falls like its square.
 """
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property, partial
 from typing import Any, ClassVar
@@ -68,45 +68,45 @@ class LayersAtSpeed:
         """Stiffness of the surface, (n, 2, 2); those under every layer, and displacements of its lower
         face by those of its upper one, (layers, n, 2, 2) each, from the top down.
 
-        They are kept by wavenumber: fields at all depths go through the same layers.
-
         Args:
             k: wavenumbers times a, (n,).
         """
-        new = np.setdiff1d(k, self._crossed[0])
+        found = np.empty((1 + 2 * len(self.layers), len(k), 2, 2), dtype=complex)
+        for here, rows, of_batch, _ in self._batches(k):
+            found[:, here] = of_batch[:, rows]
+        return found[0], found[1::2], found[2::2]
+
+    def _batches(self, k: NDArray) -> Iterator[tuple[NDArray, NDArray, NDArray, list[Field]]]:
+        """Batches of wavenumbers that hold some of k: where k has them, and their rows in the batch; and
+        of all of it what :meth:`crossed` gives, and the fields in each layer.
+
+        They are kept: fields at all depths go through the same layers.
+        """
+        new = np.setdiff1d(k, np.concatenate([np.empty(0), *(known for known, *_ in self._kept)]))
         if len(new):
             self._keep()
-            Z, found, fields = np.broadcast_to(self.substrate.down, (len(new), 2, 2)), [], []
+            Z, crossing, fields = np.broadcast_to(self.substrate.down, (len(new), 2, 2)), [], []
             for layer in self.layers[::-1]:
                 fields.append(layer.field(new, Z))
-                found += [fields[-1](layer.H)[1], Z]
+                crossing += [fields[-1](layer.H)[1], Z]
                 Z = fields[-1](0.0)[0]
-            self._fields.append((new, fields[::-1]))
-            known = np.concatenate([self._crossed[0], new])
-            values = np.concatenate([self._crossed[1], np.array([Z, *found[::-1]]).swapaxes(0, 1)])
-            order = np.argsort(known)
-            self._crossed[:] = known[order], values[order]
-        surface, *each = self._crossed[1][np.searchsorted(self._crossed[0], k)].swapaxes(0, 1)
-        return surface, np.array(each[0::2]), np.array(each[1::2])
+            self._kept.append((new, np.array([Z, *crossing[::-1]]), fields[::-1]))
+        for known, of_known, fields in self._kept:
+            here = np.isin(k, known)
+            if here.any():
+                yield here, np.searchsorted(known, k[here]), of_known, fields
 
     @cached_property
-    def _crossed(self) -> list[NDArray[Any]]:
-        """Wavenumbers, rising, and what :meth:`crossed` has for them, (n, 1 + 2 layers, 2, 2)."""
-        return [np.empty(0), np.empty((0, 1 + 2 * len(self.layers), 2, 2), dtype=complex)]
+    def _kept(self) -> list[tuple[NDArray[np.float64], NDArray[Any], list[Field]]]:
+        """Rising wavenumbers of each batch, and what :meth:`_batches` has for all of these."""
+        return []
 
     def _keep(self) -> None:
-        """Keep what crosses these layers, and forget it of others but the last ones."""
+        """Keep batches of these layers, and forget those of others but the last ones."""
         if not any(stack is self for stack in _KEEPING):
             _KEEPING.append(self)
         if len(_KEEPING) > _MOST:
-            oldest = vars(_KEEPING.popleft())
-            for name in ("_crossed", "_fields"):
-                oldest.pop(name, None)
-
-    @cached_property
-    def _fields(self) -> list[tuple[NDArray[np.float64], list[Field]]]:
-        """Rising wavenumbers, and for these the fields in each layer; new ones are added to the list."""
-        return []
+            vars(_KEEPING.popleft()).pop("_kept", None)
 
     def inside(self, k: NDArray, i: int, depth: float) -> tuple[NDArray[Any], NDArray[Any]]:
         """Stiffness at a depth of a layer, and displacements there by those of its upper face.
@@ -119,12 +119,9 @@ class LayersAtSpeed:
         Returns:
             Both, (n, 2, 2) each.
         """
-        self.crossed(k)
         found = np.empty((2, len(k), 2, 2), dtype=complex)
-        for known, fields in self._fields:
-            here = np.isin(k, known)
-            if here.any():
-                found[:, here] = np.array(fields[i](depth))[:, np.searchsorted(known, k[here])]
+        for here, rows, _, fields in self._batches(k):
+            found[:, here] = np.array(fields[i](depth))[:, rows]
         return found[0], found[1]
 
     def excess(self, k: NDArray) -> NDArray[Any]:

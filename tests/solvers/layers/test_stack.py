@@ -212,7 +212,7 @@ def test_depths_inside_a_graded_layer_are_interfaces_of_its_parts():
         parts = replace(stack, layers=stack.layers[0].cut(depth))
         at_interface = Level(parts, depth, 4.0, 1e-9)._of(k)
         np.testing.assert_allclose(rows, at_interface, rtol=0, atol=1e-9 * np.abs(rows).max())
-    assert "_fields" not in vars(stack)
+    assert "_kept" not in vars(stack)
     np.testing.assert_array_equal(Level(stack, depths[1], 4.0, 1e-9)._of(k), inside[1])
 
 

@@ -18,12 +18,14 @@ class Range:
 
     Attributes:
         above, at_least, below, at_most: bounds; None for no bound.
+        otherwise: what is given in place of a number out of range, in a few words; "" for nothing.
     """
 
     above: float | None = None
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
+    otherwise: str = ""
 
     def __contains__(self, value: Any) -> bool:
         """Return True if a number, or every number of an array, lies in the range."""
@@ -44,7 +46,8 @@ class Range:
 
     def __str__(self) -> str:
         signs = {">": self.above, ">=": self.at_least, "<": self.below, "<=": self.at_most}
-        return ", ".join(f"{sign} {bound:g}" for sign, bound in signs.items() if bound is not None)
+        bounds = ", ".join(f"{sign} {bound:g}" for sign, bound in signs.items() if bound is not None)
+        return bounds + f"; {self.otherwise}" * bool(self.otherwise)
 
 
 @dataclass(frozen=True)

@@ -345,16 +345,20 @@ class Friction:
         return -1.0 if self.sign == "physical" else 1.0
 
 
+#: How a motion toward smaller X is given.
+_WAY = 'a punch that moves backward has motion.strokes = ["backward"]'
+
+
 @dataclass(frozen=True, kw_only=True)
 class Motion:
     """[motion]: ``c`` over the wave speed or ``speed`` [m/s], strokes and positions; or a path."""
 
     c: tuple[float, ...] | None = key(
-        Numbers("", Range(at_least=0.0, below=1.0)), "speed over c_s", None,
+        Numbers("", Range(at_least=0.0, below=1.0, otherwise=_WAY)), "speed over c_s", None,
         "finite elements want it below the Rayleigh speed", without="one of `c` and `speed`",
     )  # fmt: skip
     speed: tuple[float, ...] | None = key(
-        Numbers("m/s", _NOT_NEGATIVE), "velocity V", None,
+        Numbers("m/s", Range(at_least=0.0, otherwise=_WAY)), "velocity V", None,
         "divided by the shear wave speed of the solid", without="one of `c` and `speed`",
     )  # fmt: skip
     strokes: tuple[str | Partial, ...] = key(

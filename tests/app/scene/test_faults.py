@@ -54,6 +54,7 @@ FAULTS = {
         ({"solid.nu": None, "solid.nuu": 0.25}, "did you mean nu"),
         ({"punch.load": "100 N"}, "(a force), expected a force per depth, such as 100 N/mm"),
         ({"solid.poissons_ratio": 0.3}, "no such key; did you mean nu (Poisson's ratio)?"),
+        (_SPEED | {"motion.speed": -1}, 'found -1, expected >= 0; …motion.strokes = ["backward"]'),
         ({"motion.velocity": 1.0}, "no such key; did you mean speed (velocity V)?"),
         ({"solid.E": "210 Gpa"}, "unknown unit 'Gpa' (did you mean GPa?), expected"),
         (_SPEED | {"motion.speed": 1, "solid.E": 210}, "as meant?…motion.speed = 1 m/s: expected less"),

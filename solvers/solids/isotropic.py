@@ -260,4 +260,4 @@ def rayleigh_speed(κ: float) -> float:
 
     The zero in (0, 1) of R(c)/c², found to the last digits.
     """
-    return bisected(lambda c: MovingFrame(κ, c).r > 0.0, 1.0 - 1e-15, 0.1)
+    return bisected(lambda c: MovingFrame(κ, c).r > 0.0, 1.0 - 1e-15)

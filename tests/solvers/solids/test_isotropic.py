@@ -14,6 +14,13 @@ def test_rayleigh_speed_of_the_references(references):
         assert rayleigh_speed(solid.κ) == pytest.approx(float(entry["c_R_over_c_s"]), rel=1e-12)
 
 
+def test_the_rayleigh_speed_goes_to_zero_with_the_bulk_modulus():
+    # Plane stress, ν -> -1: by (2 - c²)² = 4 √(1 - c²) √(1 - k c²), k = (1 - ν)/2, c² -> 1 + ν.
+    for ν in (-0.99, -0.999, -0.9999):
+        c_R = rayleigh_speed(Isotropic(1.0, ν, 1.0, "stress").κ)
+        assert c_R**2 == pytest.approx(1.0 + ν, rel=2.0 * (1.0 + ν))
+
+
 @pytest.mark.parametrize("c", [0.1, 0.3, 0.6, 0.9])
 @pytest.mark.parametrize("κ", [1.2, 2.0, 2.9])
 def test_constants_agree_with_the_fourier_solution(κ, c):

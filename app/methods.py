@@ -110,12 +110,12 @@ def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | N
 
 
 #: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
-#: uniform and on layered solids; "" where no mesh follows the contact.
+#: uniform and on layered solids.
 _MODES = {
     SHARP: ((CONTACT, CONTACT), (SHARP_ON_LAYERS, SHARP_ON_LAYERS)),
     PRESCRIBED: ((OWN_PRESSURE, OWN_PRESSURE), (PRESCRIBED_ON_LAYERS, PRESCRIBED_ON_LAYERS)),
     FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, FREE_ON_LAYERS)),
-    ONE_FREE: ((FREE_ENDS, OWN_MESHES), ("", "")),
+    ONE_FREE: ((FREE_ENDS, OWN_MESHES), (FREE_ON_LAYERS, FREE_ON_LAYERS)),
 }
 _RECOVERED = {stresses.RAW_PRESSURE.path: "σ_YY itself is that of the nodal forces there"}
 _PRESCRIBED = {SOLVED: "the pressure is prescribed"}
@@ -159,8 +159,6 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
             return "a solid is nearly incompressible; the integral equation takes such layers"
         if solve.degree or solve.mesh != "confocal":
             return "layers have meshes of their own: no mesh, and no degree"
-        if not mode:
-            return "over layers no mesh follows the contact of a tilted punch; sie takes it"
         lacks = lacks | {states.INDENTATION.path: "the far boundary moves with the load"}
     elif mode == OWN_MESHES and (solve.mesh != "confocal" or solve.degree):
         return 'such a contact needs meshes of its own: mesh = "confocal", and no degree'

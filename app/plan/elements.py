@@ -22,13 +22,13 @@ from galinx.solvers.contact.ends import SHAPES, slopes_of_shapes
 from galinx.solvers.contact.estimate import SLOWER, of_degrees
 from galinx.solvers.contact.fem_plan import (
     FITTED,
-    NEAR_FREE_END,
     FemPlan,
     at_friction_kinks,
     kind_of,
     no_nearer,
     required_of_free_ends,
     required_of_pieces,
+    required_on_layers,
     requirements,
     swept,
 )
@@ -208,8 +208,8 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
 _OF_SHAPES = (FREE_ENDS, VARYING_FREE)
 #: Requirements on the mesh with those of the kind of contact, by its ends, without and with layers.
 _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requirements]] = {
-    # Splines follow the pressure only where cells resolve it.
-    (SHARP, True): lambda required, *_: replace(required, nearest=min(required.nearest or NEAR, NEAR)),
+    (SHARP, True): lambda required, *_: required_on_layers(required, True),
+    (ONE_FREE, True): lambda required, *_: required_on_layers(required, True),
     (PRESCRIBED, False): lambda required, scene, *_: required_of_pieces(
         required, np.array(scene.body.knots)
     ),
@@ -219,7 +219,7 @@ _REQUIRED: dict[tuple[str, bool], Callable[[Requirements, Scene, str], Requireme
     (FREE, False): lambda required, scene, mode: replace(
         required_of_free_ends(required, scene.solid.nearly_incompressible), bends=mode in _OF_SHAPES
     ),
-    (FREE, True): lambda required, *_: no_nearer(required, NEAR_FREE_END),
+    (FREE, True): lambda required, *_: required_on_layers(required, False),
 }
 
 

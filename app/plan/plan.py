@@ -300,9 +300,8 @@ def _faults_of_layers(scene: Scene) -> Iterator[str]:
     ]
     if reasons:
         yield (
-            f"layer: found layers, and {'; '.join(reasons)}. Over layers methods = "
-            '["sie"] solves all punches, ["fem"] those with two sharp edges, parabolas and other smooth '
-            "ones, with the quantities friction, sif, surface, interior, interfaces and yield"
+            f"layer: found layers, and {'; '.join(reasons)}. Over layers sie and fem solve all punches, "
+            "with the quantities friction, sif, surface, interior, interfaces and yield"
         )
 
 

@@ -367,7 +367,7 @@ def _tilted(
     # One end is sharp, one free: the contact starts at the lower edge.
     share = a if θ > 0.0 else b
     h = np.where(lifted, load * n / (2.0 * np.pi * share * abs(θ)) if θ else half, half)
-    centre = np.where(lifted, np.sign(θ) * (h - half), 0.0)
+    centre = np.where(lifted, profile.middle(h), 0.0)
     α, β = (np.where(lifted, α + (θ > 0.0), α), np.where(lifted, β + (θ < 0.0), β))
     A = np.where(lifted, sin / (np.pi * share), A + B * (flat.α - flat.β))
     B = np.where(lifted, 0.0, B)

@@ -777,7 +777,7 @@ class LayersUnderPunch:
             return SolvedContact(g, each[whole][0].sum(np.array([1.0, slope])), whole)
         h = half_width_of_load(load, min(h, whole), punch)
         parts, slope = each[h]
-        m = float(np.sign(rise)) * (h - whole)
+        m = float(punch.profile.middle(punch.unit * h)) / punch.unit
         pressure = parts.sum(np.array([1.0, slope])).ending((side == 0, side == 1))
         return SolvedContact(g, pressure, h, m)
 

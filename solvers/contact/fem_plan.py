@@ -46,6 +46,14 @@ def no_nearer(required: Requirements, distance: float) -> Requirements:
     return replace(required, nearest=max(required.nearest, distance))
 
 
+def required_on_layers(required: Requirements, sharp: bool) -> Requirements:
+    """Requirements on a mesh over layers, for a contact with a sharp edge or with free ends."""
+    if sharp:  # splines follow the pressure only where cells resolve it
+        return replace(required, nearest=min(required.nearest or NEAR, NEAR))
+    # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
+    return no_nearer(required, NEAR_FREE_END)
+
+
 def kind_of(depths: NDArray, responses: Sequence[Any], places: Sequence[float] = (-1.0, 1.0)) -> OnLayers:
     """The kind of mesh of a layered solid, for all speeds.
 

@@ -37,6 +37,7 @@ from ..contact.recovery import (
     without_zeros,
 )
 from ..contact.solution import ONE_FREE, Contact, Task
+from ..contact.stresses import of_factor
 from ..errors import SolveError
 from ..profiles import radius
 from .discretisation import Discretisation
@@ -356,6 +357,20 @@ class SplineLevel(PunchLevel):
         response = self.task.response
         return bool(len(response.depths)) and response.solid.layers[0].bottom is not None  # type: ignore[attr-defined]
 
+    def gauge_of_edges(self, states: SolvedStates) -> Gauge:
+        """Gauge of the pressure's factors at sharp edges, and of the pressure between the ends."""
+        contact = states.contact
+        edges = ENDS[~contact.free.any(axis=0)]
+        (K, σ), (coarse_K, coarse_σ) = (
+            (pressure.series(edges), pressure.σ_YY(_ALL_ACROSS))
+            for pressure in (states.pressure, self.pressure(contact, COARSE))
+        )
+        size, of_K = np.maximum(np.abs(σ), _SMALL), of_factor(K)
+        # Without the nearest knots splines show less of the error of the innermost cells.
+        off = np.abs(np.column_stack([(coarse_K - K) / of_K, (coarse_σ - σ) / size])).max(axis=1)
+        groups = (K, of_K), (σ, size), (contact.tested(self.moments[:, 1:6]), 2.0)
+        return joined(INTENSITIES, groups, _SURE * off)
+
     def intensities(
         self, parts: NDArray, g: Any, half_width: float, nearest: float = NEXT
     ) -> NDArray[np.float64]:
@@ -385,16 +400,7 @@ class OnLayersLevel(SplineLevel, SharpLevel):
     """Sharp edges of a flat punch over layers, whose pressure may change within their thickness."""
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        contact = states.contact
-        (K, σ), (coarse_K, coarse_σ) = (
-            (pressure.series(ENDS), pressure.σ_YY(_ALL_ACROSS))
-            for pressure in (states.pressure, self.pressure(contact, COARSE))
-        )
-        size = np.maximum(np.abs(σ), _SMALL)
-        # Without the nearest knots splines show less of the error of the innermost cells.
-        off = np.abs(np.column_stack([coarse_K / K - 1.0, (coarse_σ - σ) / size])).max(axis=1)
-        groups = (K, np.abs(K)), (σ, size), (contact.tested(self.moments[:, 1:6]), 2.0)
-        return joined(INTENSITIES, groups, _SURE * off)
+        return self.gauge_of_edges(states)
 
 
 #: Amplitudes of the shapes (states, parts), depth of the punch's lowest point below the level of the
@@ -540,7 +546,7 @@ class VaryingFreeLevel(SplineLevel, FreeLevel):
         def ends(x: NDArray) -> tuple[float, float]:
             h = scale * float(np.exp(x[-1]))
             # The lower edge of a tilted base stays.
-            return float(np.sign(punch.rise) * (h - punch.half_width) if tilted else scale * x[0]), h
+            return float(punch.middle(h) if tilted else scale * x[0]), h
 
         def intensities(x: NDArray) -> NDArray[np.float64]:
             m, h = ends(x)
@@ -615,7 +621,7 @@ def _tilted(body: Contact, loads: NDArray, K: NDArray) -> _Solved:
         h = np.where(lifted, amplitudes[:, 1] * body.displacement / punch.rise, punch.half_width)
     free = np.zeros((len(loads), 2), dtype=bool)
     free[:, side] = lifted
-    centre = np.where(lifted, np.sign(punch.rise) * (h - punch.half_width), 0.0)
+    centre = np.where(lifted, punch.middle(h), 0.0)
     return amplitudes, np.abs(amplitudes[:, 1]), {"half_width": h, "centre": centre, "free": free}
 
 

@@ -12,11 +12,11 @@ from galinx.clock import Clock
 
 from ..contact import AT_INTERFACES, BELOW, FEM, ON_SURFACE, OWN_PRESSURE, YIELD
 from ..contact.fem_plan import FREE_ON_LAYERS, OWN_MESHES, PRESCRIBED_ON_LAYERS, Messages, Planned
-from ..contact.solution import ContactStress, Solver, Task
+from ..contact.solution import ONE_FREE, ContactStress, Solver, Task
 from .contact import PUNCHES
 from .discretisation import Discretisation, quiet_compiler
 from .ladder import to_tolerance
-from .own_meshes import BetweenKinks, Followed
+from .own_meshes import BetweenKinks, Followed, LiftedOff
 from .space import Space
 from .sweep import Fit, train
 from .traction import FormulaLevel, PiecesLevel, WholeLevel
@@ -78,7 +78,7 @@ class FiniteElements:
         if mode == OWN_MESHES and not task.body.along:
             return BetweenKinks(work, task, g)
         if mode in (OWN_MESHES, FREE_ON_LAYERS):
-            return Followed(work, task, g)
+            return (LiftedOff if task.body.ends == ONE_FREE else Followed)(work, task, g)
         return to_tolerance(work, task, g, partial(LEVELS[mode], work, task))
 
     @contextmanager

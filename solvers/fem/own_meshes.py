@@ -11,7 +11,8 @@ half-width is to be the load of the task (:class:`Followed`). Three displacement
 the punch: its height around a nearby middle, the change of that height where the middle moves, and a
 constant. Their loads and the intensities at both ends are linear in their amplitudes. So the half-width
 of a mesh has a load of its own, at which both intensities vanish, and a middle: of a parabola at once, of
-other profiles once the middle hardly moves (:class:`BalancedLevel`). Kinks on layers, and under friction
+other profiles once the middle hardly moves (:class:`BalancedLevel`). The contact of a tilted base has one
+free end and a middle that follows from its half-width (:class:`TiltedLevel`). Kinks on layers, and under friction
 that varies along the contact, are followed in the same way (:class:`KinkedSplineLevel`).
 
 On the mesh of a contact the degree rises until the measured error is within tolerance. Where contacts of
@@ -23,7 +24,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from math import ceil, log
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,18 +35,17 @@ from galinx.meshes.rings import QuadMesh, rings_at_kinks, with_kinks
 from ..contact import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE
 from ..contact.ends import SHAPES, Punch, half_width_of_load
 from ..contact.fem_plan import (
-    NEAR_FREE_END,
     OWN_MESHES_KEPT,
     FemPlan,
     crowded_kinks,
     kind_of,
-    no_nearer,
+    required_on_layers,
     requirements,
     uncrowded_kinks,
 )
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
-from ..contact.solution import Contact, Task, make_contact
+from ..contact.solution import ONE_FREE, Contact, Task, make_contact
 from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
@@ -58,6 +58,7 @@ from .contact import (
     FreeLevel,
     PunchLevel,
     SplineLevel,
+    carrying,
     without_intensity,
 )
 from .discretisation import Discretisation
@@ -413,10 +414,13 @@ class BalancedLevel(SplineLevel, SingleLevel):
     The base of the level has the mesh's half-width and the middle of a contact near by.
     """
 
+    #: Growth of loads on a half-plane.
+    growth: ClassVar[float] = GROWTH
+
     @property
     def off(self) -> float:
         """Logarithm of the load of a contact of the mesh's half-width, over the task's."""
-        return -GROWTH * float(np.log(self.contact.half_width[0] / self.base.lengths[1]))
+        return -self.growth * float(np.log(self.contact.half_width[0] / self.base.lengths[1]))
 
     @property
     def lean(self) -> float:
@@ -443,7 +447,7 @@ class BalancedLevel(SplineLevel, SingleLevel):
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
         # Over its own load the punch's height is that over the task's load times their quotient.
-        return h * share ** (1.0 / GROWTH), near + h * slope / share
+        return h * share ** (1.0 / self.growth), near + h * slope / share
 
     def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
         return np.full(len(contact.g), self.task.body.half_width)
@@ -451,6 +455,43 @@ class BalancedLevel(SplineLevel, SingleLevel):
     def parts(self, g: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         parts, h = self.punch.parts(g), self.task.body.half_width
         return parts, self.punch.loads(parts), self.intensities(parts, g[0], h).T[None]
+
+
+class TiltedLevel(BalancedLevel):
+    """Contact of a tilted base over layers, all along it or with its higher edge lifted off.
+
+    On a mesh as wide as the base that edge is down where it has no intensity under a smaller load, or
+    under none.
+    """
+
+    growth = 1.0
+
+    @property
+    def lean(self) -> float:
+        return self.base.lengths[0] / self.base.lengths[1]
+
+    def heights(self) -> NDArray[np.float64]:
+        return self.base.body.height(self.r, *self.base.lengths)[None]
+
+    def solved(self, g: NDArray, body: Contact) -> ContactStates:
+        (parts, loads, K), (_, h) = self.parts(g), self.base.lengths
+        punch: Any = self.base.body.profile
+        free = np.logical_not(punch.sharp)
+        amplitudes = without_intensity(loads, K[:, free])
+        share = float(amplitudes[0, 1])
+        down = h >= punch.half_width and not 0.0 < share < 1.0
+        if down:
+            amplitudes = carrying(loads, np.ones((1, 1)))
+        elif not share > 0.0:
+            raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
+        wide = h if down else h * share
+        return self.punch.summed(g, parts, amplitudes).between(
+            wide, punch.middle(wide), free & (not down)
+        )
+
+    def gauge(self, states: SolvedStates) -> Gauge:
+        gauge = self.gauge_of_edges(states)
+        return self.gauge_of_free(states, gauge.values, gauge.scale, gauge.unresolved)
 
 
 class KinkedSplineLevel(BalancedLevel, KinkedLevel):
@@ -473,7 +514,7 @@ class KinkedSplineLevel(BalancedLevel, KinkedLevel):
         return replace(gauge, unresolved=gauge.unresolved + self.moved)
 
 
-def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray) -> FemPlan:
+def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray, sharp: bool) -> FemPlan:
     """Plan of a mesh drawn for a contact over layers.
 
     Args:
@@ -481,6 +522,7 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray) 
         plan: plan of all contacts.
         words: words of output.quantities that request stresses.
         kinks: positions of the punch's kinks over the half-width.
+        sharp: True where an end is a sharp edge.
     """
     places, interfaces = task.places, task.places.interfaces
     kind = kind_of(
@@ -493,8 +535,7 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray) 
     X = places.X if ON_SURFACE in words else np.empty(0)
     requested = Places(X, below, places.around)
     target = requirements(plan.tolerance, requested, plan.sharp, [task.response])
-    # Stresses are finite at the ends, but the fields whose sum has no intensity have one each.
-    target = no_nearer(target, NEAR_FREE_END)
+    target = required_on_layers(target, sharp)
     degree = kind.degree(target, task.response.margin)
     return replace(
         plan, kind=kind, wanted=target, degrees=(degree,) * len(plan.degrees)
@@ -517,17 +558,19 @@ class Followed(OwnMeshes):
     They are those over layers, and those with kinks and friction that varies along them.
     """
 
-    #: Growth of the load's logarithm with that of the half-width, of the last contact; None before.
+    #: Level on layers where the punch has no kinks; growth of the load's logarithm with that of the
+    #: half-width, of the last contact; None before.
+    _level: type[BalancedLevel] = BalancedLevel
     _growth: float | None = None
 
     def _solved(self, g: NDArray, task: Task) -> SolvedStates:
         # Half-widths under the load by those of solved states, the nearest by load, then by friction.
-        load = task.body.load
+        load, growth = task.body.load, self._growth or self._level.growth
         near = [
             (
                 abs(float(np.log(load / other[1]))),
                 abs(other[0] - float(g[0])),
-                state.contact.half_width[0] * (load / other[1]) ** (1.0 / (self._growth or GROWTH)),
+                state.contact.half_width[0] * (load / other[1]) ** (1.0 / growth),
             )
             for other, state in self._kept.items()
         ]
@@ -540,10 +583,15 @@ class Followed(OwnMeshes):
             drawn, self._lean = h, lean
             state, lean, h = self._contact(drawn)
         check_reach(task.body.profile, h * (lean - 1.0), h * (lean + 1.0))
-        contact, off = state.contact.between(h, h * lean, True), self._off(h / drawn, lean - self._lean)
+        contact = state.contact.between(h, self._middle(h, lean), state.contact.free)
+        off = self._off(h / drawn, lean - self._lean)
         errors = {word: value + off for word, value in state.errors.items()}
         deeper = h / drawn if task.body.solid.layers else 1.0
         return replace(state, body=task.body, contact=contact, errors=errors, deeper=deeper)
+
+    def _middle(self, h: float, lean: float) -> float:
+        """Middle [m] of a contact of half-width h [m], by that over the half-width on a mesh near by."""
+        return h * lean
 
     def _off(self, wider: float, moved: float) -> float:
         """Relative error of a contact that is near to that of its mesh.
@@ -597,7 +645,7 @@ class Followed(OwnMeshes):
         apart = float(np.log(last / first))
         if abs(apart) > _APART:
             self._growth = (of_last - of_first) / apart
-        return last * float(np.exp(-of_last / (self._growth or GROWTH)))
+        return last * float(np.exp(-of_last / (self._growth or self._level.growth)))
 
     def _load(self, h: float, lower: int, error: float) -> float:
         """Logarithm of the load that makes a contact of half-width h [m], over the task's.
@@ -634,9 +682,35 @@ class Followed(OwnMeshes):
                 response=sought.body.solid.response(sought.response.c, h),
                 places=replace(sought.places, interfaces=depths),
             )
-            plan = drawn_for(task, plan, words, base.places)
+            sharp = sought.body.ends == ONE_FREE
+            plan = drawn_for(task, plan, words, base.places, sharp)
         else:
             plan = replace(plan, graded=base.drawn)
         mesh = replace(self._work, plan=plan, stresses=words)
-        kind = BalancedLevel if layered and not len(base.places) else KinkedSplineLevel
+        kind = self._level if layered and not len(base.places) else KinkedSplineLevel
         return mesh, task, partial(kind, mesh, task, base=base)
+
+
+class LiftedOff(Followed):
+    """Contacts of tilted bases over layers: as wide as the base, or less where the higher edge lifts off.
+
+    The lower edge stays where it is, so that the half-width has a middle.
+    """
+
+    _level = TiltedLevel
+
+    def _half_width(self, h: float) -> float:
+        widest = self._sought.body.profile.half_width  # type: ignore[attr-defined]
+        if self._load(widest, _LOWER, _ROUGH) <= 0.0:
+            return widest
+        return super()._half_width(min(h, widest))
+
+    def _moved(self, tried: dict[float, float]) -> float:
+        return min(super()._moved(tried), self._sought.body.profile.half_width)  # type: ignore[attr-defined]
+
+    def _middle(self, h: float, lean: float) -> float:
+        return float(self._sought.body.profile.middle(h))  # type: ignore[attr-defined]
+
+    def _drawn(self, h: float, *args: Any, **options: Any) -> Any:
+        self._lean = self._middle(h, self._lean) / h
+        return super()._drawn(h, *args, **options)

@@ -52,6 +52,10 @@ class Flat(Profile):
     def slope(self, X: NDArray) -> NDArray[np.float64]:
         return np.full_like(X, self.rise, dtype=float)
 
+    def middle(self, half_width: Any) -> Any:
+        """Middle [m] of a contact of this half-width [m] from which the higher edge has lifted off."""
+        return np.sign(self.rise) * (half_width - self.half_width)
+
     def words(self) -> str:
         tilted = f", tilted by {self.tilt:g}° counterclockwise" * bool(self.tilt)
         return f"flat punch, half-width {with_prefix(self.half_width, 'm')}{tilted}"

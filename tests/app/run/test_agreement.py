@@ -359,6 +359,23 @@ def kinked_on_layers(seed):
     return of_sections(solid=PLATE, punch=KINKED[list(KINKED)[seed // 2 % 4]] | {"load": 5e4}, **sections)
 
 
+def tilted_on_layers(seed):
+    """The higher edge of every other one lifts off, under one friction or under one that varies."""
+    rng = np.random.default_rng(seed)
+    layer = LAYER | {"thickness": f"{10.0 ** rng.uniform(-1.0, 0.5)} mm"}
+    if seed % 8 > 5:
+        layer["to"] = {"E": "40 GPa"}
+    friction = {"mu": rng.uniform(0.0, 0.8)}
+    if seed % 4 == 3:
+        friction = {"along": [[-1, rng.uniform(0.0, 0.8)], [1, rng.uniform(0.0, 0.8)]]}
+    tilt = rng.choice([-1.0, 1.0]) * 10.0 ** (rng.uniform(-1.4, -0.4) if seed % 2 else -2.0)
+    return of_sections(
+        solid=PLATE, layer=[layer], punch={"half_width": 1e-3, "tilt": float(tilt), "load": 5e4},
+        friction=friction, motion={"c": 0.3}, solve={"methods": ["sie", "fem"], "tolerance": 1e-3},
+        output={"quantities": ["sif", "surface", "interfaces"]},
+    )  # fmt: skip
+
+
 #: Seeds by which each is tried every day, and those of a release.
 RANDOM = {
     isotropic: (range(4), range(40)), orthotropic: ((3,), range(24)),
@@ -367,6 +384,7 @@ RANDOM = {
     elastic: ((1,), range(20)), elastic_on_layers: ((6,), range(20)), elastic_along: ((3,), range(20)),
     along: ((1, 2), range(20)), cylinder_along: ((0,), range(20)), coated_along: ((0,), range(20)),
     kinked_along: ((0,), range(20)), kinked_on_layers: ((1,), range(20)),
+    tilted_on_layers: ((1,), range(20)),
 }  # fmt: skip
 #: Whose estimates may say that rounding leaves no more digits, or that stresses next to kinks have fewer.
 HONEST = (orthotropic_inside, kinked, kinked_on_layers)

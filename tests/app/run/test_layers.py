@@ -224,3 +224,24 @@ def test_meshes_follow_interfaces(depths):
         assert all(len(mesh.edges[tag]) for tag in (CONTACT, FREE, FAR))
         contact = mesh.points[mesh.edges[CONTACT]]
         assert np.abs(contact[:, 1, 0] - contact[:, 0, 0]).sum() == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("tilt", [-0.01, 0.5])
+def test_a_tilted_punch_on_a_layer_of_its_substrate_is_that_on_the_substrate(tilt):
+    """By finite elements over layers against the closed form; the right edge lifts off at 0.5°."""
+    scene = {"solid": {"E": "40 GPa", "nu": 0.3, "rho": 2000}, "friction": {"mu": 0.4},
+             "punch": {"half_width": 1e-3, "tilt": tilt, "load": 5e4}, "motion": {"c": 0.3}}  # fmt: skip
+    layer = scene["solid"] | {"thickness": "0.4 mm"}
+    layered = of_sections(layer=[layer], solve={"methods": ["fem"], "tolerance": 1e-4}, **scene)
+    data = galinx.compute(layered).data
+    exact = galinx.compute(of_sections(solve={"methods": ["closed_form"]}, **scene)).data
+    estimate = data["states/fem/estimate"][0]
+    assert estimate < 1e-4
+    h, of_exact = (of[f"states/{by}/half_width"][0] for by, of in (("fem", data), ("closed_form", exact)))
+    assert abs(h / of_exact - 1.0) <= estimate
+    for name in ("centre", "K_I_left", "K_I_right"):
+        (one,), (other,) = data[f"states/fem/{name}"], exact[f"states/closed_form/{name}"]
+        size = max(abs(other), {"centre": h}.get(name, 0.1))
+        assert abs(one - other) <= estimate * size, name
+    assert (h < 1e-3) == (tilt > 0.1)
+    assert (exact["states/closed_form/K_I_right"][0] == 0.0) == (tilt > 0.1)

@@ -524,7 +524,8 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
     if "largest tension σ_XX" in heads and ("K_I, right" in heads or jumps):
         yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
     if "K_I, right" in heads and not units.dimensionless:
-        yield "K_I: limit of the pressure times (2π distance)^-exponent, at X = -a and X = a"
+        where = "both ends" if "half-width" in heads else "X = -a and X = a"
+        yield f"K_I: limit of the pressure times (2π distance)^-exponent, at {where}"
     if units.dimensionless and "half-width" in heads:
         a = number(units.contact.half_width)
         yield f"half-width, centre: a = {a} m, that of the first contact at rest without friction"

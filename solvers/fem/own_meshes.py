@@ -12,8 +12,8 @@ the punch: its height around a nearby middle, the change of that height where th
 constant. Their loads and the intensities at both ends are linear in their amplitudes. So the half-width
 of a mesh has a load of its own, at which both intensities vanish, and a middle: of a parabola at once, of
 other profiles once the middle hardly moves (:class:`BalancedLevel`). The contact of a tilted base has one
-free end and a middle that follows from its half-width (:class:`TiltedLevel`). Kinks on layers, and under friction
-that varies along the contact, are followed in the same way (:class:`KinkedSplineLevel`).
+free end and a middle that follows from its half-width (:class:`TiltedLevel`). Kinks on layers, and under
+friction that varies along the contact, are followed in the same way (:class:`KinkedSplineLevel`).
 
 On the mesh of a contact the degree rises until the measured error is within tolerance. Where contacts of
 all loads differ in size alone, a single state of a friction stands for all of them.

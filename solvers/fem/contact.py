@@ -358,11 +358,10 @@ class SplineLevel(PunchLevel):
         return bool(len(response.depths)) and response.solid.layers[0].bottom is not None  # type: ignore[attr-defined]
 
     def gauge_of_edges(self, states: SolvedStates) -> Gauge:
-        """Gauge of the pressure's factors at sharp edges, and of the pressure between the ends."""
+        """Gauge of the pressure's factors at ends, 0 at free ones, and of the pressure between these."""
         contact = states.contact
-        edges = ENDS[~contact.free.any(axis=0)]
         (K, σ), (coarse_K, coarse_σ) = (
-            (pressure.series(edges), pressure.σ_YY(_ALL_ACROSS))
+            (np.where(contact.free, 0.0, pressure.series(ENDS)), pressure.σ_YY(_ALL_ACROSS))
             for pressure in (states.pressure, self.pressure(contact, COARSE))
         )
         size, of_K = np.maximum(np.abs(σ), _SMALL), of_factor(K)

@@ -49,12 +49,16 @@ class Gauge:
         values: the numbers, (states, n).
         scale: sizes to which their changes are relative, (states, n).
         unresolved: relative error that a level shows by itself, (states,) or 0.
+        cancelled: size of the largest parts whose sum a number is, over its own, (states,) or 1.
+        leaning: distance over a of the pressure's centre from the contact's middle, (states,) or 0.
     """
 
     word: str
     values: NDArray[np.float64]
     scale: NDArray[np.float64]
     unresolved: Any = 0.0
+    cancelled: Any = 1.0
+    leaning: Any = 0.0
 
     def change(self, coarse: "Gauge") -> NDArray[np.float64]:
         """Largest relative difference of each state from the same gauge of another level, (states,)."""
@@ -185,12 +189,11 @@ class Level:
     def _on_surface(self, states: SolvedStates) -> Gauge:
         """Gauge of σ_XX on the surface, and of its limits at free ends, its extremes there."""
         places, σ_XX = self.measured_task.places, self.in_plane(states)
-        groups = [(σ_XX, stresses.of_in_plane(σ_XX, places.X))]
-        if states.contact.free.any():
-            surface = Surface(places, np.full(σ_XX.shape, np.nan), σ_XX)
-            at_ends = turns_at_ends(surface, states.local).σ[0]  # NaN at sharp edges
-            largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
-            groups.append((np.nan_to_num(at_ends), largest))
+        surface = Surface(places, np.full(σ_XX.shape, np.nan), σ_XX)
+        # As many numbers at every degree: an edge may lift off at some of them only.
+        at_ends = np.where(states.contact.free, turns_at_ends(surface, states.local).σ[0], 0.0)
+        largest = np.nanmax(np.abs(np.column_stack([σ_XX, at_ends])), axis=1)[:, None]
+        groups = (σ_XX, stresses.of_in_plane(σ_XX, places.X)), (at_ends, largest)
         return joined(ON_SURFACE, groups)
 
     def in_plane(self, states: SolvedStates) -> NDArray[np.float64]:
@@ -462,7 +465,7 @@ class MeasuredError(Estimate):
         self.floor, self.excessive, enough, mended = 0.0, False, False, False
         for gauges, rounding in zip(each, level.rounding(probes, loads)):
             word = gauges[-1].word
-            unseen = self._unseen(gauges[-1], probes)
+            unseen = gauges[-1].cancelled * self._unseen(gauges[-1], probes, measured[-1][1][0].leaning)
             earlier, last = (gauge.unresolved for gauge in gauges[-2:])
             # What a level shows by itself where the level before showed hardly more.
             own = np.where(last > _LASTS * earlier, last, 0.0)
@@ -553,8 +556,14 @@ class MeasuredError(Estimate):
         ρ = min((self._changes[self._degree][word] / earlier) ** (1.0 / _DECAY), SLOWEST)
         return Rate(max(ρ, rate.usual), max(ρ, rate.believed), rate.least)
 
-    def _unseen(self, gauge: Gauge, g: NDArray) -> NDArray[np.float64]:
-        """Estimated errors common to all levels, of outer radius and innermost cells, (states,)."""
+    def _unseen(self, gauge: Gauge, g: NDArray, leaning: Any) -> NDArray[np.float64]:
+        """Estimated errors common to all levels, of outer radius and innermost cells, (states,).
+
+        Args:
+            gauge: of a word.
+            g: σ_XY/σ_YY of the states.
+            leaning: see :class:`Gauge`.
+        """
         plan, response, body = self._work.plan, self._level.task.response, self._level.task.body
         kind, target, margin = plan.kind, plan.wanted, response.margin
         innermost = kind.unseen(target, self._degree, plan.cuts, margin)
@@ -568,7 +577,7 @@ class MeasuredError(Estimate):
         lean = response.n12 / response.n
         # Without friction nothing leans to a side, but every other of the higher moments needs no side.
         across = np.abs(body.ratio(g, _ACROSS)).max(axis=1)
-        leaning = across + 0.5 * abs(lean) + _UPRIGHT * (kind.terms(target) > 1)
+        leaning = leaning + across + 0.5 * abs(lean) + _UPRIGHT * (kind.terms(target) > 1)
         of_edges = compliance * leaning / np.abs(1.0 + g * lean) + 1.8 * far
         if gauge.word == INTENSITIES:
             return np.asarray(innermost + far * of_edges)

@@ -46,7 +46,16 @@ from ..contact.fem_plan import (
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
 from ..contact.solution import ONE_FREE, Contact, Task, make_contact
-from ..contact.stresses import NEAR_TIP, Places, Surface, Turns, at_and_between, off_tips
+from ..contact.stresses import (
+    NEAR_TIP,
+    Places,
+    Surface,
+    Turns,
+    at_and_between,
+    of_factor,
+    off_tips,
+    turns_at_ends,
+)
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
 from ..profiles.punches import Flat
@@ -471,27 +480,35 @@ class TiltedLevel(BalancedLevel):
         return self.base.lengths[0] / self.base.lengths[1]
 
     def heights(self) -> NDArray[np.float64]:
-        return self.base.body.height(self.r, *self.base.lengths)[None]
+        body, lengths = self.base.body, self.base.lengths
+        return body.height(self.r, *lengths)[None][: any(np.logical_not(body.profile.sharp))]
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         (parts, loads, K), (_, h) = self.parts(g), self.base.lengths
         punch: Any = self.base.body.profile
-        free = np.logical_not(punch.sharp)
-        amplitudes = without_intensity(loads, K[:, free])
-        share = float(amplitudes[0, 1])
-        down = h >= punch.half_width and not 0.0 < share < 1.0
-        if down:
-            amplitudes = carrying(loads, np.ones((1, 1)))
-        elif not share > 0.0:
-            raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        wide = h if down else h * share
-        return self.punch.summed(g, parts, amplitudes).between(
-            wide, punch.middle(wide), free & (not down)
-        )
+        free, amplitudes = np.logical_not(punch.sharp), carrying(loads, np.ones((1, len(loads[0]) - 1)))
+        if free.any():
+            lifted = without_intensity(loads, K[:, free])
+            share = float(lifted[0, 1])
+            if h < punch.half_width or 0.0 < share < 1.0:
+                if not share > 0.0:
+                    raise SolveError(
+                        f"finite elements found no load for a contact of the half-width {h:g} m"
+                    )
+                contact, wide = self.punch.summed(g, parts, lifted), h * share
+                return contact.between(wide, punch.middle(wide), free)
+        return self.punch.summed(g, parts, amplitudes).between(h, 0.0, False)
+
+    def turns(self, states: SolvedStates, surface: Surface) -> Turns:
+        return turns_at_ends(surface, states.local)  # of other states, too
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        gauge = self.gauge_of_edges(states)
-        return self.gauge_of_free(states, gauge.values, gauge.scale, gauge.unresolved)
+        gauge, K = self.gauge_of_edges(states), np.abs(states.pressure.series(ENDS))
+        own = self.gauge_of_free(states, gauge.values, gauge.scale, gauge.unresolved)
+        # Next to its lift-off an edge has little left of the intensity without a tilt.
+        cancelled = np.where(states.contact.free, 1.0, K.max() / of_factor(K)).max(axis=1)
+        (moment,) = states.contact.tested(self.moments[:, 1:2]).T / 2.0
+        return replace(own, cancelled=cancelled, leaning=np.abs(moment))
 
 
 class KinkedSplineLevel(BalancedLevel, KinkedLevel):

@@ -478,10 +478,6 @@ NAMED = {
         solid=PLATE, friction={"along": [[-1, 0.1], [0.4, 0.6], [1, 0.5]]},
         layer=[LAYER | {"thickness": "1 mm"}], motion={"c": 0.3},
         solve={"methods": ["sie", "fem"], "tolerance": 1e-2}),
-    # It lifts off at 0.041355311°, and at some degrees a little before.
-    "an edge next to its lift-off": of_sections(
-        solid=PLATE, punch={"half_width": 1e-3, "tilt": 0.0412, "load": 5e4}, friction={"mu": 0.4},
-        motion={"c": 0.3}, solve={"tolerance": 1e-2}),
     "next to an edge at a fixed degree": orthotropic(7, {"quantities": ["sif", "surface"]}, degree=12),
     "kinks of friction with cells between them": of_sections(
         solid=PLATE, friction={"along": [[-1, 0.2], [0.2, 0.7], [0.2011, 0.6989], [1, 0.5]]},

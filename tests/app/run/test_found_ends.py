@@ -155,3 +155,16 @@ def test_a_point_inside_asks_for_few_cells_and_is_within_its_estimate(tolerance,
     fem, exact = (result.data[f"interior/{method}/von_mises"] for method in ("fem", "closed_form"))
     assert np.abs(fem / exact - 1.0).max() < result.data["states/fem/estimate_inside"][0] < tolerance
     assert result.data["run/fem/cells"][0] < 60
+
+
+def test_an_edge_that_lifts_off_at_low_degrees_alone_is_down():
+    """By the closed form the right edge lifts off at 0.041355311°; finite elements change their mind."""
+    tilted = of_sections(
+        solid={"E": "40 GPa", "nu": 0.3, "rho": 2000}, friction={"mu": 0.4}, motion={"c": 0.3},
+        punch={"half_width": 1e-3, "tilt": 0.0413, "load": 5e4}, solve={"tolerance": 1e-2},
+    )  # fmt: skip
+    result = galinx.compute(tilted)
+    assert result.verdict == "PASS", result.attributes["verdict_reasons"]
+    assert result.data["states/fem/half_width"] == [1e-3]
+    one, other = (result.data[f"states/{by}/K_I_right"] for by in ("fem", "closed_form"))
+    assert 0.0 < other < 0.01 and one == pytest.approx(other, abs=1e-4)

@@ -518,7 +518,7 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
     """Notes on columns, and on how to ask for those that are not there."""
     heads = {column.head for column in columns}
     if "stroke" in heads:
-        yield "FM1, BM1, …: first forward, first backward motion, and so on"
+        yield "FM1, BM1: first forward, first backward motion; later ones are counted on"
     pressure = units.contact.pressure
     jumps = pressure is not None and pressure.values[[0, -1]].any() and data[of.RATIO.path].any()
     if "largest tension σ_XX" in heads and ("K_I, right" in heads or jumps):

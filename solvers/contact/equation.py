@@ -704,13 +704,9 @@ class LayersUnderPunch:
             SolveError: no contact carries the load, or the half-width is not resolved.
         """
         equation, h, change = self._equation(0.0, 1.0), 1.0, np.inf
-        tilted = isinstance(self.punch.profile, Flat)
         for resolution in resolutions(equation):
             before = h
-            if tilted:
-                h = self._tilted(0.0, h, resolution).half_width
-            else:
-                h = self._free_ends(0.0, h, resolution)[1]
+            _, h = self._free_ends(0.0, h, resolution)
             change = abs(h / before - 1.0)
             if change <= self.tolerance:
                 break
@@ -727,7 +723,10 @@ class LayersUnderPunch:
         return SolvedContact(g, self._equation(g, 1.0, self.punch.slope(0.0, 1.0)).pressure(resolution))
 
     def _free_ends(self, g: float, h: float, resolution: Resolution) -> tuple[float, float]:
-        """Centre and half-width of a contact between two free ends, from the half-width h on."""
+        """Centre and half-width of a contact with a free end, from the half-width h on."""
+        if isinstance(self.punch.profile, Flat):
+            contact = self._tilted(g, h, resolution)
+            return contact.centre, contact.half_width
         rules: dict[float, Rule] = {}
         # On a uniform solid all half-widths share one rule, unless friction has a length.
         share = not self.stack and not self.friction(g, self.punch.unit).has_length

@@ -45,7 +45,7 @@ from ..contact.fem_plan import (
 )
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import KinkedPressure, gaps_of, slopes_towards_ends
-from ..contact.solution import ONE_FREE, Contact, Task, make_contact
+from ..contact.solution import Contact, Task, make_contact
 from ..contact.stresses import (
     NEAR_TIP,
     Places,
@@ -58,7 +58,7 @@ from ..contact.stresses import (
 )
 from ..errors import SolveError
 from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
-from ..profiles.punches import Flat
+from ..profiles.punches import Flat, is_level
 from .contact import (
     ACROSS,
     BESIDE_ENDS,
@@ -423,8 +423,9 @@ class BalancedLevel(SplineLevel, SingleLevel):
     The base of the level has the mesh's half-width and the middle of a contact near by.
     """
 
-    #: Growth of loads on a half-plane.
+    #: Growth of loads on a half-plane; True where an end is a sharp edge.
     growth: ClassVar[float] = GROWTH
+    sharp: ClassVar[bool] = False
 
     @property
     def off(self) -> float:
@@ -453,10 +454,20 @@ class BalancedLevel(SplineLevel, SingleLevel):
     def lengths(self, amplitudes: NDArray) -> tuple[float, float]:
         """Half-width and middle [m] of the contact without intensities, by its parts' amplitudes."""
         (near, h), (_, share, slope) = self.base.lengths, amplitudes[0].tolist()
+        return self.under_load(share), near + h * slope / share
+
+    def under_load(self, share: float) -> float:
+        """Half-width [m] under the task's load, by the amplitude of the punch's height on this mesh.
+
+        Over its own load the punch's height is that over the task's load times their quotient.
+
+        Raises:
+            SolveError: no load makes such a contact.
+        """
+        h = self.base.lengths[1]
         if not share > 0.0:
             raise SolveError(f"finite elements found no load for a contact of the half-width {h:g} m")
-        # Over its own load the punch's height is that over the task's load times their quotient.
-        return h * share ** (1.0 / self.growth), near + h * slope / share
+        return h * share ** (1.0 / self.growth)
 
     def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
         return np.full(len(contact.g), self.task.body.half_width)
@@ -473,31 +484,29 @@ class TiltedLevel(BalancedLevel):
     under none.
     """
 
-    growth = 1.0
+    growth, sharp = 1.0, True
 
     @property
     def lean(self) -> float:
         return self.base.lengths[0] / self.base.lengths[1]
 
     def heights(self) -> NDArray[np.float64]:
-        body, lengths = self.base.body, self.base.lengths
-        return body.height(self.r, *lengths)[None][: any(np.logical_not(body.profile.sharp))]
+        body = self.base.body
+        heights = body.height(self.r, *self.base.lengths)[None]
+        return heights[:0] if is_level(body.profile) else heights
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         (parts, loads, K), (_, h) = self.parts(g), self.base.lengths
         punch: Any = self.base.body.profile
-        free, amplitudes = np.logical_not(punch.sharp), carrying(loads, np.ones((1, len(loads[0]) - 1)))
-        if free.any():
+        if not is_level(punch):
+            free = np.logical_not(punch.sharp)
             lifted = without_intensity(loads, K[:, free])
             share = float(lifted[0, 1])
             if h < punch.half_width or 0.0 < share < 1.0:
-                if not share > 0.0:
-                    raise SolveError(
-                        f"finite elements found no load for a contact of the half-width {h:g} m"
-                    )
-                contact, wide = self.punch.summed(g, parts, lifted), h * share
+                contact, wide = self.punch.summed(g, parts, lifted), self.under_load(share)
                 return contact.between(wide, punch.middle(wide), free)
-        return self.punch.summed(g, parts, amplitudes).between(h, 0.0, False)
+        down = carrying(loads, np.ones((1, len(loads[0]) - 1)))
+        return self.punch.summed(g, parts, down).between(h, 0.0, False)
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns:
         return turns_at_ends(surface, states.local)  # of other states, too
@@ -699,8 +708,7 @@ class Followed(OwnMeshes):
                 response=sought.body.solid.response(sought.response.c, h),
                 places=replace(sought.places, interfaces=depths),
             )
-            sharp = sought.body.ends == ONE_FREE
-            plan = drawn_for(task, plan, words, base.places, sharp)
+            plan = drawn_for(task, plan, words, base.places, self._level.sharp)
         else:
             plan = replace(plan, graded=base.drawn)
         mesh = replace(self._work, plan=plan, stresses=words)
@@ -716,17 +724,21 @@ class LiftedOff(Followed):
 
     _level = TiltedLevel
 
+    @property
+    def _punch(self) -> Any:
+        return self._sought.body.profile
+
     def _half_width(self, h: float) -> float:
-        widest = self._sought.body.profile.half_width  # type: ignore[attr-defined]
+        widest = float(self._punch.half_width)
         if self._load(widest, _LOWER, _ROUGH) <= 0.0:
             return widest
         return super()._half_width(min(h, widest))
 
     def _moved(self, tried: dict[float, float]) -> float:
-        return min(super()._moved(tried), self._sought.body.profile.half_width)  # type: ignore[attr-defined]
+        return min(super()._moved(tried), self._punch.half_width)
 
     def _middle(self, h: float, lean: float) -> float:
-        return float(self._sought.body.profile.middle(h))  # type: ignore[attr-defined]
+        return float(self._punch.middle(h))
 
     def _drawn(self, h: float, *args: Any, **options: Any) -> Any:
         self._lean = self._middle(h, self._lean) / h

@@ -271,12 +271,17 @@ class Splines(Functions):
         return np.sort(np.concatenate([self.knots, *more]))
 
     def values(self, r: NDArray, count: int = 0) -> NDArray[np.float64]:
-        from scipy.interpolate import BSpline  # a slow import
-
         if not len(r):  # SciPy takes none
             return np.empty((0, len(self._knots) - self.degree - 1 + 2 * self.logarithms))
-        splines = BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree).toarray()
-        return np.hstack([splines, self._of_ends(r)]) if self.logarithms else splines
+        return np.asarray(self.sparse(r).toarray())
+
+    def sparse(self, r: NDArray) -> Any:
+        """Values at r as a sparse matrix, (points, splines): few splines are not 0 at a place."""
+        from scipy.interpolate import BSpline  # slow imports
+        from scipy.sparse import hstack
+
+        splines = BSpline.design_matrix(np.clip(r, -1.0, 1.0), self._knots, self.degree)
+        return hstack([splines, self._of_ends(r)], "csr") if self.logarithms else splines
 
     def _of_ends(self, r: NDArray) -> NDArray[np.float64]:
         """Part of x log x that is no spline, x the distance from an end over the next knot's, (n, 2).
@@ -297,15 +302,13 @@ class FittedSplines:
 
     Args:
         splines: as many as tests.
-        nodal: their values at the nodes, (nodes, splines), which tests interpolate.
-        tests: values of these at r, (points, splines).
+        nodal: their values at the nodes, a sparse matrix (nodes, splines), which tests interpolate.
+        interpolation: values at r by those at the nodes, a sparse matrix (points, nodes).
     """
 
-    def __init__(
-        self, splines: Splines, nodal: NDArray[np.float64], tests: Callable[[NDArray], NDArray]
-    ) -> None:
+    def __init__(self, splines: Splines, nodal: Any, interpolation: Callable[[NDArray], Any]) -> None:
         self.nodal, self._splines, self._rule = nodal, splines, Rule(splines.knots, 1.0)
-        self._f, self._tests = splines.values(self._rule.t), tests(self._rule.t)
+        self._f, self._tests = splines.sparse(self._rule.t), interpolation(self._rule.t) @ nodal
 
     def pressure(self, moments: NDArray, α: NDArray, β: NDArray) -> Expansion:
         """Pressure with given moments.
@@ -314,10 +317,13 @@ class FittedSplines:
             moments: integrals of σ_YY of each state over N/(2a) times the tests, (states, splines).
             α, β: exponents at X = a and X = -a, (states,).
         """
-        f, c = self._f, np.empty_like(moments)
+        from scipy.sparse import diags
+        from scipy.sparse.linalg import splu
+
+        c = np.empty_like(moments)
         exponents, which = np.unique(np.column_stack([α, β]), axis=0, return_inverse=True)
         for i, w in enumerate(self._rule.weights(*exponents.T)):
-            size, states = np.sqrt(w @ f**2), which == i
-            gram = (self._tests / size).T @ (w[:, None] * f / size)
-            c[states] = np.linalg.solve(gram, (moments[states] / size).T).T / size
+            states, scale = which == i, diags(1.0 / np.sqrt(w @ self._f.power(2)))
+            gram = scale @ self._tests.T @ diags(w) @ self._f @ scale
+            c[states] = (scale @ splu(gram.tocsc()).solve((moments[states] @ scale).T)).T
         return BentExpansion(α[:, None], β[:, None], c, self._splines)

@@ -190,14 +190,18 @@ class ContactFacets:
     def stress(self, density: NDArray, r: NDArray) -> NDArray[np.float64]:
         """Stress over N/(2a) at r under the punch, (..., q), by densities at the nodes, (..., n)."""
         s = self._chart.surface_coordinate(r)
-        return self.interpolated(density, r) / self._chart.surface_stretch(s)
+        return (density @ self.interpolation(r).T) / self._chart.surface_stretch(s)
 
-    def interpolated(self, nodal: NDArray, r: NDArray) -> NDArray[np.float64]:
-        """Values at r under the punch, (..., q), of functions by their values at the nodes, (..., n)."""
+    def interpolation(self, r: NDArray) -> Any:
+        """Map from a function's values at the nodes to those at r under the punch, sparse (q, n)."""
+        from scipy.sparse import csr_matrix  # a slow import
+
         s = self._chart.surface_coordinate(r)
         facet = np.maximum(np.searchsorted(self.start, s, side="right") - 1, 0)
         values, _ = lagrange(self.nodes, (s - self.start[facet]) / self.length[facet])
-        return np.einsum("qi,...qi->...q", values, nodal[..., self.facets[facet]])
+        nodes = self.facets[facet]
+        starts = np.arange(len(r) + 1) * nodes.shape[1]
+        return csr_matrix((values.ravel(), nodes.ravel(), starts), (len(r), len(self._s)))
 
 
 class ContactRecovery(ContactFacets):

@@ -330,13 +330,10 @@ class SplineLevel(PunchLevel):
     @cached_property
     def _fitted(self) -> Callable[[Splines], FittedSplines]:
         """Splines with their tests; the last ones are kept, as a search for ends asks for them often."""
-
-        def fitted(splines: Splines) -> FittedSplines:
-            # Nodal forces know of tests their interpolants only.
-            nodal = splines.values(self.r)
-            return FittedSplines(splines, nodal, lambda r: self.facets.interpolated(nodal.T, r).T)
-
-        return lru_cache(_FITTED)(fitted)
+        # Nodal forces know of tests their interpolants only.
+        return lru_cache(_FITTED)(
+            lambda splines: FittedSplines(splines, splines.sparse(self.r), self.facets.interpolation)
+        )
 
     @cached_property
     def _analytic(self) -> float:

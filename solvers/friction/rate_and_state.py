@@ -87,7 +87,7 @@ class RateAndState(FrictionLaw):
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """States by the exact solution: exp(-d/D_c) is the decay of ϑ - V₀/V, or ln(ϑ V/V₀) by slip."""
         steady, ϑ, x = self._steady(V), z[..., 0], np.asarray(slip, dtype=float) / self.D_c
-        aged = ϑ + (ϑ - steady) * np.expm1(-x)
+        aged = ϑ * np.exp(-x) - steady * np.expm1(-x)  # a sum: after a long rest ϑ is very large
         slipped = steady * np.exp(np.log(ϑ / steady) * np.exp(-x))
         return np.where(self.evolution == "ageing", aged, slipped)[..., None]
 

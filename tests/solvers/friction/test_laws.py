@@ -1,5 +1,6 @@
 """Every law against its equations, integrated elsewhere, and laws that are others' limits."""
 
+import mpmath
 import numpy as np
 import pytest
 import random_laws as random
@@ -142,6 +143,21 @@ def test_steps_of_the_speed_show_both_effects_of_rate_and_state(evolution, facto
     np.testing.assert_allclose(f, np.log(factor) * np.array([0.01, 0.01 - 0.015]), rtol=0.0, atol=1e-15)
     steady = 0.6 + (0.01 - 0.015) * np.log(V / 1e-6)
     assert law.friction(before, 1, V) == pytest.approx(steady, rel=1e-14)
+
+
+def test_contacts_that_rested_for_ages_are_renewed():
+    """A state far above steady sliding loses no digits on its way there: closed form, 40 digits."""
+    law = of("rate_and_state", reference_friction=0.6, reference_speed=1e-6, a=0.01, b=0.015,
+             critical_slip=1e-5)  # fmt: skip
+    V, slips = 10.0, np.array([1e-4, 3e-4, 5e-4, 1e-3])
+    f0, V0, a, b, D_c = (mpmath.mpf(value) for value in (0.6, 1e-6, 0.01, 0.015, 1e-5))
+    with mpmath.workdps(40):
+        steady, ϑ0 = V0 / V, 1.0 + V0 * 1e13 / D_c
+        ϑ = [steady + (ϑ0 - steady) * mpmath.exp(-mpmath.mpf(d) / D_c) for d in slips]
+        each = [V / (2.0 * V0) * mpmath.exp((f0 + b * mpmath.log(t)) / a) for t in ϑ]
+        wanted = [float(a * mpmath.asinh(value)) for value in each]
+    f = law.friction(law.exact(law.pause(law.rest(), 1e13), 1, V, slips), 1, V)
+    np.testing.assert_allclose(f, wanted, rtol=1e-13)
 
 
 @pytest.mark.parametrize(

@@ -234,7 +234,7 @@ def pull(
         done: called now and then with the share of the duration that is done.
 
     Raises:
-        ValueError: the integration failed, or the motion has too many pieces.
+        ValueError: the integration failed, the motion has too many pieces, or friction drives it.
     """
     motion = _Motion(slider, law, load)
     for _ in range(PIECES):
@@ -264,6 +264,12 @@ class _Motion:
         self.crossings: list[tuple[float, NDArray[np.float64]]] = []
         self._longest = self._usual = _PERIODS * 2.0 * np.pi * np.sqrt(slider.mass / slider.stiffness)
         self._slow = _AT_REST * slider.drive_speed
+        f = float(law.friction(law.settle(self.z, 1, self._slow), 1, self._slow))
+        if f < 0.0:
+            raise ValueError(
+                f"found the friction coefficient {f:g} where motion starts, expected 0 or more: such a "
+                "friction drives the mass; let a table begin with the first slip, not with a reversal"
+            )
         # Size of the spring's extension [m].
         self._length = max(load / slider.stiffness, 1e-3 * slider.drive_speed * slider.duration)
         # Over such rates a mass on its spring hardly moves before friction has slowed it down.

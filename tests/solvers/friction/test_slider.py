@@ -130,7 +130,7 @@ ELEMENTS = ((300.0, 0.3), (100.0, 0.3))
         of("elasto_plastic", **CURVE | {"stribeck_velocity": 1e-2}, sigma0_over_load=300.0),
         of("gms", **CURVE | {"stribeck_velocity": 1e-1}, elements=ELEMENTS, attraction_rate=20.0),
         of("stribeck", mu_c=0.5, mu_s=0.7, stribeck_velocity=1e-2),
-        of("table", shape=((0.0, -0.1), (5e-3, 0.4), (1e-2, 0.5))),
+        of("table", shape=((0.0, 0.0), (5e-3, 0.4), (1e-2, 0.5))),
         of("rate_and_state", reference_friction=0.6, reference_speed=1e-2, a=0.1, b=0.12,
            critical_slip=0.02),
     ],
@@ -201,3 +201,11 @@ def test_what_rings_without_end_is_told(monkeypatch):
     with pytest.raises(ValueError, match="stopped, started and switched 3 times"):
         law = of("stribeck", mu_c=0.5, mu_s=0.7, stribeck_velocity=1e-2)
         pull(Slider(2.0, 8.0, 0.0, 0.1, 40.0), law, 1.0)
+
+
+def test_a_friction_that_would_drive_the_mass_is_refused():
+    """A measured loop's branch begins below zero: at a reversal, not where a mass starts from rest."""
+    rows, slider = [(5e-3, 0.1), (3e-2, 0.35)], Slider(1.0, 100.0, 0.0, 0.01, 1.0)
+    with pytest.raises(ValueError, match=r"coefficient -0\.4 where motion starts.*drives the mass"):
+        pull(slider, of("table", shape=((0.0, -0.4), *rows)), 1.0)
+    assert pull(slider, of("table", shape=((0.0, 0.0), *rows)), 1.0).v.max() > 0.0

@@ -77,12 +77,13 @@ def test_friction_that_drives_the_motion_has_the_wrong_sign():
 
 def test_several_measurements_have_one_set_of_parameters():
     slow, fast = swing("lugre", LUGRE, 100, 5e-4), swing("lugre", LUGRE, 100, 2e-2, seed=2)
-    both = galinx.fit([slow, fast], "lugre", fix={"stribeck_exponent": 2.0})
-    assert both.samples == 191 and len(both.f) == 2
+    both, alone, other = (
+        galinx.fit(data, "lugre", fix={"stribeck_exponent": 2.0}) for data in ([slow, fast], slow, fast)
+    )
+    assert both.samples == alone.samples + other.samples and len(both.f) == 2
     for key, value in both.deviations.items():
         true = LUGRE.get(key, 0.0)
         assert abs(both.parameters[key] - true) < 4.0 * value, key
-    alone = galinx.fit(slow, "lugre", fix={"stribeck_exponent": 2.0})
     assert both.deviations["mu_c"] < alone.deviations["mu_c"]
     first = friction(both.law, moves(slow.t, slow.X, True), 100)
     np.testing.assert_array_equal(both.f[0], first)

@@ -250,12 +250,13 @@ class SharpLevel(PunchLevel):
 #: Distance from an end or a kink within which the pressure without its weight has no knots, over the root
 #: of the length in which friction varies: nearer, innermost cells are not sure. That from which on it has
 #: several in a cell, over that length; how many; degree of the cells less that of its splines.
-NEXT, _WIDE, _IN_A_CELL, _LESS = 1e-5, 1e-2, 4, 2
+_NEXT, _WIDE, _IN_A_CELL, _LESS = 1e-5, 1e-2, 4, 2
 #: Unit of the first of these over the thickness of the uppermost layer or over the least distance between
 #: ends and kinks, where there are no logarithms.
 _ANALYTIC = 100.0
-#: The first of these for splines that show what the others leave out, and factor of what they show.
-COARSE, _SURE = 4.0 * NEXT, 1.5
+#: Growth of the first of these for splines that show what the others leave out, and factor of what they
+#: show over layers.
+_COARSE, _SURE = 4.0, 1.5
 #: Places over a at which a pressure between sharp edges is measured, and least stress over the mean to
 #: which its error is relative.
 _ALL_ACROSS, _SMALL = np.cos(np.pi * (np.arange(64) + 0.5) / 64.0), 0.1
@@ -289,20 +290,20 @@ class SplineLevel(PunchLevel):
         """Half-widths [m] on which frictions of contacts depend, (states,)."""
         return np.asarray(contact.half_width)
 
-    def pressure(self, contact: ContactStates, nearest: float = NEXT) -> Expansion:
+    def pressure(self, contact: ContactStates, coarse: bool = False) -> Expansion:
         lengths = self.half_widths(contact)
-        return self.splines(contact.g, lengths, contact.tested, nearest, contact.free)
+        return self.splines(contact.g, lengths, contact.tested, coarse, contact.free)
 
     def splines(
         self, g: NDArray, half_width: NDArray, tested: Callable[[NDArray], NDArray],
-        nearest: float = NEXT, free: Any = False,
+        coarse: bool = False, free: Any = False,
     ) -> Expansion:  # fmt: skip
         """Pressure of contacts, by splines without knots within a distance of ends and kinks.
 
         Args:
             g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
             tested: normal forces times tests (nodes, n), (states, n).
-            nearest: distance over a of knots from ends and kinks, over its unit.
+            coarse: leave out the nearest knots on both sides of ends and kinks, too.
             free: True where the left and the right end are free, broadcast to (states, 2).
         """
         body, degree, kinks = self.task.body, self.space.degree, self.kinks
@@ -312,7 +313,7 @@ class SplineLevel(PunchLevel):
         steepest = np.abs(np.diff(ratio) / np.diff(ends_of_cells)).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             length = np.nanmin(np.append(np.ptp(ratio, axis=1) / steepest, 1.0))
-        first = nearest * (self._analytic or np.sqrt(length))
+        first = _NEXT * (self._analytic or np.sqrt(length))
         of_knots = [places]
         # Nodes have to tell all splines apart: no more of these than nodes, and a node in each step.
         count = min(_IN_A_CELL, degree) if degree > _LESS else 1
@@ -321,6 +322,12 @@ class SplineLevel(PunchLevel):
         for candidates, least in ((ends_of_cells, first), (within, _WIDE * length)):
             of_knots.append(candidates[np.abs(candidates[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))
+        if coarse:
+            apart, at = np.abs(knots[:, None] - places).min(axis=1), np.searchsorted(knots, places)
+            kept = apart > _COARSE * first
+            kept[at[:-1] + 1] = kept[at[1:] - 1] = False
+            kept[at] = True
+            knots = knots[kept]
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         of_splines = max(degree - _LESS, 0)
         splines = Splines(tuple(knots.tolist()), tuple(kinks.tolist()), of_splines, self._graded)
@@ -359,7 +366,7 @@ class SplineLevel(PunchLevel):
         contact = states.contact
         (K, σ), (coarse_K, coarse_σ) = (
             (np.where(contact.free, 0.0, pressure.series(ENDS)), pressure.σ_YY(_ALL_ACROSS))
-            for pressure in (states.pressure, self.pressure(contact, COARSE))
+            for pressure in (states.pressure, self.pressure(contact, coarse=True))
         )
         size, of_K = np.maximum(np.abs(σ), _SMALL), of_factor(K)
         # Without the nearest knots splines show less of the error of the innermost cells.
@@ -368,17 +375,17 @@ class SplineLevel(PunchLevel):
         return joined(INTENSITIES, groups, _SURE * off)
 
     def intensities(
-        self, parts: NDArray, g: Any, half_width: float, nearest: float = NEXT
+        self, parts: NDArray, g: Any, half_width: float, coarse: bool = False
     ) -> NDArray[np.float64]:
         """Intensities of the parts (1, parts, fields) of one state at both ends, (parts, 2)."""
         each, lengths = np.multiply.outer([g, half_width], np.ones(parts.shape[1]))
-        return self.splines(each, lengths, lambda tests: self.punch.tested(parts, tests)[0], nearest).K_I
+        return self.splines(each, lengths, lambda tests: self.punch.tested(parts, tests)[0], coarse).K_I
 
     def gauge(self, states: SolvedStates) -> Gauge:
         """Gauge of contacts with free ends, by moved knots."""
         contact, σ = states.contact, states.pressure.σ_YY(ACROSS)
         size = np.abs(σ).max(axis=1, keepdims=True)
-        off = np.abs(self.pressure(contact, COARSE).σ_YY(ACROSS) - σ) / size
+        off = np.abs(self.pressure(contact, coarse=True).σ_YY(ACROSS) - σ) / size
         return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
@@ -386,10 +393,11 @@ class VaryingLevel(SplineLevel, SharpLevel):
     """Sharp edges of a flat punch with friction that varies along the contact."""
 
     def gauge(self, states: SolvedStates) -> Gauge:
-        gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, COARSE)
+        gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, coarse=True)
         # Without knots next to ends and kinks, splines of all degrees are off alike.
         off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
-        return replace(gauge, unresolved=gauge.unresolved + _SURE * off)
+        sure = _SURE if len(self.task.response.depths) else 1.0
+        return replace(gauge, unresolved=gauge.unresolved + sure * off)
 
 
 class OnLayersLevel(SplineLevel, SharpLevel):

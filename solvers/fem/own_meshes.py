@@ -62,8 +62,6 @@ from ..profiles.punches import Flat, is_level
 from .contact import (
     ACROSS,
     BESIDE_ENDS,
-    COARSE,
-    NEXT,
     FreeLevel,
     PunchLevel,
     SplineLevel,
@@ -315,9 +313,9 @@ class KinkedLevel(SplineLevel, SingleLevel):
         m, h = self.base.lengths
         return self.punch.states(g).between(h, m, True)
 
-    def at_ends(self, contact: ContactStates, nearest: float = NEXT) -> Expansion:
+    def at_ends(self, contact: ContactStates, coarse: bool = False) -> Expansion:
         """Pressure that holds next to the ends, see :meth:`splines`."""
-        return self.splines(contact.g, self.half_widths(contact), contact.tested, nearest, True)
+        return self.splines(contact.g, self.half_widths(contact), contact.tested, coarse, True)
 
     def pressure(self, contact: ContactStates) -> KinkedPressure:
         space, profile, at_ends = self.space, self.base.body.profile, self.at_ends(contact)
@@ -357,7 +355,7 @@ class KinkedLevel(SplineLevel, SingleLevel):
         # Splines of all degrees are off alike next to ends, where they are the pressure.
         gaps = np.minimum(gaps_of(self.base.kinks), 1.0)
         beside = (ENDS[:, None] * (1.0 - np.outer(gaps, BESIDE_ENDS))).ravel()
-        each = pressure.at_ends, self.at_ends(states.contact, COARSE)
+        each = pressure.at_ends, self.at_ends(states.contact, coarse=True)
         now, coarse = (of.σ_YY(beside) for of in each)
         left = np.abs(coarse - now).max() + pressure.left_at_kinks
         return self.gauge_of_free(states, σ, size, float(left / size[0, 0]))
@@ -529,7 +527,7 @@ class KinkedSplineLevel(BalancedLevel, KinkedLevel):
 
     def solved(self, g: NDArray, body: Contact) -> ContactStates:
         contact, parts, h = super().solved(g, body), self.punch.parts(g), self.task.body.half_width
-        K = self.intensities(parts, g[0], h, COARSE).T[None]
+        K = self.intensities(parts, g[0], h, coarse=True).T[None]
         half_width, centre = self.lengths(without_intensity(self.punch.loads(parts), K))
         #: Change of the ends over the half-width where splines have no knots next to ends and kinks.
         self.moved = max(abs(half_width - contact.half_width[0]), abs(centre - contact.centre[0])) / h

@@ -15,6 +15,8 @@ from .units import engineering
 #: Wave crossings of the contact in a stroke below which steady motion is not reached.
 FEW = 30.0
 
+#: Paths of the flutter thresholds of σ_XY/σ_YY.
+THRESHOLDS = tuple(row.path for row in of.FLUTTER.values())
 #: Width over a beyond which a zone at an edge is reported.
 WIDE = 0.01
 
@@ -81,7 +83,7 @@ class Validity:
             long = [*self._fastest, *(stroke for stroke in strokes if FEW <= stroke[2] < np.inf)]
             self._shortest = sorted(short, key=lambda stroke: (stroke[2], -abs(stroke[1])))[:1]
             self._fastest = sorted(long, key=lambda stroke: (-stroke[0], -abs(stroke[1])))[:1]
-        if RATIO.path in data and all(row.path in data for row in of.FLUTTER.values()):
+        if RATIO.path in data and all(path in data for path in THRESHOLDS):
             g = data.get(LARGEST_RATIO.path, data[RATIO.path])
             threshold = np.where(g > 0.0, *(data[of.FLUTTER[sign].path] for sign in of.SIGNS))
             steep = (np.abs(g) >= threshold) & (g != 0.0)

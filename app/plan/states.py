@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.postprocess.quantities.validity import SIGNS
-from galinx.solvers.contact.solution import Contact
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS, closely
 from galinx.solvers.friction.motion import follow, last_cycle, works
@@ -270,15 +269,8 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": np.where((c > 0.0) & (not scene.steady), crossings, np.nan),  # of strokes
         "f": f,
-        "g": (g := friction.stress_ratio * f + 0.0),
-        **({"g_largest": _largest(scene.body, g)} if scene.along else {}),
+        "g": friction.stress_ratio * f + 0.0,
     }
-
-
-def _largest(body: Contact, g: NDArray) -> NDArray[np.float64]:
-    """σ_XY/σ_YY of the largest size along the contact of states with the means ``g``, (states,)."""
-    means, which = np.unique(g, return_inverse=True)
-    return np.array([body.friction(mean, body.half_width).largest for mean in means.tolist()])[which]
 
 
 def _flutter(solid: Solid, c: NDArray, ways: NDArray) -> NDArray[np.float64]:

@@ -12,6 +12,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from galinx.postprocess.compare import checked, failed
 from galinx.postprocess.quantities import of_states, runs, states, table
 from galinx.postprocess.quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, LAYER, POINT, STATE
@@ -212,7 +214,7 @@ class Result:
         )
         if isinstance(states, str):
             states = numbers(states) if states else ()
-        states = (states,) if isinstance(states, int) else tuple(states)
+        states = tuple(np.atleast_1d(states).tolist())
         if isinstance(size, str):
             size = choice.size(size)
         if isinstance(measured, str | Path):
@@ -307,7 +309,7 @@ class Result:
         from .fields import write_fields
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
-        numbers = [state] if isinstance(state, int) else list(state)
+        numbers = np.atleast_1d(state).tolist()
         write_fields(self.scene, numbers, target, extent, [self._degree(number) for number in numbers])
 
     def displacement(self, state: int = 0, extent: float = 10.0) -> Any:

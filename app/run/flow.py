@@ -24,9 +24,10 @@ from galinx.clock import Clock
 from galinx.postprocess.compare import RULES, comparisons
 from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.over_time import IN_TIME
-from galinx.postprocess.quantities import column, declared, runs, stresses
+from galinx.postprocess.quantities import declared, runs, stresses
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
-from galinx.postprocess.validity import Steady, Validity
+from galinx.postprocess.quantities.states import RATIO
+from galinx.postprocess.validity import THRESHOLDS, Steady, Validity
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.slider import Ride, pull
 from galinx.solvers.parameters import values as constants
@@ -297,7 +298,7 @@ def compute(
             judge.see(made)
             rules = (rules - IN_TIME) | made.keys()
     if plan.methods and (plan.fem or ranks.is_root()):
-        judge.validity.see({column(name): values for name, values in states.columns.items()})
+        judge.validity.see({path: states.datasets[path] for path in states.datasets.keys() - THRESHOLDS})
         _solve(sink, judge, progress, journal, plans, states, clock)
     clock.lap()
     names = sorted(clock)  # a run that goes on does them in another order
@@ -332,10 +333,14 @@ def _solve(
         SolveError: no speed could be solved.
     """
     finished, records = np.zeros(len(states), dtype=bool), dict[int, dict[str, Any]]()
+    # A ratio that varies along the contact is known with the contact.
+    ratios = {
+        path: states.datasets[path] for path in (RATIO.path, *THRESHOLDS) if path in states.datasets
+    }
 
     def take(part: Part) -> None:
         judge.see(part.comparisons)
-        judge.validity.see(part.data)
+        judge.validity.see(part.data | {path: values[part.rows] for path, values in ratios.items()})
         with clock("archive"):
             for name, values in part.data.items():
                 sink.write(name, part.rows, values)

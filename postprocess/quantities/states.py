@@ -62,8 +62,9 @@ RATIO = Quantity(
     "states/g", "1", "sigma_XY/sigma_YY under the punch, its mean as that of f where it varies", (STATE,)
 )
 LARGEST_RATIO = Quantity(
-    "states/g_largest", "1", "sigma_XY/sigma_YY of the largest size, where it varies along X", (STATE,)
-)
+    "states/g_largest", "1", "sigma_XY/sigma_YY of the largest size along X", (STATE,),
+    lambda s, body: body.largest_ratios(s.g, s.half_width), LOCAL, VARYING,
+)  # fmt: skip
 INNER_STATE = Quantity(
     "states/inner_state", "1", "inner state of the friction law, as its page says",
     (STATE, INNER),

@@ -401,9 +401,10 @@ def _not_resolved(equation: Equation, error: float, allowed: float) -> SolveErro
             f"what it does at the edges: leave it out, or {look}"
         )
     reasons, units = ["friction varies much over the contact's width"] * equation.friction.varies, ""
-    if equation.kernel is not UNIFORM:
+    if equation.kernel is not UNIFORM and equation.kernel.length < 1.0:
         reasons.append("the uppermost layer is very thin beside the contact's width")
         units = f", and {look}"
+    reasons = reasons or ["the punch has kinks, perhaps, that its profile does not name"]
     return SolveError(
         f"with the most unknowns the pressure still changes by {error:.2g}, expected {allowed:.2g}: "
         f"{', or '.join(reasons)}; take a larger tolerance{units}"

@@ -4,7 +4,7 @@ Lengths are over the contact's half-width a, stresses over N/(2a), N the load pe
 :class:`Contact` has the units of both in SI.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -254,10 +254,16 @@ class Contact:
         g = np.asarray(g)
         if not self.along:
             return g[:, None]
-        each = zip(g.tolist(), np.broadcast_to(self.half_width if a is None else a, g.shape).tolist())
-        return np.stack([
-            np.full(X.shape, np.nan) if np.isnan(a) else self.friction(g, a)(X) for g, a in each
-        ])  # fmt: skip
+        return np.stack([np.full(X.shape, np.nan) if f is None else f(X) for f in self._frictions(g, a)])
+
+    def largest_ratios(self, g: NDArray, a: Any = None) -> NDArray[np.float64]:
+        """σ_XY/σ_YY of the largest size along the contacts of :meth:`ratio`, (states,)."""
+        return np.array([np.nan if f is None else f.largest for f in self._frictions(g, a)])
+
+    def _frictions(self, g: NDArray, a: Any) -> Iterator[Along | None]:
+        """Frictions of :meth:`ratio`, None where there is no contact."""
+        each = np.broadcast_to(self.half_width if a is None else a, g.shape).tolist()
+        return (None if np.isnan(a) else self.friction(g, a) for g, a in zip(g.tolist(), each))
 
     @property
     def friction_kinks(self) -> tuple[float, ...]:
@@ -497,6 +503,8 @@ class FreeEndContact(Contact):
         }
         if not (exponent(self.profile) or 0.0) > 1.0:
             reasons[POWER] = "known where the height is a power of |X|: the contact grows with the load"
+        elif self._friction_has_length:
+            reasons[POWER] = "friction changes along a contact that grows with the load"
         if not self.finite:
             reasons[YIELD] = (
                 "stresses are infinite at a sharp edge or a tip, and any load makes these yield"

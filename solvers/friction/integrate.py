@@ -110,7 +110,7 @@ def adaptively(
     at, back = np.unique(np.clip(slip, 0.0, length), return_inverse=True)
     states, d, passed = np.empty((len(at), len(z))), 0.0, set[int]()
     states[:] = z = np.asarray(z, dtype=float)
-    for n in range(len(at)) if stops else [len(at) - 1]:
+    for n in range(len(at)) if stops else range(len(at))[-1:]:
         while d < at[n]:
             begun, (d, z, between) = d, _smooth_piece(law, z, s, V, (d, at[n]), passed, not stops)
             inside = (begun < at) & (at <= d)

@@ -63,8 +63,8 @@ def kinks_between(profile: Any, centre: float, half_width: float) -> NDArray[np.
 
 
 def jumps(profile: Any) -> bool:
-    """Return True if the slope itself jumps at the kinks."""
-    return getattr(profile, "jumps", False)
+    """Return True if the slope itself jumps at a kink."""
+    return bool(np.any(getattr(profile, "jumps", False)))
 
 
 def exponent(profile: Any) -> float | None:

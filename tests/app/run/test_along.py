@@ -1,5 +1,7 @@
 """Friction that varies along the contact, from a scene to an archive: both methods, what is refused."""
 
+import json
+
 import numpy as np
 import pytest
 from support import computed
@@ -68,6 +70,27 @@ def test_friction_in_the_table_is_the_force_over_the_load():
     assert row["mean_f"] == pytest.approx([0.44], rel=1e-12)
     # Loops are those of the law alone: their work and force are none of this contact.
     assert not loops_sheet(result.data, result.units()).rows
+
+
+def test_friction_that_changes_with_the_contact_is_that_of_each_state():
+    """Advected states develop over a contact that grows: with the load, and towards the speed limit."""
+    result = slid(
+        advected("dahl", mu_c=1.3, sigma0_over_load=5000.0, delta=1.0),
+        {"material": "steel", "yield_strength": "600 MPa"}, [0.1, 0.9],
+        punch={"profile": "parabolic", "radius": "5 mm", "load": ["100 N/mm", "2000 N/mm"]},
+        solve={"methods": ["sie"]}, output={"quantities": ["sif", "surface", "yield"]},
+    )  # fmt: skip
+    data = result.data
+    largest = np.nanmax(np.abs(data["surface/g"]), axis=1)
+    np.testing.assert_allclose(np.abs(data["states/g_largest"]), largest, rtol=1e-5)
+    (warning,) = (text for text in json.loads(result.attributes["warnings"]) if "flutter" in text)
+    assert largest.max() > 1.25 and "is up to 1.3, not below the flutter threshold, 1, in 2" in warning
+    # The stress is no power of the load then.
+    assert "states/sie/von_mises" in data and "states/sie/first_yield_load" not in data
+
+
+def test_a_shipped_scene_of_advected_states_passes():
+    assert computed("along").verdict == "PASS"
 
 
 def test_estimates_over_a_layer_cover_what_splines_leave_out_at_the_edges():

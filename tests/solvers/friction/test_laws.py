@@ -9,7 +9,7 @@ from support import THOROUGH
 
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.elasto_plastic import ElastoPlastic
-from galinx.solvers.friction.integrate import closely, exactly, work
+from galinx.solvers.friction.integrate import adaptively, closely, exactly, work
 from galinx.solvers.parameters import build_model
 
 #: Random sets of parameters, each with a motion of its own.
@@ -143,6 +143,13 @@ def test_steps_of_the_speed_show_both_effects_of_rate_and_state(evolution, facto
     np.testing.assert_allclose(f, np.log(factor) * np.array([0.01, 0.01 - 0.015]), rtol=0.0, atol=1e-15)
     steady = 0.6 + (0.01 - 0.015) * np.log(V / 1e-6)
     assert law.friction(before, 1, V) == pytest.approx(steady, rel=1e-14)
+
+
+def test_no_places_have_no_states():
+    law = of("dahl", mu_c=0.5, sigma0_over_load=1e4)
+    for stops in (True, False):
+        states = adaptively(law, law.rest(), 1, 1e-2, 1e-3, np.empty(0), stops)
+        assert states.shape == (0, len(law.rest()))
 
 
 def test_contacts_that_rested_for_ages_are_renewed():

@@ -167,8 +167,8 @@ def _uniform(rng: _Random) -> str:
     mesh = "graded" if isinstance(profile, Flat) and rng.random() < 0.15 else "confocal"
     if mesh == "graded":  # finer is not what straight cells are meant for
         tolerance = max(tolerance, 1e-6)
-    elif isinstance(profile, Table):  # six kinks take a million unknowns and minutes
-        tolerance = max(tolerance, 1e-5)
+    elif isinstance(profile, Table):  # six kinks take millions of unknowns and minutes
+        tolerance = max(tolerance, 1e-4)
     kind = next(name for name, known in SOLIDS.items() if known is type(solid))
     return _text(
         rng, _section("solid", {"kind": kind} | values(solid)), profile, share * solid.limit(), tolerance,

@@ -231,7 +231,7 @@ def _item(value: Any) -> Any:
     if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
     if isinstance(value, dict) and not isinstance(value, Item):  # a range; stays in its line
-        (table := tomlkit.inline_table()).update(value)
+        (table := tomlkit.inline_table()).update({key: _item(each) for key, each in value.items()})
         return table
     if isinstance(value, Item) or not isinstance(value, (list, tuple)):
         return value

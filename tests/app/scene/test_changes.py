@@ -44,7 +44,12 @@ def test_parts_that_are_missing_stand_below_dotted_keys(there):
 
 
 @pytest.mark.parametrize(
-    "value, read", [(np.linspace(0.0, 0.3, 3), (0.0, 0.15, 0.3)), (np.float64(0.3), (0.3,))]
+    "value, read",
+    [
+        (np.linspace(0.0, 0.3, 3), (0.0, 0.15, 0.3)),
+        (np.float64(0.3), (0.3,)),
+        ({"from": 0.0, "to": np.float64(0.3), "number": np.int64(3)}, (0.0, 0.15, 0.3)),
+    ],
 )
 def test_values_may_be_of_numpy(value, read):
     assert parse(changed(DOTTED.format(""), {"friction.mu": value})).friction.parameters["mu_c"] == read

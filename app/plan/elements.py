@@ -51,6 +51,8 @@ SMALL = 200_000
 #: Most polynomials whose sum is the profile of a smooth punch under its contacts, and share of its slope
 #: that is rounding.
 _MOST_SHAPES, _ROUNDED = 48, 1e-12
+#: Name of the mesh that follows interfaces.
+_LAYERED = "layered"
 #: Twice the least degree of cells less the number of shapes.
 _BESIDE = 4
 
@@ -169,7 +171,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
         depths = scene.solid.depths / scene.body.half_width
         kind, name = (
             kind_of(depths, responses, scene.body.knots or (-1.0, *scene.body.friction_kinks, 1.0)),
-            "layered",
+            _LAYERED,
         )
     ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, 201))  # for its extremes
     mixed, ends = scene.solid.nearly_incompressible, (float(ratios.min()), float(ratios.max()))
@@ -257,9 +259,10 @@ def warnings_of(fem: FemPlan) -> Iterator[str]:
     """Warnings where finite elements do not reach the tolerance, or do not fit into memory."""
     cut_off = fem.kind.truncation(fem.wanted)
     if cut_off > fem.tolerance:
+        other = 'methods = ["sie"]' if fem.mesh == _LAYERED else 'mesh = "confocal" or "graded"'
         yield (
             f"the outer boundary of the {fem.mesh} mesh alone costs about {cut_off:.1g} (relative, with "
-            f'friction), more than the tolerance {fem.tolerance:g}; use mesh = "confocal" or "graded"'
+            f"friction), more than the tolerance {fem.tolerance:g}; take {other}"
         )
     systems = ranks.size() if fem.shared_speeds else 1
     if lack := lacking(systems * memory(fem.size, fem.solver == "direct")):

@@ -362,8 +362,9 @@ def _without_strokes(scene: Scene) -> Iterator[str]:
     """Warning about keys without effect where there are no strokes."""
     if not scene.steady:
         return
-    of_friction = ["pre_sliding"] + ["state"] * (not scene.friction.law.has_memory)
-    unused = [f"friction.{key}" for key in keys_set(scene.friction, of_friction)]
+    if not scene.friction.law.has_memory and keys_set(scene.friction, ["state"]):
+        yield "friction.state: without effect, because this law of friction has no memory"
+    unused = [f"friction.{key}" for key in keys_set(scene.friction, ["pre_sliding"])]
     if unused := unused + [f"motion.{key}" for key in keys_set(scene.motion, ["rest"])]:
         yield (
             f"{listed(unused)}: without effect, because the punch makes no strokes; give motion.strokes "

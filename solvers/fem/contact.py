@@ -303,7 +303,7 @@ class SplineLevel(PunchLevel):
         Args:
             g, half_width: numbers of the frictions, and half-widths of the contacts [m], (states,).
             tested: normal forces times tests (nodes, n), (states, n).
-            coarse: leave out the nearest knots on both sides of ends and kinks, too.
+            coarse: leave out more knots next to ends and kinks, one at least next to a sharp end.
             free: True where the left and the right end are free, broadcast to (states, 2).
         """
         body, degree, kinks = self.task.body, self.space.degree, self.kinks
@@ -323,10 +323,9 @@ class SplineLevel(PunchLevel):
             of_knots.append(candidates[np.abs(candidates[:, None] - places).min(axis=1) > least])
         knots = np.unique(np.concatenate(of_knots))
         if coarse:
-            apart, at = np.abs(knots[:, None] - places).min(axis=1), np.searchsorted(knots, places)
-            kept = apart > _COARSE * first
-            kept[at[:-1] + 1] = kept[at[1:] - 1] = False
-            kept[at] = True
+            apart = np.abs(knots[:, None] - places).min(axis=1)
+            kept = (apart > _COARSE * first) | (apart == 0.0)
+            kept[[1, -2]] &= np.all(np.broadcast_to(free, (len(g), 2)), axis=0)
             knots = knots[kept]
         # Of a degree that rises with that of the cells, so that changes show what splines do not follow.
         of_splines = max(degree - _LESS, 0)

@@ -21,7 +21,7 @@ from galinx.postprocess import compare
 from galinx.solvers.errors import SolveError
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import values
-from galinx.solvers.profiles import PROFILES
+from galinx.solvers.profiles import PROFILES, kinks
 from galinx.solvers.profiles.punches import Flat, Parabolic, Power, RoundedFlat, Table, Wedge
 from galinx.solvers.solids import SOLIDS
 from galinx.solvers.solids.isotropic import Isotropic
@@ -167,7 +167,7 @@ def _uniform(rng: _Random) -> str:
     mesh = "graded" if isinstance(profile, Flat) and rng.random() < 0.15 else "confocal"
     if mesh == "graded":  # finer is not what straight cells are meant for
         tolerance = max(tolerance, 1e-6)
-    elif isinstance(profile, Table):  # six kinks take millions of unknowns and minutes
+    elif kinks(profile):  # cells towards kinks take millions of unknowns, and minutes
         tolerance = max(tolerance, 1e-4)
     kind = next(name for name, known in SOLIDS.items() if known is type(solid))
     return _text(

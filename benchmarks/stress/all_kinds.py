@@ -168,7 +168,7 @@ def _uniform(rng: _Random) -> str:
     if mesh == "graded":  # finer is not what straight cells are meant for
         tolerance = max(tolerance, 1e-6)
     elif kinks(profile):  # cells towards kinks take millions of unknowns, and minutes
-        tolerance = max(tolerance, 1e-4)
+        tolerance = max(tolerance, 1e-3)
     kind = next(name for name, known in SOLIDS.items() if known is type(solid))
     return _text(
         rng, _section("solid", {"kind": kind} | values(solid)), profile, share * solid.limit(), tolerance,

@@ -298,7 +298,9 @@ def compute(
             judge.see(made)
             rules = (rules - IN_TIME) | made.keys()
     if plan.methods and (plan.fem or ranks.is_root()):
-        judge.validity.see({path: states.datasets[path] for path in states.datasets.keys() - THRESHOLDS})
+        judge.validity.see(
+            {path: values for path, values in states.datasets.items() if path not in THRESHOLDS}
+        )
         _solve(sink, judge, progress, journal, plans, states, clock)
     clock.lap()
     names = sorted(clock)  # a run that goes on does them in another order
@@ -334,9 +336,8 @@ def _solve(
     """
     finished, records = np.zeros(len(states), dtype=bool), dict[int, dict[str, Any]]()
     # A ratio that varies along the contact is known with the contact.
-    ratios = {
-        path: states.datasets[path] for path in (RATIO.path, *THRESHOLDS) if path in states.datasets
-    }
+    of_flutter = RATIO.path, *THRESHOLDS
+    ratios = {path: values for path, values in states.datasets.items() if path in of_flutter}
 
     def take(part: Part) -> None:
         judge.see(part.comparisons)

@@ -285,5 +285,7 @@ def test_keys_of_strokes_are_warned_of_where_the_punch_slides_steadily():
     assert any(
         text.startswith("friction.pre_sliding, motion.rest: without effect") for text in oddities(scene)
     )
+    (said,) = oddities(parse(STEADY.replace(mu, f'{mu}\nstate = "advected"')))
+    assert said == "friction.state: without effect, because this law of friction has no memory"
     to_and_fro = parse(scene.text + 'strokes = ["forward", "backward"]\n')
     assert not any("without effect" in text for text in oddities(to_and_fro))

@@ -6,6 +6,7 @@ rank 0 speaks for all; mpirun ends the other ranks where one fails, is killed or
 
 import fcntl
 import io
+import multiprocessing
 import os
 import resource
 import signal
@@ -13,7 +14,7 @@ import sys
 import tempfile
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, NoReturn
 
@@ -24,6 +25,9 @@ from .console import Output, for_people, on_terminal
 
 #: Bytes of address space that finite elements need with all libraries; with less some wait for ever.
 _ADDRESS_SPACE = 10**9
+
+#: Least number of pieces of work for which another process is started.
+_PIECES = 8
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 NOTHING = "nothing was written"
@@ -148,6 +152,39 @@ def end_stopped(words: str) -> NoReturn:
     with suppress(OSError):  # below Python's stream, which the signal may have met at work
         os.write(2, f"error: interrupted; {words}\n".encode())
     os._exit(errors.FAILURE)
+
+
+def side_by_side(work: Sequence[Callable[[], bytes]]) -> list[bytes]:
+    """Do pieces of work, much of it by as many processes as there are cores, copies of this one.
+
+    No copy waits for anything, so none outlives this process for long. What a copy that fails or is
+    killed leaves is done here, where it can be reported.
+    """
+    fork, cores = multiprocessing.get_context("fork"), len(os.sched_getaffinity(0))
+    count = max(1, min(cores // ranks.from_environment()[1], len(work) // _PIECES))
+    others = []
+    for n in range(1, count):
+        receiver, sender = fork.Pipe(duplex=False)
+        fork.Process(target=_send, args=(work[n::count], sender), daemon=True).start()
+        sender.close()
+        others.append(receiver)
+    done = {n: piece() for n, piece in enumerate(work) if n % count == 0}
+    for n, receiver in enumerate(others, 1):
+        for i in range(n, len(work), count):
+            try:
+                done[i] = receiver.recv_bytes()
+            except EOFError:
+                done[i] = work[i]()
+    return [done[n] for n in range(len(work))]
+
+
+def _send(work: Sequence[Callable[[], bytes]], sender: Any) -> None:
+    """Do work in a copy of a process, which answers for signals; then send it."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_DFL)
+    with suppress(Exception):
+        for data in [piece() for piece in work]:
+            sender.send_bytes(data)
 
 
 def refuse(message: str) -> NoReturn:

@@ -2,8 +2,9 @@
 
 import shutil
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from io import BytesIO
 from itertools import product
 from pathlib import Path
@@ -19,6 +20,7 @@ from PIL import Image
 from galinx.postprocess.target import GIF, MP4, PDF, PNG, SVG, Folder, Kind, Target
 
 from ..errors import BadInput
+from ..process import side_by_side
 from .choice import Drawing
 from .render import Film
 from .style import DPI, styled
@@ -189,19 +191,23 @@ class Files:
         """
         if not self.ending:
             Folder(self.to, self.overwrite, self.inputs)
-        made: list[tuple[Target, Written]] = []
+        targets, jobs, of = list[Target](), list[Callable[[], bytes]](), list[Drawing]()
         for drawing in drawings:
-            noun, kinds = _KINDS[drawing.film is not None]
+            _, kinds = _KINDS[drawing.film is not None]
             for ending in self.endings(drawing.name):
                 name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
                 path = self.to if self.ending else self.to / name
-                target = Target(path, kinds[ending], self.overwrite, self.inputs)
-                data = (
-                    film_content(drawing.film, ending, self.dpi or FILM_DPI)
+                targets.append(Target(path, kinds[ending], self.overwrite, self.inputs))
+                jobs.append(
+                    partial(film_content, drawing.film, ending, self.dpi or FILM_DPI)
                     if drawing.film
-                    else content(drawing.figure, ending, self.dpi or DPI)
+                    else partial(content, drawing.figure, ending, self.dpi or DPI)
                 )
-                made.append((target, Written(target.path, noun, drawing.left_out, data)))
-        for target, written in made:
-            target.write(written.data)
-        return [written for _, written in made]
+                of.append(drawing)
+        data = side_by_side(jobs)
+        for target, written in zip(targets, data):
+            target.write(written)
+        return [
+            Written(target.path, _KINDS[drawing.film is not None][0], drawing.left_out, written)
+            for target, drawing, written in zip(targets, of, data)
+        ]

@@ -281,7 +281,8 @@ def _thresholds(scene: Scene) -> tuple[NDArray, NDArray, str, str]:
         words = (
             "over the length of the waves. Those much shorter than the layers grow without bound from "
             f"the threshold of the uppermost solid on, {own}; echoes of the interfaces let others grow "
-            "at less friction, at a bounded rate"
+            "at less friction, at a bounded rate. Waves to and fro across the layers count up to 16 "
+            "wavelengths in their thickness"
         )
         return _LENGTHS, values, "wavelength over thickness of the layers", words
     if scene.elastic_punch:

@@ -4,6 +4,10 @@ The threshold is that of :mod:`galinx.solvers.solids.flutter`, with the stiffnes
 wavenumber. Waves shorter than a layer do not come to the threshold of its solid: echoes of its lower face
 let them grow at less friction, at a rate that does not rise with the wavenumber. That of the solid itself
 is where the rate has no bound. Where a wave without friction runs in a slow layer, the threshold is 0.
+
+At speeds far above those of the solids waves go to and fro across the layers, in an isotropic one without
+shear, in a turned crystal with it. Of these, which have no end, those are counted whose echoes have a
+phase of at most 200, some 16 wavelengths across the layers: each is a thickness vibration that grows.
 """
 
 from dataclasses import dataclass, replace
@@ -47,6 +51,11 @@ class LayeredSide(Side):
             scaled = replace(side, compliance=compliance, c_s=c_s)
             parts.append((scaled, 2.0 * np.pi * part.thickness / length))
         return cls(parts[0][0].admittance, parts=tuple(parts))
+
+    @property
+    def echo(self) -> float:
+        slowest = (side.c_s * np.abs(side.admittance.meeting).min() for side, _ in self.parts)
+        return float(2.0 * sum(H / c for (_, H), c in zip(self.parts[:-1], slowest)))
 
     @property
     def meeting(self) -> NDArray[np.float64]:

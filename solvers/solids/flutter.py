@@ -18,7 +18,7 @@ under any friction of one sign it grows (Adams, J. Appl. Mech. 62 (1995) 867; Ra
 Phys. Solids 49 (2001) 341).
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import copysign, inf
@@ -30,8 +30,9 @@ from scipy.special import expit
 from .admittance import Admittance
 from .solid import Solid
 
-#: Speeds sampled between two at which roots meet; samples between two of those, and how often again.
-_SPEEDS, _CLOSER, _TIMES = 500, 64, 8
+#: Speeds sampled between two at which roots meet; largest step of the echoes' phase between two of them,
+#: and their phase at the largest speed; parts of a step in which a sign changes, and how often again.
+_SPEEDS, _STEP_OF_PHASE, _PHASE, _CLOSER, _TIMES = 500, 0.1, 200.0, 4, 20
 #: Logarithm of the stretch over the distance of the first and the last sample from its ends.
 _NEXT = 25.0
 #: Imaginary part over the size above which a ratio is not real.
@@ -71,6 +72,11 @@ class Side:
         return cls(surface.mirrored, -1, 1.0 / solid.μ, solid.c_s, speed)
 
     @property
+    def echo(self) -> float:
+        """Growth with the speed of the phase of echoes from below the surface."""
+        return 0.0
+
+    @property
     def meeting(self) -> NDArray[np.float64]:
         """Real speeds in the interface's frame at which a decaying root meets a growing one."""
         speeds = self.c_s * self.admittance.meeting
@@ -90,9 +96,13 @@ def thresholds(*sides: Side) -> tuple[float, float]:
         sides: the solid below the interface, and the elastic one above it, if any.
     """
     ends = np.unique(np.concatenate([side.meeting for side in sides]))
-    values = [g for low, high in pairwise(ends) for g in _values(sides, lambda x: x, low, high)]
-    # Beyond the last speeds, by 1/C: from one infinity to the other.
-    values += _values(sides, lambda x: 1.0 / x, 1.0 / ends[0], 1.0 / ends[-1])
+    echo = sum(side.echo for side in sides)
+    if echo:  # at ever larger speeds there are ever more of them
+        far = max(_PHASE / echo, 2.0 * float(np.abs(ends).max()))
+        ends = np.concatenate([[-far], ends, [far]])
+    values = [g for low, high in pairwise(ends) for g in _values(sides, lambda x: x, low, high, echo)]
+    if not echo:  # beyond the last speeds, by 1/C: from one infinity to the other
+        values += _values(sides, lambda x: 1.0 / x, 1.0 / ends[0], 1.0 / ends[-1])
     positive, negative = ([abs(g) for g in values if copysign(1.0, g) == way] for way in (1.0, -1.0))
     return min(positive, default=inf), min(negative, default=inf)
 
@@ -109,8 +119,12 @@ def _ratio(sides: Sequence[Side], C: NDArray) -> NDArray[np.complex128]:
 
 
 def _values(
-    sides: Sequence[Side], speed: Callable[[NDArray], NDArray], start: float, end: float
-) -> Iterator[float]:
+    sides: Sequence[Side],
+    speed: Callable[[NDArray], NDArray],
+    start: float,
+    end: float,
+    echo: float = 0.0,
+) -> list[float]:
     """-A/B at the ends of curves on a stretch of the real axis; a zero has the sign of its curve."""
 
     def pair(x: NDArray) -> NDArray[np.complex128]:
@@ -130,23 +144,26 @@ def _values(
         return np.asarray((A_before.conj() * B_after - A_after * B_before.conj()).real / step)
 
     # Curves may end next to a speed at which roots meet; slopes have no digits there.
-    x = start + expit(np.linspace(-_NEXT, _NEXT, _SPEEDS)) * (end - start)
+    even = np.linspace(0.0, 1.0, int((end - start) * echo / _STEP_OF_PHASE) + 2)[1:-1]
+    x = start + np.union1d(expit(np.linspace(-_NEXT, _NEXT, _SPEEDS)), even) * (end - start)
     sign, at = off, off(x)
     if np.abs(at).max() <= _REAL_RATIO:
-        x = start + (1.0 - np.cos(np.pi * (np.arange(_SPEEDS) + 0.5) / _SPEEDS)) / 2.0 * (end - start)
+        within = (1.0 - np.cos(np.pi * (np.arange(_SPEEDS) + 0.5) / _SPEEDS)) / 2.0
+        x = start + np.union1d(within, even) * (end - start)
         sign, at = turn, turn(x)
-    for i in np.flatnonzero((at[:-1] > 0.0) != (at[1:] > 0.0)):
-        low, high = x[i], x[i + 1]
-        for _ in range(_TIMES):
-            closer = np.linspace(low, high, _CLOSER + 1)
-            first = max(int(np.argmax((sign(closer) > 0.0) != (at[i] > 0.0))), 1)
-            low, high = closer[first - 1], closer[first]
-        C = speed(np.array([(low + high) / 2.0]))
-        A, B = _ratio(sides, C)[:, 0].tolist()
-        if abs(B) < _ZERO:
-            continue
-        if abs(A) < _ZERO:  # fields at real speeds are those of Im C -> -0
-            A, B = _ratio(sides, C - 1j * _OFF_AXIS * np.abs(C))[:, 0].tolist()
-            yield copysign(0.0, (A * B.conjugate()).real)
-        else:
-            yield (A * B.conjugate()).real / abs(B) ** 2
+    i = np.flatnonzero((at[:-1] > 0.0) != (at[1:] > 0.0))
+    if not len(i):
+        return []
+    low, high = x[i], x[i + 1]
+    for _ in range(_TIMES):
+        closer = low + (high - low) * np.linspace(0.0, 1.0, _CLOSER + 1)[:, None]
+        beyond = (sign(closer.ravel()) > 0.0).reshape(closer.shape) != (at[i] > 0.0)
+        first = np.maximum(beyond.argmax(axis=0), 1)
+        low, high = (np.take_along_axis(closer, n[None], 0)[0] for n in (first - 1, first))
+    C = speed((low + high) / 2.0)
+    C = C[np.abs(_ratio(sides, C)[1]) >= _ZERO]
+    A, B = _ratio(sides, C)
+    # Where A vanishes fields at real speeds are those of Im C -> -0.
+    A_off, B_off = _ratio(sides, C - 1j * _OFF_AXIS * np.abs(C))
+    zero = np.copysign(0.0, (A_off * B_off.conj()).real)
+    return np.where(np.abs(A) < _ZERO, zero, (A * B.conj()).real / np.abs(B) ** 2).tolist()

@@ -601,8 +601,10 @@ def solved_speeds(data: Mapping[str, Any]) -> str:
     if of.FITTED.path not in data:
         return ""
     c, fitted = data[of.SPEED.path], data[of.FITTED.path]
-    count = len(np.unique(c[fitted == 0.0]))
-    return f"finite elements: {count} of {len(np.unique(c))} speeds solved, the others by a fit"
+    count, all_ = len(np.unique(c[fitted == 0.0])), len(np.unique(c))
+    if count == all_:
+        return ""
+    return f"finite elements: {count} of {all_} speeds solved, the others by a fit"
 
 
 def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:

@@ -143,9 +143,8 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
     _require_one("response", scene)
     solid = scene.solid
     if scene.layers or solid.nearly_incompressible:
-        raise BadInput(
-            "response: found layers or a solid with ν near 1/2, expected a uniform solid that waves pass"
-        )
+        found = "layers" if scene.layers else "ν near 1/2"
+        raise BadInput(f"response: found {found}, expected a uniform solid that waves pass")
     if not is_level(scene.punch.profile):
         raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a level flat punch")
     if scene.elastic_punch or scene.along or scene.solve.own_pressure:

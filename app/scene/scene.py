@@ -307,7 +307,7 @@ def _of_planes(scene: Scene) -> Iterator[str]:
 def _solids(scene: Scene) -> dict[str, tuple[Any, float | None]]:
     """Solids of a scene by their sections, each with its yield strength [Pa], None for none."""
     below, punch = scene.half_plane, scene.elastic_punch
-    layers = {f"layer {n}": (of.solid, of.yield_strength) for n, of in enumerate(scene.layers, 1)}
+    layers = {f"layer[{n}]": (of.solid, of.yield_strength) for n, of in enumerate(scene.layers)}
     own = {"punch.solid": (punch.solid, punch.yield_strength)} if punch else {}
     return {"solid": (below.solid, below.yield_strength)} | layers | own
 
@@ -389,8 +389,8 @@ def _unusual_numbers(scene: Scene) -> Iterator[str]:
             for name, (solid, of_yield) in _solids(scene).items()
         ),
         *(
-            (f"layer {n}", {thickness.key: thickness}, {thickness.key: layer.thickness})
-            for n, layer in enumerate(scene.layers, 1)
+            (f"layer[{n}]", {thickness.key: thickness}, {thickness.key: layer.thickness})
+            for n, layer in enumerate(scene.layers)
         ),
         ("friction", parameters(scene.friction.law), scene.friction.values),
     ):

@@ -761,8 +761,8 @@ class LayerSections(Section):
             faults.append(f"{name}: found {len(given)} layers, expected at most {MOST_LAYERS}")
             return ()
         layers: list[Layer] = []
-        for number, table in enumerate(given, 1):
-            layers += self._read(f"{name} {number}", table, faults)
+        for number, table in enumerate(given):
+            layers += self._read(f"{name}[{number}]", table, faults)
         return tuple(layers)
 
     def _read(self, name: str, given: dict[str, Any], faults: list[str]) -> list[Layer]:

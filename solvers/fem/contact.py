@@ -1,8 +1,8 @@
 """Rigid punches by finite elements at one speed, their pressure unknown, to the measured error.
 
 A :class:`PunchLevel` solves contacts at one degree. Its kinds differ in the ends of the contact: sharp
-(:class:`SharpLevel`, :class:`VaryingLevel`, :class:`OnLayersLevel`), free (:class:`FreeLevel`), or those
-of one contact on a mesh drawn for it (:mod:`galinx.solvers.fem.own_meshes`).
+(:class:`SharpLevel`, :class:`SharpSplineLevel`), free (:class:`FreeLevel`), or those of one contact on a
+mesh drawn for it (:mod:`galinx.solvers.fem.own_meshes`).
 
 With free ends: the half-plane has no length, so the mesh is that of a contact from -1 to 1 whatever its
 width is, and the displacement prescribed under the punch is a combination of few shapes: 1 and s for a
@@ -255,11 +255,12 @@ _NEXT, _WIDE, _IN_A_CELL, _LESS = 1e-5, 1e-2, 4, 2
 #: ends and kinks, where there are no logarithms.
 _ANALYTIC = 100.0
 #: Growth of the first of these for splines that show what the others leave out, and factor of what they
-#: show over layers.
+#: show.
 _COARSE, _SURE = 4.0, 1.5
-#: Places over a at which a pressure between sharp edges is measured, and least stress over the mean to
-#: which its error is relative.
-_ALL_ACROSS, _SMALL = np.cos(np.pi * (np.arange(64) + 0.5) / 64.0), 0.1
+#: Places over a at which a pressure between sharp edges is measured, and those beside a kink of friction;
+#: least stress over the mean to which its error is relative.
+_ALL_ACROSS, _BESIDE_KINK = np.cos(np.pi * (np.arange(64) + 0.5) / 64.0), (-1e-3, -2e-4, 2e-4, 1e-3)
+_SMALL = 0.1
 
 
 #: Splines that are kept with their tests.
@@ -362,16 +363,17 @@ class SplineLevel(PunchLevel):
 
     def gauge_of_edges(self, states: SolvedStates) -> Gauge:
         """Gauge of the pressure's factors at ends, 0 at free ones, and of the pressure between these."""
-        contact = states.contact
+        contact, beside = states.contact, np.add.outer(self.kinks, _BESIDE_KINK).ravel()
+        places = np.append(_ALL_ACROSS, beside[np.abs(beside) < 1.0])
         (K, σ), (coarse_K, coarse_σ) = (
-            (np.where(contact.free, 0.0, pressure.series(ENDS)), pressure.σ_YY(_ALL_ACROSS))
+            (np.where(contact.free, 0.0, pressure.series(ENDS)), pressure.σ_YY(places))
             for pressure in (states.pressure, self.pressure(contact, coarse=True))
         )
         size, of_K = np.maximum(np.abs(σ), _SMALL), of_factor(K)
         # Without the nearest knots splines show less of the error of the innermost cells.
         off = np.abs(np.column_stack([(coarse_K - K) / of_K, (coarse_σ - σ) / size])).max(axis=1)
         groups = (K, of_K), (σ, size), (contact.tested(self.moments[:, 1:6]), 2.0)
-        return joined(INTENSITIES, groups, _SURE * off)
+        return replace(joined(INTENSITIES, groups, _SURE * off), of_cells=True)
 
     def intensities(
         self, parts: NDArray, g: Any, half_width: float, coarse: bool = False
@@ -388,19 +390,8 @@ class SplineLevel(PunchLevel):
         return self.gauge_of_free(states, σ, size, off.max(axis=1))
 
 
-class VaryingLevel(SplineLevel, SharpLevel):
-    """Sharp edges of a flat punch with friction that varies along the contact."""
-
-    def gauge(self, states: SolvedStates) -> Gauge:
-        gauge, coarse = SharpLevel.gauge(self, states), self.pressure(states.contact, coarse=True)
-        # Without knots next to ends and kinks, splines of all degrees are off alike.
-        off = np.abs(coarse.series(ENDS) / states.pressure.series(ENDS) - 1.0).max(axis=1)
-        sure = _SURE if len(self.task.response.depths) else 1.0
-        return replace(gauge, unresolved=gauge.unresolved + sure * off)
-
-
-class OnLayersLevel(SplineLevel, SharpLevel):
-    """Sharp edges of a flat punch over layers, whose pressure may change within their thickness."""
+class SharpSplineLevel(SplineLevel, SharpLevel):
+    """Sharp edges of a flat punch over layers, or with friction that varies along the contact."""
 
     def gauge(self, states: SolvedStates) -> Gauge:
         return self.gauge_of_edges(states)
@@ -634,8 +625,8 @@ _LINEAR = {1: _tilted, 2: _parabola}
 #: Levels of punches on the mesh of all contacts, by the plan's mode.
 PUNCHES: dict[str, type[PunchLevel]] = {
     "contact": SharpLevel,
-    SHARP_ON_LAYERS: OnLayersLevel,
+    SHARP_ON_LAYERS: SharpSplineLevel,
     FREE_ENDS: FreeLevel,
-    VARYING: VaryingLevel,
+    VARYING: SharpSplineLevel,
     VARYING_FREE: VaryingFreeLevel,
 }

@@ -51,6 +51,7 @@ class Gauge:
         unresolved: relative error that a level shows by itself, (states,) or 0.
         cancelled: size of the largest parts whose sum a number is, over its own, (states,) or 1.
         leaning: distance over a of the pressure's centre from the contact's middle, (states,) or 0.
+        of_cells: True where finer cells leave less unresolved.
     """
 
     word: str
@@ -59,6 +60,7 @@ class Gauge:
     unresolved: Any = 0.0
     cancelled: Any = 1.0
     leaning: Any = 0.0
+    of_cells: bool = False
 
     def change(self, coarse: "Gauge") -> NDArray[np.float64]:
         """Largest relative difference of each state from the same gauge of another level, (states,)."""
@@ -468,7 +470,7 @@ class MeasuredError(Estimate):
             unseen = gauges[-1].cancelled * self._unseen(gauges[-1], probes, measured[-1][1][0].leaning)
             earlier, last = (gauge.unresolved for gauge in gauges[-2:])
             # What a level shows by itself where the level before showed hardly more.
-            own = np.where(last > _LASTS * earlier, last, 0.0)
+            own = np.where((last > _LASTS * earlier) & ~gauges[-1].of_cells, last, 0.0)
             changes = [late.change(early) for early, late in pairwise(gauges)]
             rounding, bound = self._rounding(word, rounding, float(changes[-1].max()))
             rate = self._rate(word)

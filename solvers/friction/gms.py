@@ -16,7 +16,7 @@ from .stribeck import StribeckCurve
 class GeneralisedMaxwellSlip(Elements, StribeckCurve):
     """Generalised Maxwell slip: elements that stick as springs, and slip towards Stribeck's curve::
 
-        stick: df_i = k_i dx, until |f_i| = α_i g(v)
+        stick: df_i = k_i dx, until s f_i = α_i g(v)
         slip:  df_i/dt = s C (α_i - |f_i|/g(v)), until v = 0
         f = Σ f_i,   α_i = μ_i/Σμ_i,   g(v) = μ_C + (μ_S - μ_C) exp(-|v/v_S|^j)
 

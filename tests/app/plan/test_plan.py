@@ -37,7 +37,7 @@ def test_what_is_unusual_of_layers_is_warned_of():
     solids = {"solid.rho": 7.8, "layer[0].yield_strength": 600.0, "layer[0].thickness": 1000.0}
     changes = {"solve.methods": ["sie"], "solid.material": "steel"} | solids
     warnings = " ".join(make_plan(template("coating", changes)).warnings)
-    for key in ("solid.rho", "layer 1.yield_strength", "layer 1.thickness"):
+    for key in ("solid.rho", "layer[0].yield_strength", "layer[0].thickness"):
         assert f"{key} = " in warnings
 
 

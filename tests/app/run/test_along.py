@@ -93,6 +93,22 @@ def test_a_shipped_scene_of_advected_states_passes():
     assert computed("along").verdict == "PASS"
 
 
+@pytest.mark.parametrize(
+    "along, nu, c, tolerance",
+    [
+        ([[-1, 0.0951], [-0.3169, 0.618], [0.2015, 0.0161], [1, 0.5473]], 0.209, 0.657, 2.2e-4),
+        ([[-1, 0.4773], [-0.5121, 0.033], [1, 0.6054]], 0.419, 0.789, 1e-6),
+    ],
+)
+def test_estimates_cover_the_pressure_beside_kinks_and_between_them(along, nu, c, tolerance):
+    """The error was 20 times the estimate within 1e-3 of a kink, and twice the tolerance between two."""
+    result = slid({"along": along}, ISOTROPIC | {"nu": nu}, c, solve={"tolerance": tolerance})
+    exact, other = (result.data[f"surface/{method}/sigma_YY"][0] for method in ("closed_form", "fem"))
+    true = np.abs(other / exact - 1.0)[np.abs(result.data["surface/X_over_a"]) < 0.999].max()
+    assert true < result.comparisons["estimated error of K_I and moments, relative"] <= tolerance
+    assert result.verdict == "PASS"
+
+
 def test_estimates_over_a_layer_cover_what_splines_leave_out_at_the_edges():
     layer = [{"thickness": "2 mm", "E": "0.8 GPa", "nu": 0.3, "rho": 1200}]
     solid, friction = {"E": "2.5 GPa", "nu": 0.25, "rho": 1000}, [[-1, 0.9], [0.8, 0.0], [1, 0.9]]

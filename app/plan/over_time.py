@@ -356,9 +356,10 @@ class Starts:
         digits, gap = -log10(self.scene.solve.tolerance), self.scene.solid.limit() - c
         depths = tuple((self.scene.solid.depths / self.scene.body.half_width).tolist())
         # No lower degree than 7 resolves the moments from which K_I is recovered. Near the Rayleigh
-        # speed waves ahead of the punch are short, and take a degree more.
+        # speed waves ahead of the punch are short, and take a degree more, as fast changes of load do.
         degree = min(max(ceil(2.0 * digits + 1.75), 7), _HIGHEST)
-        degree += (gap < 0.15 or bool(depths)) and degree < _HIGHEST
+        fast = self.load.shortest < 1.25
+        degree += (gap < 0.15 or bool(depths) or fast) and degree < _HIGHEST
         innermost = min(10.0 ** -(1.2 * digits + 1.0), 1e-4)
         # Cells next to the punch have a side of 2 a where nothing changes within 2 a/c_s at a tolerance
         # of 1e-3, within 1.5 a/c_s more at each tenth of it, and the speed is 0.25 c_s below Rayleigh's.
@@ -423,9 +424,9 @@ def starts(scene: Scene, states: States) -> Starts | None:
     _check(scene, methods)
     comes_on = ((0.0, 1.0),) if steady else ((0.0, 0.0), (scene.time.load_ramp, 1.0))
     load = Load(scene.time.load or comes_on)
-    # At a tolerance of 1e-3 steps, of order four, are at most 0.4 a/c_s, and 8 in a load's ramp; shorter
+    # At a tolerance of 1e-3 steps, of order four, are at most 0.4 a/c_s and 1/9.5 of a ramp; shorter
     # over layers, whose echoes move the centre of the pressure.
-    largest = min(0.4, load.shortest / 8) / (3.5 if scene.layers else 1.0)
+    largest = min(0.4, load.shortest / 9.5) / (3.5 if scene.layers else 1.0)
     step = scene.time.step or largest * min(tolerance / 1e-3, 1.0) ** 0.3
     drives = _drives(scene, states)
     ways = _ways(scene, next(iter(drives)), step)

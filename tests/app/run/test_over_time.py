@@ -35,6 +35,12 @@ def test_works_of_a_short_motion_are_integrals_of_its_load_and_indentation():
     assert many["time/sie/work_of_load"][0, -1] == pytest.approx(work, rel=3e-2)
 
 
+def test_fast_ramps_reach_the_usual_tolerance():
+    fast = {"motion.c": 0.6, "time": {"load_ramp": 1.0, "end": 2.2}}
+    solve = {"solve.methods": ["fem"], "solve.tolerance": 1e-3, "friction": {"mu": 0.4}}
+    assert computed("start_from_rest", fast | solve).verdict == "PASS"
+
+
 @pytest.mark.parametrize("L", [1e-3, 10.0])
 def test_friction_is_that_of_the_law_however_long_strokes_are(L):
     """Springs that slip one after the other, there and back; strokes of 10 m last 250 000 a/c_s."""

@@ -98,6 +98,9 @@ class Column:
     least: float = 0.0
     said: Callable[[float], str] | None = None
 
+    def __repr__(self) -> str:
+        return f"{self.label}: {', '.join(self.texts())}"
+
     @property
     def label(self) -> str:
         """Head with the unit."""

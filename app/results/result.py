@@ -215,8 +215,8 @@ class Result:
         if isinstance(states, str):
             states = numbers(states) if states else ()
         states = tuple(np.atleast_1d(states).tolist())
-        if isinstance(size, str):
-            size = choice.size(size)
+        if not isinstance(size, choice.Size | None):
+            size = choice.size(str(size))
         if isinstance(measured, str | Path):
             measured = read(Path(measured))
         units = self.units(dimensionless)
@@ -244,7 +244,7 @@ class Result:
 
     def plot(
         self, to: Path | str | None = None, name: str = "galinx", overwrite: bool = False,
-        formats: tuple[str, ...] = (), dpi: int = 0, dimensionless: bool = False, **options: Any,
+        formats: str | Sequence[str] = (), dpi: int = 0, dimensionless: bool = False, **options: Any,
     ) -> Any:  # fmt: skip
         """Write figures into a folder, which is made, or one into a file; their paths.
 
@@ -267,10 +267,12 @@ class Result:
         if to is None:
             return self.figure(dimensionless=dimensionless, **options)
         from ..figures.archive import write
+        from ..figures.choice import words
         from ..figures.files import Files
 
         choice = self.choice(dimensionless, **options)
-        files = Files(Path(to), name, formats, dpi, overwrite, self.inputs)
+        endings = words(formats) if isinstance(formats, str) else tuple(formats)
+        files = Files(Path(to), name, endings, dpi, overwrite, self.inputs)
         return [file.path for file in write(self.data, self.scene, choice, files)]
 
     def report(self, path: Path | str, overwrite: bool = False, dimensionless: bool = False) -> None:

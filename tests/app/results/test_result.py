@@ -72,6 +72,13 @@ def test_options_of_figures_are_texts_as_on_the_command_line_or_lists(exact_run)
     assert result.choice(states=3).states == (3,) and result.choice(states=[1, 2]).states == (1, 2)
     with pytest.raises(BadInput, match=r"^--states: found "):
         result.choice(states="all")
+    with pytest.raises(BadInput, match="found '3.5', expected a width"):
+        exact_run.choice(size=3.5)
+
+
+def test_a_column_of_the_table_prints_its_numbers_and_unit(exact_run):
+    f = next(column for column in exact_run.table() if column.name == "f")
+    assert repr(f).startswith("friction f: 0.") and repr(f).count(",") == len(f.values) - 1
 
 
 def test_a_grid_over_moduli_has_the_speed_that_the_scene_gives():

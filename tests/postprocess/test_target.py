@@ -41,7 +41,7 @@ def made(tmp_path_factory):
     result = compute(template("table1", {"title": "galinx VTKHDF Table 1 %PDF-"}))
     result.save(folder / "a.h5")
     result.report(folder / "a.html")
-    pdf, png, svg = result.plot(folder, "a", formats=("pdf", "png", "svg"))[:3]
+    pdf, png, svg = result.plot(folder, "a", formats="pdf, png, svg")[:3]
     moving = files.Film(lambda frame: [Panel(title=f"frame {frame}")], 2)
     (folder / "a.gif").write_bytes(files.film_content(moving, "gif", 30))
     square = Piece(np.zeros((4, 2)), np.arange(4)[None], {"u": np.zeros(4)})

@@ -72,7 +72,7 @@ def test_options_of_figures_are_texts_as_on_the_command_line_or_lists(exact_run)
     assert result.choice(states=3).states == (3,) and result.choice(states=[1, 2]).states == (1, 2)
     with pytest.raises(BadInput, match=r"^--states: found "):
         result.choice(states="all")
-    with pytest.raises(BadInput, match="found '3.5', expected a width"):
+    with pytest.raises(BadInput, match=r"found '3\.5', expected a width"):
         exact_run.choice(size=3.5)
 
 

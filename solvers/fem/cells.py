@@ -128,28 +128,33 @@ def reference_values(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float
     return np.einsum("ni,nj,ij...->n...", value_a, value_b, u, optimize=True)
 
 
-def gradients_in_plane(vertices: NDArray, nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float64]:
-    """Derivatives along the axes of the mesh's chart, at places t (n, 2), of displacements u.
+def gradients_in_plane(
+    vertices: NDArray, nodes: NDArray, t: NDArray, firsts: Any, u: Any
+) -> NDArray[np.float64]:
+    """Derivatives along the axes of the mesh's chart, at places t (n, 2) in some cells, of displacements.
 
     Args:
-        vertices: of the cell, (4, 2).
-        nodes: places of its nodes along one direction, (p+1,).
-        t: places in the unit square.
-        u: nodal displacements, (p+1, p+1, 2, fields).
+        vertices: of the cell of each place, (n, 4, 2), or of a single cell, (4, 2).
+        nodes: places of the cells' nodes along one direction, (p+1,).
+        t: places in the unit square, those of a cell after each other.
+        firsts: number of the first place of each cell, (cells,).
+        u: nodal displacements in each cell, (p+1, p+1, 2, fields).
 
     Returns:
         Array (n, component, axis, fields).
     """
     (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
-    n = len(nodes)
-    # Nodes along the second direction come last: the inner sum runs over contiguous memory.
-    lines = np.moveaxis(u.reshape(n, n, -1), 1, 2).reshape(n, -1)
-    along = [
-        np.einsum("nfj,nj->nf", (a @ lines).reshape(len(t), -1, n), b)
-        for a, b in ((slope_a, value_b), (value_a, slope_b))
-    ]
-    by_direction = np.stack(along, axis=1).reshape(len(t), 2, *u.shape[2:])
-    return np.einsum("nrcf,nrx->ncxf", by_direction, np.linalg.inv(jacobian(vertices, t)))
+    n, by_direction = len(nodes), []
+    for first, end, own in zip(firsts, [*firsts[1:], len(t)], u):
+        # Nodes along the second direction come last: the inner sum runs over contiguous memory.
+        lines, at = np.moveaxis(own.reshape(n, n, -1), 1, 2).reshape(n, -1), slice(first, end)
+        along = [
+            np.einsum("nfj,nj->nf", (a[at] @ lines).reshape(end - first, -1, n), b[at])
+            for a, b in ((slope_a, value_b), (value_a, slope_b))
+        ]
+        by_direction.append(np.stack(along, axis=1).reshape(end - first, 2, *own.shape[2:]))
+    inverse = np.linalg.inv(jacobian(vertices, t))
+    return np.einsum("nrcf,nrx->ncxf", np.concatenate(by_direction), inverse)
 
 
 #: Digits of a shape by which cells that may be congruent are grouped, before they are compared.

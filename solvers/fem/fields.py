@@ -219,8 +219,8 @@ def _at_points(
     of_points = response.solids(points[:, 1], side)
     order = np.argsort(cell, kind="stable")
     order = order[(of_cells[cell] == of_points[point])[order]]
-    point, t = point[order].astype(np.int32), t[order]
-    cells, firsts = np.unique(cell[order], return_index=True)
+    cell, point, t = cell[order], point[order].astype(np.int32), t[order]
+    cells, firsts = np.unique(cell, return_index=True)
     count = comm.allreduce(np.bincount(point, minlength=len(points)))
     if not count.all():
         X, Y = points[np.argmin(count)]
@@ -231,10 +231,9 @@ def _at_points(
     def gradients() -> NDArray[np.float64]:
         u = values(cells)[:, grid]
         result = np.zeros((len(points), 2, 2, u.shape[-1]))
-        ends = np.append(firsts[1:], len(point))
-        for i, first, end, own in zip(cells, firsts, ends, u):
-            # A cell holds a point once.
-            result[point[first:end]] += gradients_in_plane(vertices[i], nodes, t[first:end], own)
+        each = gradients_in_plane(vertices[cell], nodes, t, firsts, u) if len(point) else result[:0]
+        for first, end in zip(firsts, np.append(firsts[1:], len(point))):
+            result[point[first:end]] += each[first:end]  # a cell holds a point once
         # On the border between cells the gradient jumps; the mean of both is taken.
         result = comm.allreduce(result) / sharing[:, None, None, None]
         return chart.physical_gradients(chart.from_physical(points), result)
@@ -255,12 +254,12 @@ def _located(vertices: NDArray, x: NDArray) -> tuple[NDArray, NDArray, NDArray]:
     along, across = x[order].T
     first = np.searchsorted(along, low[:, 0], side="left")
     last = np.searchsorted(along, high[:, 0], side="right")
-    near = [np.empty((2, 0), dtype=np.int64)]
-    for i in np.flatnonzero(first < last):  # points in the smallest box around the cell
-        candidates = slice(first[i], last[i])
-        inside = order[candidates][(low[i, 1] <= across[candidates]) & (across[candidates] <= high[i, 1])]
-        near.append(np.stack([np.full(len(inside), i), inside]))
-    cell, point = np.concatenate(near, axis=1)
+    # Points in the smallest box around each cell: in its stretch of the first axis, then of the second.
+    count = last - first
+    cell = np.repeat(np.arange(len(vertices)), count)
+    at = np.arange(len(cell)) + np.repeat(first - np.cumsum(count) + count, count)
+    inside = (low[cell, 1] <= across[at]) & (across[at] <= high[cell, 1])
+    cell, point = cell[inside], order[at[inside]]
     t = pull_back(vertices[cell], x[point])
     held = np.all((t >= -_SLACK) & (t <= 1.0 + _SLACK), axis=1)
     return cell[held], point[held], t[held]

@@ -525,6 +525,11 @@ def make_plan(
             f"time: the integral equation computes motions {motions.until_turn}; what two methods agree "
             "to holds up to there, and later numbers are those of finite elements alone"
         )
+    if motions and FEM in motions.methods and min(motions.of_friction, motions.end) > 1.0:
+        warnings.append(
+            f"time: friction changes by {motions.of_friction:.2g} within 1 a/c_s where it is fastest, and "
+            "finite elements are made for 1: they may miss the tolerance; a lower speed or softer law helps"
+        )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, methods, modes)
     given = {quantity.asked_by for quantity in quantities}

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from random_solids import random_solid
+from support import of_sections
 
 from galinx import template
 from galinx.app.errors import BadInput
@@ -39,6 +40,21 @@ def test_what_is_unusual_of_layers_is_warned_of():
     warnings = " ".join(make_plan(template("coating", changes)).warnings)
     for key in ("solid.rho", "layer[0].yield_strength", "layer[0].thickness"):
         assert f"{key} = " in warnings
+
+
+@pytest.mark.parametrize("end, warned", [(3.2, True), (0.5, False)])
+def test_friction_too_fast_for_finite_elements_in_time_is_warned_of(end, warned):
+    """After a turn the friction of this law changes by λ c a (2 μ)^δ/μ^δ = 2.1 within 1 a/c_s at first."""
+    law = {"mu_c": 0.5, "sigma0_over_load": 3000.0, "delta": 0.5, "pre_sliding": 1e-3}
+    motion = {"c": 0.5, "strokes": ["backward", {"to": 0.4}, "backward"], "X_over_L": [0.5]}
+    time = {"end": end, "friction": "law", "start": "steady"}
+    scene = of_sections(
+        solid={"E": 200e9, "nu": 0.25, "rho": 7800.0}, punch={"half_width": 1e-3, "load": 55300.0},
+        friction=law, motion=motion, time=time, solve={"methods": ["fem"], "tolerance": 1e-3},
+        output={"quantities": ["time"]},
+    )  # fmt: skip
+    warnings = [text for text in make_plan(scene).warnings if "friction changes by 2.1" in text]
+    assert len(warnings) == warned
 
 
 def test_keys_of_finite_elements_that_solve_nothing_are_warned_of():

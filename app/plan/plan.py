@@ -527,8 +527,8 @@ def make_plan(
         )
     if motions and FEM in motions.methods and min(motions.of_friction, motions.end) > 1.0:
         warnings.append(
-            f"time: friction changes by {motions.of_friction:.2g} within 1 a/c_s where it is fastest, and "
-            "finite elements are made for 1: they may miss the tolerance; a lower speed or softer law helps"
+            f"time: friction changes by {motions.of_friction:.2g} within 1 a/c_s where it is fastest, "
+            "finite elements are made for 1 and may miss the tolerance; a lower speed or softer law helps"
         )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))
     quantities, refused = _quantities(scene, methods, modes)

@@ -44,7 +44,7 @@ def test_what_is_unusual_of_layers_is_warned_of():
 
 @pytest.mark.parametrize("end, warned", [(3.2, True), (0.5, False)])
 def test_friction_too_fast_for_finite_elements_in_time_is_warned_of(end, warned):
-    """After a turn the friction of this law changes by λ c a (2 μ)^δ/μ^δ = 2.1 within 1 a/c_s at first."""
+    """After a turn the friction of this law changes by λ c a 2^δ = 2.1 within 1 a/c_s at first."""
     law = {"mu_c": 0.5, "sigma0_over_load": 3000.0, "delta": 0.5, "pre_sliding": 1e-3}
     motion = {"c": 0.5, "strokes": ["backward", {"to": 0.4}, "backward"], "X_over_L": [0.5]}
     time = {"end": end, "friction": "law", "start": "steady"}

@@ -314,12 +314,14 @@ class _Drawn:
     def _curve(self, curve: Curve) -> Line2D:
         x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y) / 10.0**self.power
         style = _style(curve) | {"gid": "curve"}
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along = np.log(x) if "x" in self.panel.log else x  # markers are even on the paper
         if curve.form == MARKERS:
-            at = spaced(x, curve.turn)
+            at = spaced(along, curve.turn)
             x, y = x[at], y[at]
             style["markersize"] = 2.8
         elif curve.form == JOINED:
-            at = spaced(x, curve.turn)
+            at = spaced(along, curve.turn)
             style |= {"linewidth": 0.6 * curve.width, "markevery": at.tolist()}
         elif curve.form == DOTS:
             style["markersize"] = 2.0 * curve.width

@@ -11,7 +11,7 @@ from support import THOROUGH, computed, kept
 from galinx.app.figures.choice import size
 from galinx.app.figures.files import content
 from galinx.app.figures.render import Curve, Panel, Size, TooSmall, render
-from galinx.app.figures.style import looks
+from galinx.app.figures.style import MARKERS, looks
 
 
 @pytest.fixture(scope="module")
@@ -121,6 +121,13 @@ def test_panels_are_as_large_as_there_is_room():
     curves = [Curve(x, x, look, f"the curve of state {i}, at some speed") for i, look in enumerate(many)]
     with pytest.raises(TooSmall, match="its legend takes most of the page; choose fewer curves"):
         render([Panel("position", "number", curves=curves)] * 2, Size(3.35))
+
+
+def test_markers_along_a_logarithmic_axis_are_as_far_apart_as_along_another():
+    x = np.geomspace(1.0, 1e3, 301)
+    figure = render([Panel("x", "y", log="x", curves=[Curve(x, x, looks(1)[0], form=MARKERS)])])
+    shown = figure.axes[0].lines[0].get_xdata()
+    assert len(shown) > 8 and np.ptp(np.diff(np.log(shown))) < 0.05
 
 
 def test_maps_over_numbers_that_are_apart_by_ratios_have_logarithmic_axes_and_colours():

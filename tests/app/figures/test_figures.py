@@ -10,8 +10,8 @@ from support import THOROUGH, computed, kept
 
 from galinx.app.figures.choice import size
 from galinx.app.figures.files import content
-from galinx.app.figures.render import Curve, Panel, Size, TooSmall, render
-from galinx.app.figures.style import MARKERS, looks
+from galinx.app.figures.render import MARKERS, Curve, Panel, Size, TooSmall, render
+from galinx.app.figures.style import looks
 
 
 @pytest.fixture(scope="module")

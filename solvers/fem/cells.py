@@ -12,7 +12,7 @@ one matrix each kind, not one each cell (:func:`model_cells`).
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -129,9 +129,9 @@ def reference_values(nodes: NDArray, t: NDArray, u: NDArray) -> NDArray[np.float
 
 
 def gradients_in_plane(
-    vertices: NDArray, nodes: NDArray, t: NDArray, firsts: Any, u: Any
-) -> NDArray[np.float64]:
-    """Derivatives along the axes of the mesh's chart, at places t (n, 2) in some cells, of displacements.
+    vertices: NDArray, nodes: NDArray, t: NDArray, firsts: Sequence[int], u: Iterable[NDArray]
+) -> Iterator[NDArray[np.float64]]:
+    """Derivatives along the axes of the mesh's chart, at places t (n, 2) in cells, of displacements.
 
     Args:
         vertices: of the cell of each place, (n, 4, 2), or of a single cell, (4, 2).
@@ -140,11 +140,11 @@ def gradients_in_plane(
         firsts: number of the first place of each cell, (cells,).
         u: nodal displacements in each cell, (p+1, p+1, 2, fields).
 
-    Returns:
-        Array (n, component, axis, fields).
+    Yields:
+        Of each cell in turn, (its places, component, axis, fields).
     """
     (value_a, slope_a), (value_b, slope_b) = (lagrange(nodes, t[:, i]) for i in (0, 1))
-    n, by_direction = len(nodes), []
+    n, inverse = len(nodes), np.linalg.inv(jacobian(vertices, t))
     for first, end, own in zip(firsts, [*firsts[1:], len(t)], u):
         # Nodes along the second direction come last: the inner sum runs over contiguous memory.
         lines, at = np.moveaxis(own.reshape(n, n, -1), 1, 2).reshape(n, -1), slice(first, end)
@@ -152,9 +152,8 @@ def gradients_in_plane(
             np.einsum("nfj,nj->nf", (a[at] @ lines).reshape(end - first, -1, n), b[at])
             for a, b in ((slope_a, value_b), (value_a, slope_b))
         ]
-        by_direction.append(np.stack(along, axis=1).reshape(end - first, 2, *own.shape[2:]))
-    inverse = np.linalg.inv(jacobian(vertices, t))
-    return np.einsum("nrcf,nrx->ncxf", np.concatenate(by_direction), inverse)
+        by_direction = np.stack(along, axis=1).reshape(end - first, 2, *own.shape[2:])
+        yield np.einsum("nrcf,nrx->ncxf", by_direction, inverse[at])
 
 
 #: Digits of a shape by which cells that may be congruent are grouped, before they are compared.

@@ -205,7 +205,7 @@ def _gradients(
     stretch = chart.chart.stretch(image(vertices, t))
     at_edge = stretch < _VANISHING * stretch.max()
     t = np.where(at_edge[:, None], np.clip(t, 0.5 / n, 1.0 - 0.5 / n), t)
-    gradients = gradients_in_plane(vertices, nodes, t, [0], [u])
+    (gradients,) = gradients_in_plane(vertices, nodes, t, [0], [u])
     return chart.physical_gradients(image(vertices, t), gradients)[..., 0]
 
 

@@ -231,9 +231,9 @@ def _at_points(
     def gradients() -> NDArray[np.float64]:
         u = values(cells)[:, grid]
         result = np.zeros((len(points), 2, 2, u.shape[-1]))
-        each = gradients_in_plane(vertices[cell], nodes, t, firsts, u) if len(point) else result[:0]
-        for first, end in zip(firsts, np.append(firsts[1:], len(point))):
-            result[point[first:end]] += each[first:end]  # a cell holds a point once
+        for first, each in zip(firsts, gradients_in_plane(vertices[cell], nodes, t, firsts, u)):
+            # A cell holds a point once.
+            result[point[first : first + len(each)]] += each
         # On the border between cells the gradient jumps; the mean of both is taken.
         result = comm.allreduce(result) / sharing[:, None, None, None]
         return chart.physical_gradients(chart.from_physical(points), result)

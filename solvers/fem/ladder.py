@@ -470,7 +470,8 @@ class MeasuredError(Estimate):
             unseen = gauges[-1].cancelled * self._unseen(gauges[-1], probes, measured[-1][1][0].leaning)
             earlier, last = (gauge.unresolved for gauge in gauges[-2:])
             # What a level shows by itself where the level before showed hardly more.
-            own = np.where((last > _LASTS * earlier) & ~gauges[-1].of_cells, last, 0.0)
+            lasts = not gauges[-1].of_cells and last > _LASTS * earlier
+            own = np.where(lasts, last, 0.0)
             changes = [late.change(early) for early, late in pairwise(gauges)]
             rounding, bound = self._rounding(word, rounding, float(changes[-1].max()))
             rate = self._rate(word)

@@ -157,7 +157,7 @@ def end_stopped(words: str) -> NoReturn:
 def side_by_side(work: Sequence[Callable[[], bytes]]) -> list[bytes]:
     """Do pieces of work, much of it by as many processes as there are cores, copies of this one.
 
-    No copy waits for anything, so none outlives this process for long. What a copy that fails or is
+    A copy waits for this process alone, and ends where that is no more. What a copy that fails or is
     killed leaves is done here, where it can be reported.
     """
     fork, cores = multiprocessing.get_context("fork"), len(os.sched_getaffinity(0))
@@ -165,9 +165,9 @@ def side_by_side(work: Sequence[Callable[[], bytes]]) -> list[bytes]:
     others = []
     for n in range(1, count):
         receiver, sender = fork.Pipe(duplex=False)
-        fork.Process(target=_send, args=(work[n::count], sender), daemon=True).start()
-        sender.close()
         others.append(receiver)
+        fork.Process(target=_send, args=(work[n::count], sender, others), daemon=True).start()
+        sender.close()
     done = {n: piece() for n, piece in enumerate(work) if n % count == 0}
     for n, receiver in enumerate(others, 1):
         for i in range(n, len(work), count):
@@ -178,10 +178,12 @@ def side_by_side(work: Sequence[Callable[[], bytes]]) -> list[bytes]:
     return [done[n] for n in range(len(work))]
 
 
-def _send(work: Sequence[Callable[[], bytes]], sender: Any) -> None:
+def _send(work: Sequence[Callable[[], bytes]], sender: Any, receivers: Sequence[Any]) -> None:
     """Do work in a copy of a process, which answers for signals; then send it."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
+    for receiver in receivers:  # whose copies here would keep the pipes open
+        receiver.close()
     with suppress(Exception):
         for data in [piece() for piece in work]:
             sender.send_bytes(data)

@@ -1,6 +1,7 @@
 """Commands that compute: run, plan, paper."""
 
 import sys
+import time
 from pathlib import Path
 from shlex import quote
 from typing import Any
@@ -150,6 +151,11 @@ def paper(folder: Path, overwrite: bool, progress: Progress, quiet: bool) -> int
     """
     from ..study.paper import reproduce
 
-    with progress:
-        good = reproduce(Folder(folder, overwrite, options.inputs()), progress, quiet)
+    begun = time.time()
+    try:
+        with progress:
+            good = reproduce(Folder(folder, overwrite, options.inputs()), progress, quiet)
+    except process.Interrupted:
+        names = sorted(path.name for path in folder.glob("[!.]*") if path.stat().st_mtime >= begun)
+        process.end_stopped(f"written is {errors.listed(names)} alone" if names else process.NOTHING)
     return errors.GOOD if good else errors.FAILED_VERDICT

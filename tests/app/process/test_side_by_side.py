@@ -1,9 +1,13 @@
 """Work of one process done by several: in order, and whole whatever becomes of a copy."""
 
 import os
+import signal
+import subprocess
+import sys
 from functools import partial
 
 import pytest
+from support import HOME
 
 from galinx.app import process
 
@@ -45,6 +49,20 @@ def test_an_error_is_raised_here(capfd):
     with pytest.raises(ValueError, match="17"):
         _done([*[_worker] * 17, _fails, *[_worker] * 3])
     assert not any(capfd.readouterr())
+
+
+def test_a_copy_ends_where_its_process_was_killed():
+    """It would wait for ever to send more than a pipe holds, and keep the streams open."""
+    script = (
+        "import os, signal, time; from galinx.app import process\n"
+        "os.sched_getaffinity, here = lambda _: {0, 1}, os.getpid()\n"
+        "def piece():\n"
+        "    if os.getpid() == here: time.sleep(1.0); os.kill(here, signal.SIGKILL)\n"
+        "    return bytes(10**6)\n"
+        "process.side_by_side([piece] * 16)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=HOME, stdout=subprocess.PIPE, timeout=30)
+    assert done.returncode == -signal.SIGKILL
 
 
 def _done(functions):

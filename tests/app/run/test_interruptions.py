@@ -194,6 +194,18 @@ def test_commands_that_keep_nothing_stop_in_order(tmp_path, ranks):
     assert not list((tmp_path / "out").glob("[!.]*"))
 
 
+def test_archives_that_were_finished_are_named(tmp_path):
+    with started("paper", "-o", tmp_path) as process:
+        while not (tmp_path / "study.h5").exists():
+            assert process.poll() is None
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    written = [path.name for path in tmp_path.glob("[!.]*")]
+    assert "error: interrupted; written is " in errors and errors.endswith(" alone\n")
+    assert all(name in errors for name in written) and process.returncode == 3
+
+
 def test_what_is_ignored_already_stays_ignored(tmp_path):
     script = (
         "import signal; from galinx.app import process; process.listen()\n"

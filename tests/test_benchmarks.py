@@ -27,7 +27,7 @@ def accuracy(monkeypatch):
 def test_every_table_has_its_place_on_the_page_and_is_put_there(accuracy, tmp_path, monkeypatch, capsys):
     page = accuracy.PAGE.read_text(encoding="utf-8")
     places = re.findall(
-        r"<!-- ./run.sh bench accuracy (\w+) -->\n\n\| .*?\n\n<!-- end -->", page, re.DOTALL
+        r"<!-- ./run.sh bench accuracy (\w+) -->\n\n[|-] .*?\n\n<!-- end -->", page, re.DOTALL
     )
     assert sorted(places) == sorted(accuracy.TABLES)
     (tmp_path / "page.md").write_text(page, encoding="utf-8")

@@ -6,7 +6,6 @@ rank 0 speaks for all; mpirun ends the other ranks where one fails, is killed or
 
 import fcntl
 import io
-import multiprocessing
 import os
 import resource
 import signal
@@ -160,6 +159,8 @@ def side_by_side(work: Sequence[Callable[[], bytes]]) -> list[bytes]:
     A copy waits for this process alone, and ends where that is no more. What a copy that fails or is
     killed leaves is done here, where it can be reported.
     """
+    import multiprocessing  # most commands do without
+
     fork, cores = multiprocessing.get_context("fork"), len(os.sched_getaffinity(0))
     count = max(1, min(cores // ranks.from_environment()[1], len(work) // _PIECES))
     others = []

@@ -71,9 +71,11 @@ def short_name(row: Quantity) -> str:
     return re.split(r"[,;:]| \(", row.about)[0]
 
 
-def words(text: str) -> tuple[str, ...]:
-    """The words between commas."""
-    return tuple(word.strip() for word in text.split(",") if word.strip())
+def words(names: str | Sequence[str]) -> tuple[str, ...]:
+    """The words between commas, or those of a list."""
+    if not isinstance(names, str):
+        return tuple(names)
+    return tuple(word.strip() for word in names.split(",") if word.strip())
 
 
 def size(text: str) -> Size | None:

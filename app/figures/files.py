@@ -191,23 +191,21 @@ class Files:
         """
         if not self.ending:
             Folder(self.to, self.overwrite, self.inputs)
-        targets, jobs, of = list[Target](), list[Callable[[], bytes]](), list[Drawing]()
+        made: list[tuple[Target, str, str]] = []
+        work: list[Callable[[], bytes]] = []
         for drawing in drawings:
-            _, kinds = _KINDS[drawing.film is not None]
+            noun, kinds = _KINDS[drawing.film is not None]
             for ending in self.endings(drawing.name):
                 name = f"{self.name}_{drawing.name}.{ending}".removeprefix("_")
                 path = self.to if self.ending else self.to / name
-                targets.append(Target(path, kinds[ending], self.overwrite, self.inputs))
-                jobs.append(
+                target = Target(path, kinds[ending], self.overwrite, self.inputs)
+                made.append((target, noun, drawing.left_out))
+                work.append(
                     partial(film_content, drawing.film, ending, self.dpi or FILM_DPI)
                     if drawing.film
                     else partial(content, drawing.figure, ending, self.dpi or DPI)
                 )
-                of.append(drawing)
-        data = side_by_side(jobs)
-        for target, written in zip(targets, data):
-            target.write(written)
-        return [
-            Written(target.path, _KINDS[drawing.film is not None][0], drawing.left_out, written)
-            for target, drawing, written in zip(targets, of, data)
-        ]
+        written = [*zip(made, side_by_side(work))]
+        for (target, *_), data in written:
+            target.write(data)
+        return [Written(target.path, noun, left_out, data) for (target, noun, left_out), data in written]

@@ -282,13 +282,13 @@ class Starts:
     def shortest(self) -> float:
         """Shortest time over a/c_s within which load, direction or friction changes."""
         # Steps and cells are made for a friction that changes within 1 a/c_s, and for no faster one.
-        friction = max(1.0 / self.of_friction, 1.0) if self.of_friction else np.inf
-        return min(self.load.shortest, *(self.strokes if self.changing else ()), friction)
+        strokes = self.strokes if self.changing else ()
+        return min(self.load.shortest, *strokes, max(self.shortest_of_friction, 1.0))
 
     @property
-    def of_friction(self) -> float:
-        """Largest rate of friction, per a/c_s."""
-        return 1.0 / min(drive.shortest for drives in self.drives.values() for drive in drives)
+    def shortest_of_friction(self) -> float:
+        """Shortest time over a/c_s of a change of friction by 1, infinite where it is constant."""
+        return min(drive.shortest for drives in self.drives.values() for drive in drives)
 
     @property
     def changing(self) -> bool:

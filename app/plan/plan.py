@@ -525,9 +525,10 @@ def make_plan(
             f"time: the integral equation computes motions {motions.until_turn}; what two methods agree "
             "to holds up to there, and later numbers are those of finite elements alone"
         )
-    if motions and FEM in motions.methods and min(motions.of_friction, motions.end) > 1.0:
+    if motions and FEM in motions.methods and motions.shortest_of_friction < 1.0 < motions.end:
+        rate = 1.0 / motions.shortest_of_friction
         warnings.append(
-            f"time: friction changes by {motions.of_friction:.2g} within 1 a/c_s where it is fastest, "
+            f"time: friction changes by {rate:.2g} within 1 a/c_s where it is fastest, "
             "finite elements are made for 1 and may miss the tolerance; a lower speed or softer law helps"
         )
     modes = (*scene.modes, *(SWEPT,) * bool(fem and fem.sweep), *(ALONE,) * (len(methods) == 1))

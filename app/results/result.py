@@ -208,10 +208,7 @@ class Result:
         from ..figures import choice
         from ..figures.measured import read
 
-        figures, quantities, y = (
-            choice.words(names) if isinstance(names, str) else tuple(names)
-            for names in (figures, quantities, y)
-        )
+        figures, quantities, y = (choice.words(names) for names in (figures, quantities, y))
         if isinstance(states, str):
             states = numbers(states) if states else ()
         states = tuple(np.atleast_1d(states).tolist())
@@ -271,8 +268,7 @@ class Result:
         from ..figures.files import Files
 
         choice = self.choice(dimensionless, **options)
-        endings = words(formats) if isinstance(formats, str) else tuple(formats)
-        files = Files(Path(to), name, endings, dpi, overwrite, self.inputs)
+        files = Files(Path(to), name, words(formats), dpi, overwrite, self.inputs)
         return [file.path for file in write(self.data, self.scene, choice, files)]
 
     def report(self, path: Path | str, overwrite: bool = False, dimensionless: bool = False) -> None:

@@ -13,6 +13,9 @@ from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
 #: y = -ln(1 - w) from which on the slip is its asymptote, and y of full slip.
 _FAR, _FULL = 14.0, 700.0
 
+#: w up to which the work of loading is its integral.
+_LITTLE = 0.5
+
 
 @dataclass(frozen=True)
 class BoucWen(FrictionLaw):
@@ -84,8 +87,12 @@ class BoucWen(FrictionLaw):
         down = _slip(np.maximum(-ends, 0.0), k, self.n, 2.0)
         begun = _slip(np.maximum(-ends[0], 0.0), k, self.n)
         loading = np.maximum(x - begun, 0.0)
-        short = _short(np.maximum(ends, 0.0), self.n)
-        return self.μ_C * self.x_y * (loading - (short[1:] - short[0]) - (down[0] - down[1:]))
+        loaded = np.maximum(ends, 0.0)
+        short = _short(loaded, self.n)
+        # Of the work of full slip less what is short of it no digits are left where little is loaded.
+        little = _slip(np.minimum(loaded, _LITTLE), 1.0, self.n, 2.0)
+        up = np.where(loaded[1:] < _LITTLE, little[1:] - little[0], loading - (short[1:] - short[0]))
+        return self.μ_C * self.x_y * (up - (down[0] - down[1:]))
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         return s * self.μ_C * self.rate(z[..., 0], s)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import parameter
-from .law import LAWS, FrictionLaw, MeasuredFriction, coulomb_coefficient
+from .law import LAWS, SHORT, FrictionLaw, MeasuredFriction, coulomb_coefficient
 
 #: Distance y from full slip, below which its rate, a root, is followed no more.
 _FULL = 1e-9
@@ -84,7 +84,9 @@ class Dahl(FrictionLaw):
         with np.errstate(invalid="ignore"):
             by_power = -np.expm1(q * decay) / np.where(near, 1.0, q)
         y = np.where(near, -decay, by_power) * np.sign(y0) * np.abs(y0) ** q
-        return self.μ_C * (slip - np.where(y0 == 0.0, 0.0, y) * self.μ_C / self.λ)
+        whole = self.μ_C * (slip - np.where(y0 == 0.0, 0.0, y) * self.μ_C / self.λ)
+        short = -decay * np.maximum(1.0, np.abs(1.0 - self.δ)) < SHORT
+        return np.where(short, self.work_of_short(z, s, V, slip), whole) if short.any() else whole
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         return s * self.rate(z[..., 0], s)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..parameters import parameter
-from .law import LAWS, MeasuredFriction
+from .law import LAWS, SHORT, MeasuredFriction
 from .stribeck import StribeckCurve
 
 
@@ -69,10 +69,12 @@ class LuGre(Bristles):
 
     def work(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         """∫ s (ζ + σ₁ ż + σ₂ v) dd, the middle term by ż = V/σ₀ dζ/dd."""
-        ζ0, g = z[..., 0], self.g(V)
-        built = (ζ0 - s * g) * np.expm1(-self.σ0 * np.asarray(slip) / g)
-        bristles = s * (s * g * slip - built * g / self.σ0)
-        return bristles + s * self.σ1 * V / self.σ0 * built + self.σ2 * V * np.asarray(slip)
+        ζ0, g, d = z[..., 0], self.g(V), np.asarray(slip, dtype=float)
+        built = (ζ0 - s * g) * np.expm1(-self.σ0 * d / g)
+        bristles = s * (s * g * d - built * g / self.σ0)
+        whole = bristles + s * self.σ1 * V / self.σ0 * built + self.σ2 * V * d
+        short = self.σ0 * d < SHORT * g
+        return np.where(short, self.work_of_short(z, s, V, d), whole) if short.any() else whole
 
     def slope(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         return s * self.rate(z[..., 0], s, V) * (1.0 - V * self.σ1 / self.g(V))

@@ -1,5 +1,7 @@
 """What laws promise on random motions: independence of the rate, dissipation, mirror images, slopes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import random_laws as random
@@ -52,6 +54,20 @@ def test_work_in_a_closed_loop_is_never_negative(name, seed):
         z = exactly(law, z, s, V, length, np.array([length]))[-1]
     assert done[0] + done[1] >= -1e-15 * length
     assert done[0] + done[1] == pytest.approx(done[2] + done[3], rel=1e-2, abs=1e-3 * length)
+
+
+@pytest.mark.parametrize("name", [name for name in ALL if name != "table"])
+def test_the_work_of_the_shortest_strokes_has_as_many_digits_as_their_friction(name):
+    """About the rest, where what rounding leaves of the work of full slip would be more than the work."""
+    law, _ = drawn(name, 0)
+    undamped = {"σ1": 0.0, "σ2": 0.0}
+    law = replace(law, **undamped) if undamped.keys() <= vars(law).keys() else law
+    z, V, (places, weights) = law.rest(), 1e-3, np.polynomial.legendre.leggauss(12)
+    for s, length in ((1, 1e-8 * random.LENGTH), (-1, 2e-8 * random.LENGTH), (1, 1e-8 * random.LENGTH)):
+        f = s * law.friction(exactly(law, z, s, V, length, length * (0.5 + 0.5 * places)), s, V)
+        summed, rounding = 0.5 * length * (weights @ f), 1e-12 * length * np.abs(f).max()
+        assert work(law, z, s, V, length) == pytest.approx(summed, rel=0, abs=rounding)
+        z = exactly(law, z, s, V, length, np.array([length]))[-1]
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -17,6 +17,24 @@ class MachineFailure(Exception):
     """The machine refused: a file, a package, memory (status 3)."""
 
 
+def text_of(data: bytes, path: object, expected: str) -> str:
+    """Text of a file, in UTF-8.
+
+    Args:
+        data, path: the file's bytes and its name.
+        expected: what it should be, in words.
+
+    Raises:
+        BadInput: it is no text, or in another code.
+    """
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            raise BadInput(f"{path} is no text file, expected {expected}") from None
+        raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
+
+
 @contextmanager
 def finite_elements_installed() -> Iterator[None]:
     """Context of imports; its failure says what to do where a library is missing.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from galinx import files
 
-from .errors import BadInput, excerpt, meant
+from .errors import BadInput, excerpt, meant, text_of
 from .scene.units import to_si
 
 #: Bytes of a table.
@@ -124,11 +124,9 @@ def read_table(path: Path, form: str, columns: int = 0) -> TextTable:
         BadInput: the file cannot be read or is no table.
     """
     try:
-        text = files.read(path, _LARGEST + 1).decode("utf-8-sig")
+        text = text_of(files.read(path, _LARGEST + 1), path, "a table of numbers")
     except OSError as error:
         raise BadInput(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
     except ValueError:  # a name with a zero in it
         raise BadInput(f"found {excerpt(str(path))}, expected the name of a file") from None
     if len(text) > _LARGEST:

@@ -530,11 +530,13 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         where = "both ends" if "half-width" in heads else "X = -a and X = a"
         yield f"K_I: limit of the pressure times (2π distance)^-exponent, at {where}"
     if units.dimensionless and "half-width" in heads:
-        a = number(units.contact.half_width)
-        yield f"half-width, centre: a = {a} m, that of the first contact at rest without friction"
+        yield f"half-width, centre: {units.of_a}"
         yield "X/a, Y/a and N/(2a): a is the half-width of each contact, and X is from its middle"
     if {"resultant of the pressure", "load at first yield"} <= heads:
         yield "load at first yield: N; the pressure and its resultant grow with it"
+    first, depth = preferred(data, yielding.FIRST_LOAD), preferred(data, yielding.DEPTH)
+    if first and depth and (np.isnan(data[depth.path]) & (data[first.path] <= units.load)).any():
+        yield "depth of yield: none is given beyond 10 a"
     if speeds := solved_speeds(data):
         yield speeds
     lacking = []
@@ -596,6 +598,7 @@ def limits_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
 
 def _more(count: int, noun: str) -> list[str]:
     """Note on the rows that a table leaves out, if any."""
+    noun = noun.removesuffix("s") if count == LIMIT + 1 else noun
     return [f"and {count - LIMIT} more {noun}; csv and show --json list all"] * (count > LIMIT)
 
 

@@ -153,8 +153,9 @@ class Units:
             row: quantity whose unit this is; None for one of states.
         """
         if self.dimensionless:
-            a = self.contact.half_width  # one for all states, whose own are among the lengths
-            over = {CONTACT: ("a", 1.0 / a), "J/m": ("N*a", 1.0 / (self.contact.load * a))}
+            # One for all states, whose own are among the lengths, and for what is compared.
+            a, N = self._first.half_width, self._first.load
+            over = {CONTACT: ("a", 1.0 / a), "J/m": ("N*a", 1.0 / (N * a))}
             archived = dict.fromkeys((OVER_A, X_OVER_A, OVER_C_S, OVER_N), ("1", 1.0))
             return Scaled("", *(over | archived).get(kind, (kind, 1.0)))
         unit, factor, offset, size = self._in_si(kind, row)
@@ -190,6 +191,17 @@ class Units:
         else:
             unit, factor, size = kind, 1.0, self._largest(kind, row)
         return unit, factor, offset, size
+
+    @property
+    def _first(self) -> Contact:
+        return self.beside[0].contact if self.beside else self.contact
+
+    @property
+    def of_a(self) -> str:
+        """The half-width that lengths are over which are not over that of their own contact."""
+        return (
+            f"a = {number(self._first.half_width)} m, that of the first contact at rest without friction"
+        )
 
     @property
     def stress(self) -> Scaled:

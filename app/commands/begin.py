@@ -2,6 +2,7 @@
 
 import json
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from shlex import quote
 
@@ -11,7 +12,7 @@ from galinx.postprocess.target import SECTION, Folder, Target
 
 from .. import ranks
 from ..console import Progress, new_console, print_sheet, program, say
-from ..errors import BadInput
+from ..errors import BadInput, short
 from . import options
 
 
@@ -24,7 +25,7 @@ def init(name: str | None, output: Path | None, overwrite: bool) -> None:
 
     Example: ./run.sh init own_material -o mine.toml
     """
-    from ..errors import nearest, short
+    from ..errors import nearest
     from ..scene.library import templates
 
     available = templates()
@@ -72,6 +73,17 @@ def schema() -> None:
 
     if ranks.is_root():
         print(json.dumps(made(), ensure_ascii=False, indent=1))
+
+
+def _pairs(option: str, words: Iterable[str]) -> dict[str, str]:
+    """Values by key, of words KEY=VALUE."""
+    pairs = {}
+    for word in words:
+        key, equals, value = (part.strip() for part in word.partition("="))
+        if not (key and equals and value):
+            raise BadInput(f"{option} {short(word)}: expected KEY=VALUE, as in {option} mu_c=0.4")
+        pairs[key] = value
+    return pairs
 
 
 @click.command()
@@ -133,8 +145,9 @@ def fit(
     if into:
         read_scene(into)  # its faults are reported before the work
     law = model or (named[0] if named else ALL)
-    pairs = ([word.partition("=") for word in given] for given in (fix, start))
-    known, guess = ({key.strip(): text.strip() for key, _, text in each} for each in pairs)
+    known, guess = _pairs("--fix", fix), _pairs("--start", start)
+    if both := known.keys() & guess.keys():
+        raise BadInput(f"--fix and --start {min(both)} exclude each other; keep one")
     with progress:
         best = fit_laws(data, law, fix=known, start=guess, speed=speed, rows=rows, progress=progress)
     to_folder = Folder(folder, overwrite, inputs)

@@ -104,7 +104,8 @@ class Measured:
         margin, bottom, top = 0.05 * (high - low), float(y[inside].min()), float(y[inside].max())
         if bottom < low or top > high:
             low, high = min(low, bottom - margin), max(high, top + margin)
-        points = Curve(x, y, Look("black", "none", "o"), f"measured, {as_text(self.name)}", DOTS)
+        few = f" ({inside.sum()} of {len(x)} points)" * (not inside.all())
+        points = Curve(x, y, Look("black", "none", "o"), f"measured, {as_text(self.name)}{few}", DOTS)
         return replace(panel, curves=[*panel.curves, points], ylim=(low, high))
 
 

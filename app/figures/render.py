@@ -451,7 +451,7 @@ def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
     bodies = [(1.0, shown.values, shown.level), *([(-1.0, *shown.above)] if shown.above else ())]
     for side, values, level in bodies:
         image: ScalarMappable
-        if log:
+        if log or not all(np.ptp(np.diff(z)) <= 1e-6 * np.ptp(z) for z in (X, Y)):
             image = axis.pcolormesh(
                 X, Y, values, cmap=colours, norm=norm, shading="nearest", rasterized=True
             )

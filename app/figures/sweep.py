@@ -3,10 +3,11 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
 from galinx.postprocess.quantities import Quantity, column, layers, states, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import FEM, STATE
@@ -15,8 +16,8 @@ from galinx.texts import plain
 
 from ..errors import BadInput, require_one_of
 from .choice import PLACE, Archive, C, Drawing, N, both, explained, named, short_name, spread
-from .render import DOTS, MARKERS, Map, Panel, Size, render
-from .style import COLUMN, looks
+from .render import DOTS, MARKERS, Curve, Map, Panel, Size, render
+from .style import COLUMN, Look, looks
 
 #: Relative change below which numbers count as constant.
 _SAME = 1e-5
@@ -84,7 +85,12 @@ def parameters(of: Archive) -> Drawing:
     figure = render(panels, size, notes=[] if maps else explained(methods), high=0.72)
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
     at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
-    caption = f"What follows from {plain(sweep.label)}{at}.{sweep.same}"
+    over = plain(f"{sweep.label} and {panels[0].y}" if maps else sweep.label)
+    caption = f"What follows from {over}{at}.{sweep.same}"
+    if maps:
+        caption += (
+            " Between the states it is interpolated" + "; dots are states" * bool(panels[0].curves) + "."
+        )
     left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."
@@ -218,7 +224,10 @@ class _Sweep:
         x, y = self.x[numbers[0]], y[numbers[:, 0]]
         log = "x" * _by_ratios(x) + "y" * _by_ratios(y)
         (X, along), (Y, upwards) = _finer(x), _finer(y)
-        panels = []
+        computed, panels = list[Curve](), list[Panel]()
+        if len(every) <= 150:
+            at_x, at_y = np.meshgrid(x, y)
+            computed = [Curve(at_x.ravel(), at_y.ravel(), Look("black", "none", "."), form=DOTS)]
         for name in self.drawn:
             shown = self.columns[name]
             values = shown.best[numbers]
@@ -231,7 +240,7 @@ class _Sweep:
             signed = bool(np.nanmin(fine) < -1e-9 * limit)
             about = named(shown.about, shown.unit)
             panels.append(Panel(
-                self.label, label, xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]), log=log,
+                self.label, label, curves=computed, xlim=(X[0], X[-1]), ylim=(Y[0], Y[-1]), log=log,
                 map=Map(
                     X, Y, fine, about, limit, signed=signed, lines=True, equal=False, log=by_ratios
                 ),
@@ -291,11 +300,22 @@ def _by_ratios(x: NDArray) -> bool:
 
 
 def _finer(x: NDArray) -> tuple[NDArray, Callable[[NDArray], NDArray]]:
-    """Four places for each of rising numbers, by equal steps or ratios, and what interpolates there."""
-    log = _by_ratios(x)
-    X = (np.geomspace if log else np.linspace)(x[0], x[-1], 4 * len(x))
-    steps = np.log if log else np.asarray
-    return X, partial(np.interp, steps(X), steps(x))
+    """Rising numbers with more between them, by equal steps or ratios, and what interpolates there.
+
+    Curves between numbers rise and fall as these do; beside one that is missing they are straight.
+    """
+    parts, log = ceil(64 / (len(x) - 1)), _by_ratios(x)
+    steps = np.log(x) if log else x
+    places = np.interp(np.arange(parts * (len(x) - 1) + 1) / parts, np.arange(len(x)), steps)
+    X = np.exp(places) if log else places
+    X[::parts] = x
+
+    def between(y: NDArray) -> NDArray[np.float64]:
+        if np.isfinite(y).all():
+            return np.asarray(PchipInterpolator(steps, y)(places))
+        return np.interp(places, steps, y)
+
+    return X, between
 
 
 def _spans(values: NDArray, more_than: float) -> bool:

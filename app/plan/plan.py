@@ -305,6 +305,23 @@ def _faults_of_layers(scene: Scene) -> Iterator[str]:
         )
 
 
+def _overtaken(scene: Scene, speeds: Sequence[float]) -> Iterator[str]:
+    """Warning where a punch rolls so fast that it slips backward."""
+    friction = scene.friction
+    if (
+        not scene.elastic_punch
+        or friction.stress_ratio > 0.0
+        or not np.any(friction.values.get("mu_c", 1.0))
+    ):
+        return
+    own, least = scene.elastic_punch.speed, min(speeds) * scene.solid.c_s
+    if own > least * (1.0 + 1e-12):
+        yield (
+            f"punch.solid.speed = {own:g} m/s is above the speed over the plate, {least:g} m/s: slip is "
+            'backward, and friction is that of forward slip; friction.sign = "eq25" turns it'
+        )
+
+
 def _near_limit(scene: Scene, speeds: tuple[float, ...], fem: bool) -> list[str]:
     """Warnings about speeds over c_s near or above the Rayleigh speed.
 
@@ -500,6 +517,7 @@ def make_plan(
     for fault in _faults(scene, methods, places, {name: refusals[name] for name in named}):
         raise BadInput(fault)
     warnings = [*oddities(scene), *_near_limit(scene, order_.speeds, FEM in methods)]
+    warnings += _overtaken(scene, order_.speeds)
     # Whoever names all methods wants those that solve it; and in a uniform solid the closed form is the
     # integral equation's solution.
     others = {n: why for n, why in refusals.items() if scene.layers or not METHODS[n].of_layers}

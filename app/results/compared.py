@@ -150,6 +150,13 @@ class Comparison:
             if not self._pairs(columns):
                 texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
                 column = next(column for column in columns if column)
+                if len({column.unit for column in columns if column}) > 1:  # shares of several things
+                    units = [column.unit if column else "none" for column in columns]
+                    texts = [
+                        [f"{text} {unit}" if text and unit != "none" else text for text in of_result]
+                        for of_result, unit in zip(texts, units)
+                    ]
+                    column = replace(column, unit="none")
                 shown.append((column, [*zip(*texts)], self._off[key]))
         for p, title in enumerate(self.titles[:LIMIT]):
             rows = []
@@ -178,7 +185,8 @@ class Comparison:
         said = [f"{key}: {' | '.join(short(v, 40) for v in values)}" for key, values in apart.items()]
         yield f"scenes differ in {'; '.join(said)}" if said else "scenes do not differ"
         if len(self.pairs) > LIMIT:
-            yield f"and {len(self.pairs) - LIMIT} more pairs of states; choose by --states"
+            more = len(self.pairs) - LIMIT
+            yield f"and {more} more {'pair' if more == 1 else 'pairs'} of states; choose by --states"
         if any(self._alone):
             found = ", ".join(f"{n} of {label}" for n, label in zip(self._alone, self.labels) if n)
             yield f"states without a partner: {found}"
@@ -188,6 +196,8 @@ class Comparison:
         yield "difference: from the first, of places and the centre over its half-width" + (
             "; of K_I none where the exponents, and so the units, differ" * intensities
         )
+        if self.units[0].dimensionless and ("half-width",) in self._rows:
+            yield f"half-width, centre: {self.units[0].of_a}"
         verdicts = [result.verdict for result in self.results]
         if set(verdicts) != {"PASS"}:
             yield f"verdicts: {' | '.join(verdicts)}"

@@ -18,8 +18,10 @@ from .units import in_si
 #: Two names of a number: a new value is given to that name which the scene has.
 _ONE_NUMBER = {"friction.mu": "friction.mu_c", "friction.mu_c": "friction.mu"}
 
-#: Section with a number, as ``layer[0]``; and a list or a range with one unit for all, as ``[1, 2] mm``.
+#: Section with a number, as ``layer[0]``; a list of texts without quotes, as ``[1 mm, 2 mm]``; and a list
+#: or a range with one unit for all, as ``[1, 2] mm``.
 _NUMBERED = re.compile(r"(\w+)\[(\d{1,3})\]")
+_TEXTS = re.compile(r"\[([^\[\]{}\"']+)\]")
 _WITH_UNIT = re.compile(r"(\[[^\[\]{}\"']*\]|\{[^{}]*\})\s*([^\s\[\]{}\"'][^\[\]{}\"']*)")
 
 #: Longest text that a change may set, in characters: the time of tomlkit grows with their square.
@@ -33,7 +35,7 @@ UNSET = object()
 def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any]:
     """Changes as the command line gives them: ``section.key=value``, the value as in TOML.
 
-    A value that is not TOML is taken as a text: ``solid.E=70 GPa`` needs no quotes.
+    A value that is not TOML is taken as a text: ``solid.E=70 GPa`` needs no quotes, nor does a list.
 
     Args:
         words: arguments of ``--set``.
@@ -56,14 +58,21 @@ def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any
             raise BadInput(
                 f"--set {short(word)}: expected section.key=value, as in --set friction.mu_c=0.5"
             )
-        try:
-            changes[key.strip()] = tomlkit.value(value.strip())
-        except (TOMLKitError, ValueError, RecursionError):
-            changes[key.strip()] = _with_unit(value.strip())
+        changes[key.strip()] = _value(value.strip())
     for key in unset:
         if key in changes:
             raise BadInput(f"--set and --unset {short(key)} exclude each other; keep one")
     return changes | dict.fromkeys(unset, UNSET)
+
+
+def _value(value: str) -> Any:
+    """What a value says in TOML, or without the quotes that TOML asks for."""
+    try:
+        return tomlkit.value(value)
+    except (TOMLKitError, ValueError, RecursionError):
+        if texts := _TEXTS.fullmatch(value):
+            return [_value(one.strip()) for one in texts[1].split(",") if one.strip()]
+        return _with_unit(value)
 
 
 def _with_unit(value: str) -> Any:

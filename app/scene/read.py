@@ -25,7 +25,7 @@ from galinx.solvers.profiles import has_free_end
 from galinx.texts import unseen
 
 from ..console import program
-from ..errors import BadInput, excerpt, listed, nearest, short
+from ..errors import BadInput, excerpt, listed, nearest, short, text_of
 from ..text_table import read_table
 from .library import LIBRARY
 from .scene import Scene, contradictions, in_words, usual_quantities
@@ -176,10 +176,7 @@ def read(path: Path, changes: Mapping[str, Any] | None = None) -> Scene:
             f"{path} is an archive of results, expected a scene (TOML file); "
             f"{program()} show {path} shows what it holds"
         )
-    try:
-        text = data.decode("utf-8-sig").replace("\r\n", "\n")
-    except UnicodeDecodeError as error:
-        raise BadInput(f"{path} is not UTF-8 (byte {error.start}); save it as UTF-8") from None
+    text = text_of(data, path, "a scene (TOML file)").replace("\r\n", "\n")
     if not text.strip():
         raise BadInput(f"{path} is empty, expected a scene; scenes/ holds examples")
     if changes:

@@ -76,7 +76,7 @@ def _extreme(end: str, what: str, i: int) -> tuple[dict[str, Quantity], dict[str
     """Quantities of the highest or the lowest in-plane stress, and of its place."""
     value = by_method(
         f"sigma_XX_{end}", "N/(2a)",
-        f"{what} in-plane stress on the surface as far as its positions, free ends included, further "
+        f"{what} in-plane stress on the surface, as far as its positions go, free ends included, further "
         "than 0.01 a from sharp edges and 0.02 a from tips, where it is infinite",
         lambda s, _: s.extremes_in_plane[i][0], _METHODS, asked_by=ON_SURFACE,
     )  # fmt: skip

@@ -97,11 +97,18 @@ def test_a_law_goes_into_a_scene_that_stays_as_it_was_written(here, capsys):
         (("dahl", "slip.csv", "--fix", "mu=1"), "expected KEY=VALUE with mu_c, sigma0_over_load, delta"),
         (("dahl", "slip.csv", "--fix", "mu_c=-1"), "mu_c: found -1, expected > 0"),
         (("dahl", "slip.csv", "--fix", "mu_c=1 m"), "mu_c: found '1 m'"),
+        (("dahl", "slip.csv", "--fix", "delta"), "--fix delta: expected KEY=VALUE"),
+        (
+            ("dahl", "slip.csv", "--fix", "delta=1", "--start", "delta=2"),
+            "--fix and --start delta exclude",
+        ),
+        (("device.h5",), "device.h5 is no text file, expected a table of numbers"),
         (("dahl", "few.csv"), "2 samples in motion for 3 parameters, expected more"),
     ],
 )
 def test_faults_of_measurements_are_told(here, capsys, words, said):
     (here / "few.csv").write_text("slip,f\n0,0\n1,1\n2,1\n", encoding="utf-8")
+    (here / "device.h5").write_bytes(b"\x89HDF\r\n\x1a\n\0\xff")
     assert called("fit", *words) == 2
     assert said in capsys.readouterr().err
     assert not (here / "fit").exists() or not list((here / "fit").iterdir())

@@ -149,8 +149,35 @@ def test_maps_over_numbers_that_are_apart_by_ratios_have_logarithmic_axes_and_co
     assert {"$100$", "$1000$"} <= {text.get_text() for text in axis.texts if text.get_visible()}
     (image,) = (one for one in axis.collections if one.get_array() is not None and one.norm.vmin)
     assert isinstance(image.norm, LogNorm) and not [*faults(drawing.figure)]
-    p = np.reshape(image.get_array(), (20, 20))
-    N, R = np.geomspace(1e4, 1e6, 20)[:, None], np.geomspace(1e-3, 10.0, 20)
+    assert "Between the states it is interpolated; dots are states." in drawing.caption
+    assert "radius R (m)" in drawing.caption and "load" in drawing.caption
+    p = np.reshape(image.get_array(), (65, 65))
+    N, R = np.geomspace(1e4, 1e6, 65)[:, None], np.geomspace(1e-3, 10.0, 65)
     shape = np.sqrt(N / R)
     assert shape.shape == p.shape
     np.testing.assert_allclose(p / p[0, 0], shape / shape[0, 0], rtol=1e-6)
+
+
+def test_maps_hold_the_numbers_of_states_that_are_not_evenly_apart():
+    scene = """
+        solid = { material = "steel" }
+        friction = { mu = [0.0, 0.1, 0.15, 0.3, 0.5] }
+        motion = { c = 0.0 }
+        solve = { methods = ["closed_form"] }
+        output = { quantities = ["yield"] }
+        [punch]
+        profile = "parabolic"
+        radius = ["2 mm", "3 mm", "5 mm", "8 mm", "9 mm"]
+        load = "100 N/mm"
+    """
+    result = computed(scene)
+    f, R = (np.unique(result.data[f"states/{name}"]) for name in ("f", "punch.radius"))
+    (axis,) = result.figure("parameters", y=("von_mises",)).axes
+    (image,) = (one for one in axis.collections if one.get_array() is not None and one.norm.vmin)
+    scaled = result.units().stress
+    states = np.ravel(scaled.factor) * result.data["states/closed_form/von_mises"]
+    order = np.lexsort([result.data["states/punch.radius"], result.data["states/f"]])
+    drawn = np.reshape(image.get_array(), (65, 65))[::16, ::16]
+    np.testing.assert_allclose(drawn.ravel(), states[order], rtol=1e-12)
+    (dots,) = (line for line in axis.lines if line.get_marker() == ".")
+    np.testing.assert_allclose(dots.get_xydata(), [[1e3 * x, y] for y in f for x in R], rtol=1e-12)

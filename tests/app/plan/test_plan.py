@@ -42,6 +42,14 @@ def test_what_is_unusual_of_layers_is_warned_of():
         assert f"{key} = " in warnings
 
 
+def test_a_punch_that_rolls_past_the_plate_slips_backward():
+    rolling = {"motion.c": None, "motion.speed": [1000.0, 2000.0], "punch.solid.speed": 1200.0}
+    (warning,) = make_plan(template("elastic_punch", CLOSED | rolling)).warnings
+    assert warning.startswith("punch.solid.speed = 1200 m/s is above the speed over the plate, 1000 m/s")
+    for other in ({"punch.solid.speed": 1000.0}, {"friction.sign": "eq25"}, {"friction.mu": 0.0}):
+        assert not make_plan(template("elastic_punch", CLOSED | rolling | other)).warnings
+
+
 @pytest.mark.parametrize("end, warned", [(3.2, True), (0.5, False)])
 def test_friction_too_fast_for_finite_elements_in_time_is_warned_of(end, warned):
     """After a turn the friction of this law changes by λ c a 2^δ = 2.1 within 1 a/c_s at first."""

@@ -133,6 +133,11 @@ def test_measured_points_lie_at_their_places(light, heavy, table):
     assert dots(pressure).tolist() == pytest.approx(np.array([[-0.5, 15.5], [0, 17.25], [0.75, 2e3]]))
     assert dots(tension).tolist() == pytest.approx(np.array([[-0.5, -20], [0, -30.5], [0.75, -25]]))
     assert pressure.get_ylim()[1] > 2e3  # above the curves
+    (legend,) = pressure.figure.legends
+    assert "measured, device.csv" in [text.get_text() for text in legend.get_texts()]
+    far = read(table(POINTS + "99,1,1\n"))
+    (legend,) = light.figure("surface", states=(1,), measured=far).legends
+    assert "measured, device.csv (3 of 4 points)" in [text.get_text() for text in legend.get_texts()]
     pressure, _ = light.figure("surface", states=(1,), measured=points, dimensionless=True).axes
     assert dots(pressure)[1] == pytest.approx([0.0, 17.25 / 27.65], rel=1e-12)
     pressure, _ = Comparison([light, heavy]).drawing(points).figure.axes
@@ -184,6 +189,26 @@ def test_words_of_yield_have_no_difference_from_a_share():
     for pair in ((flat, cylinder), (cylinder, flat)):
         found = by_name(galinx.compare(*pair))
         assert {"yields_1", "yields_2"} <= found.keys() and "yields_2_difference" not in found
+
+
+def test_shares_say_of_what_they_are_and_lengths_are_over_one_half_width():
+    """Where friction varies along the contact the load of first yield is not known."""
+    usual = {"solve.methods": ["sie", "closed_form"], "output.quantities": ["sif", "yield"]}
+    even = computed("cylinder_on_steel", usual | {"punch.radius": 10e-3})
+    law = {
+        "friction.mu": None,
+        "friction.state": "advected",
+        "friction.model": "dahl",
+        "friction.mu_c": 0.6,
+    }
+    grown = computed("cylinder_on_steel", usual | law | {"friction.sigma0_over_load": 2e4})
+    (row,) = [row for row in next(Comparison([even, grown]).sheets()).rows if row[0] == "yields"]
+    assert row[1].endswith(" % of first yield") and row[2].endswith(" % of the yield strength")
+    comparison = Comparison([even, grown], dimensionless=True)
+    _, width, _ = (column for column in comparison.columns() if column.head.startswith("half-width"))
+    a = [result.units().half_width for result in (even, grown)]
+    assert width.values == pytest.approx(np.ravel(a[1]) / even.units().contact.half_width, rel=1e-12)
+    assert any(note.startswith("half-width, centre: a = ") for note in comparison.notes())
 
 
 def test_the_swapped_order_is_the_mirror(light, heavy):

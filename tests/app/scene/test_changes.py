@@ -256,6 +256,8 @@ def test_one_unit_for_a_list_or_a_range(spacing, middle):
     radii = {variant.punch.profile.radius for variant in changed_scene.variants}
     assert sorted(radii) == pytest.approx([2e-3, middle, 20e-3])
     assert changed_scene.punch.loads == (50e3, 100e3)
+    apart = scene_of("cylinder", from_words(["punch.load=[50 N/mm, 0.1 kN/mm]", "solve.methods=[sie]"]))
+    assert apart.punch.loads == (50e3, 100e3) and apart.solve.methods == ("sie",)
     for word in ("{from=2, to} mm", "{1, 2} mm", "{} mm"):
         with pytest.raises(BadInput, match=r"punch\.radius"):
             scene_of("cylinder", from_words([f"punch.radius={word}"]))

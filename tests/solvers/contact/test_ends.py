@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from galinx.solvers.contact.closed_form import rule_of_ends
-from galinx.solvers.contact.ends import Punch, free_ends, half_width_of_load
+from galinx.solvers.contact.ends import Punch, free_ends, half_width_of_load, logarithm_of_load
 from galinx.solvers.errors import SolveError
 
 #: N/μ [m], and n of the half-plane.
@@ -59,4 +59,8 @@ def test_a_load_that_is_infinite_on_one_side():
     h = half_width_of_load(lambda h: -np.inf if h < 2.0 else np.log(h / 3.0), 1e-6, punch)
     assert h == pytest.approx(3.0, rel=1e-13)
     h = half_width_of_load(lambda h: np.inf if h > 4.0 else np.log(h / 3.0), 1e6, punch)
+    assert h == pytest.approx(3.0, rel=1e-13)
+    h = half_width_of_load(lambda h: logarithm_of_load(max(h - 2.0, 0.0)), 1e-6, punch)
+    assert h == pytest.approx(3.0, rel=1e-13)
+    h = half_width_of_load(lambda h: logarithm_of_load(h / 3.0 if h < 4.0 else -1.0), 1e6, punch)
     assert h == pytest.approx(3.0, rel=1e-13)

@@ -153,3 +153,14 @@ def test_splines_bend_at_kinks_of_friction_alone():
         return np.abs(values @ np.linalg.lstsq(values, curve, rcond=None)[0] - curve).max()
 
     assert left_out(np.abs(r - 0.3)) < 1e-12 < 1e-3 < left_out(np.abs(r + 0.4))
+
+
+def test_logarithms_of_the_ends_reach_to_the_next_knots():
+    """There they are as smooth as the splines, which have what they lack of x log x."""
+    knots, degree = (-1.0, -0.9, 0.1, 0.7, 1.0), 4
+    r = np.array([-0.999, -0.95, -0.9, 0.0, 0.69, 0.75, 0.99])
+    of_ends = Splines(knots, (), degree, logarithms=True).sparse(r).toarray()[:, -2:]
+    for own, x in zip(of_ends.T, ((r + 1.0) / 0.1, (1.0 - r) / 0.3)):
+        k = np.arange(degree + 1.0, 20000.0)
+        rest = ((1.0 - np.minimum(x, 1.0))[:, None] ** k / (k * (k - 1.0))).sum(axis=1)
+        np.testing.assert_allclose(own, rest, rtol=1e-3, atol=1e-13)

@@ -1,5 +1,7 @@
 """The largest stresses below a pressure, and how deep it makes the solid yield: Hertz's line contact."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from loaded import LoadedHalfPlane, yield_of
@@ -8,7 +10,7 @@ from scipy.optimize import brentq
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import Turns, von_mises
-from galinx.solvers.contact.yielding import InSolid
+from galinx.solvers.contact.yielding import InSolid, Levels
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
@@ -122,3 +124,13 @@ def test_a_peak_just_beyond_the_nearest_places_beside_a_turn_is_found():
         body = make_contact(SOLID, Flat(1e-3), 2e6, linear(4), 1e9)
         solid = InSolid(AT_REST, np.zeros(1), None, 1e-3, stresses, turns, nearest)
         assert body.strength(solid).shear.value == pytest.approx(1.0, rel=1e-3)
+
+
+def test_the_surface_is_sampled_between_all_knots_and_far_beside_them():
+    knots = np.array([-1.0, -0.2, 0.1, 1.0])
+    places = Levels(knots).places
+    X = places[places[:, 1] == 0.0, 0]
+    for low, high in pairwise(knots):
+        between = X[(low < X) & (high > X)]
+        np.testing.assert_allclose(between, low + (high - low) * np.array([0.25, 0.5, 0.75]), rtol=1e-12)
+    assert (X.min(), X.max()) == pytest.approx((-11.0, 11.0)) and np.all(np.diff(X) > 0.0)

@@ -2,10 +2,18 @@
 
 import numpy as np
 import pytest
+from scipy.special import eval_jacobi
 
 from galinx.solvers.contact.closed_form import FlatPunch
-from galinx.solvers.contact.equation import UNIFORM, Equation
+from galinx.solvers.contact.equation import UNIFORM, Equation, jacobi
 from galinx.solvers.solids.isotropic import MovingFrame
+
+
+def test_polynomials_of_any_weight_are_those_of_jacobi():
+    r = np.linspace(-1.0, 1.0, 9)
+    for α, β in ((-0.5, -0.5), (-0.7, 0.45), (0.3, 0.9)):
+        found = np.array([eval_jacobi(n, α, β, r) for n in range(7)])
+        np.testing.assert_allclose(jacobi(7, α, β, r).T, found, rtol=1e-12, atol=1e-13)
 
 
 @pytest.mark.parametrize("c", [0.0, 4.786e-7, 0.6, 0.9])

@@ -18,8 +18,9 @@ from .law import FrictionLaw
 #: speeds at which it is evaluated.
 _STIFF, _SPEEDS = 30.0, 200
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
-#: scales of the motion; the first is for motions that are not stiff, of laws without memory.
-_EXPLICIT = ("DOP853", 1e-12, 1e-14)
+#: scales of the motion. The first is for laws without memory, the second for others, both for motions
+#: that are not stiff: where LSODA fails, as it may in those, its Fortran writes so on the screen.
+_EXPLICIT, _EITHER = ("DOP853", 1e-12, 1e-14), ("LSODA", 1e-11, 1e-13)
 _IMPLICIT = *(("BDF", of, 1e-2 * of) for of in (1e-10, 1e-8, 1e-6)), ("Radau", 1e-10, 1e-12)
 #: Evaluations after which a piece of more periods is tried in a shorter one; how often a piece in which
 #: no scheme succeeds is tried in a shorter one yet.
@@ -225,7 +226,7 @@ def _thinned(times: NDArray, most: int) -> NDArray[np.float64]:
 def pull(
     slider: Slider, law: FrictionLaw, load: float, done: Callable[[float], None] = lambda share: None
 ) -> Ride:
-    """Move a slider under a law, by SciPy's BDF between stops, starts and switches of the law.
+    """Move a slider under a law, by SciPy between stops, starts and switches of the law.
 
     Args:
         slider: mass, spring and drive.
@@ -378,11 +379,13 @@ class _Motion:
         Raises:
             ValueError: no scheme succeeds.
         """
-        stiff = self._stiff or self.law.flow(self.z, self.s, self.slider.drive_speed).any()
+        remembers = self.law.flow(self.z, self.s, self.slider.drive_speed).any()
+        first = () if self._stiff else (_EITHER,) if remembers else (_EXPLICIT,)
         reason, shortest = "", self._usual / _SHORTER**_TRIALS
         while self._longest > shortest:
-            schemes = [scheme for scheme in _IMPLICIT if scheme not in self._given_up]
-            for scheme in schemes if stiff else (_EXPLICIT, *schemes):
+            for scheme in (*first, *_IMPLICIT):
+                if scheme in self._given_up:
+                    continue
                 try:
                     result = self._by(scheme)
                 except _Tired as error:

@@ -145,6 +145,11 @@ def test_each_rule_has_its_measure(changes, name, wanted):
     assert found[name] == pytest.approx(wanted, nan_ok=True)
 
 
+def test_a_formula_has_tension_by_rounding_and_nodal_forces_have_it_or_not():
+    found = archive(**{f"states/{method}/tension": np.array([1e-13]) for method in ("fem", "sie")})
+    assert found["tension"] == 1e-13 and found.get("tension, sie") is None
+
+
 #: Rules whose limit is another than the tolerance, with it at tolerances of 1e-6 and 1e-3.
 LIMITS = {
     "force balance": (1e-9, 1e-9), "resultant": (1e-9, 1e-9), "resultant over layers": (1e-9, 1e-9),

@@ -620,8 +620,12 @@ def loops_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
     """
     if preferred(data, of.RESULTANT_RATIO):
         return Sheet("", [], [])
-    states = states_of_loops(data)
+    states, loops = states_of_loops(data), data[runs.LOOP_OF_STATE.path]
     columns = _parameters_of(states, data, units)
+    # A law that does not depend on the speed has one loop for all speeds.
+    several = {*zip(loops[loops >= 0].tolist(), data[of.SPEED.path][loops >= 0].tolist())}
+    if len(several) > len(states):
+        columns = [c for c in columns if c.path != of.SPEED.path]
     columns += _occurring(_columns(data, units, (
         _Spec("work", runs.LOOP_WORK, 5, lambda values, _: values.sum(axis=1)),
         _Spec("work of the closed loop", runs.LOOP_CYCLE, 5),

@@ -7,7 +7,7 @@ from support import computed, here
 
 from galinx.app.results.csv import pieces
 from galinx.postprocess.quantities import validity
-from galinx.postprocess.tables import limits_sheet, sliders_sheet, states_sheet
+from galinx.postprocess.tables import limits_sheet, loops_sheet, sliders_sheet, states_sheet
 
 SCENE = """
 solid.material = "steel"
@@ -68,6 +68,15 @@ def test_only_strokes_have_a_friction_loop(tmp_path):
         computed(SCENE, {"friction.mu": 0.2, "motion.strokes": strokes}).save(archive)
         shown = here("show", archive)
         assert shown.returncode == 0 and ("Friction loops" in shown.stdout) is loops
+
+
+def test_a_loop_has_a_speed_where_its_law_depends_on_it():
+    moving = {"motion.speed": [1.0, 900.0], "motion.strokes": ["forward"], "friction.mu": None}
+    stribeck = {"friction.model": "stribeck", "friction.mu_s": 0.3, "friction.stribeck_velocity": 1.0}
+    for law, loops in (({}, 1), (stribeck, 2)):
+        result = computed(SCENE, moving | {"friction.mu_c": 0.2} | law)
+        sheet = loops_sheet(result.data, result.units())
+        assert len(sheet.rows) == loops and ("speed [m/s]" in sheet.columns) is (loops == 2)
 
 
 def test_the_resultant_of_a_prescribed_pressure_stands_beside_the_load():

@@ -198,10 +198,9 @@ class Units:
 
     @property
     def of_a(self) -> str:
-        """The half-width that lengths are over which are not over that of their own contact."""
-        return (
-            f"a = {number(self._first.half_width)} m, that of the first contact at rest without friction"
-        )
+        """Half-width over which lengths are that are not over that of their own contact, in words."""
+        a = number(self._first.half_width)
+        return f"a = {a} m, that of the first contact at rest without friction"
 
     @property
     def stress(self) -> Scaled:

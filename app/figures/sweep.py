@@ -87,10 +87,11 @@ def parameters(of: Archive) -> Drawing:
     at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
     over = plain(f"{sweep.label} and {panels[0].y}" if maps else sweep.label)
     caption = f"What follows from {over}{at}.{sweep.same}"
+    if any(sweep.columns[name].unit == "a" for name in sweep.drawn):
+        caption += f" Half-width and centre are over {of.units.of_a}."
     if maps:
-        caption += (
-            " Between the states it is interpolated" + "; dots are states" * bool(panels[0].curves) + "."
-        )
+        dots = "; dots are states" * bool(panels[0].curves)
+        caption += f" Between the states it is interpolated{dots}."
     left_out = "" if maps else of.not_shown(shown, "--states, --x and --by")
     if sweep.more:
         left_out += f" Drawn by --y alone: {', '.join(sweep.more)}."

@@ -307,14 +307,11 @@ def _faults_of_layers(scene: Scene) -> Iterator[str]:
 
 def _overtaken(scene: Scene, speeds: Sequence[float]) -> Iterator[str]:
     """Warning where a punch rolls so fast that it slips backward."""
-    friction = scene.friction
-    if (
-        not scene.elastic_punch
-        or friction.stress_ratio > 0.0
-        or not np.any(friction.values.get("mu_c", 1.0))
-    ):
+    punch, friction = scene.elastic_punch, scene.friction
+    turned, none = friction.stress_ratio > 0.0, not np.any(friction.values.get("mu_c", 1.0))
+    if punch is None or turned or none:
         return
-    own, least = scene.elastic_punch.speed, min(speeds) * scene.solid.c_s
+    own, least = punch.speed, min(speeds) * scene.solid.c_s
     if own > least * (1.0 + 1e-12):
         yield (
             f"punch.solid.speed = {own:g} m/s is above the speed over the plate, {least:g} m/s: slip is "

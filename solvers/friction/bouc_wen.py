@@ -89,7 +89,7 @@ class BoucWen(FrictionLaw):
         loading = np.maximum(x - begun, 0.0)
         loaded = np.maximum(ends, 0.0)
         short = _short(loaded, self.n)
-        # Of the work of full slip less what is short of it no digits are left where little is loaded.
+        # Where little is loaded, the work of full slip less what is short of it has no digits.
         little = _slip(np.minimum(loaded, _LITTLE), 1.0, self.n, 2.0)
         up = np.where(loaded[1:] < _LITTLE, little[1:] - little[0], loading - (short[1:] - short[0]))
         return self.μ_C * self.x_y * (up - (down[0] - down[1:]))

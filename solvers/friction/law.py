@@ -96,9 +96,9 @@ class FrictionLaw(Protocol):
         return None
 
     def work_of_short(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        """The same over slips on which :meth:`exact` hardly bends, by six places of Gauss's rule.
+        """Work [m] over slips on which :meth:`exact` hardly bends, by six places of Gauss's rule.
 
-        Formulas that subtract from the work of full slip leave no digits of it there.
+        Formulas that subtract from the work of full slip leave no digits there.
         """
         slip, (places, weights) = np.asarray(slip, dtype=float), np.polynomial.legendre.leggauss(6)
         between = slip[..., None] * (0.5 + 0.5 * places)

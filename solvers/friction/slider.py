@@ -19,7 +19,7 @@ from .law import FrictionLaw
 _STIFF, _SPEEDS = 30.0, 200
 #: Schemes, in the order in which they are tried, with their relative tolerance and absolute ones over the
 #: scales of the motion. The first is for laws without memory, the second for others, both for motions
-#: that are not stiff: where LSODA fails, as it may in those, its Fortran writes so on the screen.
+#: that are not stiff: where LSODA fails, as it may in stiff ones, its Fortran writes so on the screen.
 _EXPLICIT, _EITHER = ("DOP853", 1e-12, 1e-14), ("LSODA", 1e-11, 1e-13)
 _IMPLICIT = *(("BDF", of, 1e-2 * of) for of in (1e-10, 1e-8, 1e-6)), ("Radau", 1e-10, 1e-12)
 #: Evaluations after which a piece of more periods is tried in a shorter one; how often a piece in which

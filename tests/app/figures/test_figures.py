@@ -143,7 +143,12 @@ def test_maps_over_numbers_that_are_apart_by_ratios_have_logarithmic_axes_and_co
         radius = { from = "1 mm", to = "10 m", number = 5, spacing = "log" }
         load = { from = "10 N/mm", to = "1000 N/mm", number = 5, spacing = "log" }
     """
-    (drawing,) = computed(scene).drawings(figures=("parameters",))
+    result = computed(scene)
+    drawing, over_a = (
+        *result.drawings(figures=("parameters",)),
+        *result.drawings(figures=("parameters",), dimensionless=True),
+    )
+    assert "over a = " in over_a.caption and "over a = " not in drawing.caption
     axis = drawing.figure.axes[0]
     assert (axis.get_xscale(), axis.get_yscale()) == ("log", "log")
     assert {"$100$", "$1000$"} <= {text.get_text() for text in axis.texts if text.get_visible()}

@@ -453,7 +453,7 @@ def _draw_map(axis: Axes, shown: Map, log: str) -> ScalarMappable:
         image: ScalarMappable
         if log or not all(np.ptp(np.diff(z)) <= 1e-6 * np.ptp(z) for z in (X, Y)):
             image = axis.pcolormesh(
-                X, Y, values, cmap=colours, norm=norm, shading="nearest", rasterized=True
+                X, Y, values, cmap=colours, norm=norm, shading="gouraud", rasterized=True
             )
         else:
             image = axis.imshow(

@@ -7,7 +7,6 @@ from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from galinx.postprocess.quantities import Quantity, column, layers, states, stresses, validity, yielding
 from galinx.postprocess.quantities.quantity import FEM, STATE
@@ -305,6 +304,8 @@ def _finer(x: NDArray) -> tuple[NDArray, Callable[[NDArray], NDArray]]:
 
     Curves between numbers rise and fall as these do; beside one that is missing they are straight.
     """
+    from scipy.interpolate import PchipInterpolator  # a slow import, and most figures are curves
+
     parts, log = ceil(64 / (len(x) - 1)), _by_ratios(x)
     steps = np.log(x) if log else x
     places = np.interp(np.arange(parts * (len(x) - 1) + 1) / parts, np.arange(len(x)), steps)

@@ -145,27 +145,27 @@ class Comparison:
         """A table for each pair of states, results side by side; of many the first."""
         first, *others = (textwrap.fill(label, 18) for label in self.labels)
         heads = [first, *(head for label in others for head in (label, "difference\n[%]"))]
-        shown = []
+        titles, shown = self.titles[:LIMIT], []
         for key, columns in self._rows.items():
             if not self._pairs(columns):
-                texts = [column.texts() if column else [""] * len(self.pairs) for column in columns]
+                several = len({column.unit for column in columns if column}) > 1  # as of shares
+                texts = [
+                    [""] * len(titles) if column is None
+                    else [column.words(p) for p in range(len(titles))] if several
+                    else column.texts(len(titles))
+                    for column in columns
+                ]  # fmt: skip
                 column = next(column for column in columns if column)
-                if len({column.unit for column in columns if column}) > 1:  # shares of several things
-                    units = [column.unit if column else "none" for column in columns]
-                    texts = [
-                        [f"{text} {unit}" if text and unit != "none" else text for text in of_result]
-                        for of_result, unit in zip(texts, units)
-                    ]
-                    column = replace(column, unit="none")
-                shown.append((column, [*zip(*texts)], self._off[key]))
-        for p, title in enumerate(self.titles[:LIMIT]):
+                label = column.head if several else column.label
+                shown.append((column, label, [*zip(*texts)], self._off[key]))
+        for p, title in enumerate(titles):
             rows = []
-            for column, texts_of_pairs, percents in shown:
+            for column, label, texts_of_pairs, percents in shown:
                 cells = texts_of_pairs[p]
                 same_motion = column.path == states.MOTION.path and len({*cells}) == 1
                 if not any(cells) or same_motion:
                     continue
-                row = [f"{'  ' * column.place}{column.label}", cells[0]]
+                row = [f"{'  ' * column.place}{label}", cells[0]]
                 for cell, percent in zip(cells[1:], percents):
                     off = np.nan if percent is None else percent[p]
                     words = f"{off:+.3g}" if abs(off) >= _ROUNDING else "0"

@@ -66,13 +66,27 @@ def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any
 
 
 def _value(value: str) -> Any:
-    """What a value says in TOML, or without the quotes that TOML asks for."""
+    """Value of TOML, or of a text without the quotes that TOML asks for."""
     try:
         return tomlkit.value(value)
     except (TOMLKitError, ValueError, RecursionError):
-        if texts := _TEXTS.fullmatch(value):
-            return [_value(one.strip()) for one in texts[1].split(",") if one.strip()]
+        texts = _TEXTS.fullmatch(value)
+        # In [5, 10 µm] the first number has no unit: it is refused.
+        if texts and not any(map(_is_number, parts := _between_commas(texts[1]))):
+            return parts
         return _with_unit(value)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _between_commas(text: str) -> list[str]:
+    return [part.strip() for part in text.split(",") if part.strip()]
 
 
 def _with_unit(value: str) -> Any:
@@ -82,7 +96,7 @@ def _with_unit(value: str) -> Any:
         return value
     given, unit = match[1], match[2]
     if given.startswith("["):
-        return [f"{number.strip()} {unit}" for number in given.strip("[]").split(",") if number.strip()]
+        return [f"{number} {unit}" for number in _between_commas(given.strip("[]"))]
     try:
         table = tomlkit.value(given).unwrap()
     except (TOMLKitError, ValueError):

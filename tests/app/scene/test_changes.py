@@ -258,6 +258,8 @@ def test_one_unit_for_a_list_or_a_range(spacing, middle):
     assert changed_scene.punch.loads == (50e3, 100e3)
     apart = scene_of("cylinder", from_words(["punch.load=[50 N/mm, 0.1 kN/mm]", "solve.methods=[sie]"]))
     assert apart.punch.loads == (50e3, 100e3) and apart.solve.methods == ("sie",)
+    with pytest.raises(BadInput, match=r"punch\.load .*found '\[50, 100 N/mm\]'"):
+        scene_of("cylinder", from_words(["punch.load=[50, 100 N/mm]"]))
     for word in ("{from=2, to} mm", "{1, 2} mm", "{} mm"):
         with pytest.raises(BadInput, match=r"punch\.radius"):
             scene_of("cylinder", from_words([f"punch.radius={word}"]))

@@ -103,6 +103,8 @@ _THINNEST, _NEXT_ABOVE, _BETWEEN_LEVELS = 1e-4, 0.5**0.25, 1.01
 #: or the depth, and their number on either side; places all along; and how many of the largest stresses
 #: between two places are refined.
 _CLOSE, _REACH, _BESIDE_TURN, _ALL_ALONG, _REFINED = 0.3, 3.0, 18, np.linspace(-1.5, 1.5, 31), 3
+#: Least distance of two places along X over a or the depth.
+_NARROWEST = 1e-6
 #: Trials of a depth between two others.
 _TRIALS = 8
 
@@ -174,6 +176,9 @@ def _largest_at(stress: Stress, y: NDArray, turns: NDArray) -> NDArray[np.float6
     offsets = np.concatenate([-beside, np.zeros_like(y), beside], axis=1)
     around = (turns[..., None] + offsets[:, None]).reshape(len(y), -1)
     X = np.sort(np.concatenate([around, wide * _ALL_ALONG], axis=1))
+    # A place is one top, however often it is named; others would have no width between neighbours.
+    again = np.diff(X, axis=1, prepend=-np.inf) <= _NARROWEST * wide
+    X = np.sort(np.where(again, 2.0 * X[:, -1:], X))
 
     def at(X: NDArray) -> NDArray[np.float64]:
         return _known(stress(np.stack([X, np.broadcast_to(-y, X.shape)], axis=-1)))
@@ -183,7 +188,7 @@ def _largest_at(stress: Stress, y: NDArray, turns: NDArray) -> NDArray[np.float6
     tops = np.where((values >= padded[:, :-2]) & (values >= padded[:, 2:]), values, -1.0)
     i = np.argsort(-tops, axis=1, kind="stable")[:, :_REFINED]
     low, high = (np.take_along_axis(X, np.clip(i + side, 0, X.shape[1] - 1), 1) for side in (-1, 1))
-    middle, half = (low + high) / 2.0, np.maximum(high - low, 1e-6 * wide) / 2.0
+    middle, half = (low + high) / 2.0, np.maximum(high - low, _NARROWEST * wide) / 2.0
     u = middle[..., None] + half[..., None] * NODES
     of_nodes = at(u.reshape(len(u), -1)).reshape(u.shape)
     bounds = (middle - half).ravel(), (middle + half).ravel()
@@ -280,6 +285,9 @@ def _starts(places: NDArray, steps: NDArray, there: NDArray) -> NDArray[np.int64
             distance = np.abs(places[i][:, None] - places[i]).max(axis=-1)
             around = distance <= _OWN * steps[:, None]
         tops = np.flatnonzero(values >= np.where(around, values, -np.inf).max(axis=1))
+        # States with fewer turns than others name one of theirs several times.
+        once = np.unique(places[i % len(places)][tops], axis=0, return_index=True)[1]
+        tops = tops[np.sort(once)]
         tops = tops[np.argsort(-values[tops], kind="stable")][:_STARTS]
         numbers[i] = np.resize(tops[values[tops] >= _LEAST * values[tops[0]]], _STARTS)
     return numbers

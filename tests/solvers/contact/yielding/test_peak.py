@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from galinx.solvers.contact.prescribed_pressure import LinearPressure
 from galinx.solvers.contact.solution import make_contact
 from galinx.solvers.contact.stresses import Turns, von_mises
-from galinx.solvers.contact.yielding import InSolid, Levels
+from galinx.solvers.contact.yielding import InSolid, Levels, Peak, depth_of_yield, peak
 from galinx.solvers.profiles.punches import Flat
 from galinx.solvers.solids import Isotropic
 
@@ -134,3 +134,30 @@ def test_the_surface_is_sampled_between_all_knots_and_far_beside_them():
         between = X[(low < X) & (high > X)]
         np.testing.assert_allclose(between, low + (high - low) * np.array([0.25, 0.5, 0.75]), rtol=1e-12)
     assert (X.min(), X.max()) == pytest.approx((-11.0, 11.0)) and np.all(np.diff(X) > 0.0)
+
+
+def test_turns_that_are_named_several_times_change_nothing():
+    """States with fewer turns than others name one again and again; the depth was 2e-4 too small."""
+
+    def stress(points):
+        return 4.0 / np.hypot(points[..., 0] - 0.87, points[..., 1] - 1e-3)
+
+    def depth(turns):
+        return depth_of_yield(stress, Peak(*np.array([[4e3], [0.87], [0.0]])), np.array([turns]))
+
+    few = [-1.0, -0.13, 1.0]
+    for turns in (few, [*few, -1.0, -1.0, -1.0], [*few, 1.0 + 1e-15, 1.0 - 1e-15, 1.0 + 2e-15]):
+        assert depth(turns) == pytest.approx(3.999, rel=1e-7)
+
+
+def test_places_that_are_named_several_times_take_no_start_from_others():
+    """Nine copies of the highest place left no start for the place beside the highest stress."""
+
+    def stress(points):
+        X, Y = points[..., 0], points[..., 1]
+        near, far = (X - 0.03) ** 2 + (Y + 1.0) ** 2, (X - 5.0) ** 2 + (Y + 1.0) ** 2
+        return np.exp(-40.0 * near) + 0.9 * np.exp(-far)
+
+    places = np.array([[[0.1, -1.0], *[[5.0, -1.0]] * 9]])
+    found = peak(stress, places, np.full(10, 0.1), stress(places))
+    assert found.value == pytest.approx(1.0, rel=1e-6)

@@ -306,7 +306,7 @@ def _columns(
     owner: Column | None = None
     # Places and lengths of the contact, and stresses over N/(2a), up to which they are rounding.
     length, stress = (solved(scale.factor).max() for scale in (units.scale(OVER_A), units.stress))
-    length, stress = 5e-6 * length, 5e-8 * stress
+    length, stress = 5e-6 * length, 5e-8 * stress  # ten times as much by finite elements
     for head, rows, digits, taken, name in specs:
         if not (place := head.startswith("at ")):
             owner = None
@@ -320,7 +320,9 @@ def _columns(
         if row.type == TEXT:
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():
-            least = length if place or row.scale in (CONTACT, OVER_A) else stress * (row.unit == "N/(2a)")
+            least = stress * (row.unit == "N/(2a)") * (10.0 if row.method == FEM else 1.0)
+            if place or row.scale in (CONTACT, OVER_A):
+                least = length
             columns.append(
                 Column(
                     f"{head}/a" if units.dimensionless and (place or row.scale == OVER_A) else head,

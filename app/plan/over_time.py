@@ -489,8 +489,8 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
             )
         drives[speeds[0]] = _drives_by_law(scene, speeds[0])
     else:
-        different = np.unique(np.column_stack([c, states.g, headings(scene, states.directions)]), axis=0)
-        for speed, ratio, way in different.tolist():
+        each = zip(c.tolist(), states.g.tolist(), headings(scene, states.directions).tolist())
+        for speed, ratio, way in dict.fromkeys(each):
             drives[speed] = (*drives.get(speed, ()), Drive(round(way), ratio))
     if (many := sum(map(len, drives.values()))) > MOST:
         raise BadInput(

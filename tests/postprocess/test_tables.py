@@ -3,6 +3,7 @@
 import csv
 
 import numpy as np
+import pytest
 from support import computed, here
 
 from galinx.app.results.csv import pieces
@@ -36,6 +37,16 @@ def test_a_stress_that_is_none_has_no_place_beside_others():
     tension = [row[0] for row in rows].index("largest tension σ_XX [MPa]")
     assert [rows[tension][1], rows[tension + 1][1]] == ["0", ""]
     assert rows[tension][2] != "0" and rows[tension + 1][2] != ""
+
+
+@pytest.mark.parametrize("method, tension, none", [("fem", 2e-7, True), ("fem", 2e-6, False),
+                                                  ("closed_form", 2e-7, False)])  # fmt: skip
+def test_finite_elements_round_tenfold(method, tension, none):
+    data, units = computed(SCENE).data, computed(SCENE).units()
+    data = {path.replace("closed_form", method): values for path, values in data.items()}
+    data[f"states/{method}/sigma_XX_max"] = np.array([tension])
+    shown = dict(states_sheet(data, units, width=80).rows)["largest tension σ_XX"]
+    assert (shown == "0 MPa") is none
 
 
 def test_a_tilted_punch_that_yields_under_any_load_says_so():

@@ -18,6 +18,14 @@ CLOSED = {"solve.methods": ["closed_form"], "output.quantities": ["friction", "s
 WEDGE = {"punch.profile": "wedge", "punch.half_width": None, "punch.slope": 0.005}
 
 
+def test_starts_come_in_the_order_of_the_states():
+    """They were sorted by σ_XY/σ_YY: the first start was the last state."""
+    motion = {"motion.c": 0.4, "motion.speed": None, "friction.mu_c": [0.2, 0.5, 0.1]}
+    in_time = {"time.end": 2.0, "output.quantities": ["time"], "solve.tolerance": 1e-3}
+    starts = make_plan(template("coating", motion | in_time)).starts
+    assert [drive.constant for drive in starts.drives[0.4]] == [-0.2, -0.5, -0.1]
+
+
 @pytest.mark.parametrize(
     "changes, message",
     [

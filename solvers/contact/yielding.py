@@ -176,9 +176,9 @@ def _largest_at(stress: Stress, y: NDArray, turns: NDArray) -> NDArray[np.float6
     offsets = np.concatenate([-beside, np.zeros_like(y), beside], axis=1)
     around = (turns[..., None] + offsets[:, None]).reshape(len(y), -1)
     X = np.sort(np.concatenate([around, wide * _ALL_ALONG], axis=1))
-    # A place is one top, however often it is named; others would have no width between neighbours.
+    # A place named again would take the place of another top, and has no width: it goes to the end.
     again = np.diff(X, axis=1, prepend=-np.inf) <= _NARROWEST * wide
-    X = np.sort(np.where(again, 2.0 * X[:, -1:], X))
+    X = np.sort(np.where(again, X[:, -1:], X))
 
     def at(X: NDArray) -> NDArray[np.float64]:
         return _known(stress(np.stack([X, np.broadcast_to(-y, X.shape)], axis=-1)))

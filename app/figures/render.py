@@ -205,7 +205,7 @@ def render(
         letter = f"({chr(97 + n)})  " if len(panels) > 1 else ""
         made.append(_Drawn(figure.add_axes((0.0, 0.0, 1.0, 1.0), label=str(n)), panel, letter))
     named = {c.label: c for p in panels if not p.own_legend for c in p.curves if c.label}
-    foot = _legend(figure, [*named.values(), *notes])
+    foot = _legend(figure, [*named.values()], notes)
     _arrange(figure, made, size, (rows, columns), high, foot)
     figure.panels = tuple(panels)  # type: ignore[attr-defined]  # for charts on pages
     return figure
@@ -279,7 +279,9 @@ class _Drawn:
         for y in panel.dashes:
             axis.axhline(y, color="black", linewidth=0.6, linestyle=(0, (5.0, 2.5)))
         if panel.bar:
-            axis.plot(panel.bar, [0.0, 0.0], color="black", linewidth=2.5, clip_on=False)
+            axis.plot(
+                panel.bar, [0.0, 0.0], color="black", linewidth=2.5, clip_on=False, solid_capstyle="butt"
+            )
         if panel.xlim:
             axis.set_xlim(panel.xlim)
         if panel.ylim:
@@ -486,17 +488,25 @@ def _entries(curves: Sequence[Curve]) -> list[Line2D]:
 _BESIDE_TEXTS = {"columnspacing": 1.2, "handletextpad": 0.5, "handlelength": 2.2}
 
 
-def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
-    """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in]."""
-    if not (handles := _entries(curves)):
+def _legend(figure: Figure, curves: Sequence[Curve], notes: Sequence[Curve]) -> float:
+    """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in].
+
+    On several lines notes stand in columns of their own.
+    """
+    groups = [*filter(None, map(_entries, (curves, notes)))]
+    if len(groups) == 2 and len(groups[1]) == 1:
+        groups = [[*groups[0], *groups[1]]]
+    if not groups:
         return 0.0
+    blank, most = Line2D([], [], linestyle="none", label=" "), sum(map(len, groups))
     width, dpi, renderer = figure.get_figwidth(), figure.dpi, figure.canvas.get_renderer()
-    room, texts, beside, frame = (width - 0.1) * dpi, np.zeros(0), 0.0, 0.0
-    for rows in range(1, len(handles) + 1):
-        columns = ceil(len(handles) / rows)
+    room, widths, beside, frame = (width - 0.1) * dpi, dict[Line2D, float](), 0.0, 0.0
+    for rows in range(1, most + 1):
+        handles = [one for of in groups for one in [*of, *[blank] * (-len(of) % rows)]]
+        columns = len(handles) // rows
         # Widths follow from those of the first try, which is slow as each is.
-        each = np.array_split(texts, columns)
-        if 1 < rows < len(handles) and frame + columns * beside + sum(map(max, each)) > room:
+        each = np.array([widths.get(one, 0.0) for one in handles]).reshape(columns, rows).max(axis=1)
+        if 1 < rows < most and frame + columns * beside + each.sum() > room:
             continue
         figure.legends.clear()
         legend = figure.legend(
@@ -507,9 +517,12 @@ def _legend(figure: Figure, curves: Sequence[Curve]) -> float:
         if box.width <= room:
             break
         if rows == 1:
-            texts = np.array([text.get_window_extent(renderer).width for text in legend.get_texts()])
+            widths = {
+                one: text.get_window_extent(renderer).width
+                for one, text in zip(handles, legend.get_texts())
+            }
             beside = sum(_BESIDE_TEXTS.values()) * SMALL * dpi / 72.0
-            frame = box.width - texts.sum() - columns * beside
+            frame = box.width - sum(widths.values()) - columns * beside
     for text in legend.get_texts() if box.width > room else ():
         fit_text(text, text.get_text(), width - 0.5)
     return legend.get_window_extent(renderer).height / dpi + 0.05

@@ -68,14 +68,17 @@ CAPTIONS = {
     "sinusoidal":
         "Friction in sinusoidal motion (scene sinusoidal), of which the study's section 2 speaks: "
         "Dahl's law knows the way alone, so that over position the loop is that of Fig 2, nearly closed "
-        "from the second cycle on; over time friction jumps in slope where the motion turns.",
+        "from the second cycle on; over time friction changes slowest at a turn, and fastest soon after. "
+        "Its small corners are the path's, which is straight between its points.",
     "laws":
         "Friction laws by their contact stresses, which the study names as future work: {laws} with the "
         "same μ_C = 0.5 and, but for Coulomb's law, the same slope of 25 000/m at f = 0, in FM2 at X/L "
         "= {at:g}. Stresses follow f alone; laws that agree at full slip differ most behind a turn. Of "
         "these LuGre's law alone knows the speed: it falls from μ_S = 0.6 at rest to μ_C in fast "
-        "sliding.",
+        "sliding. In (a) lines are FM1, dashes BM1 and dots with dashes FM2.",
 }  # fmt: skip
+_CLOSED = " Lines and markers are the closed form"
+_DIFFER = "; finite elements differ from it by what the last row shows"
 _ENDS = (
     " X = -a is the trailing end in forward motion (FM1, FM2) and the leading one in backward motion "
     "(BM1); the study calls X = +a the leading end in all of them."
@@ -108,8 +111,9 @@ class Stresses:
 STRESSES = {
     "fig5": Stresses(
         "Fig 5. Slow sliding (SS), at two places of three strokes: closed form as lines, finite "
-        "elements as markers. The pressure leans to the end that trails, where the surface is pulled; "
-        "it is pressed at the other. BM1 at X/L = 0.2 has gone 0.8 L from its turn, at 0.8 only 0.2 L.",
+        "elements, on a confocal mesh and not on the block of Fig 4, as markers. The pressure leans to "
+        "the end that trails, where the surface is pulled; it is pressed at the other. BM1 at X/L = 0.2 "
+        "has gone 0.8 L from its turn, at 0.8 only 0.2 L.",
         REFERENCE, STROKE, (FM1, BM1, FM2), PLACE, (0.2, 0.8), (SLOW,),
     ),
     "fig7": Stresses(
@@ -121,8 +125,8 @@ STRESSES = {
         REFERENCE, PLACE, (0.2, 0.5, 1.0), STROKE, (FM1, BM1, FM2),
     ),
     "fig8": Stresses(
-        "Fig 8. What μ_C does in FM1, slow (SS) and at high speed (HS): little at the beginning of the "
-        "stroke, where σ₀ l/N alone sets the friction, and the more, the further the punch has come.",
+        "Fig 8. What μ_C does in FM1, slow (SS) and at high speed (HS): the more, the further the punch "
+        "has come. At the beginning of the stroke σ₀ l/N alone sets the slope of friction.",
         REFERENCE | {STROKE: FM1}, PLACE, (0.2, 0.8), _MU, VARIED[_MU],
     ),
     "fig9": Stresses(
@@ -162,8 +166,13 @@ def of_study(data: dict[str, Any], scene: Scene) -> Iterator[Drawing]:
     """Figs 1 to 10 of the study from an archive of scenes/study.toml, and two that it speaks of."""
     of, fig6 = Archive(data, scene, Choice()), scenes.read(SCENES / "fig6.toml")
     reference = _state(of, REFERENCE)
+    of_reference = plain(of.label(reference, [*REFERENCE]))
     yield Drawing("fig1", CAPTIONS["fig1"], problem_figure())
-    yield Drawing("fig2", CAPTIONS["fig2"], loops_figure([Loops(of).panel([reference], [])], []))
+    yield Drawing(
+        "fig2",
+        f"{CAPTIONS['fig2']} {of_reference}.",
+        loops_figure([Loops(of).panel([reference], [])], []),
+    )
     yield Drawing("fig3", CAPTIONS["fig3"], procedure_figure())
     block = make_plan(scenes.read(SCENES / "box.toml")).fem  # nothing is solved on it
     assert block
@@ -218,7 +227,7 @@ def _laws(scene: Scene, X: NDArray) -> Drawing:
             [[np.where(under_punch(X), punch.σ_YY(X), np.nan)], [punch.σ_XX(X)]] for punch in punches
         )
         for name_, along in _stresses(X, slow, fast).items():
-            curves[name_] += along.shown([look])
+            curves[name_] += along.shown([look._replace(line="-")])  # as the legend has it
         loops += [replace(loop, label=called) for loop in Loops(archive).of(at[:1], [])]
         place = np.array([_AT]), archive.data[FRICTION.path][at[:1]]
         dots.append(Curve(*place, look, "", MARKERS))
@@ -309,7 +318,9 @@ def stresses_drawing(name: str, of: Archive) -> Drawing:
         panels += [_difference_panel(data, states, column, panels[column]) for column in range(2)]
     says = ("closed form", "finite elements") if single else _slow_and_fast(of, states[0])
     drawn = render(panels, None, 2, lines_and_markers(*says), high=0.5)
-    return Drawing(name, figure.caption + _ENDS, drawn)
+    shared = plain(of.label(states[0][0], [key for key in figure.at if key != STROKE]))
+    methods = "" if single else f"{_CLOSED}{_DIFFER * solved[FEM]}."
+    return Drawing(name, f"{figure.caption} All with {shared}.{methods}{_ENDS}", drawn)
 
 
 def _difference_panel(

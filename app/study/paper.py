@@ -209,7 +209,7 @@ def _details(study: Result) -> list[Sheet]:
         f"Displacements under the punch (µm), {_STROKE}, X/L = {_PLACE:g}, finite elements",
         ("", "X = -a", "X = 0", "X = a"),
         rows,
-        ("Relative to the surface 100 a away; v is the same all over the contact.",),
+        ("Relative to the mean of the surface 100 a ahead and behind; v is the same under the punch.",),
     )]  # fmt: skip
 
 
@@ -301,8 +301,9 @@ def _methods(study: Result, block: Result) -> tuple[Sheet, dict[str, float]]:
         ("", "f", "K_I, SS", "K_I, HS", "off by"),
         rows,
         (
-            "off by: the largest difference of all strokes, of f absolute, of K_I relative. The block is "
-            "as large as the study's, 100 punch widths: its walls, not its cells, cost that much.",
+            "K_I at X = -a; off by: the largest difference at either end in all strokes, of the block in "
+            "this state at HS alone; of f absolute, of K_I relative. The block is as large as the "
+            "study's, 100 punch widths: its walls, not its cells, cost that much.",
         ),
     ), off
 

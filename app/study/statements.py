@@ -76,7 +76,7 @@ class Results:
             int(np.abs(self.X - X).argmin()) for X in (-BESIDE, BESIDE, -UNDER, UNDER)
         )
         #: Position beside the punch at which σ_XX is read, over a, as it is printed.
-        self.beside = f"{self.X[self.ahead]:.3g} a"
+        self.beside = f"{self.X[self.ahead]:.4g} a"
         #: X/L of the steps of a forward stroke.
         self.places: NDArray[np.float64] = data[runs.LOOP_X.path].reshape(3, -1)[0]
 
@@ -160,10 +160,14 @@ def _friction(r: Results) -> _Decided:
         [float((loop[0] - loop[2]).mean()) for loop in (r.loop(**law) for law in r.over(name, others))]
         for name, others in (("mu_c", REFERENCE), ("sigma0_over_load", MILDER))
     )
+    loops = [r.loop(**law) for law in r.over("sigma0_over_load", MILDER)]
+    rises = np.any(np.diff([loop[0] - loop[2] for loop in loops], axis=0) > 0.0, axis=0)
+    early = f"; at X/L up to {r.places[rises].max(initial=0.0):.2g} it grows with σ₀l/N" * rises.any()
     yield (
         "3", "f of FM1 and FM2: the difference grows with μ_C and falls with σ₀l/N (6b, c)",
         _grows(by_level) and _falls(by_stiffness),
-        f"mean over a stroke {_to(by_level, '.3f')} with μ_C; {_to(by_stiffness, '.3f')} with σ₀l/N",
+        f"mean over a stroke {_to(by_level, '.3f')} with μ_C; {_to(by_stiffness, '.3f')} with σ₀l/N"
+        + early,
     )  # fmt: skip
 
     loops = [r.loop(**law)[0] for law in r.over("sigma0_over_load", MILDER)]
@@ -271,7 +275,12 @@ def _stiffness(r: Results) -> _Decided:
     """Figs 9 and 10: stresses by the stiffness and the exponent of friction."""
     p_left, p_right, tension, ahead = r.lean("sigma0_over_load", 0.2)
     leans = _grows(p_right) and _falls(p_left)
-    why = ". It leans back, as 15 has it; with Eq 25's sign it leans ahead, and tension is ahead, too"
+    g = [r.data[states.RATIO.path][r.state(**law)] for law in r.over("sigma0_over_load", MILDER)]
+    punch = FlatPunch(r.solid.response(SLOW), np.array(g))
+    why = (
+        ". It leans back, as 15 has it; its top, the least pressure, moves to X/a = "
+        f"{_to(punch.α - punch.β)}. With Eq 25's sign it leans ahead, and tension is ahead, too"
+    )
     yield (
         "12a", 'σ₀l/N grows: σ_YY slants "towards the leading end" (9a)',
         leans, f"-σ_YY at -{UNDER:g} a {_to(p_left)}, at {UNDER:g} a {_to(p_right)}" + why * (not leans),
@@ -286,10 +295,11 @@ def _stiffness(r: Results) -> _Decided:
     f = [r.f(motion="FM2", **law) for law in laws]
     slow, fast = ([r.σ_XX(at, c=c, motion="FM2", **law) for law in laws] for c in (SLOW, FAST))
     follows = np.all(np.sign([*slow, *fast]) == np.outer(np.sign(2 * f), (1.0, -1.0)))
+    of_speeds = f"σ_XX {'follows' if follows else 'does not follow'} at both speeds"
     yield (
         "13", "FM2, X/L = 0.2: friction points back at σ₀l/N = 12500, forward at larger ones; SS, HS "
               "(9c, d)",
-        f[0] < 0.0 < min(f[1:]) and follows, f"f = {_to(f, '+.4f')}; σ_XX follows at both speeds",
+        f[0] < 0.0 < min(f[1:]) and follows, f"f = {_to(f, '+.4f')}; {of_speeds}",
     )  # fmt: skip
     off = [_apart(*both) for both in zip(fast, slow)]
     yield (
@@ -300,7 +310,7 @@ def _stiffness(r: Results) -> _Decided:
     p_left, p_right, tension, ahead = r.lean("delta", 0.4)
     slight = max(abs(values[-1] / values[0] - 1.0) for values in (p_left, p_right))
     less = _falls(p_left) and _grows(p_right) and _falls(tension) and _grows(ahead)
-    why = ". With Eq 25's sign the ends change places, and it does not"
+    why = ". With Eq 25's sign the ends change places, and this does not hold"
     yield (
         "15", "δ_D grows: σ_YY falls a little at the trailing end and grows at the leading one; tension "
               "behind and compression ahead fall (10)",
@@ -328,7 +338,7 @@ def _damage(r: Results) -> _Decided:
         "16", "K_I equal at both ends; FM1 and FM2 less at X/L = 0.8 than at 0.2, BM1 the reverse; Diff "
               "% larger in HS (Tables 4, 5)",
         off < 1e-6 and signs and _grows(np.abs(changes)),
-        f"ends {off:.0e} apart; to 0.8 in FM1, BM1, FM2 by (%) {differences}",
+        f"ends {off:.0e} apart; to 0.8 in FM1, BM1, FM2 by (%, of all digits) {differences}",
     )  # fmt: skip
 
     laws, places = r.over("mu_c", REFERENCE), (0.2, 0.4, 0.5, 0.8, 1.0)
@@ -372,7 +382,8 @@ def statements_sheet(decided: list[Statement]) -> Sheet:
         [(statement.number, statement.claim, statement.words) for statement in decided],
         (
             f"stresses over N/(2a), mean pressure 1; of σ_YY for |X| ≤ {UNDER:g} a. Near, close, "
-            f"negligible: within {NEAR:.0%}; slight: below {SLIGHT:.0%} of what is notable.",
+            f"negligible: within {NEAR:.0%} (in 6 of the mean pressure); slight: below {SLIGHT:.0%} of "
+            "what is notable.",
         ),
         words=True,
     )

@@ -24,7 +24,7 @@ GRADED, FINER = np.linspace(-14.0, 14.0, 113), np.linspace(-18.0, 18.0, 109)
 #: Distance of a sample of a curve from the one on its left, over that from the one on its right, below
 #: which it is left out.
 _COINCIDE = 0.1
-#: Distance of two places over their own size below which no polynomial is taken between them: its nodes
+#: Distance of two places over the size of any below which no polynomial is taken between them: its nodes
 #: would coincide by rounding.
 _CLOSEST = 1e4 * np.finfo(float).eps
 #: Relative difference of heights, and distance over a of places, up to which they are the same.
@@ -166,9 +166,11 @@ def extreme(
 
 
 def _apart(X: NDArray) -> NDArray[np.bool_]:
-    """True at rising positions but one of two that all but coincide: no polynomial goes through both."""
-    gaps = np.diff(X)
-    return np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
+    """True at rising positions but one of any that all but coincide: no polynomial goes through both."""
+    apart = np.append(True, np.diff(X) > _CLOSEST * np.abs(X).max())
+    gaps = np.diff(X[apart])
+    apart[apart] = np.concatenate([[True], gaps[:-1] >= _COINCIDE * gaps[1:], [True]])
+    return apart
 
 
 def settled(

@@ -113,6 +113,22 @@ def test_no_polynomial_goes_through_samples_of_two_pieces():
     assert height[0] == pytest.approx(1.0, abs=1e-12) and place[0] == pytest.approx(-0.12, abs=1e-9)
 
 
+@pytest.mark.parametrize("copies", [2, 3, 5])
+def test_positions_that_coincide_by_rounding_are_one(copies):
+    """Of three that do two were left, through which no polynomial goes: kinks at round places."""
+    X = 0.31 * np.arange(-12.0, 13.0)
+    X = np.sort(np.append(X, X[16] + 2.3e-16 * np.arange(1.0, copies)))
+
+    def function(x):
+        return np.cosh((x - 1.13) / 1.5)[None] ** -2.0
+
+    for value, place in (extreme(function(X), X, 1.0, n) for n in (ALONG, FEWER)):
+        assert abs(value[0] - 1.0) < 1e-4 and abs(place[0] - 1.13) < 0.01
+    ends = np.array([[extreme(function(X), X, 1.0, n) for n in (ALONG, FEWER)]])
+    best = settled(function, X, function(X), np.swapaxes(ends, 1, 2), 1e-8)
+    np.testing.assert_allclose(best[0, :, 0], [1.0, 1.13], rtol=1e-8)
+
+
 @pytest.mark.parametrize("width", [0.6, 0.5])
 def test_what_samples_do_not_settle_the_function_does(width):
     """Peaks that are hardly wider than samples are apart; two all but tie."""

@@ -153,7 +153,7 @@ class Contact:
             reasons[UNIFORM] = "the solid has layers, each with a strength of its own"
             if not self.finite:
                 reasons.setdefault(
-                    YIELD, "over layers it is known below punches with two free ends and no tip"
+                    YIELD, "over layers it is known below punches alone, with two free ends and no tip"
                 )
         else:
             reasons[LAYERED] = "the solid has no layers"

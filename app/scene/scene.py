@@ -154,9 +154,7 @@ class Scene:
                 try:
                     along = advected(law, self.legs[0].s, speed, a, friction.stress_ratio)
                 except ValueError as error:
-                    raise BadInput(
-                        f'friction.state = "advected": {error}; take other parameters'
-                    ) from None
+                    raise BadInput(f'friction.state = "advected": {error}') from None
                 g = along.mean
                 while g in each:  # another law with the same mean
                     g = float(np.nextafter(g, np.inf))

@@ -247,10 +247,17 @@ def _check_along(pairs: Sequence[Sequence[float]]) -> None:
         raise ValueError(f"found f from {min(f):g} to {max(f):g}, expected none below 0, and not all 0")
 
 
+#: Least depth over a of points inside; differences over far less have no digits.
+_SHALLOWEST = 1e-12
+
+
 def _check_points(points: Sequence[Sequence[float]]) -> None:
     for _, Y, *_ in points:
-        if Y >= 0.0:
-            raise ValueError(f"found Y/a = {Y:g}, expected Y/a < 0: the solid lies below the punch")
+        if Y > -_SHALLOWEST:
+            raise ValueError(
+                f"found Y/a = {Y:g}, expected Y/a < 0, by {_SHALLOWEST:g} at least: the solid lies below "
+                "the punch, and `surface` has the stresses on its surface"
+            )
 
 
 _BY_DEPTH = "at least 2 rows [depth, E, nu, rho], depths rising from 0"

@@ -43,6 +43,8 @@ from .pressure import Contacts, Group, Pressure
 
 #: Newton's steps for the logarithm of a distance; at a double root they halve the error.
 _STEPS = 80
+#: Logarithm of the largest distance with which they begin: a power of nearly 0 has its level farther out.
+_FAR = 600.0
 
 
 @dataclass(frozen=True)
@@ -124,7 +126,7 @@ class FlatPunch(EdgeExponents, Pressure):
     @staticmethod
     def _beside(own: Any, other: Any, level: Any) -> NDArray[np.float64]:
         """Distance d with own·log d + other·log(2 + d) = level."""
-        t = (level - other * np.log(2.0)) / own  # as if 2 + d were 2
+        t = np.minimum((level - other * np.log(2.0)) / own, _FAR)  # as if 2 + d were 2
         # Concave and falling, and not above the level here: Newton's steps never pass the answer.
         for _ in range(_STEPS):
             d = np.exp(t)

@@ -140,7 +140,10 @@ def _kinks(function: Callable[[NDArray], NDArray], digits: float, short: float) 
         rough += zip(half[beside].tolist(), middle[beside].tolist())
         halved = unresolved & (room > _SHORTEST)
         if halved.sum() > _MOST:
-            raise ValueError("friction along the contact is too rough to be resolved")
+            raise ValueError(
+                "friction changes along the contact too fast to be resolved; expected friction that "
+                "develops over more slip, or by a rounder law"
+            )
         left = (left[halved, None] + half[halved, None] * [0.0, 1.0]).ravel()
         half = np.repeat(half[halved] / 2.0, 2)
     kinks: list[float] = []

@@ -57,7 +57,7 @@ def runge_kutta(
     h, stiffness = length / steps, law.stiffness(z, s, V)
     if stiffness is None:
         raise ValueError(
-            f"no limit of stable steps is known for {type(law).__name__} with these parameters; use "
+            f"no limit of stable steps is known for {law.about} with these parameters; use "
             'integrator = "exact"'
         )
     if h * stiffness > RK4_STABILITY_LIMIT:

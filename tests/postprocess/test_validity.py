@@ -40,7 +40,8 @@ def test_within_the_zones_the_surface_is_pressed_together_more(c, g, strain):
 
 
 @pytest.mark.parametrize(
-    "ν, c, g", [(0.5, 0.0, 0.7), (0.25, 0.9, -0.4), (0.3, 0.93, 0.4), (0.45, 0.3, 0.0)]
+    "ν, c, g",
+    [(0.5, 0.0, 0.7), (0.25, 0.9, -0.4), (0.3, 0.93, 0.4), (0.45, 0.3, 0.0), (0.25, 0.5, 1000.0)],
 )
 @pytest.mark.parametrize("strain", [0.02, 0.5, 50.0])
 def test_outside_the_zones_of_large_strain_the_surface_is_strained_less(ν, c, g, strain):

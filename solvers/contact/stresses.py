@@ -147,7 +147,8 @@ def von_mises(σ_XX: NDArray, σ_YY: NDArray, σ_XY: NDArray, σ_ZZ: NDArray) ->
 
     √(½[(σ_XX - σ_YY)² + (σ_YY - σ_ZZ)² + (σ_ZZ - σ_XX)²] + 3σ_XY²).
     """
-    normal = (σ_XX - σ_YY) ** 2 + (σ_YY - σ_ZZ) ** 2 + (σ_ZZ - σ_XX) ** 2
+    with np.errstate(invalid="ignore"):  # NaN of infinite stresses at tips
+        normal = (σ_XX - σ_YY) ** 2 + (σ_YY - σ_ZZ) ** 2 + (σ_ZZ - σ_XX) ** 2
     return np.sqrt(normal / 2.0 + 3.0 * σ_XY**2)
 
 

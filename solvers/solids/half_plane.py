@@ -181,7 +181,8 @@ class HalfPlane:
     def strain(self, g: Any, σ_YY: Any, H: Any) -> Any:
         """Strain μ u,X on the surface by σ_YY with the Hilbert transform H, and by σ_XY = g σ_YY."""
         of = self.surface
-        return of.q * σ_YY + (of.n12 + of.m * g) * H
+        with np.errstate(invalid="ignore"):  # NaN without friction at tips, where H is infinite
+            return of.q * σ_YY + (of.n12 + of.m * g) * H
 
     def in_plane(self, g: Any, σ_YY: Any, H: Any, more: Any = 0.0) -> Any:
         """In-plane stress on the surface over N/(2a), by σ_YY with the Hilbert transform H and g σ_YY.

@@ -275,7 +275,8 @@ def _stiffness(r: Results) -> _Decided:
     """Figs 9 and 10: stresses by the stiffness and the exponent of friction."""
     p_left, p_right, tension, ahead = r.lean("sigma0_over_load", 0.2)
     leans = _grows(p_right) and _falls(p_left)
-    g = [r.data[states.RATIO.path][r.state(**law)] for law in r.over("sigma0_over_load", MILDER)]
+    laws: list[dict[str, Any]] = [*r.over("sigma0_over_load", MILDER)]
+    g = [r.data[states.RATIO.path][r.state(**law)] for law in laws]
     punch = FlatPunch(r.solid.response(SLOW), np.array(g))
     why = (
         ". It leans back, as 15 has it; its top, the least pressure, moves to X/a = "
@@ -291,7 +292,7 @@ def _stiffness(r: Results) -> _Decided:
         f"σ_XX at -{r.beside} {_to(tension)}; ahead {_to(ahead)}",
     )  # fmt: skip
 
-    laws, at = r.over("sigma0_over_load", MILDER), [r.behind, r.ahead]
+    at = [r.behind, r.ahead]
     f = [r.f(motion="FM2", **law) for law in laws]
     slow, fast = ([r.σ_XX(at, c=c, motion="FM2", **law) for law in laws] for c in (SLOW, FAST))
     follows = np.all(np.sign([*slow, *fast]) == np.outer(np.sign(2 * f), (1.0, -1.0)))

@@ -140,9 +140,10 @@ if [ "${1:-}" = -n ]; then
 fi
 set_up "${packages[@]}"
 [ $# -gt 0 ] || set -- paper -o results
+# -P: no file of the current folder is taken for a library. Signals wait until Python can take them.
+started=(env --block-signal=INT,TERM,HUP "$python" -P -m galinx)
 if [ -z "$ranks" ]; then
-  # -P: no file of the current folder is taken for a library. Signals wait until Python can take them.
-  exec env --block-signal=INT,TERM,HUP "$python" -P -m galinx "$@"
+  exec "${started[@]}" "$@"
 fi
 
 allow_ranks "$ranks"
@@ -157,7 +158,7 @@ export GALINX_FAIL=9
 [ -d "${TMPDIR:-/tmp}" ] || unset TMPDIR
 # In a session of its own: Ctrl-C is for this script to hand on, to rank 0, which ends in order.
 setsid ${tied:+"${tied[@]}" TERM} "$mpirun" -n "$ranks" ${tied:+"${tied[@]}" KILL} \
-  "$python" -P -m galinx "$@" </dev/null &
+  "${started[@]}" "$@" </dev/null &
 job=$!
 stop() {
   local root _

@@ -491,21 +491,22 @@ _BESIDE_TEXTS = {"columnspacing": 1.2, "handletextpad": 0.5, "handlelength": 2.2
 def _legend(figure: Figure, curves: Sequence[Curve], notes: Sequence[Curve]) -> float:
     """Draw a legend at the foot of a figure, in as few lines as it fits on; its height [in].
 
-    On several lines notes stand in columns of their own.
+    Several notes stand in columns of their own, where there are columns.
     """
-    groups = [*filter(None, map(_entries, (curves, notes)))]
-    if len(groups) == 2 and len(groups[1]) == 1:
-        groups = [[*groups[0], *groups[1]]]
-    if not groups:
+    named, noted = _entries(curves), _entries(notes)
+    if not (most := len(named) + len(noted)):
         return 0.0
-    blank, most = Line2D([], [], linestyle="none", label=" "), sum(map(len, groups))
+    blank = Line2D([], [], linestyle="none", label=" ")
     width, dpi, renderer = figure.get_figwidth(), figure.dpi, figure.canvas.get_renderer()
     room, widths, beside, frame = (width - 0.1) * dpi, dict[Line2D, float](), 0.0, 0.0
     for rows in range(1, most + 1):
-        handles = [one for of in groups for one in [*of, *[blank] * (-len(of) % rows)]]
+        handles = [*named, *noted]
+        if len(noted) > 1 and rows < most:
+            handles = [*named, *[blank] * (-len(named) % rows), *noted]
+        handles += [blank] * (-len(handles) % rows)
         columns = len(handles) // rows
         # Widths follow from those of the first try, which is slow as each is.
-        each = np.array([widths.get(one, 0.0) for one in handles]).reshape(columns, rows).max(axis=1)
+        each = np.array([widths.get(entry, 0.0) for entry in handles]).reshape(columns, rows).max(axis=1)
         if 1 < rows < most and frame + columns * beside + each.sum() > room:
             continue
         figure.legends.clear()
@@ -518,8 +519,8 @@ def _legend(figure: Figure, curves: Sequence[Curve], notes: Sequence[Curve]) -> 
             break
         if rows == 1:
             widths = {
-                one: text.get_window_extent(renderer).width
-                for one, text in zip(handles, legend.get_texts())
+                entry: text.get_window_extent(renderer).width
+                for entry, text in zip(handles, legend.get_texts())
             }
             beside = sum(_BESIDE_TEXTS.values()) * SMALL * dpi / 72.0
             frame = box.width - sum(widths.values()) - columns * beside

@@ -26,8 +26,8 @@ class Elements(FrictionLaw):
     def __post_init__(self) -> None:
         super().__post_init__()
         if np.min(self.elements) <= 0.0:
-            found = [list(row) for row in self.elements]
-            raise ValueError(f"elements = {found}: expected stiffnesses and limits above 0")
+            elements = [list(row) for row in self.elements]
+            raise ValueError(f"elements = {elements}: expected stiffnesses and limits above 0")
 
     @classmethod
     def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:

@@ -162,7 +162,8 @@ def _friction(r: Results) -> _Decided:
     )
     loops = [r.loop(**law) for law in r.over("sigma0_over_load", MILDER)]
     rises = np.any(np.diff([loop[0] - loop[2] for loop in loops], axis=0) > 0.0, axis=0)
-    early = f"; at X/L up to {r.places[rises].max(initial=0.0):.2g} it grows with σ₀l/N" * rises.any()
+    until = r.places[rises].max(initial=0.0)
+    early = f"; at X/L up to {until:.2g} it grows with σ₀l/N" if rises.any() else ""
     yield (
         "3", "f of FM1 and FM2: the difference grows with μ_C and falls with σ₀l/N (6b, c)",
         _grows(by_level) and _falls(by_stiffness),

@@ -318,7 +318,8 @@ def stresses_drawing(name: str, of: Archive) -> Drawing:
         panels += [_difference_panel(data, states, column, panels[column]) for column in range(2)]
     says = ("closed form", "finite elements") if single else _slow_and_fast(of, states[0])
     drawn = render(panels, None, 2, lines_and_markers(*says), high=0.5)
-    shared = plain(of.label(states[0][0], [key for key in figure.at if key != STROKE]))
+    others = [key for key in figure.at if key not in (STROKE, figure.curve, figure.row)]
+    shared = plain(of.label(states[0][0], others))
     methods = "" if single else f"{_CLOSED}{_DIFFER * solved[FEM]}."
     return Drawing(name, f"{figure.caption} All with {shared}.{methods}{_ENDS}", drawn)
 

@@ -140,6 +140,21 @@ def test_loops_are_those_of_the_studys_panels(drawings):
     assert widths == sorted(widths, reverse=True) and len(set(widths)) == 4  # none hides another
 
 
+@pytest.mark.parametrize(
+    "name, shared",
+    [
+        ("fig2", "turn (BM1, FM2). μ_C = 0.7, σ₀ l/N = 25 000 m⁻¹, δ_D = 1."),
+        ("fig5", "All with μ_C = 0.7, σ₀ l/N = 25 000 m⁻¹, δ_D = 1."),
+        ("fig7", "All with μ_C = 0.7, σ₀ l/N = 25 000 m⁻¹, δ_D = 1."),
+        ("fig8", "All with σ₀ l/N = 25 000 m⁻¹, δ_D = 1."),
+        ("fig9", "All with μ_C = 0.5, δ_D = 1, X/L = 0.2."),
+        ("fig10", "All with μ_C = 0.5, σ₀ l/N = 25 000 m⁻¹."),
+    ],
+)
+def test_captions_name_the_parameters_that_all_curves_share(drawings, name, shared):
+    assert shared in drawings[name].caption
+
+
 def test_the_block_has_the_studys_proportions(drawings):
     panel = drawings["fig4"].figure.axes[0]
     edges = panel.lines[0].get_xydata()

@@ -114,7 +114,6 @@ def mesh_figure(
             title=first if n == 0 else f"{zooms[0] / half:.0f} times larger",
         )  # fmt: skip
 
-    figure = render(
-        [panel(n, half) for n, half in enumerate(zooms)], size, high=0.62
-    )  # as its limits, to scale
+    # As high as their limits are: to scale.
+    figure = render([panel(n, half) for n, half in enumerate(zooms)], size, high=0.62)
     return figure, len(cells.cells)

@@ -500,9 +500,8 @@ def _legend(figure: Figure, curves: Sequence[Curve], notes: Sequence[Curve]) -> 
     width, dpi, renderer = figure.get_figwidth(), figure.dpi, figure.canvas.get_renderer()
     room, widths, beside, frame = (width - 0.1) * dpi, dict[Line2D, float](), 0.0, 0.0
     for rows in range(1, most + 1):
-        handles = [*named, *noted]
-        if len(noted) > 1 and rows < most:
-            handles = [*named, *[blank] * (-len(named) % rows), *noted]
+        gap = -len(named) % rows if len(noted) > 1 and rows < most else 0
+        handles = [*named, *[blank] * gap, *noted]
         handles += [blank] * (-len(handles) % rows)
         columns = len(handles) // rows
         # Widths follow from those of the first try, which is slow as each is.

@@ -491,7 +491,7 @@ def _drives(scene: Scene, states: States) -> dict[float, tuple[Drive, ...]]:
     else:
         each = zip(c.tolist(), states.g.tolist(), headings(scene, states.directions).tolist())
         for speed, ratio, way in dict.fromkeys(each):
-            drives[speed] = (*drives.get(speed, ()), Drive(round(way), ratio))
+            drives[speed] = (*drives.get(speed, ()), Drive(way, ratio))
     if (many := sum(map(len, drives.values()))) > MOST:
         raise BadInput(
             f"time: the scene has {many} states of different speed or friction, expected at most "

@@ -171,9 +171,9 @@ def _friction(r: Results) -> _Decided:
         + early,
     )  # fmt: skip
 
-    loops = [r.loop(**law)[0] for law in r.over("sigma0_over_load", MILDER)]
-    ahead = np.diff(loops, axis=0)[:, 1:].min()
-    half = [np.interp(0.5 * MILDER["mu_c"], loop, r.places) for loop in loops]
+    first = [loop[0] for loop in loops]
+    ahead = np.diff(first, axis=0)[:, 1:].min()
+    half = [np.interp(0.5 * MILDER["mu_c"], loop, r.places) for loop in first]
     yield (
         "4", "larger σ₀l/N: friction develops sooner (6c)",
         ahead > 0.0, f"μ_C/2 at X/L = {_to(half, '.3f')}; in FM1 f larger by {ahead:.1g} at least",

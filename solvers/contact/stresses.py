@@ -64,6 +64,11 @@ class Turns:
     σ: NDArray[np.float64]
     between: NDArray[np.float64] | None = None
 
+    @property
+    def named(self) -> NDArray[np.float64]:
+        """Places over a, the first again and again where a state has fewer than others, (states, k)."""
+        return np.where(np.isnan(self.X), self.X[:, :1], self.X)
+
     def of(self, rows: NDArray) -> "Turns":
         """Turns of the states with these numbers, which may repeat."""
         between = None if self.between is None else self.between[..., rows]

@@ -529,7 +529,7 @@ class Strength:
         if turns is None:
             X, stress = np.tile(self.body.yield_knots, (len(peak.X), 1)), self._over_strength
         else:
-            X = np.where(np.isnan(turns.X), turns.X[:, :1], turns.X)
+            X = turns.named
             stress = self._away_from_turns(self._over_strength)
         # An infinite stress reaches any strength.
         value = np.where(self.infinite, np.inf, peak.value / self.strength)
@@ -564,7 +564,7 @@ class Strength:
         turns = self.solution.yield_turns
         if turns is None:
             return None
-        centres = np.where(np.isnan(turns.X), turns.X[:, :1], turns.X)
+        centres = turns.named
         if np.array_equal(centres, np.broadcast_to(centres[:1], centres.shape)):
             centres = centres[:1]
         at, steps = circles(centres, self.solution.nearest)

@@ -155,9 +155,12 @@ def fields(
 
     shown = [state or 0] if states is None else numbers(states)
     target = output or Path(f"{archive.stem}_{states or shown[0]}.hdf")
-    _loaded(archive, stresses=False).fields(target, shown, extent, overwrite)
+    result = _loaded(archive, stresses=False)
+    result.fields(target, shown, extent, overwrite)
     if ranks.is_root():
         print(f"fields: {target}")
+        if result.scene.time:
+            say("They are those of steady motion: inside, stresses over time are not computed.")
         version = "5.12" if len(shown) > 1 else "5.11"
         print(f"next: open it in ParaView ({version} or newer), and colour by von_mises_for_colours")
 

@@ -58,7 +58,7 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
         # A step less than a millionth of a stroke is rounding.
         if (duration := min(sum(durations), end - t)) <= 1e-6 * durations[0]:
             continue
-        if every and not scene.time.step:  # an even number of steps is the time between outputs
+        if every:  # an even number of steps is the time between outputs
             longest = every / (2.0 * ceil(every / longest / 2.0 - 1e-9))
         steps, finely = 2 * ceil(duration / longest / 2.0 - 1e-9), 0.0
         if ways and steps > 2:

@@ -444,7 +444,7 @@ class Time:
     )  # fmt: skip
     step: float | None = key(
         Or("auto", Number("", Range(at_least=1e-3, at_most=1.0))),
-        "step over a/c_s", "auto", '`"auto"`: by solve.tolerance and load_ramp',
+        "longest step over a/c_s", "auto", '`"auto"`: by solve.tolerance and load_ramp',
     )  # fmt: skip
     load_ramp: float = key(
         Number("", Range(at_least=0.5, at_most=100.0)), "time in which the load comes on, over a/c_s",

@@ -395,6 +395,11 @@ class Variations:
             raise ValueError(
                 f"found {excerpt(value)}, expected tables [[friction.vary]] of parameters of the law"
             )
+        if value and not self.kinds:
+            raise ValueError(
+                f"found tables: {len(value)}, expected none: the law's own parameters are lists or "
+                "tables, the same for all states"
+            )
         return tuple(Table(self.kinds, f"table {n}")(table) for n, table in enumerate(value, 1))
 
     def schema(self) -> dict[str, Any]:

@@ -56,6 +56,14 @@ def test_a_tilted_punch_that_yields_under_any_load_says_so():
     assert {*told.texts()} == {"yes, under any load"}
 
 
+def test_a_wedge_with_a_strength_yields_under_any_load_whether_asked_or_not():
+    wedge = {"punch.profile": "wedge", "punch.radius": None, "punch.slope": 0.02, "solid.material": None}
+    solid = {"solid.E": "210 GPa", "solid.nu": 0.3, "solid.rho": 7800.0}
+    for strength, said in (("600 MPa", ["yes, under any load"]), (None, [])):
+        table = computed(SCENE, wedge | solid | {"solid.yield_strength": strength}).table()
+        assert [text for c in table if c.head == "yields" for text in c.texts()] == said
+
+
 def test_limits_that_are_the_same_in_all_states_stand_once():
     result = computed("coating", {"friction.mu_c": {"from": 0.1, "to": 0.2, "number": 9}})
     for width in (0, 80):

@@ -26,6 +26,14 @@ def test_starts_come_in_the_order_of_the_states():
     assert [drive.constant for drive in starts.drives[0.4]] == [-0.2, -0.5, -0.1]
 
 
+@pytest.mark.parametrize("step", [None, 0.1, 0.03, 1.0])
+def test_the_surface_is_given_at_the_times_asked_for_at_any_step(step):
+    """Steps of 0.1 gave it at 0.4, 1, 1.6, 2 and so on: only after two steps, of which 0.5 has five."""
+    in_time = {"time.end": 4.0, "time.every": 0.5, "time.step": step, "output.quantities": ["time"]}
+    starts = make_plan(template("start_from_rest", in_time)).starts
+    assert starts.times()[starts.outputs - 1] == pytest.approx(0.5 * np.arange(1, 9), rel=1e-12)
+
+
 @pytest.mark.parametrize(
     "changes, message",
     [

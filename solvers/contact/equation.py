@@ -512,9 +512,20 @@ class Kinked(Pressure):
         # Depths that are searched share panels.
         finest = min(float(2.0 ** np.floor(np.log2(finest))), panels.finest)
         if finest not in self._fine:
-            self._fine[finest] = _on_panels(self.alone, replace(panels, finest=finest)).points(np.inf)
+            fine, (values, at) = replace(panels, finest=finest), self._between
+            self._fine[finest] = fine.t, fine.weights * at.interpolated(values, fine.x)
         (t, σ), (t_alone, σ_alone) = self.more.points(finest), self._fine[finest]
         return np.append(t, t_alone), np.append(σ, σ_alone)
+
+    @cached_property
+    def _between(self) -> tuple[NDArray[np.float64], Panels]:
+        """σ₀ over the weight of edges, and panels from whose points it follows between them.
+
+        Towards a kink, twice the points of a panel interpolate as accurately as its rule integrates.
+        """
+        panels: Panels = self.on_panels.functions
+        twice = replace(panels, nodes=2 * panels.nodes)
+        return _without_weight(self.alone, twice.t), twice
 
 
 def _without_weight(alone: FreeEnds, r: NDArray) -> NDArray[np.float64]:

@@ -236,6 +236,20 @@ def test_over_a_graded_top_rules_know_of_kinks():
         assert one.pressure.points(finest)[1].sum() == pytest.approx(-2.0, rel=1e-8)
 
 
+@pytest.mark.parametrize(
+    "profile", [wedge(0.01), table(tuple((x, 0.01 * abs(x) ** 1.5) for x in range(-4, 5)))]
+)
+def test_next_to_the_surface_rules_have_the_pressure_between_its_panels(profile):
+    """Between the points of a panel it is interpolated, beside kinks and tips as exactly as elsewhere."""
+    one, _, _ = found(COATED, profile, -0.6, tolerance=1e-6)
+    pressure, fine = one.pressure, replace(one.pressure.on_panels.functions, finest=2.0**-4)
+    t, forces = (values[-len(fine.t) :] for values in pressure.points(2.0**-4))
+    exact = fine.weights * (1.0 - t) * (1.0 + t) * pressure.alone.series(t)
+    np.testing.assert_array_equal(t, fine.t)
+    assert len(t) > len(pressure.on_panels.functions.t)
+    np.testing.assert_allclose(forces, exact, rtol=0.0, atol=1e-11 * np.abs(exact).max())
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_contact_wider_than_what_is_known_of_the_punch_is_refused(side):
     profile = table(

@@ -512,7 +512,7 @@ class Kinked(Pressure):
         # Depths that are searched share panels.
         finest = min(float(2.0 ** np.floor(np.log2(finest))), panels.finest)
         if finest not in self._fine:
-            fine, (values, at) = replace(panels, finest=finest), self._between
+            fine, (values, at) = replace(panels, finest=finest, settled=_SETTLED), self._between
             self._fine[finest] = fine.t, fine.weights * at.interpolated(values, fine.x)
         (t, σ), (t_alone, σ_alone) = self.more.points(finest), self._fine[finest]
         return np.append(t, t_alone), np.append(σ, σ_alone)

@@ -192,10 +192,25 @@ def with_unit(key: str, value: float) -> str:
 FRICTIONS = frozenset({FRICTION_ALONE, SLIDER, TIME})
 #: Mean pressure over the shear modulus above which strains are far from small.
 _PRESSED = 0.1
+#: Length between two points of a table over that of its neighbours from which a straight part is likely.
+_LONG = 1.5
 #: Slope of a punch above which its angle is far from small.
 _STEEP = 0.2
 #: Half-width [m] of a contact below which a solid is no continuum: a few atoms.
 _ATOMS = 1e-9
+
+
+def _rounded_off(profile: Any, X: NDArray) -> Iterator[str]:
+    """Warning that a table is lowest between two points far apart: the punch may be flat there."""
+    lengths, slopes = np.diff(X), profile.slope(X)
+    for i in np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] > 0.0)).tolist():
+        if lengths[i] > _LONG * max(lengths[max(i - 1, 0) : i].sum(), lengths[i + 1 : i + 2].sum()):
+            fall = float(profile.height(X[i : i + 2]).min())
+            yield (
+                f"punch.shape: no point between X = {X[i]:g} m and {X[i + 1]:g} m, where the curve "
+                f"through the points falls {fall:.3g} m below them; if the punch is straight there, give "
+                "a point between them on the line"
+            )
 
 
 def usual_quantities(scene: Scene) -> tuple[str, ...]:
@@ -442,3 +457,5 @@ def _unusual_contact(scene: Scene) -> Iterator[str]:
             f"punch.shape: slopes are up to {steepest:.3g}, usual is less than {_STEEP:g}; are the units "
             "of both columns as meant? Without one they are m"
         )
+    if points:
+        yield from _rounded_off(scene.punch.profile, np.array([x for x, _ in points]))

@@ -477,6 +477,8 @@ class Time:
                 raise ValueError(
                     f"load: found {self.load[0][1]:g} of N at t = 0, expected 0 where it starts at rest"
                 )
+            if times == [0.0] and not self.steady:
+                raise ValueError("load: found one time, expected a later one, with a load, at least")
             lifted = [f"{share:g}" for _, share in self.load[not self.steady :] if share <= 0.0]
             if lifted:
                 raise ValueError(

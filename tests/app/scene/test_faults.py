@@ -238,6 +238,7 @@ FAULTS = {
          'time: found solve.mesh = "box" and solve.degree = 4, but motions in time have meshes'),
         ({"time.load": [[0.0, 0.5], [1.0, 1.0]]}, "expected 0 where it starts at rest"),
         ({"time.load": [[0.0, 0.0], [1.0, -1.0]]}, "the punch stays down"),
+        ({"time.load": [[0.0, 0.0]]}, "found one time, expected a later one"),
         ({"time.start": "steady", "time.load_ramp": 2.0}, "where the load is on from t = 0"),
         ({"time.load": [[1.0, 0.0], [0.5, 1.0]]}, "expected 0 first, then ever later ones"),
         (_LAW, "the strokes are over at"),

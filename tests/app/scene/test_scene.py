@@ -277,6 +277,25 @@ def test_slopes_that_are_not_small_are_warned_about():
     assert not any("slopes of" in text for text in oddities(narrow))
 
 
+@pytest.mark.parametrize("tilt", [0.0, 1e-3, -5e-4])
+@pytest.mark.parametrize("between, said", [((), True), ((0.1e-3,), False)])
+def test_a_table_whose_base_may_be_flat_is_warned_of(between, said, tilt):
+    """A base of 1 mm between two points is 0.02 to 0.1 µm deeper in its middle, unasked."""
+    X = sorted((-0.8e-3, -0.65e-3, -0.5e-3, *between, 0.5e-3, 0.65e-3, 0.8e-3))
+    rows = [[x, 10.0 * max(abs(x) - 0.5e-3, 0.0) ** 2 + tilt * x] for x in X]
+    table = f'profile = "table"\nshape = {rows}'
+    scene = parse(STEADY.replace('profile = "parabolic"\nradius = "5 mm"', table))
+    assert any("no point between" in text for text in oddities(scene)) is said
+
+
+def test_a_table_of_a_parabola_without_its_lowest_point_is_as_meant():
+    rows = [[x, x**2] for x in (-2e-3, -1.2e-3, -0.4e-3, 0.4e-3, 1.2e-3, 2e-3)]
+    scene = parse(
+        STEADY.replace('profile = "parabolic"\nradius = "5 mm"', f'profile = "table"\nshape = {rows}')
+    )
+    assert not any("no point between" in text for text in oddities(scene))
+
+
 def test_keys_of_strokes_are_warned_of_where_the_punch_slides_steadily():
     """A rest alone makes no strokes of it."""
     mu = next(line for line in STEADY.splitlines() if line.startswith("mu"))

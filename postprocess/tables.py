@@ -415,10 +415,11 @@ def _yields(data: Mapping[str, Any], units: Units) -> list[Column]:
     of_solid = column_of(
         "yields", yielding.FIRST_LOAD, yielding.VON_MISES, "solid.yield_strength", strength
     )
-    asked = f'"{YIELD}"' in str(data.get(runs.SCENE.path, ""))
-    asked |= preferred(data, of.HALF_WIDTH) is not None  # of free ends, a scene need not ask
+    # A contact with free ends says so without being asked.
+    free = preferred(data, of.HALF_WIDTH) is not None
+    answers = free or f'"{YIELD}"' in str(data.get(runs.SCENE.path, ""))
     words = "yes, at the sharp edges" * (preferred(data, yielding.REACH_LEFT) is not None)
-    if asked and contact.yield_strength and FINITE not in contact.modes and not contact.solid.layers:
+    if answers and contact.yield_strength and FINITE not in contact.modes and not contact.solid.layers:
         words = words or _share(np.inf)  # at a tip, or beside an end that is free
     if words and not of_solid:
         depth = preferred(data, yielding.DEPTH)

@@ -6,9 +6,10 @@ their finite elements.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from itertools import groupby
-from math import ceil, log10, sqrt
+from math import ceil, lcm, log10, sqrt
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,10 @@ from .states import States, headings
 _LEAST_STEPS = 12
 
 
+#: Most parts of the time between outputs of which ends of strokes are multiples.
+_PARTS = 12
+
+
 def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
     """Steps of the punch at a speed over c_s, at most so long, up to the motion's end.
 
@@ -53,6 +58,13 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
         for direction, legs in groupby(scene.legs, lambda leg: leg.s * scene.legs[0].s):
             durations = _durations(scene, legs, c)
             strokes.append((direction, durations, min(largest, min(durations) / _LEAST_STEPS)))
+    if every:  # outputs and turns are multiples of a part of it, where this does not double the steps
+        turns = np.minimum(np.cumsum([sum(durations) for _, durations, _ in strokes]), end) / every
+        shares = [Fraction(turn).limit_denominator(_PARTS) for turn in turns.tolist()]
+        parts = lcm(*(share.denominator for share in shares))
+        exact = np.allclose([float(share) for share in shares], turns, rtol=1e-9, atol=0.0)
+        if exact and every / parts >= min(longest for _, _, longest in strokes):
+            every /= parts
     ways: list[Way] = []
     for direction, durations, longest in strokes:
         # A step less than a millionth of a stroke is rounding.

@@ -121,8 +121,7 @@ def read(path: Path) -> Table:
             f"{path}, line {line}: found {found}, expected three or more rows in which the {name} grows"
             f"{hint}"
         )
-    if not np.ptp(X):
-        raise BadInput(f"{path}: found one position in all rows, expected a motion")
+    _require_friction(str(path), X, f)
     if not timed and X[0] < 0.0:
         raise BadInput(f"found the slip {X[0]:g} m, expected slips from 0 on")
     if not timed and X[0] > np.ptp(X):
@@ -135,6 +134,39 @@ def read(path: Path) -> Table:
         clock = X = np.append(0.0, X)
         f = np.append(np.nan, f)
     return Table(path.name, Measured(clock, X, f), timed, tuple(notes))
+
+
+def _of_arrays(measured: Measured) -> Table:
+    """Table of arrays.
+
+    Raises:
+        BadInput: they are no friction along a motion.
+    """
+    given = {"t": measured.t, "X": measured.X, "f": measured.f}
+    try:
+        t, X, f = (np.asarray(of, dtype=float) for of in given.values())
+    except (TypeError, ValueError) as error:
+        raise BadInput(f"arrays: {error}, expected numbers") from None
+    if t.ndim != 1 or not t.shape == X.shape == f.shape or len(t) < 3:
+        found = ", ".join(f"{name} {np.shape(of)}" for name, of in given.items())
+        raise BadInput(f"arrays: found the shapes {found}, expected (samples,) of each, 3 or more")
+    for name, of in zip(given, (t, X, f)):
+        if len(wrong := np.flatnonzero(~np.isfinite(of))):
+            n = wrong[0]
+            raise BadInput(f"arrays: found {name}[{n}] = {of[n]:g}, expected a finite number")
+    if len(wrong := np.flatnonzero(np.diff(t) <= 0.0) + 1):
+        n = wrong[0]
+        raise BadInput(f"arrays: found t[{n}] = {t[n]:g} s after {t[n - 1]:g} s, expected growing times")
+    _require_friction("arrays", X, f)
+    return Table("arrays", Measured(t, X, f), True)
+
+
+def _require_friction(name: str, X: NDArray, f: NDArray) -> None:
+    """Refuse a motion that is none, and no friction."""
+    if not np.ptp(X):
+        raise BadInput(f"{name}: found one position in all rows, expected a motion")
+    if not np.any(f):
+        raise BadInput(f"{name}: found f = 0 in all rows, expected friction")
 
 
 #: Name that stands for every law.
@@ -254,9 +286,7 @@ def fit(
     names = [*LAWS] if require_one_of("friction law", model, [*LAWS, ALL]) == ALL else [model]
     # Parameters of each law that it has, from texts and numbers.
     fixed, started = (_values(names, given or {}) for given in (fix, start))
-    given_tables = [
-        Table("arrays", s, True) if isinstance(s, Measured) else read(Path(s)) for s in sources
-    ]
+    given_tables = [_of_arrays(s) if isinstance(s, Measured) else read(Path(s)) for s in sources]
     tables, speedless = _at_speeds(given_tables, speed)
     for table in tables:  # friction takes work from the motion: it is positive forward
         X, f = table.measured.X, table.measured.f

@@ -465,8 +465,8 @@ class Time:
     )  # fmt: skip
     every: float | None = key(
         Number("", _POSITIVE), "time over a/c_s from one output of the surface to the next", None,
-        "stresses along it then, or at a step near it unless it divides all strokes and the end; and "
-        "over time the energy near the punch and beyond",
+        "stresses along it then, or at a step near it unless equal steps meet it and the ends of "
+        "strokes; and over time the energy near the punch and beyond",
     )  # fmt: skip
 
     def __post_init__(self) -> None:

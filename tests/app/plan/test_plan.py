@@ -26,12 +26,17 @@ def test_starts_come_in_the_order_of_the_states():
     assert [drive.constant for drive in starts.drives[0.4]] == [-0.2, -0.5, -0.1]
 
 
-@pytest.mark.parametrize("step", [None, 0.1, 0.03, 1.0])
-def test_the_surface_is_given_at_the_times_asked_for_at_any_step(step):
+@pytest.mark.parametrize(
+    "end, every, step",
+    [(4, 0.5, None), (4, 0.5, 0.1), (4, 0.5, 0.03), (4, 0.5, 1.0), (1, 0.3, None), (10, 4.0, None)],
+)
+def test_the_surface_is_given_at_the_times_asked_for_at_any_step(end, every, step):
     """Steps of 0.1 gave it at 0.4, 1, 1.6, 2 and so on: only after two steps, of which 0.5 has five."""
-    in_time = {"time.end": 4.0, "time.every": 0.5, "time.step": step, "output.quantities": ["time"]}
+    in_time = {"time.end": end, "time.every": every, "time.step": step, "output.quantities": ["time"]}
     starts = make_plan(template("start_from_rest", in_time)).starts
-    assert starts.times()[starts.outputs - 1] == pytest.approx(0.5 * np.arange(1, 9), rel=1e-12)
+    expected = every * np.arange(1, int(end / every + 1e-9) + 1)
+    assert starts.times()[starts.outputs - 1] == pytest.approx(expected, rel=1e-12)
+    assert starts.end == pytest.approx(end, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -146,6 +146,28 @@ def test_faults_of_tables_are_told(tmp_path, text, said):
         read(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize(
+    "t, X, f, said",
+    [
+        ([0, 1, 2], [0, 1, 2], [0, np.nan, 1], r"found f\[1\] = nan"),
+        ([0, 1, 1], [0, 1, 2], [0, 1, 1], r"found t\[2\] = 1 s after 1 s, expected growing times"),
+        ([0, 1, 2], [0, 1, 2], [0, 1], r"found the shapes t \(3,\), X \(3,\), f \(2,\)"),
+        ([0, 1, 2], [1, 1, 1], [0, 1, 1], "found one position in all rows"),
+        ([0, 1, 2], [0, 1, 2], [0, 0, 0], "found f = 0 in all rows, expected friction"),
+        ([0, 1, 2], [0, 1, 2], ["a", 0, 0], "expected numbers"),
+    ],
+)  # fmt: skip
+def test_faults_of_arrays_are_told(t, X, f, said):
+    with pytest.raises(BadInput, match=said):
+        galinx.fit(galinx.Measured(t, X, f), "dahl")
+
+
+def test_lists_are_as_good_as_arrays():
+    t, f = np.linspace(0.0, 1.0, 9), np.full(9, 0.3)
+    found = galinx.fit(galinx.Measured([*t], [*t], [*f]), "coulomb")
+    assert found.parameters["mu_c"] == pytest.approx(0.3, rel=1e-9)
+
+
 def test_of_two_columns_of_a_kind_the_first_is_read(tmp_path):
     (tmp_path / "a.csv").write_text("slip [mm],f,mu\n0,0,1\n1,1,1\n2,1,2\n", encoding="utf-8")
     table = read(tmp_path / "a.csv")

@@ -9,15 +9,18 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
-from ..approximation import legendre_panel
 from .integrate import closely, work
 from .law import FrictionLaw
 
-#: Points of a panel; last coefficients over the largest value up to which it resolves friction that is
-#: known exactly, and that is integrated.
-_τ, _, _TO_LEGENDRE = legendre_panel(16)
+#: Points of a panel, its ends among them: no kink lies beside all; and a matrix that takes values there
+#: to Chebyshev's coefficients.
+_τ = -np.cos(np.pi * np.arange(16) / 15.0)
+_TO_CHEBYSHEV = np.linalg.inv(chebvander(_τ, 15))
+#: Last coefficients over the largest value up to which a panel resolves friction that is known exactly,
+#: and that is integrated.
 _EXACT, _INTEGRATED = 1e-12, 1e-7
 #: Half-length of panels over their distance from the nearer end from which on those that resolve nothing
 #: surround a kink, or a jump of a higher derivative, and at which they are no longer halved; most panels
@@ -134,7 +137,7 @@ def _kinks(function: Callable[[NDArray], NDArray], digits: float, short: float) 
         t = (left + half)[:, None] + half[:, None] * _τ
         values = function(t.ravel()).reshape(t.shape)
         size = max(size, float(np.abs(values).max()))
-        unresolved = np.abs(values @ _TO_LEGENDRE[-2:].T).max(axis=1) > digits * size
+        unresolved = np.abs(values @ _TO_CHEBYSHEV[-2:].T).max(axis=1) > digits * size
         room, middle = half / (1.0 - np.abs(left + half)), left + half
         beside = unresolved & (room < short)
         rough += zip(half[beside].tolist(), middle[beside].tolist())

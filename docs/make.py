@@ -135,10 +135,10 @@ A fault of an archive ends every command with one message and status 2.
 
 1. The first 512 bytes, HDF5's user block, hold a SHA-256 digest of all bytes that follow. It is verified
    before HDF5 opens the file. `head -n 3 out.h5` shows it, `tail -c +513 out.h5 | sha256sum` computes it.
-2. Names, types, shapes, units and attributes must be those of this page, and values in their range.
-   Numbers are finite unless this page, `run/failures` or `comparisons` says otherwise.
+2. Names, types, shapes, units and attributes must be those of this page.
 
-`check` repeats the friction, the comparisons and the verdict; a contradiction ends it with status 1. For
+`check` repeats the friction, the comparisons and the verdict. Values must be in their range, and finite
+unless this page, `run/failures` or `comparisons` says otherwise; a contradiction ends it with status 1. For
 archives of its own version it computes again, and compares finite elements with closed forms to 1 %:
 
 - closed forms of all states under flat punches, of 24 under other smooth ones, of 6 under those with

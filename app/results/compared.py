@@ -22,7 +22,7 @@ from galinx.postprocess.tables import (
 from galinx.postprocess.units import Units
 
 from ..errors import BadInput, listed, short
-from ..scene.changes import differences
+from ..scene.changes import differences, numbers
 from .result import Result
 
 #: Difference [%] that rounding may make.
@@ -53,8 +53,14 @@ class Comparison:
         self.results, self.labels = results, _labels(results)
         own = [result.units(dimensionless) for result in results]
         self.units = [Units(r.scene.body, r.data, dimensionless, own) for r in results]
-        self._by, self.pairs = _paired([result.data for result in results], dimensionless)
         counts = [len(result.data[states.FRICTION.path]) for result in results]
+        whole = []
+        for result, units, count in zip(results, self.units, counts):
+            # What varies in one result may be a constant of another's scene.
+            scene = {f"states/{key}": of for key, of in numbers(result.data[runs.SCENE.path]).items()}
+            constant = scene | {states.LOAD.path: units.load}
+            whole.append({path: np.full(count, of) for path, of in constant.items()} | result.data)
+        self._by, self.pairs = _paired(whole, dimensionless)
         self._alone = [n - len({*self.pairs[:, k].tolist()}) for k, n in enumerate(counts)]
         if chosen:
             if missing := sorted({*chosen} - {*self.pairs[:, 0].tolist()}):
@@ -190,7 +196,7 @@ class Comparison:
         if any(self._alone):
             found = ", ".join(f"{n} of {label}" for n, label in zip(self._alone, self.labels) if n)
             yield f"states without a partner: {found}"
-        if not self._by and len(self.pairs) > 1:
+        if not self._by and max(len(r.data[states.FRICTION.path]) for r in self.results) > 1:
             yield "states are paired by their order: their parameters do not agree"
         intensities = any(key[0].startswith("K_I") and row[0] for key, row in self._rows.items())
         yield "difference: from the first, of places and the centre over its half-width" + (

@@ -11,6 +11,7 @@ from galinx.app.errors import BadInput
 from galinx.app.figures.measured import read
 from galinx.app.results import fitted
 from galinx.app.results.compared import Comparison
+from galinx.app.scene.read import parse
 
 PLAIN = {"solve.methods": ["closed_form"], "motion.c": 0.3}
 HEAVY = {"punch.load": "600 N/mm", "friction.mu_c": 0.5, "title": "heavy"}
@@ -98,6 +99,24 @@ def test_speeds_pair_as_they_are_given(key, given, said):
     shown = [row[0] for sheet in comparison.sheets() for row in sheet.rows]
     assert any("speed" in head for head in shown) == (key == "motion.c")
     assert [*comparison.notes()][-1].startswith("difference")
+
+
+def test_what_varies_in_one_result_is_a_constant_of_the_other():
+    """A sweep's states were paired with one state by their order: 10 with 50 N/mm, without a word."""
+    punch = '[solid]\nmaterial = "steel"\n[punch]\nprofile = "parabolic"\n'
+    rest = '[friction]\nmu = 0.1\n[solve]\nmethods = ["closed_form"]\n[motion]\n'
+    one, many, else_ = (
+        galinx.compute(parse(f"{punch}radius = {radius}\nload = {load}\n{rest}c = {c}\n"))
+        for radius, load, c in (
+            ('"50 mm"', '"50 N/mm"', "0.5"),
+            ('["30 mm", 0.05]', '["10 N/mm", "50 N/mm"]', "[0.0, 0.5]"),
+            ('"50 mm"', '"20 N/mm"', "0.5"),
+        )
+    )
+    assert Comparison([one, many]).pairs.tolist() == [[0, 7]]
+    assert Comparison([many, one]).pairs.tolist() == [[7, 0]]
+    assert "order" not in " ".join(Comparison([one, many]).notes())
+    assert "order" in " ".join(Comparison([else_, many]).notes())
 
 
 def test_other_parameters_are_paired_by_their_order(light):

@@ -138,8 +138,8 @@ A fault of an archive ends every command with one message and status 2.
 2. Names, types, shapes, units and attributes must be those of this page.
 
 `check` repeats the friction, the comparisons and the verdict. Values must be in their range, and finite
-unless this page, `run/failures` or `comparisons` says otherwise; a contradiction ends it with status 1. For
-archives of its own version it computes again, and compares finite elements with closed forms to 1 %:
+unless this page, `run/failures` or `comparisons` says otherwise; a contradiction ends it with status 1.
+For archives of its own version it computes again, and compares finite elements with closed forms to 1 %:
 
 - closed forms of all states under flat punches, of 24 under other smooth ones, of 6 under those with
   kinks (of 3 where stresses are largest),

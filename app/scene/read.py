@@ -29,7 +29,7 @@ from ..errors import BadInput, excerpt, listed, nearest, short, text_of
 from ..text_table import read_table
 from .library import LIBRARY
 from .scene import Scene, contradictions, in_words, usual_quantities
-from .sections import ADVECTED, SECTIONS, SWEPT, Key
+from .sections import ADVECTED, SECTIONS, SWEPT, TOLERANCE_IN_TIME, Key
 from .values import Number, Numbers, Or, Rows
 
 #: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm and steel.
@@ -324,6 +324,8 @@ def _checked(
     """Scene of single numbers, or None after its faults are added."""
     before = len(faults)
     steady = _fill_in_motion(tree)
+    if "time" in tree and isinstance(solve := tree.get("solve", {}), dict):
+        tree["solve"] = {"tolerance": TOLERANCE_IN_TIME} | solve
     named = "quantities" in tree["output"] if isinstance(tree.get("output"), dict) else False
     title = tree.pop("title", "")
     if not isinstance(title, str):

@@ -392,7 +392,7 @@ class Solve:
     tolerance: float = key(
         Number("", Range(at_least=1e-10, at_most=0.1)),
         "wanted relative accuracy of K_I and pressure moments", 1e-6,
-        "the polynomial degree rises until the measured error is below it",
+        "the polynomial degree rises until the measured error is below it; `1e-3` with `[time]`",
     )  # fmt: skip
     mesh: str = key(
         Choice(MESHES), "mesh", "confocal", '`"box"` is the block of the study, with walls at 100 a'
@@ -426,6 +426,8 @@ class Solve:
         return self.mode == "traction" and self.pressure is not None
 
 
+#: Tolerance of motions in time where a scene has none.
+TOLERANCE_IN_TIME = 1e-3
 #: Most times of a motion at which stresses along the surface are output.
 MOST_OUTPUTS = 400
 

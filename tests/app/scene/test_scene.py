@@ -308,3 +308,12 @@ def test_keys_of_strokes_are_warned_of_where_the_punch_slides_steadily():
     assert said == "friction.state: without effect, because this law of friction has no memory"
     to_and_fro = parse(scene.text + 'strokes = ["forward", "backward"]\n')
     assert not any("without effect" in text for text in oddities(to_and_fro))
+
+
+def test_a_motion_in_time_has_a_tolerance_of_its_own():
+    """The usual one is refused in time, also where a scene names none."""
+    punch = '[solid]\nmaterial = "steel"\n[punch]\nhalf_width = 1e-3\nload = 1e3\n[friction]\nmu = 0.2\n'
+    time = "[motion]\nc = 0.4\n[time]\nend = 1\n"
+    quantities = '[output]\nquantities = ["time"]\n'
+    assert parse(punch + time + quantities).solve.tolerance == 1e-3
+    assert parse(punch + time + quantities + "[solve]\ntolerance = 1e-4\n").solve.tolerance == 1e-4

@@ -81,7 +81,7 @@ def _refusal(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) ->
 
 #: What the closed form does not give of punches with two sharp edges that are not flat.
 _OF_FLAT_PUNCHES = {
-    states.K_I_BOTH.path: "the two ends differ",
+    states.K_I_BOTH.path: "the two ends differ: K_I_left, K_I_right",
     BELOW: "known below flat punches with one friction only",
     YIELD: "known below flat punches with one friction only",
     PUNCH: "known of flat punches with one friction only",

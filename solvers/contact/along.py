@@ -97,10 +97,11 @@ class FlatAlong(Varying):
 
     def _bounded(self, r: NDArray) -> NDArray[np.float64]:
         """E without its logarithms of the distances from both ends, (n,)."""
-        at = np.where(np.abs(np.abs(r) - 1.0) < _NEXT_TO_END, np.sign(r) * (1.0 - _NEXT_TO_END), r)
+        at = np.where(np.abs(np.abs(r) - 1.0) < _NEXT_TO_END, np.sign(r), r)
         α, none = self._local(at).α, np.zeros(1)
         E = self._divided(lambda t: self._local(t).α, at, self.rule.weights(none, none)[0])
-        right, left = np.log(np.abs(1.0 - at)), np.log(np.abs(1.0 + at))
+        # At an end the factor of its logarithm is 0, but for rounding.
+        right, left = (np.log(np.maximum(np.abs(1.0 - end * at), 1e-300)) for end in (1.0, -1.0))
         return np.asarray(E + (α - self.α) * right - (α + 1.0 + self.β) * left)
 
     @cached_property
@@ -117,6 +118,8 @@ class FlatAlong(Varying):
         for first in range(0, len(r), _AT_ONCE):
             some = slice(first, first + _AT_ONCE)
             apart = t - r[some, None]
+            for end, distance in ((1.0, -self.rule.right), (-1.0, self.rule.left)):
+                apart[r[some] == end] = distance
             same = np.abs(apart) <= _SAME * room[some, None]
             quotient = (of_t - of_r[some, None]) / np.where(same, 1.0, apart)
             result[some] = np.where(same, slope[some, None], quotient) @ dμ

@@ -34,8 +34,9 @@ _SHORTEST = 1e-9
 
 #: Places under the punch at which the residual is evaluated, and their least distance from a kink.
 _AT, _OFF_KINKS = np.cos(np.pi * (np.arange(16) + 0.5) / 16.0), 0.02
-#: Distance from an end within which the pressure without its powers is taken as constant.
-_NEXT_TO_END = 1e-7
+#: Distance from an end within which the pressure without its powers is taken as constant; most of that of
+#: a kink, and least.
+_NEXT_TO_END, _OF_KINK, _NEAREST = 1e-7, 1e-6, 1e-13
 
 #: Points inside at which line loads are summed; points along a line at a depth, over its width by depth.
 _INSIDE, _ALONG = 6, 64
@@ -62,6 +63,8 @@ class Rule:
 
     def __init__(self, at: ArrayLike = (), sizes: ArrayLike = _SHORTEST) -> None:
         at, sizes = np.broadcast_arrays(np.asarray(at, dtype=float), sizes)
+        room = 1.0 - np.abs(at[np.abs(at) < 1.0]).max(initial=0.0)
+        self._next_to_end = max(min(_NEXT_TO_END, _OF_KINK * room), _NEAREST)
         ends = [_ENDS]
         for t, size in zip(at[np.abs(at) < 1.0], sizes[np.abs(at) < 1.0]):
             steps = 0.5 ** np.arange(np.ceil(max(-np.log2(max(size, _SHORTEST)), 1.0)))
@@ -84,7 +87,7 @@ class Rule:
 
     def smooth(self, pressure: Stress, α: NDArray, β: NDArray) -> NDArray[np.float64]:
         """Smooth part of a pressure, σ_YY over (1 - t)^α (1 + t)^β at :attr:`t`, (states, n)."""
-        r = np.clip(self.t, _NEXT_TO_END - 1.0, 1.0 - _NEXT_TO_END)
+        r = np.clip(self.t, self._next_to_end - 1.0, 1.0 - self._next_to_end)
         return pressure(r) / ((1.0 - r) ** α[:, None] * (1.0 + r) ** β[:, None])
 
 

@@ -89,6 +89,13 @@ def test_friction_that_changes_with_the_contact_is_that_of_each_state():
     assert "states/sie/von_mises" in data and "states/sie/first_yield_load" not in data
 
 
+def test_a_kink_next_to_an_end_leaves_no_residual():
+    """Rules took the pressure less its power as constant within 1e-7 of the end, and K_I was off."""
+    along = {"along": [[-1, 0.2], [1e-5 - 1, 0.5], [1 - 1e-6, 0.5], [1, 0]]}
+    result = slid(along, solve={"methods": ["closed_form"]}, output={"quantities": ["sif"]})
+    assert result.verdict == "PASS" and result.data["states/closed_form/residual"] < 1e-9
+
+
 def test_a_shipped_scene_of_advected_states_passes():
     assert computed("along").verdict == "PASS"
 

@@ -69,6 +69,33 @@ def test_closed_form_against_a_quadrature_in_30_digits(seed):
     np.testing.assert_allclose(found, reference(response, linear(rows), inner, PLACES), rtol=1e-9)
 
 
+@pytest.mark.parametrize("room", [1e-3, 1e-6])
+def test_the_pressure_at_an_end_with_a_kink_next_to_it(room):
+    """K_I was that of a place 1e-13 beside the end: off by 6e-6 where a kink is 1e-6 from it."""
+    rows, response = [(-1.0, 0.5), (1.0 - room, 0.5), (1.0, 0.0)], ISOTROPIC.response(0.5)
+    g = linear(rows)
+    with mp.workdps(30):
+        n, q = mp.mpf(response.n), mp.mpf(response.q)
+        assert not response.n12
+
+        def α(t):
+            return -mp.mpf(1) / 2 - mp.atan(g(t) * q / n) / mp.pi
+
+        def shape(x):
+            """Pressure but for its logarithms of distances, which are 0 in the middle."""
+            at, places = α(x), sorted({-1, mp.mpf(rows[1][0]), x, 1})
+            E = mp.quad(lambda t: (α(t) - at) / (t - x) if t != x else mp.mpf(0), places)
+            return mp.sin(mp.pi * at) * mp.exp(E)
+
+        right, left = α(mp.mpf(1)), -1 - α(mp.mpf(-1))
+        expected = float(shape(mp.mpf(1)) * mp.mpf(2) ** (-1 - right - left) / shape(mp.mpf(0)))
+    pressure = FlatAlong(response, tabulated(rows, -1.0))
+    ends, middle = np.array([-1.0, 1.0]), np.zeros(1)
+    assert pressure.series(ends)[1] / pressure.σ_YY(middle) == pytest.approx(expected, rel=1e-9)
+    mirrored = FlatAlong(response, tabulated([(-X, f) for X, f in rows[::-1]], 1.0))
+    np.testing.assert_allclose(mirrored.series(ends)[::-1], pressure.series(ends), rtol=1e-12)
+
+
 @pytest.mark.parametrize("seed", range(20) if THOROUGH else (0, 1, 2))
 def test_integral_equation_against_the_closed_form(seed):
     """Two solutions that share no line: values on panels by collocation, and the formula."""

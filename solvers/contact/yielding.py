@@ -627,7 +627,7 @@ _SHALLOWEST = 0.05
 #: Least distance from the surface, and from an interface, over that of the next depth of sampling, at
 #: which stresses inside are evaluated.
 _LEAST_DEPTH, _NEXT_TO_FACE = 0.3, 1e-6
-#: Share of the way from a face to the nearest sample at which it shows whether stresses fall.
+#: Share of the way from a face to the nearest sample at which a further one shows whether stresses fall.
 _FROM_FACE = 0.1
 
 
@@ -726,31 +726,30 @@ class StrengthOfLayers:
         from scipy.optimize import minimize_scalar  # a slow import
 
         interfaces = self.body.solid.depths / self.solution.half_width[state]
-        depths = sampled_depths(interfaces)[layer]
-        values = [self._at_depth(state, depth)[0] for depth in depths.tolist()]
-        best = int(np.argmax(values))
-        if values[best] < _NEARLY * faces:
-            return -np.inf, 0.0, 0.0
+        sampled = sampled_depths(interfaces)[layer].tolist()
         top = 0.0 if layer == 0 else float(interfaces[layer - 1])
         # Between the first depth and the surface stresses vary ever faster.
-        above = top + (_NEXT_TO_FACE if layer else _LEAST_DEPTH) * (depths[0] - top)
-        bottom = float(interfaces[layer]) if layer < len(interfaces) else float(depths[-1])
-        lower = (
-            depths[best + 1] if best + 1 < len(depths) else bottom - _NEXT_TO_FACE * (bottom - depths[-1])
-        )
+        above = top + (_NEXT_TO_FACE if layer else _LEAST_DEPTH) * (sampled[0] - top)
+        bottom = float(interfaces[layer]) if layer < len(interfaces) else sampled[-1]
+        below = bottom - _NEXT_TO_FACE * (bottom - sampled[-1])
+        # Between a face and the nearest sample stresses may rise before they fall.
+        first, last = (face + _FROM_FACE * (sampled[n] - face) for face, n in ((above, 0), (below, -1)))
+        depths = [first, *sampled, *[last] * (bottom > sampled[-1])]
+        values = [self._at_depth(state, depth)[0] for depth in depths]
+        best = int(np.argmax(values))
+        if values[best] <= faces and max(values[1 : len(sampled) + 1]) < _NEARLY * faces:
+            return -np.inf, 0.0, 0.0
         upper = depths[best - 1] if best else above
+        lower = depths[best + 1] if best + 1 < len(depths) else below
         # Stresses that fall from a face on, to all samples, have their largest value there.
         for at_face, face in ((best == 0, upper), (best + 1 == len(depths), lower)):
-            if not at_face:
-                continue
-            inside, _ = self._at_depth(state, face + _FROM_FACE * (depths[best] - face))
-            if inside >= values[best] and (there := self._at_depth(state, face))[0] >= inside:
-                return *there, -float(face)
+            if at_face and (there := self._at_depth(state, face))[0] >= values[best]:
+                return *there, -face
         found = minimize_scalar(
             lambda depth: -self._at_depth(state, depth)[0], bounds=(upper, lower), method="bounded",
             options={"xatol": _ACCURACY * (lower - upper), "maxiter": 25},
         )  # fmt: skip
-        depth = float(found.x) if -found.fun >= values[best] else float(depths[best])
+        depth = float(found.x) if -found.fun >= values[best] else depths[best]
         return *self._at_depth(state, depth), -depth
 
     def _at_depth(self, state: int, depth: float) -> tuple[float, float]:

@@ -22,6 +22,8 @@ _TO_CHEBYSHEV = np.linalg.inv(chebvander(_τ, 15))
 #: Last coefficients over the largest value up to which a panel resolves friction that is known exactly,
 #: and that is integrated.
 _EXACT, _INTEGRATED = 1e-12, 1e-7
+#: Most rounding of a position X/a and of what is computed from it.
+_ROUNDING = 8.0 * np.finfo(float).eps
 #: Half-length of panels over their distance from the nearer end from which on those that resolve nothing
 #: surround a kink, or a jump of a higher derivative, and at which they are no longer halved; most panels
 #: of one length.
@@ -137,7 +139,9 @@ def _kinks(function: Callable[[NDArray], NDArray], digits: float, short: float) 
         t = (left + half)[:, None] + half[:, None] * _τ
         values = function(t.ravel()).reshape(t.shape)
         size = max(size, float(np.abs(values).max()))
-        unresolved = np.abs(values @ _TO_CHEBYSHEV[-2:].T).max(axis=1) > digits * size
+        # Positions are rounded, all the more over their distance from an end.
+        rounding = _ROUNDING * np.ptp(values, axis=1) / half
+        unresolved = np.abs(values @ _TO_CHEBYSHEV[-2:].T).max(axis=1) > digits * size + rounding
         room, middle = half / (1.0 - np.abs(left + half)), left + half
         beside = unresolved & (room < short)
         rough += zip(half[beside].tolist(), middle[beside].tolist())

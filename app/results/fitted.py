@@ -151,7 +151,8 @@ def _of_arrays(measured: Measured) -> Table:
         found = ", ".join(f"{name} {np.shape(of)}" for name, of in given.items())
         raise BadInput(f"arrays: found the shapes {found}, expected (samples,) of each, 3 or more")
     for name, of in zip(given, (t, X, f)):
-        if len(wrong := np.flatnonzero(~np.isfinite(of))):
+        wrong = np.flatnonzero(~np.isfinite(of))
+        if len(wrong := wrong[wrong > 0] if of is f else wrong):  # at first it is at rest
             n = wrong[0]
             raise BadInput(f"arrays: found {name}[{n}] = {of[n]:g}, expected a finite number")
     if len(wrong := np.flatnonzero(np.diff(t) <= 0.0) + 1):
@@ -165,7 +166,7 @@ def _require_friction(name: str, X: NDArray, f: NDArray) -> None:
     """Refuse a motion that is none, and no friction."""
     if not np.ptp(X):
         raise BadInput(f"{name}: found one position in all rows, expected a motion")
-    if not np.any(f):
+    if not np.nan_to_num(f).any():
         raise BadInput(f"{name}: found f = 0 in all rows, expected friction")
 
 

@@ -118,6 +118,7 @@ class FlatAlong(Varying):
         for first in range(0, len(r), _AT_ONCE):
             some = slice(first, first + _AT_ONCE)
             apart = t - r[some, None]
+            # Next to an end positions are rounded, distances from it are not.
             for end, distance in ((1.0, -self.rule.right), (-1.0, self.rule.left)):
                 apart[r[some] == end] = distance
             same = np.abs(apart) <= _SAME * room[some, None]

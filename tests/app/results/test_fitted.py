@@ -164,6 +164,7 @@ def test_faults_of_arrays_are_told(t, X, f, said):
 
 def test_lists_are_as_good_as_arrays():
     t, f = np.linspace(0.0, 1.0, 9), np.full(9, 0.3)
+    f[0] = np.nan  # before the motion
     found = galinx.fit(galinx.Measured([*t], [*t], [*f]), "coulomb")
     assert found.parameters["mu_c"] == pytest.approx(0.3, rel=1e-9)
 

@@ -35,8 +35,6 @@ from .states import States, headings
 
 #: Least number of steps of a stroke, and of a motion whose step is not given.
 _LEAST_STEPS = 12
-
-
 #: Most parts of the time between outputs of which ends of strokes are multiples.
 _PARTS = 12
 
@@ -58,13 +56,11 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
         for direction, legs in groupby(scene.legs, lambda leg: leg.s * scene.legs[0].s):
             durations = _durations(scene, legs, c)
             strokes.append((direction, durations, min(largest, min(durations) / _LEAST_STEPS)))
-    if every:  # outputs and turns are multiples of a part of it, where this does not double the steps
-        turns = np.minimum(np.cumsum([sum(durations) for _, durations, _ in strokes]), end) / every
-        shares = [Fraction(turn).limit_denominator(_PARTS) for turn in turns.tolist()]
-        parts = lcm(*(share.denominator for share in shares))
-        exact = np.allclose([float(share) for share in shares], turns, rtol=1e-9, atol=0.0)
-        if exact and every / parts >= min(longest for _, _, longest in strokes):
-            every /= parts
+    if every:
+        turns = np.minimum(np.cumsum([sum(durations) for _, durations, _ in strokes]), end)
+        part = _common_part(every, turns)
+        # Steps that outputs and turns are multiples of do not double their number.
+        every = part if part >= min(longest for _, _, longest in strokes) else every
     ways: list[Way] = []
     for direction, durations, longest in strokes:
         # A step less than a millionth of a stroke is rounding.
@@ -85,6 +81,13 @@ def _ways(scene: Scene, c: float, largest: float) -> tuple[Way, ...]:
             'later end, more strokes, or time.friction = "constant"'
         )
     return tuple(ways)
+
+
+def _common_part(every: float, times: NDArray) -> float:
+    """Largest part of a time of which it and other times are multiples; 0 where there is none."""
+    shares = [Fraction(share).limit_denominator(_PARTS) for share in (times / every).tolist()]
+    exact = np.allclose(np.array(shares, dtype=float) * every, times, rtol=1e-9, atol=0.0)
+    return every / lcm(*(share.denominator for share in shares)) if exact else 0.0
 
 
 def _durations(scene: Scene, legs: Iterable[Leg], c: float) -> list[float]:

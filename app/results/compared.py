@@ -53,15 +53,15 @@ class Comparison:
         self.results, self.labels = results, _labels(results)
         own = [result.units(dimensionless) for result in results]
         self.units = [Units(r.scene.body, r.data, dimensionless, own) for r in results]
-        counts = [len(result.data[states.FRICTION.path]) for result in results]
+        self._counts = [len(result.data[states.FRICTION.path]) for result in results]
         whole = []
-        for result, units, count in zip(results, self.units, counts):
+        for result, units, count in zip(results, self.units, self._counts):
             # What varies in one result may be a constant of another's scene.
             scene = {f"states/{key}": of for key, of in numbers(result.data[runs.SCENE.path]).items()}
             constant = scene | {states.LOAD.path: units.load}
             whole.append({path: np.full(count, of) for path, of in constant.items()} | result.data)
         self._by, self.pairs = _paired(whole, dimensionless)
-        self._alone = [n - len({*self.pairs[:, k].tolist()}) for k, n in enumerate(counts)]
+        self._alone = [n - len({*self.pairs[:, k].tolist()}) for k, n in enumerate(self._counts)]
         if chosen:
             if missing := sorted({*chosen} - {*self.pairs[:, 0].tolist()}):
                 raise BadInput(
@@ -196,7 +196,7 @@ class Comparison:
         if any(self._alone):
             found = ", ".join(f"{n} of {label}" for n, label in zip(self._alone, self.labels) if n)
             yield f"states without a partner: {found}"
-        if not self._by and max(len(r.data[states.FRICTION.path]) for r in self.results) > 1:
+        if not self._by and max(self._counts) > 1:
             yield "states are paired by their order: their parameters do not agree"
         intensities = any(key[0].startswith("K_I") and row[0] for key, row in self._rows.items())
         yield "difference: from the first, of places and the centre over its half-width" + (

@@ -150,9 +150,8 @@ def _of_arrays(measured: Measured) -> Table:
     if t.ndim != 1 or not t.shape == X.shape == f.shape or len(t) < 3:
         found = ", ".join(f"{name} {np.shape(of)}" for name, of in given.items())
         raise BadInput(f"arrays: found the shapes {found}, expected (samples,) of each, 3 or more")
-    for name, of in zip(given, (t, X, f)):
-        wrong = np.flatnonzero(~np.isfinite(of))
-        if len(wrong := wrong[wrong > 0] if of is f else wrong):  # at first it is at rest
+    for name, of in zip(given, (t, X, np.append(0.0, f[1:]))):  # at first it is at rest
+        if len(wrong := np.flatnonzero(~np.isfinite(of))):
             n = wrong[0]
             raise BadInput(f"arrays: found {name}[{n}] = {of[n]:g}, expected a finite number")
     if len(wrong := np.flatnonzero(np.diff(t) <= 0.0) + 1):

@@ -23,4 +23,4 @@ def test_a_peak_between_a_face_and_the_next_sample_is_seen(monkeypatch, layer, f
     strength = StrengthOfLayers(SimpleNamespace(half_width=np.array([2.0])), contact)
     value, X, Y = strength._searched(0, layer, 1.0)
     assert value == pytest.approx(0.9 + 0.3 * np.exp(-2.0 / 3.0), rel=1e-6)
-    assert pytest.approx((0.0, -face - 0.02 * sign), abs=1e-3) == (X, Y)
+    np.testing.assert_allclose([X, Y], [0.0, -face - 0.02 * sign], atol=1e-3)

@@ -22,7 +22,8 @@ from galinx.postprocess.tables import (
 from galinx.postprocess.units import Units
 
 from ..errors import BadInput, listed, short
-from ..scene.changes import differences, numbers
+from ..scene.changes import differences
+from ..scene.read import constants
 from .result import Result
 
 #: Difference [%] that rounding may make.
@@ -57,9 +58,9 @@ class Comparison:
         whole = []
         for result, units, count in zip(results, self.units, self._counts):
             # What varies in one result may be a constant of another's scene.
-            scene = {f"states/{key}": of for key, of in numbers(result.data[runs.SCENE.path]).items()}
-            constant = scene | {states.LOAD.path: units.load}
-            whole.append({path: np.full(count, of) for path, of in constant.items()} | result.data)
+            own = {f"states/{key}": of for key, of in constants(result.data[runs.SCENE.path]).items()}
+            own[states.LOAD.path] = units.load
+            whole.append({path: np.full(count, of) for path, of in own.items()} | result.data)
         self._by, self.pairs = _paired(whole, dimensionless)
         self._alone = [n - len({*self.pairs[:, k].tolist()}) for k, n in enumerate(self._counts)]
         if chosen:

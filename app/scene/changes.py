@@ -197,12 +197,6 @@ def differences(texts: Iterable[str]) -> dict[str, list[str]]:
     }
 
 
-def numbers(text: str) -> dict[str, float]:
-    """Single numbers of a scene, TOML, in SI by their keys."""
-    values = {key: in_si(value) for key, value in _keys(tomlkit.parse(text).unwrap()).items()}
-    return {key: float(of) for key, of in values.items() if type(of) in (int, float)}
-
-
 def _text(value: Any) -> str:
     """A value as a person writes it: texts without quotes."""
     if isinstance(value, dict):

@@ -216,11 +216,25 @@ def parse(text: str, name: str = "scene") -> Scene:
     raise BadInput(f"{name} has {len(faults)} fault{'s' * (len(faults) > 1)}:\n{listed}")
 
 
+def constants(text: str) -> dict[str, float]:
+    """Numbers of a scene by key that may be swept and are not, in the units of swept ones.
+
+    Args:
+        text: TOML without faults.
+    """
+    tree = tomllib.loads(text)
+    _fill_in_materials(tree)
+    _swept(tree, [])
+    return {
+        f"{path}.{key}": keys[key].kind(given)
+        for path, table, keys in _tables(tree, SWEPT)
+        for key, given in table.items()
+        if key in keys and type(keys[key].kind) is Number and not isinstance(given, (list, dict))
+    }
+
+
 def _scenes(tree: dict[str, Any], text: str, faults: list[str]) -> list[Scene]:
     """Scenes of all combinations of swept numbers; ends of all contacts are free where some are."""
-    punch = tree.get("punch")
-    if isinstance(punch, dict) and "solid" in punch:  # a section of its own
-        tree["punch.solid"] = punch.pop("solid") or {"kind": "isotropic"}
     _fill_in_materials(tree)
     before = len(faults)
     swept = _swept(tree, faults)
@@ -357,7 +371,13 @@ def _checked(
 
 
 def _fill_in_materials(tree: dict[str, Any]) -> None:
-    """Fill in the constants of the materials that a scene names; those that the scene gives stay."""
+    """Fill in the constants of the materials that a scene names; those that the scene gives stay.
+
+    The solid of a punch becomes a section of its own.
+    """
+    punch = tree.get("punch")
+    if isinstance(punch, dict) and "solid" in punch:
+        tree["punch.solid"] = punch.pop("solid") or {"kind": "isotropic"}
     for name in tree.keys() & {"solid", "punch.solid"}:
         tree[name] = _with_constants(tree[name])
     if isinstance(tree.get("layer"), list):

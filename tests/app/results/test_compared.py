@@ -11,6 +11,7 @@ from galinx.app.errors import BadInput
 from galinx.app.figures.measured import read
 from galinx.app.results import fitted
 from galinx.app.results.compared import Comparison
+from galinx.app.scene.library import LIBRARY
 from galinx.app.scene.read import parse
 
 PLAIN = {"solve.methods": ["closed_form"], "motion.c": 0.3}
@@ -117,6 +118,21 @@ def test_what_varies_in_one_result_is_a_constant_of_the_other():
     assert Comparison([many, one]).pairs.tolist() == [[7, 0]]
     assert "order" not in " ".join(Comparison([one, many]).notes())
     assert "order" in " ".join(Comparison([else_, many]).notes())
+
+
+def test_constants_pair_in_the_units_of_swept_numbers():
+    """An angle is swept in degrees, and may have its unit; a material gives constants, too."""
+    keys = {"solve.methods": ["closed_form"]}
+    turned = computed("fibres", keys | {"solid.angle": [0, 30, 60]})
+    once = computed("fibres", keys | {"solid.angle": "60 deg"})
+    pairs = Comparison([turned, once]).pairs
+    assert len(pairs) == len(once.data["states/f"])
+    assert (turned.data["states/solid.angle"][pairs[:, 0]] == 60.0).all()
+    one = PLAIN | {"motion.strokes": ["forward"], "motion.X_over_L": [1.0]}
+    steel = computed("tables4_5", one | {"solid": {"material": "steel"}})
+    E = [1e11, LIBRARY["steel"].constants["E"]]
+    softer = computed("tables4_5", one | {"solid": {"material": "steel", "E": E}})
+    assert Comparison([softer, steel]).pairs.tolist() == [[1, 0]]
 
 
 def test_other_parameters_are_paired_by_their_order(light):

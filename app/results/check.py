@@ -34,7 +34,16 @@ from galinx.postprocess.quantities import (
     validity,
     yielding,
 )
-from galinx.postprocess.quantities.quantity import ALONE, CLOSED_FORM, FEM, LOCAL, NEVER, SIE, STATE
+from galinx.postprocess.quantities.quantity import (
+    ALONE,
+    CLOSED_FORM,
+    FEM,
+    LOCAL,
+    NEVER,
+    SIE,
+    STATE,
+    TEXT,
+)
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import SHARP_ON_LAYERS, on_finer_cells, unknowns
@@ -347,6 +356,10 @@ def _of_numbers(archive: Archive) -> Iterator[str]:
     worst: dict[str, float] = {}
     balance = compare.BALANCE.limit
     assert balance is not None
+    for name, values in archive.data.items():
+        row = table()[name]
+        if row.type != TEXT and np.extract(~np.isnan(values), values) not in row.range:
+            yield f"{name} has numbers out of its range, {row.range}"
     for start in range(0, len(archive.data[states.SPEED.path]), _ROWS):
         rows = _solved(archive.rows(slice(start, start + _ROWS)), failures)
         if not len(rows[states.SPEED.path]):

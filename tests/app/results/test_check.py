@@ -72,6 +72,7 @@ def lost(file):
         (lost, "states/fem/v0 is missing, its scene asks for it"),
         (times("states/fem/K_I_right", 1.0 + 1e-3), "states/fem/true_error is not what"),
         (value("interior/fem/sigma_XX", 1e3), "its comparisons say"),
+        (value("run/fem/largest_residual", -1.0), "largest_residual has numbers out of its range, >= 0"),
         (value("interior/fem/sigma_XX", np.nan), "interior/fem/sigma_XX is not finite in states 0 ..."),
     ],
 )

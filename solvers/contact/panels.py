@@ -14,9 +14,9 @@ second kind.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
-from math import ceil, log
-from typing import Any
+from functools import cached_property, lru_cache
+from math import log
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -43,7 +43,8 @@ _TOGETHER = 2_000_000
 PER_LENGTH = 2.0
 #: Distance from a free end within which a pressure is continued, and up to which it is fitted for that.
 _MENDED, _KNOWN = 1e-4, 1e-2
-_ξ, _ω = legendre.leggauss(14)
+#: Points of the longest step; by how many a step of no weight has fewer for each one that it is shorter.
+_POINTS, _FEWER = 14, 0.8
 
 #: Size of Bernstein's ellipse through y from which Gauss's rule alone serves a panel; |1 - e^ξ| below
 #: which it is formed without cancellation; kernels at once, which stay in a core's cache, and those of
@@ -105,6 +106,23 @@ def stretched(r: NDArray) -> NDArray[np.float64]:
     """Coordinate x at positions r in [-1, 1], of their shape."""
     with np.errstate(divide="ignore"):
         return np.asarray(np.log1p(r) - np.log1p(-r))
+
+
+class _Parts(NamedTuple):
+    """Parts of panels near places, with rules that are graded towards their starts, (parts,) each.
+
+    Attributes:
+        place, x: number of the place, and where it is.
+        panel: number of the panel.
+        start: where the part starts, in x.
+        length: of the part, negative where it ends to the left of the start.
+    """
+
+    place: NDArray[np.int64]
+    x: NDArray[np.float64]
+    panel: NDArray[np.int64]
+    start: NDArray[np.float64]
+    length: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -219,60 +237,58 @@ class Panels(Functions):
         The kernel may be rough where t = t(x) if the panels are.
         """
         if self.rough:
-            return np.concatenate([self._graded_rows(kernel, x[rows]) for rows in self.blocks(len(x))])
+            blocks = self.blocks(len(x), _ROWS)
+            return np.concatenate([self._graded_rows(kernel, x[rows]) for rows in blocks])
         parts = [x[rows, None] for rows in self.blocks(len(x), _ROWS)]
         return np.concatenate([
             kernel(-self.apart(part, self.x - part)) * self.weights[:, None] for part in parts
         ])  # fmt: skip
 
     def _graded_rows(self, kernel: Callable[[NDArray], NDArray], x: NDArray) -> NDArray[np.float64]:
-        """Weights of :meth:`rows` by rules graded towards the places; the kernel is evaluated at once."""
+        """Weights of :meth:`rows` by rules on panels near the places, graded towards these."""
         x = np.clip(x, -self.reach, self.reach)
-        rules = [self._graded_rule(place) for place in x.tolist()]
-        away = [-self.apart(at, np.append(self.x - at, rule[0])) for at, rule in zip(x.tolist(), rules)]
-        every = np.concatenate(away)
-        every[every == 0.0] = 1.0  # the panels near a place are replaced
-        values = np.split(kernel(every), np.cumsum([len(part) for part in away])[:-1])
-        return np.array([self._row(*each) for each in zip(x.tolist(), rules, values)])
+        reach, (τ, _, _) = _NEAR * np.diff(self.ends), legendre_panel(self.nodes)
+        near = (self.ends[:-1] - reach <= x[:, None]) & (x[:, None] <= self.ends[1:] + reach)
+        away = -self.apart(x[:, None], self.x - x[:, None])
+        away[away == 0.0] = 1.0  # on panels that have rules
+        parts = [
+            (part, *_graded(*steps, self.nodes)) for steps, part in self._parts(x, *np.nonzero(near))
+        ]
+        δ = [part.start[:, None] - part.x[:, None] + part.length[:, None] * s for part, s, *_ in parts]
+        aways = [away, *(-self.apart(part.x[:, None], each) for (part, *_), each in zip(parts, δ))]
+        sizes = np.cumsum([each.size for each in aways])[:-1]
+        values, *of_parts = np.split(kernel(np.concatenate([*map(np.ravel, aways)])), sizes)
+        weights = np.where(np.repeat(near, self.nodes, axis=1), self._beyond, self.weights)
+        integrals = (values * weights.reshape(-1, 1)).reshape(*near.shape, self.nodes, -1)
+        for (part, _, ds, through), each, values in zip(parts, δ, of_parts):
+            weights = np.abs(part.length[:, None]) * ds * self.density(part.x[:, None] + each)
+            sums = through.T @ (values.reshape(*weights.shape, -1) * weights[..., None])
+            # The polynomials of the panel are those of the part through as many points there.
+            at = part.start[:, None] + part.length[:, None] * (1.0 + τ) / 2.0
+            basis = self.basis(at.ravel(), np.repeat(part.panel, self.nodes))
+            basis = basis.reshape(*at.shape, self.nodes).swapaxes(1, 2)
+            integrals[part.place, part.panel] += basis @ sums
+        return integrals.reshape(len(x), len(self.x), -1)
 
-    def _graded_rule(self, x: float) -> tuple[NDArray, NDArray, list[int], tuple[int, ...], list[int]]:
-        """Distances from a place and weights of a rule on the panels near it; these panels; the panel of
-        each part of the rule, and the number of its points."""
-        reach = _NEAR * np.diff(self.ends)
-        near = np.flatnonzero((self.ends[:-1] - reach <= x) & (x <= self.ends[1:] + reach)).tolist()
-        panels, *parts = zip(*[(panel, *part) for panel in near for part in self._towards(x, panel)])
-        δ, weights = map(np.concatenate, parts)
-        return δ, weights, near, panels, [len(part) for part in parts[0]]
-
-    def _row(self, x: float, rule: Any, values: NDArray) -> NDArray[np.float64]:
-        """Weights at a place, (n, functions), by its rule and the kernel at the points and on that."""
-        δ, weights, near, panels, sizes = rule
-        places, own = x + δ, np.repeat(panels, sizes)
-        by_rule, values = np.split(values, [len(self.x)])
-        integrals = by_rule * self.weights[:, None]
-        for panel in near:
-            there = self.of(panel)
-            integrals[there] = self._beyond[there, None] * by_rule[there]
-        values, basis = values * (weights * self.density(places))[:, None], self.basis(places, own)
-        for panel, rows in zip(panels, np.split(np.arange(len(own)), np.cumsum(sizes)[:-1])):
-            integrals[self.of(panel)] += basis[rows].T @ values[rows]
-        return np.asarray(integrals)
+    def _parts(self, x: NDArray, place: NDArray, panel: NDArray) -> Iterator[tuple[list[int], _Parts]]:
+        """Parts of panels near places, to the left and to the right, and the steps of their rules."""
+        at = np.clip(x[place], self.ends[panel], self.ends[panel + 1])
+        for end in (self.ends[panel], self.ends[panel + 1]):
+            some = end != at
+            all_parts = _Parts(place[some], x[place[some]], panel[some], at[some], (end - at)[some])
+            size = np.abs(all_parts.length)
+            # Steps need be no shorter than the place is far; where kernels vary all weigh alike.
+            shares = np.abs(all_parts.start - all_parts.x) / size, self.length / size
+            logs = np.log(np.clip(shares, _CLOSEST, 1.0)) / log(_GRADING)
+            steps = np.minimum(np.ceil(logs), _STEPS).astype(int)
+            for each in np.unique(steps, axis=1).T.tolist():
+                rows = (each == steps.T).all(axis=1)
+                yield each, _Parts(*(field[rows] for field in all_parts))
 
     @cached_property
     def _beyond(self) -> NDArray[np.float64]:
         """Weights of what is beyond the reach, (n,)."""
         return self.weights - self.dx * self.density(self.x)
-
-    def _towards(self, x: float, panel: int) -> Iterator[tuple[NDArray, NDArray]]:
-        """Distances from a place and weights on both parts of a panel, graded towards it."""
-        low, high = self.ends[panel : panel + 2].tolist()
-        at = min(max(x, low), high)
-        for end in (low, high):
-            if length := abs(end - at):
-                # Parts of the panel need be no shorter than the place is far from it.
-                apart = log(max(abs(at - x) / length, _CLOSEST)) / log(_GRADING)
-                s, ds = _graded(min(max(ceil(apart), 0), _STEPS))
-                yield (at - x) + (end - at) * s, length * ds
 
     def blocks(self, count: int, larger: int = 1) -> Iterator[slice]:
         """Blocks of so many places, of which values at all points take little memory."""
@@ -341,7 +357,7 @@ class Panels(Functions):
         integrals = np.empty((len(r), beside.shape[-1]))
         integrals[~under] = beside
         places = np.flatnonzero(under)
-        for some in self.blocks(len(places)):
+        for some in self.blocks(len(places), _ROWS):
             at = places[some]
             integrals[at] = p @ self._graded_rows(kernel, stretched(r[at]))
         return integrals
@@ -415,12 +431,29 @@ def _without_pole(k: float, ξ: NDArray) -> NDArray[Any]:
     return np.exp(k * ξ) * ratio
 
 
-@cache
-def _graded(steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points in (0, 1) and weights, graded towards 0 in so many steps."""
-    ends = np.append(0.0, _GRADING ** np.arange(steps, -1, -1.0))
-    middle, half = (ends[1:] + ends[:-1]) / 2.0, np.diff(ends) / 2.0
-    return (middle[:, None] + half[:, None] * _ξ).ravel(), (half[:, None] * _ω).ravel()
+@lru_cache(maxsize=1024)
+def _graded(steps: int, varied: int, nodes: int) -> tuple[NDArray[np.float64], ...]:
+    """Rule on (0, 1) in steps that get shorter towards 0, where the kernel may have a logarithm.
+
+    Args:
+        steps: number of steps but for the last.
+        varied: steps down to the length over which the kernel varies; shorter ones weigh the less.
+        nodes: number of a panel's points.
+
+    Returns:
+        Points and weights, (points,) each, and the polynomials through a panel's points, (points, nodes).
+    """
+    s, ds, end = [], [], 1.0
+    for step in range(steps + 1):
+        count = max(_POINTS - int(_FEWER * max(step - varied, 0)), 2)
+        start = end * _GRADING if step < steps else 0.0
+        ξ, ω, _ = legendre_panel(count)
+        s.append((start + end + (end - start) * ξ) / 2.0)
+        ds.append((end - start) / 2.0 * ω)
+        end = start
+    points = np.concatenate(s)
+    _, _, to_legendre = legendre_panel(nodes)
+    return points, np.concatenate(ds), legendre.legvander(2.0 * points - 1.0, nodes - 1) @ to_legendre
 
 
 #: Least distance in x from the end of a panel in its logarithm.

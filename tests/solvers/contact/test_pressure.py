@@ -109,3 +109,24 @@ def test_kernels_of_thin_films_are_integrated_however_few_functions_the_pressure
     z = r + 1j * length
     wanted = np.pi * (np.sqrt(z - 1.0) * np.sqrt(z + 1.0) - z).imag
     np.testing.assert_allclose(found[:, 0], wanted, rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("length", [0.01, 0.1, 1.0])
+@pytest.mark.parametrize("kinks", [(), (-0.9, 0.3)])
+def test_kernels_with_a_logarithm_are_integrated_wherever_the_place_is(kinks, length):
+    """∫ log(z - t) T₃/√(1 - t²) dt = -(π/3) (z - √(z² - 1))³, over a short length less that of z + iℓ."""
+    panels = Panels(-0.5, -0.5, 0.35, kinks, length=length)
+    at_ends = panels.ends[2:-2:3]
+    x = np.concatenate([panels.x[::19], at_ends + 1e-14, at_ends - 1e-7])
+    x = x[np.abs(x) < 10.0]  # nearer to the contact's ends the weight beyond the panels is felt
+
+    def kernel(s):
+        return ((np.log(np.abs(s)) - np.log(s**2 + length**2) / 2.0) / length)[..., None]
+
+    def integral(z):
+        return -np.pi / 3.0 * ((z - np.sqrt(z - 1.0) * np.sqrt(z + 1.0)) ** 3).real
+
+    s = np.tanh(x / 2.0)
+    found = panels.rows(kernel, x)[..., 0] @ (4.0 * panels.t**3 - 3.0 * panels.t)
+    wanted = (integral(s + 0.0j) - integral(s + 1j * length)) / length
+    np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-11)

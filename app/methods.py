@@ -123,7 +123,7 @@ _PRESCRIBED = {SOLVED: "the pressure is prescribed"}
 _LACKING = {
     TRACTION: _PRESCRIBED,
     OWN_PRESSURE: _PRESCRIBED | {FLAT: "the pressure is prescribed"},
-    OWN_MESHES: _RECOVERED | {IN_PUNCH: "under kinks the closed form alone has the punch's stresses"},
+    OWN_MESHES: _RECOVERED | {IN_PUNCH: "under kinks the other methods have the punch's stresses"},
     FREE_ON_LAYERS: _RECOVERED,
 }
 
@@ -131,7 +131,8 @@ _LACKING = {
 def fem_mode(scene: Any) -> str:
     """Mode of a scene's finite elements, see :class:`galinx.solvers.contact.fem_plan.FemPlan`."""
     body = scene.body
-    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][len(kinks(body.profile)) > 0]
+    own = len(kinks(body.profile)) > 0 or body.kinks_move
+    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][own]
     return scene.solve.mode if mode == CONTACT else mode
 
 
@@ -139,10 +140,7 @@ def _fem_along_refusal(scene: Any, body: Contact) -> str:
     """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
     if crowded := crowded_kinks(body.friction_kinks):
         return f"friction has {crowded}"
-    if body.friction_kinks and body.found and len(kinks(body.profile)):
-        return "friction and the punch both have kinks"
-    moving = body.found and any(along.has_length for along in scene.along.values())
-    return "kinks of friction move with the half-width" if moving and body.friction_kinks else ""
+    return ""
 
 
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:

@@ -184,12 +184,31 @@ def uncrowded_kinks(places: NDArray) -> NDArray[np.float64]:
     return np.asarray(inner[np.diff(inner, prepend=-np.inf) >= _NEXT_TO_KINK][:_MOST])
 
 
+def joined_kinks(kinks: Sequence[float] | NDArray, weak: Sequence[float]) -> NDArray[np.float64]:
+    """Rising positions of kinks, and of those weak ones towards which a mesh can be graded besides.
+
+    Args:
+        kinks: positions over the half-width.
+        weak: rising positions at which a higher derivative jumps.
+    """
+    at = np.asarray(weak, dtype=float)
+    apart = np.abs(at[:, None] - np.asarray(kinks)).min(axis=1, initial=np.inf)
+    further = uncrowded_kinks(at[apart >= _NEXT_TO_KINK])
+    return np.union1d(kinks, further[: max(_MOST - len(kinks), 0)])
+
+
+def friction_kinks(body: Any) -> tuple[float, ...]:
+    """Rising positions over the half-width of kinks of friction towards which meshes are graded."""
+    weak = sorted({*body.jumps_of_friction} - {*body.friction_kinks})
+    return tuple(joined_kinks(body.friction_kinks, weak).tolist())
+
+
 #: Size of the innermost cells at a kink of friction over the tolerance, and at most: the pressure is
 #: d log d next to it, times the change of the slope of f. Smaller cells lose digits of derivatives.
 _OF_FRICTION, _LARGEST = 500.0, 0.1
 
 
-def at_friction_kinks(plan: "FemPlan", kinks: Sequence[float]) -> QuadMesh:
+def at_friction_kinks(plan: "FemPlan", kinks: Sequence[float] | NDArray) -> QuadMesh:
     """The mesh of a punch with sharp ends, graded towards kinks of friction at positions over a."""
     size = min(_OF_FRICTION * plan.tolerance, _LARGEST)
     return with_kinks(plan.refinement, np.array(kinks), rings_at_kinks(plan.refinement, size))

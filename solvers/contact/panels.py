@@ -109,13 +109,14 @@ def stretched(r: NDArray) -> NDArray[np.float64]:
 
 
 class _Parts(NamedTuple):
-    """Parts of panels near places, with rules that are graded towards their starts, (parts,) each.
+    """Parts of panels near places, with one rule that is graded towards their starts, (parts,) each.
 
     Attributes:
         place, x: number of the place, and where it is.
         panel: number of the panel.
         start: where the part starts, in x.
         length: of the part, negative where it ends to the left of the start.
+        apart, varied: steps of the rule, see :func:`_graded`.
     """
 
     place: NDArray[np.int64]
@@ -123,6 +124,8 @@ class _Parts(NamedTuple):
     panel: NDArray[np.int64]
     start: NDArray[np.float64]
     length: NDArray[np.float64]
+    apart: int
+    varied: int
 
 
 @dataclass(frozen=True)
@@ -251,16 +254,18 @@ class Panels(Functions):
         near = (self.ends[:-1] - reach <= x[:, None]) & (x[:, None] <= self.ends[1:] + reach)
         away = -self.apart(x[:, None], self.x - x[:, None])
         away[away == 0.0] = 1.0  # on panels that have rules
-        parts = [
-            (part, *_graded(*steps, self.nodes)) for steps, part in self._parts(x, *np.nonzero(near))
+        parts = [*self._parts(x, *np.nonzero(near))]
+        rules = [_graded(part.apart, part.varied, self.nodes) for part in parts]
+        δ = [
+            part.start[:, None] - part.x[:, None] + part.length[:, None] * s
+            for part, (s, _, _) in zip(parts, rules)
         ]
-        δ = [part.start[:, None] - part.x[:, None] + part.length[:, None] * s for part, s, *_ in parts]
-        aways = [away, *(-self.apart(part.x[:, None], each) for (part, *_), each in zip(parts, δ))]
+        aways = [away, *(-self.apart(part.x[:, None], each) for part, each in zip(parts, δ))]
         sizes = np.cumsum([each.size for each in aways])[:-1]
         values, *of_parts = np.split(kernel(np.concatenate([*map(np.ravel, aways)])), sizes)
         weights = np.where(np.repeat(near, self.nodes, axis=1), self._beyond, self.weights)
         integrals = (values * weights.reshape(-1, 1)).reshape(*near.shape, self.nodes, -1)
-        for (part, _, ds, through), each, values in zip(parts, δ, of_parts):
+        for part, (_, ds, through), each, values in zip(parts, rules, δ, of_parts):
             weights = np.abs(part.length[:, None]) * ds * self.density(part.x[:, None] + each)
             sums = through.T @ (values.reshape(*weights.shape, -1) * weights[..., None])
             # The polynomials of the panel are those of the part through as many points there.
@@ -270,20 +275,22 @@ class Panels(Functions):
             integrals[part.place, part.panel] += basis @ sums
         return integrals.reshape(len(x), len(self.x), -1)
 
-    def _parts(self, x: NDArray, place: NDArray, panel: NDArray) -> Iterator[tuple[list[int], _Parts]]:
-        """Parts of panels near places, to the left and to the right, and the steps of their rules."""
+    def _parts(self, x: NDArray, place: NDArray, panel: NDArray) -> Iterator[_Parts]:
+        """Parts of panels near places, to the left and to the right of these, by the steps of rules."""
         at = np.clip(x[place], self.ends[panel], self.ends[panel + 1])
         for end in (self.ends[panel], self.ends[panel + 1]):
             some = end != at
-            all_parts = _Parts(place[some], x[place[some]], panel[some], at[some], (end - at)[some])
-            size = np.abs(all_parts.length)
+            places, panels, start, length = place[some], panel[some], at[some], (end - at)[some]
+            near = x[places]
             # Steps need be no shorter than the place is far; where kernels vary all weigh alike.
-            shares = np.abs(all_parts.start - all_parts.x) / size, self.length / size
-            logs = np.log(np.clip(shares, _CLOSEST, 1.0)) / log(_GRADING)
-            steps = np.minimum(np.ceil(logs), _STEPS).astype(int)
-            for each in np.unique(steps, axis=1).T.tolist():
-                rows = (each == steps.T).all(axis=1)
-                yield each, _Parts(*(field[rows] for field in all_parts))
+            needed = np.column_stack([np.abs(start - near), np.full(len(near), self.length)])
+            shares = np.clip(needed / np.abs(length[:, None]), _CLOSEST, 1.0)
+            steps = np.minimum(np.ceil(np.log(shares) / log(_GRADING)), _STEPS).astype(int)
+            for apart, varied in np.unique(steps, axis=0).tolist():
+                rows = (steps == [apart, varied]).all(axis=1)
+                yield _Parts(
+                    places[rows], near[rows], panels[rows], start[rows], length[rows], apart, varied
+                )
 
     @cached_property
     def _beyond(self) -> NDArray[np.float64]:

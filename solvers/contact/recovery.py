@@ -401,10 +401,9 @@ class KinkedPressure(Pressure):
         kinks: rising positions of the kinks over a, (k,).
         exponents: exponents of the pressure at the left and the right end, positive.
         at_ends: pressure that holds next to the ends.
-        exponent: power of the distance d with which the pressure departs from its value at a kink, see
-            :func:`towards_kink`; 0 where it is infinite there.
+        at_kinks: powers of the distance d with which the pressure departs from its values at kinks, see
+            :func:`towards_kink`; 0 where it is infinite, (k,).
         tolerance: relative error allowed for the limit at a kink.
-        infinite: the pressure is infinite at its kinks.
     """
 
     kinks: NDArray[np.float64]
@@ -414,10 +413,9 @@ class KinkedPressure(Pressure):
 
     def __init__(
         self, s: NDArray, degree: int, chart: Any, forces: NDArray, kinks: NDArray,
-        exponents: tuple[float, float], at_ends: Pressure, exponent: float = 0.0,
-        tolerance: float = 1e-6, infinite: bool = False,
+        exponents: tuple[float, float], at_ends: Pressure, at_kinks: NDArray, tolerance: float,
     ) -> None:  # fmt: skip
-        self._infinite, self._chart, self._exponent, self.at_ends = infinite, chart, exponent, at_ends
+        self._chart, self._at_kinks, self.at_ends = chart, at_kinks, at_ends
         self.kinks, (self.β, self.α) = kinks, exponents
         self._farthest = farthest_at_kink(tolerance)
         self._facets = ContactFacets(s, degree, chart)
@@ -445,7 +443,8 @@ class KinkedPressure(Pressure):
         for d, gap in zip((1.0 + r, 1.0 - r), gaps_of(self.kinks)):
             near = (d > 0.0) & (d < _NEXT_TO_END * min(gap, 1.0))
             σ[near] = self.at_ends.σ_YY(r[near])[0]
-        for number, at in enumerate(self.kinks if self._exponent else ()):
+        for number in np.flatnonzero(self._at_kinks).tolist():
+            at = self.kinks[number]
             for side in (-1.0, 1.0):
                 series, d = self._series(number, side), side * (r - at)
                 near = (d >= 0.0) & (d < series.samples.min())
@@ -456,7 +455,7 @@ class KinkedPressure(Pressure):
 
     def largest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Largest pressure over N/(2a), and its place over a, NaN where it is infinite, (1,) each."""
-        if self._infinite:
+        if not self._at_kinks.all():
             return np.full(1, np.nan), np.full(1, np.nan)
         pieces = self._facets.start[:, None] + self._facets.length[:, None] * self._facets.nodes
         ends = np.concatenate([[-1.0], self.breaks, [1.0]])
@@ -475,7 +474,7 @@ class KinkedPressure(Pressure):
         return self.limit_at_kink(number, self._piecewise)
 
     def limit_at_kink(self, number: int, values: Callable[[NDArray], NDArray]) -> float:
-        """Stress or strain at a kink; where it has an ``exponent``, the mean of limits from both sides.
+        """Stress or strain at a kink at which it is finite: the mean of limits from both sides.
 
         A limit is taken because the innermost cells are so small that rounding of the nodal forces shows
         in their values.
@@ -484,15 +483,13 @@ class KinkedPressure(Pressure):
             number: number of the kink, from the left.
             values: function of positions over a, (n,), that gives the stress or strain, (n,).
         """
-        if not self._exponent:
-            return float(values(self.kinks[[number]])[0])
         return float(np.mean(self._limits(number, values)))
 
     @property
     def left_at_kinks(self) -> float:
         """Largest error over N/(2a) of the limits at kinks, measured on limits from both sides."""
         errors = [0.0]
-        for number in range(len(self.kinks) if self._exponent else 0):
+        for number in np.flatnonzero(self._at_kinks).tolist():
             kink = self.kinks[[number]]
             nearest = [self._series(number, side).samples.min() for side in (-1.0, 1.0)]
             in_cells = bool((nearest < self._facets_beside(kink)[:, 0]).any())
@@ -516,7 +513,7 @@ class KinkedPressure(Pressure):
         # samples that all lie in the innermost cell would show nothing of its error.
         cell = float(self._facets_beside(self.kinks[[number]])[right, 0])
         gap = min(float(gaps[right]), max(float(gaps.min()), _CELLS_SAMPLED * cell / self._farthest))
-        return towards_kink(gap, self._exponent, self._farthest, farther)
+        return towards_kink(gap, float(self._at_kinks[number]), self._farthest, farther)
 
     def _piecewise(self, r: NDArray) -> NDArray[np.float64]:
         """Contact stress over N/(2a) of the piecewise polynomial at positions over a, (n,)."""

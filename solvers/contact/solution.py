@@ -276,6 +276,11 @@ class Contact:
         return tuple(sorted({jump for along in self.along.values() for jump in along.jumps}))
 
     @property
+    def kinks_move(self) -> bool:
+        """True if jumps of friction are at other positions X/a in a contact of another half-width."""
+        return self._friction_has_length and len(self.jumps_of_friction) > 0
+
+    @property
     def _friction_has_length(self) -> bool:
         return self.found and any(along.has_length for along in self.along.values())
 
@@ -475,7 +480,8 @@ class FreeEndContact(Contact):
 
     @property
     def fem_mode(self) -> str:
-        return VARYING_FREE if self.along and not self.solid.layers and not kinks(self.profile) else ""
+        own_mesh = self.solid.layers or len(kinks(self.profile)) or self.kinks_move
+        return VARYING_FREE if self.along and not own_mesh else ""
 
     @property
     def finite(self) -> bool:

@@ -12,8 +12,9 @@ the punch: its height around a nearby middle, the change of that height where th
 constant. Their loads and the intensities at both ends are linear in their amplitudes. So the half-width
 of a mesh has a load of its own, at which both intensities vanish, and a middle: of a parabola at once, of
 other profiles once the middle hardly moves (:class:`BalancedLevel`). The contact of a tilted base has one
-free end and a middle that follows from its half-width (:class:`TiltedLevel`). Kinks on layers, and under
-friction that varies along the contact, are followed in the same way (:class:`KinkedSplineLevel`).
+free end and a middle that follows from its half-width (:class:`TiltedLevel`). Kinks on layers, and kinks
+of friction, which are elsewhere over each half-width, are followed in the same way
+(:class:`KinkedSplineLevel`).
 
 On the mesh of a contact the degree rises until the measured error is within tolerance. Where contacts of
 all loads differ in size alone, a single state of a friction stands for all of them.
@@ -21,8 +22,8 @@ all loads differ in size alone, a single state of a friction stands for all of t
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from math import ceil, log
 from typing import Any, ClassVar, TypeAlias
 
@@ -37,7 +38,9 @@ from ..contact.ends import SHAPES, Punch, half_width_of_load
 from ..contact.fem_plan import (
     OWN_MESHES_KEPT,
     FemPlan,
+    at_friction_kinks,
     crowded_kinks,
+    joined_kinks,
     kind_of,
     required_on_layers,
     requirements,
@@ -57,7 +60,8 @@ from ..contact.stresses import (
     turns_at_ends,
 )
 from ..errors import SolveError
-from ..profiles import check_reach, cusp, exponent, jumps, kinks, kinks_between, leaving
+from ..friction.along import Along, constant
+from ..profiles import check_reach, cusp, exponent, kinks, kinks_between, leaving
 from ..profiles.punches import Flat, is_level
 from .contact import (
     ACROSS,
@@ -219,6 +223,7 @@ class EndsBetweenKinks:
         lengths: middle and half-width [m].
         tolerance: of the scene.
         trial: True in a search, where kinks towards which cells cannot be graded are left out.
+        friction: along the contact.
 
     Raises:
         SolveError: cells cannot be graded towards the kinks.
@@ -228,27 +233,36 @@ class EndsBetweenKinks:
     lengths: Lengths
     tolerance: float
     trial: bool = False
+    friction: Along = field(default_factory=lambda: constant(0.0))
 
     def __post_init__(self) -> None:
         if crowded := crowded_kinks(self.places):
             other = "sie" if self.body.no_closed_form else "closed_form"
-            raise SolveError(f'the punch has {crowded}; take methods = ["{other}"]')
+            whose = "friction and the punch have" if self.friction.kinks else "the punch has"
+            raise SolveError(f'{whose} {crowded}; take methods = ["{other}"]')
 
-    @property
+    @cached_property
     def places(self) -> NDArray[np.float64]:
-        """Positions of the kinks over the half-width."""
-        places = kinks_between(self.body.profile, *self.lengths)
+        """Positions of the kinks over the half-width, rising."""
+        of_punch = kinks_between(self.body.profile, *self.lengths)
+        places = joined_kinks(np.union1d(of_punch, self.friction.kinks), self.friction.weak_kinks)
         return uncrowded_kinks(places) if self.trial else places
+
+    @cached_property
+    def exponents(self) -> NDArray[np.float64]:
+        """Powers of the distance with which the pressure leaves its values at kinks, (kinks,)."""
+        of_friction = np.isin(self.places, self.friction.jumps)
+        return np.where(of_friction, 1.0, leaving(self.body.profile))
 
     @property
     def tips(self) -> NDArray[np.float64]:
         """Kinks at which stresses are infinite."""
-        return self.places if jumps(self.body.profile) else np.empty(0)
+        return self.places[self.exponents == 0.0]
 
     @property
     def kinks(self) -> NDArray[np.float64]:
         """Kinks at which stresses are finite."""
-        return np.empty(0) if jumps(self.body.profile) else self.places
+        return self.places[self.exponents > 0.0]
 
     def drawn(self, plan: FemPlan) -> QuadMesh:
         """Mesh of a plan whose cells are graded towards the kinks.
@@ -318,10 +332,10 @@ class KinkedLevel(SplineLevel, SingleLevel):
         return self.splines(contact.g, self.half_widths(contact), contact.tested, coarse, True)
 
     def pressure(self, contact: ContactStates) -> KinkedPressure:
-        space, profile, at_ends = self.space, self.base.body.profile, self.at_ends(contact)
+        space, at_ends = self.space, self.at_ends(contact)
         return KinkedPressure(
             space.contact.s, space.degree, space.chart, contact.normal[0], self.base.places,
-            self.end_exponents, at_ends, leaving(profile), self.base.tolerance, bool(jumps(profile)),
+            self.end_exponents, at_ends, self.base.exponents, self.base.tolerance,
         )  # fmt: skip
 
     def nearest(self, states: SolvedStates) -> float:
@@ -349,7 +363,7 @@ class KinkedLevel(SplineLevel, SingleLevel):
         Kinks are among the places: there it is a limit, which has less digits than what it is taken from.
         """
         pressure, across = states.pressure, ACROSS[off_tips(ACROSS, self.base.tips)]
-        at_kinks = [pressure.at_kink(i) for i in range(len(self.base.kinks))]
+        at_kinks = [pressure.at_kink(i) for i in np.flatnonzero(self.base.exponents).tolist()]
         σ = np.append(pressure.σ_YY(across), at_kinks)[None]
         size = np.abs(σ).max(keepdims=True)
         # Splines of all degrees are off alike next to ends, where they are the pressure.
@@ -362,13 +376,13 @@ class KinkedLevel(SplineLevel, SingleLevel):
 
     def turns(self, states: SolvedStates, surface: Surface) -> Turns:
         """Limits of stresses at both ends, and under kinks where they are finite."""
-        X, pressure = self.base.kinks, states.pressure
-        σ_YY = np.array([pressure.at_kink(i) for i in range(len(X))])
+        X, pressure, numbers = self.base.kinks, states.pressure, np.flatnonzero(self.base.exponents)
+        σ_YY = np.array([pressure.at_kink(i) for i in numbers.tolist()])
 
         def strain(r: NDArray) -> NDArray[np.float64]:
             return states.displacement.strains(r, states.contact.weights)[0]
 
-        u_X = np.array([pressure.limit_at_kink(i, strain) for i in range(len(X))])
+        u_X = np.array([pressure.limit_at_kink(i, strain) for i in numbers.tolist()])
         response, σ_XY = states.task.response, states.ratio(X)[0] * σ_YY
         under = np.array([response.σ_XX(u_X, σ_YY, σ_XY), σ_YY, σ_XY])
 
@@ -545,13 +559,11 @@ def drawn_for(task: Task, plan: FemPlan, words: frozenset[str], kinks: NDArray, 
         task: the speed, with lengths over the half-width of the mesh.
         plan: plan of all contacts.
         words: words of output.quantities that request stresses.
-        kinks: positions of the punch's kinks over the half-width.
+        kinks: rising positions of kinks, those of friction among them, over the half-width.
         sharp: True where an end is a sharp edge.
     """
     places, interfaces = task.places, task.places.interfaces
-    kind = kind_of(
-        interfaces, [task.response], (-1.0, *sorted([*task.body.friction_kinks, *kinks.tolist()]), 1.0)
-    )
+    kind = kind_of(interfaces, [task.response], (-1.0, *kinks.tolist(), 1.0))
     below = places.points if BELOW in words else np.empty((0, 2))
     if AT_INTERFACES in words:
         X, depth = np.meshgrid(places.along, interfaces)
@@ -692,13 +704,15 @@ class Followed(OwnMeshes):
         self, h: float, words: frozenset[str], trial: bool = False
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
-        sought, plan = self._sought, self._work.plan
+        sought, plan, g = self._sought, self._work.plan, float(self._g[0])
+        friction, lengths = sought.body.friction(g, h), (h * self._lean, h)
+        along = {g: friction} if sought.body.along else {}
         task = replace(
-            sought,
-            body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=sought.body.along),
+            sought, body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=along)
         )
-        base = EndsBetweenKinks(sought.body, (h * self._lean, h), plan.tolerance, trial)
+        base = EndsBetweenKinks(sought.body, lengths, plan.tolerance, trial, friction)
         layered = len(sought.response.depths) > 0
+        smooth = not len(kinks_between(sought.body.profile, *lengths))
         if layered:
             depths = sought.body.solid.depths / h  # type: ignore[attr-defined]
             task = replace(
@@ -707,10 +721,12 @@ class Followed(OwnMeshes):
                 places=replace(sought.places, interfaces=depths),
             )
             plan = drawn_for(task, plan, words, base.places, self._level.sharp)
+        elif smooth:
+            plan = replace(plan, graded=partial(at_friction_kinks, kinks=base.places))
         else:
             plan = replace(plan, graded=base.drawn)
         mesh = replace(self._work, plan=plan, stresses=words)
-        kind = self._level if layered and not len(base.places) else KinkedSplineLevel
+        kind = self._level if smooth else KinkedSplineLevel
         return mesh, task, partial(kind, mesh, task, base=base)
 
 

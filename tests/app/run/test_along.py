@@ -129,6 +129,36 @@ def test_estimates_over_a_layer_cover_what_splines_leave_out_at_the_edges():
         assert off > 1e-3 and off < fem["states/fem/estimate"]
 
 
+COATING = [{"thickness": "0.2 mm", "E": "80 GPa", "nu": 0.25, "rho": 3000}]
+
+
+@pytest.mark.parametrize(
+    "punch, tolerance, layer",
+    [
+        ({"profile": "parabolic", "radius": "10 mm"}, 1e-5, None),
+        ({"profile": "parabolic", "radius": "10 mm"}, 1e-3, COATING),
+        ({"profile": "wedge", "slope": 0.005}, 1e-3, None),
+        ({"profile": "rounded_flat", "flat_half_width": "0.1 mm", "radius": "10 mm"}, 1e-3, None),
+        ({"half_width": "0.3 mm", "tilt": "1 deg"}, 1e-3, None),
+    ],
+)
+def test_kinks_of_friction_move_with_the_ends_that_finite_elements_search_for(punch, tolerance, layer):
+    """Springs slip at a distance from the leading end, which is elsewhere over every half-width."""
+    law = advected("maxwell_slip", elements=[["6 1/mm", 0.3], ["2.5 1/mm", 0.4]])
+    by = {"output": {"quantities": ["sif", "surface"]}, "punch": punch | {"load": "50 N/mm"}}
+    result = slid(law, solve={"methods": ["sie", "fem"], "tolerance": tolerance}, layer=layer, **by)
+    assert result.verdict == "PASS" and len(result.data["states/fem/K_I_left"]) == 1
+
+
+def test_a_jump_of_a_higher_derivative_of_friction_spoils_no_digit():
+    """Cells that ended nowhere near it left errors of 1e-4 at the default tolerance."""
+    law = {"mu_s": 0.78, "stribeck_velocity": "0.5 m/s", "sigma0_over_load": "9772 1/m"}
+    punch = {"profile": "parabolic", "radius": "5 mm", "load": "50 N/mm"}
+    steel = {"E": "193 GPa", "nu": 0.29, "rho": 7860}
+    result = slid(advected("elasto_plastic", mu_c=0.557, **law), steel, 0.1, punch=punch)
+    assert result.verdict == "PASS" and "states/fem/half_width" in result.data
+
+
 YIELDING = {"quantities": ["sif", "surface", "interior", "yield"]}
 
 

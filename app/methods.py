@@ -12,7 +12,7 @@ from galinx.postprocess.quantities import Quantity, states, stresses
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, SIE
 from galinx.postprocess.quantities.validity import SLIP_REVERSED
 from galinx.registry import Registry
-from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, VARYING, YIELD
+from galinx.solvers.contact import BELOW, FREE_ENDS, OWN_PRESSURE, YIELD
 from galinx.solvers.contact.fem_plan import (
     FREE_ON_LAYERS,
     OWN_MESHES,
@@ -32,7 +32,6 @@ from galinx.solvers.contact.solution import (
     Contact,
     Method,
 )
-from galinx.solvers.profiles import kinks
 
 from .errors import finite_elements_installed
 
@@ -109,8 +108,8 @@ def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | N
     )
 
 
-#: Modes of the finite elements by the ends of a contact, for smooth punches and for those with kinks, on
-#: uniform and on layered solids.
+#: Modes of the finite elements by the ends of a contact, on one mesh and on meshes of their own, without
+#: and with layers.
 _MODES = {
     SHARP: ((CONTACT, CONTACT), (SHARP_ON_LAYERS, SHARP_ON_LAYERS)),
     PRESCRIBED: ((OWN_PRESSURE, OWN_PRESSURE), (PRESCRIBED_ON_LAYERS, PRESCRIBED_ON_LAYERS)),
@@ -131,22 +130,15 @@ _LACKING = {
 def fem_mode(scene: Any) -> str:
     """Mode of a scene's finite elements, see :class:`galinx.solvers.contact.fem_plan.FemPlan`."""
     body = scene.body
-    own = len(kinks(body.profile)) > 0 or body.kinks_move
-    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][own]
+    mode = body.fem_mode or _MODES[body.ends][bool(scene.layers)][body.own_meshes]
     return scene.solve.mode if mode == CONTACT else mode
-
-
-def _fem_along_refusal(scene: Any, body: Contact) -> str:
-    """Reason why finite elements cannot take friction that varies along a contact, "" where they can."""
-    if crowded := crowded_kinks(body.friction_kinks):
-        return f"friction has {crowded}"
-    return ""
 
 
 def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     mode, solve = fem_mode(scene), scene.solve
-    if VARYING in body.modes and (why := _fem_along_refusal(scene, body)):
-        return f"{why}; {SIE if body.no_closed_form else CLOSED_FORM} takes it"
+    other = SIE if body.no_closed_form else CLOSED_FORM
+    if of_friction := crowded_kinks(body.friction_kinks):
+        return f"friction has {of_friction}; {other} takes it"
     lacks = _LACKING.get(mode, {})
     if body.solid.nearly_incompressible:
         lacks = lacks | dict.fromkeys((BELOW, YIELD), "finite elements give none inside for ν > 0.49")
@@ -164,7 +156,6 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
         ends = (body.loaded(of(scene.punch.loads)) for of in (min, max))
         crowded = [crowded_kinks(under.kinks_at_rest) for under in ends]  # type: ignore[attr-defined]
         if all(crowded):
-            other = SIE if body.no_closed_form else CLOSED_FORM
             return f"the punch has {crowded[0]}; {other} takes it"
     return _refusal(quantity, body, lacks)
 

@@ -276,9 +276,10 @@ class Contact:
         return tuple(sorted({jump for along in self.along.values() for jump in along.jumps}))
 
     @property
-    def kinks_move(self) -> bool:
-        """True if jumps of friction are at other positions X/a in a contact of another half-width."""
-        return self._friction_has_length and len(self.jumps_of_friction) > 0
+    def own_meshes(self) -> bool:
+        """True if kinks, of the punch or of friction, are at other positions X/a in every state."""
+        of_friction = self._friction_has_length and len(self.jumps_of_friction) > 0
+        return of_friction or len(kinks(self.profile)) > 0
 
     @property
     def _friction_has_length(self) -> bool:
@@ -480,8 +481,7 @@ class FreeEndContact(Contact):
 
     @property
     def fem_mode(self) -> str:
-        own_mesh = self.solid.layers or len(kinks(self.profile)) or self.kinks_move
-        return VARYING_FREE if self.along and not own_mesh else ""
+        return VARYING_FREE if self.along and not (self.solid.layers or self.own_meshes) else ""
 
     @property
     def finite(self) -> bool:

@@ -238,14 +238,13 @@ class EndsBetweenKinks:
     def __post_init__(self) -> None:
         if crowded := crowded_kinks(self.places):
             other = "sie" if self.body.no_closed_form else "closed_form"
-            whose = "friction and the punch have" if self.friction.kinks else "the punch has"
-            raise SolveError(f'{whose} {crowded}; take methods = ["{other}"]')
+            raise SolveError(f'the punch has {crowded}; take methods = ["{other}"]')
 
     @cached_property
     def places(self) -> NDArray[np.float64]:
-        """Positions of the kinks over the half-width, rising."""
+        """Positions of the kinks over the half-width, rising; of friction those that cells can follow."""
         of_punch = kinks_between(self.body.profile, *self.lengths)
-        places = joined_kinks(np.union1d(of_punch, self.friction.kinks), self.friction.weak_kinks)
+        places = joined_kinks(of_punch, self.friction.jumps)
         return uncrowded_kinks(places) if self.trial else places
 
     @cached_property

@@ -22,7 +22,7 @@ all loads differ in size alone, a single state of a friction stands for all of t
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import ceil, log
 from typing import Any, ClassVar, TypeAlias
@@ -60,7 +60,6 @@ from ..contact.stresses import (
     turns_at_ends,
 )
 from ..errors import SolveError
-from ..friction.along import Along, constant
 from ..profiles import check_reach, cusp, exponent, kinks, kinks_between, leaving
 from ..profiles.punches import Flat, is_level
 from .contact import (
@@ -216,24 +215,24 @@ _OF_TIP = 0.25
 
 @dataclass(frozen=True)
 class EndsBetweenKinks:
-    """Ends of one contact, and kinks of the punch between them, towards which its mesh is graded.
+    """Ends of one contact, and kinks between them, towards which its mesh is graded.
 
     Attributes:
         body: the sliding contact, under its load.
         lengths: middle and half-width [m].
         tolerance: of the scene.
         trial: True in a search, where kinks towards which cells cannot be graded are left out.
-        friction: along the contact.
+        of_friction: rising positions over the half-width at which friction, or a derivative of it, jumps.
 
     Raises:
-        SolveError: cells cannot be graded towards the kinks.
+        SolveError: cells cannot be graded towards the punch's kinks.
     """
 
     body: Contact
     lengths: Lengths
     tolerance: float
     trial: bool = False
-    friction: Along = field(default_factory=lambda: constant(0.0))
+    of_friction: Sequence[float] = ()
 
     def __post_init__(self) -> None:
         if crowded := crowded_kinks(self.places):
@@ -244,13 +243,13 @@ class EndsBetweenKinks:
     def places(self) -> NDArray[np.float64]:
         """Positions of the kinks over the half-width, rising; of friction those that cells can follow."""
         of_punch = kinks_between(self.body.profile, *self.lengths)
-        places = joined_kinks(of_punch, self.friction.jumps)
+        places = joined_kinks(of_punch, self.of_friction)
         return uncrowded_kinks(places) if self.trial else places
 
     @cached_property
     def exponents(self) -> NDArray[np.float64]:
         """Powers of the distance with which the pressure leaves its values at kinks, (kinks,)."""
-        of_friction = np.isin(self.places, self.friction.jumps)
+        of_friction = np.isin(self.places, self.of_friction)
         return np.where(of_friction, 1.0, leaving(self.body.profile))
 
     @property
@@ -709,7 +708,7 @@ class Followed(OwnMeshes):
         task = replace(
             sought, body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=along)
         )
-        base = EndsBetweenKinks(sought.body, lengths, plan.tolerance, trial, friction)
+        base = EndsBetweenKinks(sought.body, lengths, plan.tolerance, trial, friction.jumps)
         layered = len(sought.response.depths) > 0
         smooth = not len(kinks_between(sought.body.profile, *lengths))
         if layered:

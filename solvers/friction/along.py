@@ -42,7 +42,7 @@ class Along:
         mean: mean over X.
         ratio: σ_XY/σ_YY at positions X/a in [-1, 1], (n,): (n,).
         kinks: positions inside at which it is not smooth.
-        weak_kinks: further ones, at which a higher derivative jumps: meshes need no cells for these.
+        weak_kinks: further ones, at which a higher derivative jumps; meshes follow them where they can.
         over: gives it for another half-width [m]; None where it does not depend on that.
         varies: False for one number all along the contact.
     """

@@ -319,7 +319,7 @@ def along(seed, punch=None, **sections):
     solid = PLATE
     if seed % 3 == 1 and "layer" not in sections:
         solid = oblique | {"angle": rng.uniform(0.0, 180.0)}
-    friction, c = _along(rng, seed), rng.uniform(0.0, 0.6)
+    friction, c = _along(rng, seed), min(rng.uniform(0.0, 0.6), 0.58)  # the coating is slower
     sections = {"punch": punch, "solid": solid, "friction": friction, "motion": {"c": c}} | sections
     return of_sections(**sections)
 

@@ -24,7 +24,7 @@ from galinx.solvers.contact.fem_plan import (
     FITTED,
     FemPlan,
     at_friction_kinks,
-    friction_kinks,
+    graded_kinks,
     kind_of,
     no_nearer,
     required_of_free_ends,
@@ -171,7 +171,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     if scene.layers:
         depths = scene.solid.depths / scene.body.half_width
         kind, name = (
-            kind_of(depths, responses, scene.body.knots or (-1.0, *friction_kinks(scene.body), 1.0)),
+            kind_of(depths, responses, scene.body.knots or (-1.0, *graded_kinks(scene.body), 1.0)),
             _LAYERED,
         )
     ratios = scene.body.ratio(g, np.linspace(-1.0, 1.0, 201))  # for its extremes
@@ -190,7 +190,7 @@ def plan_fem(scene: Scene, responses: Sequence[HalfPlane], places: Places, g: ND
     degrees = tuple(
         solve.degree or max(kind.degree(required, response.margin), least) for response in responses
     )
-    kinks = friction_kinks(scene.body)
+    kinks = graded_kinks(scene.body)
     plan = FemPlan(
         mesh=name, kind=kind, refinement=refinement, cuts=solve.cuts, form=scene.solid.form,
         assembler=solve.assembler, solver=solve.solver, degrees=degrees, fixed=solve.degree is not None,

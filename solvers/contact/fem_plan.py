@@ -197,7 +197,7 @@ def joined_kinks(kinks: Sequence[float] | NDArray, weak: Sequence[float]) -> NDA
     return np.union1d(kinks, further[: max(_MOST - len(kinks), 0)])
 
 
-def friction_kinks(body: Any) -> tuple[float, ...]:
+def graded_kinks(body: Any) -> tuple[float, ...]:
     """Rising positions over the half-width of kinks of friction towards which meshes are graded."""
     weak = sorted({*body.jumps_of_friction} - {*body.friction_kinks})
     return tuple(joined_kinks(body.friction_kinks, weak).tolist())
@@ -209,7 +209,7 @@ _OF_FRICTION, _LARGEST = 500.0, 0.1
 
 
 def at_friction_kinks(plan: "FemPlan", kinks: Sequence[float] | NDArray) -> QuadMesh:
-    """The mesh of a punch with sharp ends, graded towards kinks of friction at positions over a."""
+    """The mesh of a punch without kinks, graded towards those of friction at positions over a."""
     size = min(_OF_FRICTION * plan.tolerance, _LARGEST)
     return with_kinks(plan.refinement, np.array(kinks), rings_at_kinks(plan.refinement, size))
 

@@ -26,7 +26,7 @@ from ..contact import FREE_ENDS, INTENSITIES, VARYING, VARYING_FREE
 from ..contact.along import FittedSplines, Splines
 from ..contact.edges import EdgeExponents
 from ..contact.ends import SHAPES, end_conditions, heights_of_shapes, slopes_of_shapes
-from ..contact.fem_plan import SHARP_ON_LAYERS, friction_kinks
+from ..contact.fem_plan import SHARP_ON_LAYERS, graded_kinks
 from ..contact.pressure import ENDS, Expansion
 from ..contact.recovery import (
     MOMENTS,
@@ -285,7 +285,7 @@ class SplineLevel(PunchLevel):
     @property
     def kinks(self) -> NDArray[np.float64]:
         """Rising positions over a between the ends at which the pressure is not smooth."""
-        return np.array(friction_kinks(self.task.body))
+        return np.array(graded_kinks(self.task.body))
 
     def half_widths(self, contact: ContactStates) -> NDArray[np.float64]:
         """Half-widths [m] on which frictions of contacts depend, (states,)."""

@@ -240,17 +240,20 @@ class EndsBetweenKinks:
             raise SolveError(f'the punch has {crowded}; take methods = ["{other}"]')
 
     @cached_property
+    def of_punch(self) -> NDArray[np.float64]:
+        """Positions of the punch's kinks over the half-width."""
+        return kinks_between(self.body.profile, *self.lengths)
+
+    @cached_property
     def places(self) -> NDArray[np.float64]:
         """Positions of the kinks over the half-width, rising; of friction those that cells can follow."""
-        of_punch = kinks_between(self.body.profile, *self.lengths)
-        places = joined_kinks(of_punch, self.of_friction)
+        places = joined_kinks(self.of_punch, self.of_friction)
         return uncrowded_kinks(places) if self.trial else places
 
     @cached_property
     def exponents(self) -> NDArray[np.float64]:
         """Powers of the distance with which the pressure leaves its values at kinks, (kinks,)."""
-        of_friction = np.isin(self.places, self.of_friction)
-        return np.where(of_friction, 1.0, leaving(self.body.profile))
+        return np.where(np.isin(self.places, self.of_punch), leaving(self.body.profile), 1.0)
 
     @property
     def tips(self) -> NDArray[np.float64]:
@@ -703,14 +706,14 @@ class Followed(OwnMeshes):
     ) -> tuple[Discretisation, Task, Callable[[Space, NDArray], BalancedLevel]]:
         """Mesh drawn for a half-width [m], the task with lengths over it, and the solution in a space."""
         sought, plan, g = self._sought, self._work.plan, float(self._g[0])
-        friction, lengths = sought.body.friction(g, h), (h * self._lean, h)
+        friction = sought.body.friction(g, h)
         along = {g: friction} if sought.body.along else {}
         task = replace(
             sought, body=make_contact(sought.body.solid, Flat(h), sought.body.load, along=along)
         )
+        lengths = h * self._lean, h
         base = EndsBetweenKinks(sought.body, lengths, plan.tolerance, trial, friction.jumps)
-        layered = len(sought.response.depths) > 0
-        smooth = not len(kinks_between(sought.body.profile, *lengths))
+        layered, smooth = len(sought.response.depths) > 0, not len(base.of_punch)
         if layered:
             depths = sought.body.solid.depths / h  # type: ignore[attr-defined]
             task = replace(

@@ -4,9 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from support import computed
+from support import computed, of_sections
 
 from galinx.postprocess.tables import loops_sheet
+from galinx.solvers.fem.own_meshes import EndsBetweenKinks
 
 ISOTROPIC = {"E": "40 GPa", "nu": 0.3, "rho": 2000}
 
@@ -148,6 +149,14 @@ def test_kinks_of_friction_move_with_the_ends_that_finite_elements_search_for(pu
     by = {"output": {"quantities": ["sif", "surface"]}, "punch": punch | {"load": "50 N/mm"}}
     result = slid(law, solve={"methods": ["sie", "fem"], "tolerance": tolerance}, layer=layer, **by)
     assert result.verdict == "PASS" and len(result.data["states/fem/K_I_left"]) == 1
+
+
+def test_a_tip_at_a_kink_of_friction_stays_a_tip():
+    """There the pressure is infinite, and at the other kink of friction it has a limit."""
+    wedge = {"profile": "wedge", "slope": 0.005, "load": "50 N/mm"}
+    body = of_sections(solid=ISOTROPIC, punch=wedge, friction={"mu": 0.3}, motion={"c": 0.3}).body
+    base = EndsBetweenKinks(body, (0.0, 1e-3), 1e-3, of_friction=(0.0, 0.5))
+    assert base.tips.tolist() == [0.0] and base.kinks.tolist() == [0.5]
 
 
 def test_a_jump_of_a_higher_derivative_of_friction_spoils_no_digit():

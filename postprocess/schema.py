@@ -17,6 +17,7 @@ from . import over_time  # noqa: F401 - it adds its rules
 from .quantities import table
 from .quantities.quantity import NUMBER, TEXT, WHOLE
 from .quantities.runs import LINE, SCENE
+from .quantities.states import FRICTION, MOTION, POSITION, RATIO, SPEED
 
 #: Version of the layout, and the first version that is read: earlier archives had no digest.
 VERSION, FIRST = 4, 2
@@ -69,6 +70,10 @@ ATTRIBUTES = {
 }  # fmt: skip
 
 
+#: Quantities that every archive has.
+_IN_ALL = (SCENE, SPEED, MOTION, POSITION, FRICTION, RATIO)
+
+
 class Layout(NamedTuple):
     """Kind of numbers that a dataset holds, as NumPy has it, its shape, and its unit."""
 
@@ -106,6 +111,11 @@ def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Layout], scene:
         f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         for name in datasets
         if name not in known
+    ]
+    sentences += [
+        f"{row.path!r}: missing, expected it in every archive"
+        for row in _IN_ALL
+        if row.path not in datasets
     ]
     sentences += _misshapen({name: layout for name, layout in datasets.items() if name in known})
     if _holds(attributes.get("datasets"), _LIST):

@@ -1,5 +1,6 @@
 """Archives that are changed on purpose: what may be done to one that is opened for writing."""
 
+import json
 from contextlib import contextmanager
 
 import h5py
@@ -40,6 +41,17 @@ def attribute(name, found):
 def gone(name):
     def apply(file):
         del (file.attrs if name in file.attrs else file)[name]
+
+    return apply
+
+
+def lost(name):
+    """The archive without one of its datasets, which it does not list either."""
+
+    def apply(file):
+        del file[name]
+        names = json.loads(file.attrs["datasets"])
+        file.attrs["datasets"] = json.dumps([each for each in names if each != name])
 
     return apply
 

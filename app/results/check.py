@@ -395,10 +395,10 @@ def _solved(rows: dict[str, Any], failures: Sequence[str]) -> dict[str, Any]:
         if (row := quantities[name]).solved and row.over == (STATE,) and row.nan_allowed == NEVER
     ]  # fmt: skip
     bad = np.isin(c, failed) & ~np.all(given, axis=0)
-    return {
-        name: values[~bad] if quantities[name].over[:1] == (STATE,) else values
-        for name, values in rows.items()
-    }
+    for name, values in rows.items() if bad.any() else ():
+        if quantities[name].over[:1] == (STATE,):
+            rows[name] = values[~bad]
+    return rows
 
 
 def _of_verdict(archive: Archive, scene: Scene) -> Iterator[str]:

@@ -20,7 +20,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import h5py
 import numpy as np
@@ -265,6 +265,28 @@ class Writer:
 _LISTED = 8
 
 
+class _Datasets(dict[str, Any]):
+    """Datasets of an archive by path.
+
+    Args:
+        path: the archive.
+        datasets: by path.
+
+    Raises:
+        UnreadableArchive: a dataset is asked for that the archive does not have.
+    """
+
+    def __init__(self, path: Path, datasets: Iterable[tuple[str, Any]]) -> None:
+        super().__init__(datasets)
+        self._archive = path
+
+    def __missing__(self, name: str) -> NoReturn:
+        raise UnreadableArchive(
+            f"{self._archive}: {name!r} is missing, expected it beside the datasets that are there; take "
+            "another copy or rerun"
+        )
+
+
 class Archive:
     """An open archive.
 
@@ -294,11 +316,12 @@ class Archive:
             raise UnreadableArchive(
                 f"{path} is not as this galinx writes archives; take another copy or rerun{lines}{more}"
             )
-        self.data = {name: self._read(name) for name in self.names if not large(name)}
+        self.data = _Datasets(path, ((name, self._read(name)) for name in self.names if not large(name)))
 
     def all(self) -> dict[str, Any]:
         """Every dataset by path, large ones included."""
-        return {name: self._read(name) if large(name) else self.data[name] for name in self.names}
+        each = ((name, self._read(name) if large(name) else self.data[name]) for name in self.names)
+        return _Datasets(self._path, each)
 
     def rows(self, rows: slice | NDArray[np.int64], names: Iterable[str] | None = None) -> dict[str, Any]:
         """Datasets of some states by path, and positions that all states share.
@@ -307,7 +330,7 @@ class Archive:
             rows: numbers of the states, growing.
             names: of the datasets; all of states if not given.
         """
-        data, quantities = {}, table()
+        data, quantities = _Datasets(self._path, ()), table()
         for name in filter(of_states, self.names) if names is None else names:
             if large(name):
                 data[name] = self._read(name, rows)

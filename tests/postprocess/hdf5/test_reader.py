@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from tampering import another, archived, attribute, gone, opened, renamed, unit
+from tampering import another, archived, attribute, gone, lost, opened, renamed, unit
 
 from galinx.postprocess import schema
 from galinx.postprocess.errors import UnreadableArchive
@@ -81,6 +81,7 @@ UNKNOWN = {
     "dataset renamed": (renamed("states/f", "states/F"), "'states/F': not in the table"),
     "section renamed": (renamed("run", "ruN"), "'run/seconds': missing"),
     "dataset lost": (gone("states/alpha"), "'states/alpha': missing"),
+    "dataset of all archives lost": (lost("states/motion"), "'states/motion': missing, expected it in"),
     "attribute lost": (gone("verdict"), "attribute verdict: missing, expected PASS"),
     "a row less": (another("states/f", lambda found: found[:-1]), "found 11 states, expected 12"),
     "an axis more": (another("states/f", lambda found: found[None]), r"\(1, 12\), expected numbers"),
@@ -113,3 +114,16 @@ def test_many_faults_are_one_message(path):
     with pytest.raises(UnreadableArchive, match=r"and \d+ more$") as caught:
         reader.read(path)
     assert len(str(caught.value).splitlines()) == 10
+
+
+def test_a_dataset_that_is_asked_for_and_missing_is_named(path):
+    with opened(path) as file:
+        lost("states/alpha")(file)
+    data, _ = reader.read(path)
+    with pytest.raises(UnreadableArchive, match="'states/alpha' is missing"):
+        data["states/alpha"]
+    with (
+        reader.opened(path) as archive,
+        pytest.raises(UnreadableArchive, match="'states/alpha' is missing"),
+    ):
+        archive.rows(slice(2), ["states/alpha"])

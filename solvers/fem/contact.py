@@ -458,8 +458,9 @@ class FreeLevel(PunchLevel):
         each = np.broadcast_arrays(g, body.load, body.displacement)
         ends, last = [], next(reversed(self._ends.values()), None)
         for condition, friction, load, unit in zip(conditions, *(of.tolist() for of in each)):
-            last = condition.solve(body.profile, unit, self._ends.get((friction, load), last))
-            self._ends[friction, load] = last
+            if (friction, load) not in self._ends:
+                self._ends[friction, load] = condition.solve(body.profile, unit, last)
+            last = self._ends[friction, load]
             ends.append(last)
         return np.transpose(ends), np.array([condition.unseen for condition in conditions])
 
@@ -524,7 +525,12 @@ class VaryingFreeLevel(SplineLevel, FreeLevel):
         each = zip(g.tolist(), h.tolist())
         return np.array([self.task.body.friction(*state) for state in each], dtype=object)
 
-    def _balanced(self, g: float, load: float) -> tuple[tuple[float, float], list[bool]]:
+    @cached_property
+    def _balanced(self) -> Callable[[float, float], tuple[tuple[float, float], list[bool]]]:
+        """Ends by σ_XY/σ_YY and load [N/m], see :meth:`_balance`; each is searched for once."""
+        return cache(self._balance)
+
+    def _balance(self, g: float, load: float) -> tuple[tuple[float, float], list[bool]]:
         """Middle and half-width [m] of a contact, and which ends are free; its search adds fields.
 
         Raises:
@@ -535,7 +541,7 @@ class VaryingFreeLevel(SplineLevel, FreeLevel):
         body = self.task.body.loaded(load)
         punch: Any = body.profile
         tilted, free = body.ends == ONE_FREE, np.logical_not(punch.sharp)
-        m, scale = self._ends.get((g, load), (0.0, float(body.half_width)))
+        scale = float(body.half_width)
 
         def ends(x: NDArray) -> tuple[float, float]:
             h = scale * float(np.exp(x[-1]))
@@ -550,10 +556,9 @@ class VaryingFreeLevel(SplineLevel, FreeLevel):
 
         if tilted and intensities(whole := np.log([punch.half_width / scale]))[0] >= 0.0:
             return ends(whole), [False, False]
-        x = root(intensities, [m / scale, 0.0][tilted:], tol=_BALANCED).x
+        x = root(intensities, [0.0, 0.0][tilted:], tol=_BALANCED).x
         if not np.abs(intensities(x)).max() < _OF_INTENSITIES:
             raise SolveError("no contact of a finite half-width carries the load")
-        self._ends[g, load] = ends(x)
         return ends(x), free.tolist()
 
 

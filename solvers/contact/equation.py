@@ -286,7 +286,7 @@ class Equation:
         x, own = panels.between
         r, scale = np.tanh(x / 2.0), 1.0 / panels.weight(x)
         g, there = friction(panels.t), friction(r)
-        A = panels.weights / panels.apart(x[:, None], panels.x - x[:, None]) / np.pi
+        A = panels.weights / panels.apart(x[:, None], panels.x) / np.pi
         # What is subtracted at r is interpolated in its own panel.
         of_own = panels.hilbert_of_weight(x) - self._cot(r) - scale * A.sum(axis=1)
         A *= scale[:, None]

@@ -200,9 +200,15 @@ class Panels(Functions):
         log = -self.α * np.logaddexp(0.0, x) - self.β * np.logaddexp(0.0, -x)
         return np.asarray(2.0 ** (self.α + self.β) * np.exp(log))
 
-    def apart(self, x: Any, δ: NDArray) -> NDArray[np.float64]:
-        """t(x + δ) - t(x), to all digits."""
-        return np.asarray(np.sinh(δ / 2.0) / (np.cosh(x / 2.0) * np.cosh((x + δ) / 2.0)))
+    def apart(self, x: Any, y: NDArray, δ: Any = None) -> NDArray[np.float64]:
+        """t(y) - t(x), to all digits, broadcast.
+
+        Args:
+            x, y: places.
+            δ: y - x, where it has more digits than these.
+        """
+        δ = y - x if δ is None else δ
+        return np.asarray(np.sinh(δ / 2.0) / (np.cosh(x / 2.0) * np.cosh(y / 2.0)))
 
     def basis(self, x: NDArray, panel: int | NDArray) -> NDArray[np.float64]:
         """Matrix from values at a panel's points to those at its places x, (len(x), nodes)."""
@@ -244,7 +250,7 @@ class Panels(Functions):
             return np.concatenate([self._graded_rows(kernel, x[rows]) for rows in blocks])
         parts = [x[rows, None] for rows in self.blocks(len(x), _ROWS)]
         return np.concatenate([
-            kernel(-self.apart(part, self.x - part)) * self.weights[:, None] for part in parts
+            kernel(-self.apart(part, self.x)) * self.weights[:, None] for part in parts
         ])  # fmt: skip
 
     def _graded_rows(self, kernel: Callable[[NDArray], NDArray], x: NDArray) -> NDArray[np.float64]:
@@ -252,7 +258,7 @@ class Panels(Functions):
         x = np.clip(x, -self.reach, self.reach)
         reach, (τ, _, _) = _NEAR * np.diff(self.ends), legendre_panel(self.nodes)
         near = (self.ends[:-1] - reach <= x[:, None]) & (x[:, None] <= self.ends[1:] + reach)
-        away = -self.apart(x[:, None], self.x - x[:, None])
+        away = -self.apart(x[:, None], self.x)
         away[away == 0.0] = 1.0  # on panels that have rules
         parts = [*self._parts(x, *np.nonzero(near))]
         rules = [_graded(part.apart, part.varied, self.nodes) for part in parts]
@@ -260,13 +266,14 @@ class Panels(Functions):
             part.start[:, None] - part.x[:, None] + part.length[:, None] * s
             for part, (s, _, _) in zip(parts, rules)
         ]
-        aways = [away, *(-self.apart(part.x[:, None], each) for part, each in zip(parts, δ))]
+        y = [part.x[:, None] + each for part, each in zip(parts, δ)]
+        aways = [away, *(-self.apart(part.x[:, None], *of) for part, *of in zip(parts, y, δ))]
         sizes = np.cumsum([each.size for each in aways])[:-1]
         values, *of_parts = np.split(kernel(np.concatenate([*map(np.ravel, aways)])), sizes)
         weights = np.where(np.repeat(near, self.nodes, axis=1), self._beyond, self.weights)
         integrals = (values * weights.reshape(-1, 1)).reshape(*near.shape, self.nodes, -1)
-        for part, (_, ds, through), each, values in zip(parts, rules, δ, of_parts):
-            weights = np.abs(part.length[:, None]) * ds * self.density(part.x[:, None] + each)
+        for part, (_, ds, through), of, values in zip(parts, rules, y, of_parts):
+            weights = np.abs(part.length[:, None]) * ds * self.density(of)
             sums = through.T @ (values.reshape(*weights.shape, -1) * weights[..., None])
             # The polynomials of the panel are those of the part through as many points there.
             at = part.start[:, None] + part.length[:, None] * (1.0 + τ) / 2.0

@@ -56,7 +56,12 @@ RELEASE = (
         "near_the_speed_limit_loose_tolerances_are_met_as_tight_ones_are[-0.8242",
         "the_largest_tension_at_a_step_of_friction_is_between_its_places[parabolic]",
     )),
-    "app/run/test_along.py::test_one_friction_along_the_contact_yields_as_a_number[punch_]",
+    *(f"app/run/test_along.py::test_{name}" for name in (
+        "a_shipped_scene_of_advected_states",
+        "one_friction_along_the_contact_yields_as_a_number[punch_]",
+        "kinks_of_friction_move_with_the_ends_that_finite_elements_search_for[punch2",
+        "kinks_of_friction_move_with_the_ends_that_finite_elements_search_for[punch3",
+    )),
     "app/run/test_along.py::test_estimates_cover_the_pressure_beside_kinks_and_between_them[along1",
     "app/run/test_fixed_degree.py::test_the_estimate_covers_the_true_error[2-9]",
     *(f"app/run/test_interruptions.py::test_whoever_is_hit_the_run_ends_in_order_and_is_resumed[{hit}]"
@@ -64,6 +69,8 @@ RELEASE = (
     "app/run/test_layers.py::test_a_tilted_punch_on_a_layer_of_its_substrate_is_that_on_the_substrate[0.5-0",
     "app/run/test_loads.py::test_a_pressure_that_is_put_in_has_every_load[pressure1]",
     "app/run/test_motions_mirrored.py::test_a_turn[law-physical]",
+    "app/run/test_over_time.py::test_a_coating_starts_by_both_methods",
+    "app/run/test_over_time.py::test_intensities_of_the_shortest_ramp",
     "app/run/test_random_stacks.py::test_alone_over_thin_coatings_the_estimate_covers_the_pressure[soft]",
     "app/run/test_random_stacks.py::test_the_hardest_stacks_are_within_their_estimates[thin",
     "app/run/test_swept_numbers.py::test_a_swept_strength_is_that_of_each_state[scene0",
@@ -72,6 +79,7 @@ RELEASE = (
     "app/run/test_yield.py::test_no_deeper_place_yields_and_the_deepest_does[beside",
     *(f"app/test_symmetries.py::test_the_mirror_image[{name}" for name in (
         "graded, own pressure with jumps", "orthotropic layer, cubic, sie", "orthotropic, wedge, fem",
+        "upright fibres layer, parabolic, fem",
     )),
     "solvers/contact/test_inside_any_solid.py::test_stresses_inside_are_sums_of_line_loads[15]",
     "solvers/contact/test_residual.py::test_over_layers_a_pressure_of_the_equation_leaves_nothing_and_a_wrong_one_its_error[graded]",

@@ -186,7 +186,7 @@ class LinearSolver:
         """
         x = self._solved(b)
         if checked:
-            self.check(b, x, b - times(self.A, x))
+            self.check(b, x)
         return x
 
     def _solved(self, b: NDArray) -> NDArray[np.float64]:
@@ -222,11 +222,16 @@ class LinearSolver:
         b.destroy(), x.destroy()
         return solution
 
-    def check(self, b: NDArray, x: NDArray, residuals: NDArray) -> None:
-        """Raise SolveError where a factor's solutions x leave too much of b, all (rows, n)."""
+    def check(self, b: NDArray, x: NDArray, residuals: NDArray | None = None) -> None:
+        """Raise SolveError where a factor's solutions x leave too much of b, all (rows, n).
+
+        Args:
+            b, x: right-hand sides and solutions.
+            residuals: b - Ax, computed if None.
+        """
         if not self.direct:
             return
-        left = self._squares(residuals)
+        left = self._squares(b - times(self.A, x) if residuals is None else residuals)
         for residual in np.sqrt(left / self._squares(b)):
             if not residual <= RESIDUAL_LIMIT:  # also catches NaN
                 raise SolveError(

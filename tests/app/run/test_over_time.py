@@ -13,6 +13,8 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.postprocess.compare import RULES, checked
 from galinx.postprocess.over_time import DONE, HELD, energy_imbalance
+from galinx.solvers.errors import SolveError
+from galinx.solvers.fem.linear import LinearSolver
 from galinx.solvers.solids.isotropic import Isotropic
 from galinx.solvers.transient.punch import Radau
 
@@ -148,6 +150,13 @@ def test_short_steps_and_ramps_let_no_wave_grow_under_friction():
                "solve.methods": ["fem"]}  # fmt: skip
     result = computed("start_from_rest", QUICK | changes)
     assert result.comparisons[ESTIMATE] < 1e-2, result.comparisons
+
+
+def test_a_factor_of_another_matrix_is_noticed(monkeypatch):
+    solved = LinearSolver._solved
+    monkeypatch.setattr(LinearSolver, "_solved", lambda self, b: 1.001 * solved(self, b))
+    with pytest.raises(SolveError, match="the linear solve left"):
+        computed("start_from_rest", {"solve.methods": ["fem"], "solve.tolerance": 1e-2, "time.end": 0.5})
 
 
 def test_a_punch_that_would_have_to_pull_fails_by_both_methods():

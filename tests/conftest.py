@@ -55,6 +55,7 @@ RELEASE = (
         "in_plane_stresses_of_a_pressure_are_largest_at_its_knots_and_beside_them[1]",
         "near_the_speed_limit_loose_tolerances_are_met_as_tight_ones_are[-0.8242",
         "the_largest_tension_at_a_step_of_friction_is_between_its_places[parabolic]",
+        "the_surface_of_a_layer_yields_beside_a_kink",
     )),
     *(f"app/run/test_along.py::test_{name}" for name in (
         "a_shipped_scene_of_advected_states",
@@ -64,8 +65,10 @@ RELEASE = (
     )),
     "app/run/test_along.py::test_estimates_cover_the_pressure_beside_kinks_and_between_them[along1",
     "app/run/test_fixed_degree.py::test_the_estimate_covers_the_true_error[2-9]",
+    "app/run/test_found_ends.py::test_a_mesh_that_another_replaced",
     *(f"app/run/test_interruptions.py::test_whoever_is_hit_the_run_ends_in_order_and_is_resumed[{hit}]"
-      for hit in ("2-mpirun-9-2", "2-0-9-2")),
+      for hit in ("1-galinx-1-1", "2-mpirun-9-2", "2-0-9-2")),
+    "app/run/test_layers.py::test_flat_punches_over_graded_tops_reach_the_usual_tolerance",
     "app/run/test_layers.py::test_a_tilted_punch_on_a_layer_of_its_substrate_is_that_on_the_substrate[0.5-0",
     "app/run/test_loads.py::test_a_pressure_that_is_put_in_has_every_load[pressure1]",
     "app/run/test_motions_mirrored.py::test_a_turn[law-physical]",
@@ -84,10 +87,12 @@ RELEASE = (
     "solvers/contact/test_inside_any_solid.py::test_stresses_inside_are_sums_of_line_loads[15]",
     "solvers/contact/test_residual.py::test_over_layers_a_pressure_of_the_equation_leaves_nothing_and_a_wrong_one_its_error[graded]",
     "solvers/fem/test_loaded_in_time.py::test_strip_that_is_loaded_by_and_by[0.5]",
+    "solvers/friction/test_fit.py::test_laws_of_many_numbers_leave_little_more_than_noise[elasto_plastic",
     "solvers/friction/test_fit.py::test_the_search_passes_by_minima_that_leave_more[gms",
     "solvers/friction/test_slider.py::test_a_swing_that_grows_is_neither_steady_nor_a_cycle[12.0]",
     "solvers/friction/test_slider.py::test_sliders_without_a_cycle_are_followed_to_their_end[law1",
     "solvers/friction/test_slider.py::test_sliders_without_a_cycle_are_followed_to_their_end[law2",
+    "solvers/layers/test_contact.py::test_a_length_to_measure_by",
     "solvers/layers/test_stack.py::test_waves_much_shorter_than_a_graded_top_feel_the_power_of_the_depth[1.5]",
     "solvers/transient/test_started.py::test_both_methods_agree[rotated]",
 )  # fmt: skip

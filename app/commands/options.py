@@ -88,7 +88,8 @@ def read(path: Path, changes: tuple[str, ...], unset: tuple[str, ...]) -> Any:
 
 dimensionless = click.option(
     "--dimensionless", is_flag=True,
-    help="Stresses over N/(2a), places over a, speeds over c_s, loads, v₀ in SI; default: MPa, mm, m/s.",
+    help="Stresses over N/(2a), places over a, speeds over c_s, loads, v₀ in SI, of motions over N, "
+    "N/(2μ); default: MPa, mm, m/s.",
 )  # fmt: skip
 
 figures_to = click.option(

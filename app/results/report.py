@@ -269,8 +269,9 @@ TERMS = (
     ("von Mises", "what a solid in this state of stress bears like a bar under tension; it yields where "
      "that is its yield strength"),
     ("X/L", "place on a stroke over the pre-sliding displacement L, along which friction builds up"),
-    ("indentation", "relative to the surface 100 a away, or 100 times the length over which layers "
-     "are seen: in the plane it grows with that distance like a logarithm"),
+    ("indentation", "of steady states relative to the surface 100 a away, or 100 times the length over "
+     "which layers are seen: in the plane it grows with that distance like a logarithm; of motions in "
+     "time since the punch touched, or since steady motion"),
     ("estimate", "error that a method measures alone: finite elements on other degrees, the integral "
      "equation with other numbers of unknowns"),
     ("verdict", "PASS where every comparison and every estimate is within what is allowed; not judged "

@@ -101,7 +101,8 @@ ABSORBED = _row(
 )  # fmt: skip
 ESTIMATE = _row(
     "fem/estimate", "1",
-    "estimated error over time of v0, centre times load, and K_I, over the largest of each",
+    "estimated error over time of v0, centre times load, and K_I, over the largest of each, of the first "
+    "two at least 0.01",
     (START,), range=NOT_NEGATIVE, method=FEM, accuracy=True,
 )  # fmt: skip
 RESIDUAL = _row(

@@ -60,10 +60,10 @@ class ElastoPlastic(Bristles):
         return s * z / self.g(V) - self.r
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
-        ζ0, w0, x = self._scaled(z, s, V, slip)
+        (ζ0, w0, x), steady = self._scaled(z, s, V, slip), s * self.g(V)
         straight = ζ0 + s * self.σ0 * np.asarray(slip, dtype=float)
-        decayed = ζ0 + (ζ0 - s * self.g(V)) * np.expm1(-x)
-        yielding = -s * self.g(V) * np.expm1(-self._yielded(w0, x))
+        decayed = ζ0 + (ζ0 - steady) * np.expm1(-x)
+        yielding = -steady * np.expm1(-self._yielded(w0, x))
         ζ = np.where(w0 >= 1.0, decayed, np.where(x <= self.r - w0, straight, yielding))
         return np.where(x == 0.0, ζ0, ζ)[..., None]
 

@@ -81,6 +81,16 @@ class Move:
     turns: list[int]
     first: bool = False
 
+    @cached_property
+    def places(self) -> NDArray[np.float64]:
+        """Slips at the samples and at its end, (n + 1,) [m]; of a move that is complete."""
+        return np.append(self.slip, self.way)
+
+    @cached_property
+    def rows(self) -> NDArray[np.int64]:
+        """Numbers of the samples as an array, (n,); of a move that is complete."""
+        return np.array(self.samples, dtype=int)
+
 
 @dataclass(frozen=True, repr=False)
 class FittedLaw:
@@ -231,8 +241,8 @@ def friction(
     z = rest
     for move in motion:
         z = law.pause(rest if move.first else z, move.rest)
-        states = exactly(law, z, move.s, move.V, move.way, np.append(move.slip, move.way))
-        f[..., move.samples] = law.friction(states, move.s, move.end)[..., :-1]
+        states = exactly(law, z, move.s, move.V, move.way, move.places)
+        f[..., move.rows] = law.friction(states, move.s, move.end)[..., :-1]
         z = states[..., -1:, :] if laws else states[-1]
     return f
 

@@ -10,7 +10,7 @@ from galinx.app.run.flow import Memory, compute
 from galinx.app.run.over_time import solve_motions
 from galinx.clock import Clock
 
-QUICK = {"motion.c": [0.2, 0.5], "time.end": 1.0, "time.load_ramp": 1.0, "solve.tolerance": 1e-2}
+QUICK = {"motion.c": [0.2, 0.5], "time.end": 0.5, "time.load_ramp": 0.5, "solve.tolerance": 1e-2}
 
 
 def test_ranks_share_out_starts(monkeypatch):

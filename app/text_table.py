@@ -102,12 +102,12 @@ class TextTable:
             number = np.nan
         if not np.isfinite(number):
             name = f", {self.names[column]}" * bool(self.names[column])
-            found = f"{self.path}, line {line}{name}: found {excerpt(cell)}"
+            said = f"{self.path}, line {line}{name}: found {excerpt(cell)}"
             sign = "comma" if self.decimal == "," else "point"
             hint = f" with a decimal {sign}, as other numbers of the table have" if "," in cell else ""
             nothing = cell.strip().lower() in ("", "-", "na", "n/a", "nan")
             hint = hint or "; leave rows without one away" * nothing
-            raise BadInput(f"{found}, expected a finite number{hint}")
+            raise BadInput(f"{said}, expected a finite number{hint}")
         return number
 
 

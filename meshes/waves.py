@@ -32,7 +32,7 @@ class Reached:
             no more than waves need.
         ratio: size of a ring at the edges over that of the ring outside it.
         depths: of interfaces over a, rising, which lines of cells follow.
-        seen: largest side over a of cells within ``around``, where fields are output.
+        finest: largest side over a of cells within ``around``, where fields are output.
         around: half-width and depth over a of these.
     """
 
@@ -44,14 +44,14 @@ class Reached:
     beyond: float = 0.0
     ratio: float = 0.25
     depths: tuple[float, ...] = ()
-    seen: float = inf
+    finest: float = inf
     around: tuple[float, float] = (0.0, 0.0)
 
     def drawn(self) -> QuadMesh:
         """The mesh."""
-        square = min(_SQUARE, self.size, self.seen, *self.depths[:1])
+        square = min(_SQUARE, self.size, self.finest, *self.depths[:1])
         levels = max(ceil(log(self.innermost / square) / log(self.ratio)), 1)
-        between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / min(self.size, self.seen)) + 1)
+        between = np.linspace(0.0, 1.0 - square, ceil((1.0 - square) / min(self.size, self.finest)) + 1)
         outwards = np.concatenate([
             between, [1.0], self._lines(1.0 + square, self.half_width, self.around[0]),
             self._beyond(self.half_width),
@@ -74,7 +74,7 @@ class Reached:
         x = [0.0]
         while x[-1] < last - first:
             side = self.size + self.growth * (before + x[-1])
-            x.append(x[-1] + (min(side, self.seen) if first + x[-1] < around else side))
+            x.append(x[-1] + (min(side, self.finest) if first + x[-1] < around else side))
         return first + np.array(x) * ((last - first) / x[-1])
 
     def _beyond(self, last: float) -> NDArray[np.float64]:

@@ -137,7 +137,7 @@ _Rows = Mapping[str, Any]
 
 def _of(rows: Iterable[_Rows], method: str) -> list[Quantity]:
     each = (row[method] for row in rows)
-    return [one for entry in each for one in (entry if isinstance(entry, tuple) else (entry,))]
+    return [member for entry in each for member in (entry if isinstance(entry, tuple) else (entry,))]
 
 
 def against(
@@ -509,8 +509,8 @@ def checked(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
         return "numbers not checked: friction alone, by its law"
     if not parts:
         return "numbers not checked: one method alone, and nothing to compare it with"
-    wanted = max(set(limits), key=limits.count)
-    line = f"numbers checked: {', '.join(parts)}, wanted {wanted:.0e} (dimensionless)"
+    usual = max(set(limits), key=limits.count)
+    line = f"numbers checked: {', '.join(parts)}, wanted {usual:.0e} (dimensionless)"
     paths = [row.path for row in (in_time.TIMES, in_time.V0[SIE], in_time.V0[FEM])]
     if any(path not in data for path in paths):
         return line
@@ -544,19 +544,19 @@ def failed(data: Mapping[str, Any], attributes: Mapping[str, Any]) -> list[str]:
     lines += [f"what to do: {remedy}" for remedy in remedies]
     # Tolerances that are wanted, and that would be enough, of figures whose limits follow the tolerance.
     shares = {text: of.tolerances for text, of in rules.items() if of.tolerances and not of.remedy}
-    wanted, enough = ([over[text][i] / share for text, share in shares.items()] for i in (1, 0))
-    if wanted:
-        lines.append(f"what to do: {_finer(min(wanted), data, attributes)}")
+    needed, enough = ([over[text][i] / share for text, share in shares.items()] for i in (1, 0))
+    if needed:
+        lines.append(f"what to do: {_finer(min(needed), data, attributes)}")
         loosest = 10.0 ** np.ceil(np.log10(max(enough)))
         most = 1e-2 if in_time.TIMES.path in data else 0.1  # that a scene may have
-        if len(wanted) == len(over) and loosest <= most:
+        if len(needed) == len(over) and loosest <= most:
             lines[-1] += f"; {loosest:.0e} accepts it"
     elif over and not remedies:
         lines.append("no solve.tolerance changes this: it has a limit of its own")
     return lines
 
 
-def _finer(wanted: float, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
+def _finer(needed: float, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
     """Change of a scene that may make an error smaller than its tolerance does, in words."""
     solve = tomllib.loads(str(data.get(runs.SCENE.path, ""))).get("solve", {})
     for key in ("degree", "mesh"):
@@ -567,7 +567,7 @@ def _finer(wanted: float, data: Mapping[str, Any], attributes: Mapping[str, Any]
     warnings = attributes.get("warnings", "")
     if "would remain on any cells" in warnings or "the outer boundary of" in warnings:
         return "no finer solve.tolerance helps, as finite elements have no more digits here"
-    return f"--set solve.tolerance={wanted / 10.0:.0e} may pass"
+    return f"--set solve.tolerance={needed / 10.0:.0e} may pass"
 
 
 def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, Any]) -> str:
@@ -581,11 +581,11 @@ def _worst_state(text: str, data: Mapping[str, Any], attributes: Mapping[str, An
     rows = table()
     figures = []
     for i in range(count):
-        one = {
+        single = {
             path: values[i : i + 1] if path in rows and STATE in rows[path].over else values
             for path, values in data.items()
         }
-        figures.append(rule.measure(one, load[i : i + 1] if np.ndim(load) else load) or 0.0)
+        figures.append(rule.measure(single, load[i : i + 1] if np.ndim(load) else load) or 0.0)
     i = int(np.nanargmax(figures))
     # Where friction varies along the contact the number of a state is not that of its force.
     varies = preferred(data, of.RESULTANT_RATIO)

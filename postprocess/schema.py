@@ -95,7 +95,7 @@ def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Layout], scene:
         datasets: layouts of the datasets by path.
         scene: text of the scene.
     """
-    version, known = attributes["schema_version"], table()
+    version, declared = attributes["schema_version"], table()
     rows = {name: row for name, row in ATTRIBUTES.items() if row.since <= version}
     sentences = [
         f"attribute {name}: missing, expected {row.expected}"
@@ -110,18 +110,18 @@ def faults(attributes: Mapping[str, Any], datasets: Mapping[str, Layout], scene:
     sentences += [
         f"dataset {name!r}: not in the table of quantities; is it registered by a file of yours (-x)?"
         for name in datasets
-        if name not in known
+        if name not in declared
     ]
     sentences += [
         f"{row.path!r}: missing, expected it in every archive"
         for row in _IN_ALL
         if row.path not in datasets
     ]
-    sentences += _misshapen({name: layout for name, layout in datasets.items() if name in known})
+    sentences += _misshapen({name: layout for name, layout in datasets.items() if name in declared})
     if _holds(attributes.get("datasets"), _LIST):
         listed = json.loads(attributes["datasets"])
         sentences += [f"{name!r}: missing" for name in listed if name not in datasets]
-        if unlisted := [name for name in datasets if name in known and name not in listed]:
+        if unlisted := [name for name in datasets if name in declared and name not in listed]:
             sentences.append(f"attribute datasets: {', '.join(unlisted)} not listed, expected all")
     digest = hashlib.sha256(str(scene).encode()).hexdigest()
     if attributes.get("scene_sha256", digest) != digest:
@@ -166,11 +166,11 @@ def _misshapen(datasets: Mapping[str, Layout]) -> list[str]:
         for dimension, length in zip(row.over, shape):
             if dimension != LINE:
                 lengths.setdefault(dimension, []).append((length, name))
-    for dimension, found in lengths.items():
-        usual = Counter(length for length, _ in found).most_common(1)[0][0]
+    for dimension, each in lengths.items():
+        usual = Counter(length for length, _ in each).most_common(1)[0][0]
         sentences += [
             f"{name!r}: found {length} {dimension}, expected {usual} as other datasets have"
-            for length, name in found
+            for length, name in each
             if length != usual
         ]
     return sentences

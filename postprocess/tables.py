@@ -253,9 +253,9 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
 def _occurring(columns: Sequence[Column]) -> list[Column]:
     """Columns of numbers but those that are 0 in all states, with the places of those that are left."""
     left: list[Column] = []
-    for one in columns:
-        if np.nan_to_num(one.shown()).any() or any(one.owner is other for other in left):
-            left.append(one)
+    for each in columns:
+        if np.nan_to_num(each.shown()).any() or any(each.owner is other for other in left):
+            left.append(each)
     return left
 
 
@@ -507,8 +507,8 @@ def states_sheet(data: dict[str, Any], units: Units, title: str = "", width: int
         width: as for :func:`layout`.
     """
     columns, count = state_columns(data, units), len(data[of.FRICTION.path])
-    known = {*parameters(data), of.LOAD.path, of.FRICTION.path, ""}
-    given = [column for column in columns if column.path in known and "yields" not in column.head]
+    present = {*parameters(data), of.LOAD.path, of.FRICTION.path, ""}
+    given = [column for column in columns if column.path in present and "yields" not in column.head]
     same = [
         c for c in given if c.constant and not c.place and (count > 1 or c.name in ("motion", "X_over_L"))
     ]

@@ -145,11 +145,11 @@ def fit(
     if into:
         read_scene(into)  # its faults are reported before the work
     law = model or (named[0] if named else ALL)
-    known, guess = _pairs("--fix", fix), _pairs("--start", start)
-    if both := known.keys() & guess.keys():
+    fixed, guess = _pairs("--fix", fix), _pairs("--start", start)
+    if both := fixed.keys() & guess.keys():
         raise BadInput(f"--fix and --start {min(both)} exclude each other; keep one")
     with progress:
-        best = fit_laws(data, law, fix=known, start=guess, speed=speed, rows=rows, progress=progress)
+        best = fit_laws(data, law, fix=fixed, start=guess, speed=speed, rows=rows, progress=progress)
     to_folder = Folder(folder, overwrite, inputs)
     target = to_folder.target("friction.toml", SECTION)
     section = best.scene()
@@ -158,8 +158,8 @@ def fit(
     target.write(section.encode())
     names = ["fit", *(f"fit_{n}" for n in range(2, len(best.tables) + 1))]
     Files(folder, overwrite=overwrite, inputs=inputs).write(
-        Drawing(name, "", fitted_figure(one.measured, f, one.timed))
-        for name, one, f in zip(names, best.tables, best.f)
+        Drawing(name, "", fitted_figure(tables.measured, f, tables.timed))
+        for name, tables, f in zip(names, best.tables, best.f)
     )
     if not quiet:
         if law == ALL:

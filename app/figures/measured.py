@@ -143,6 +143,6 @@ def read(path: Path) -> Measured:
         if name in columns and place is not None and len(place)
     }
     if not points or len(points) < len(_FIGURES.keys() & columns.keys()):
-        found = f"{listed(table.names)} in {len(table.rows)} rows"
-        raise BadInput(f"{path}: found {found}, expected {_FORM} and rows of numbers{table.near_miss}")
+        held = f"{listed(table.names)} in {len(table.rows)} rows"
+        raise BadInput(f"{path}: found {held}, expected {_FORM} and rows of numbers{table.near_miss}")
     return Measured(path.name, points)

@@ -337,12 +337,12 @@ class _Drawn:
         axis, panel, figure = self.axis, self.panel, self.axis.figure
         renderer, dpi = figure.canvas.get_renderer(), figure.dpi
         axis.set_position((0.0, 0.0, wide / figure.get_figwidth(), tall / figure.get_figheight()))
-        for one, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
-            one.label.set_text("")
-            if one.get_scale() == "linear":
-                whole = panel.whole and one is axis.xaxis
+        for scale, side, apart in ((axis.xaxis, wide, 0.42), (axis.yaxis, tall, 0.26)):
+            scale.label.set_text("")
+            if scale.get_scale() == "linear":
+                whole = panel.whole and scale is axis.xaxis
                 count = max(2, min(8, int(side / apart)))
-                one.set_major_locator(MaxNLocator(count, integer=whole, steps=[1, 2, 2.5, 5, 10]))
+                scale.set_major_locator(MaxNLocator(count, integer=whole, steps=[1, 2, 2.5, 5, 10]))
         few, span = len(panel.ticks) > 1 and axis.get_xscale() == "linear", np.ptp(axis.get_xlim())
         if few and np.diff(panel.ticks).min() * wide > 0.3 * span:
             axis.set_xticks(panel.ticks)
@@ -354,7 +354,7 @@ class _Drawn:
                 self.bar.update_ticks()
         if self.other is not None:
             self.other.xaxis.set_major_locator(MaxNLocator(max(2, int(wide / 0.5))))
-        boxes = [one.get_tightbbox(renderer) for one in (axis.xaxis, axis.yaxis, *axis.child_axes)]
+        boxes = [scale.get_tightbbox(renderer) for scale in (axis.xaxis, axis.yaxis, *axis.child_axes)]
         box = Bbox.union([axis.bbox, *filter(None, boxes)])
         left, below, right, above = np.abs(np.subtract(box.extents, axis.bbox.extents)) / dpi
         unit = in_tex(panel.unit)
@@ -562,10 +562,10 @@ def _arrange(
         TooSmall: panels would not be legible.
     """
     rows, columns = shape
-    talls = np.array([one.panel.tall for one in drawn[::columns]])
-    maps = [one.axis for one in drawn if one.panel.map and one.panel.map.equal]
+    talls = np.array([view.panel.tall for view in drawn[::columns]])
+    maps = [view.axis for view in drawn if view.panel.map and view.panel.map.equal]
     ratio = float(np.ptp(maps[0].get_ylim()) / np.ptp(maps[0].get_xlim())) if maps else high
-    beside = 0.35 if all(one.panel.y for one in drawn) else 0.1
+    beside = 0.35 if all(view.panel.y for view in drawn) else 0.1
     wide = size.width / columns - 0.8
     tall = max(wide * ratio, _LOW)
     if size.height:
@@ -573,7 +573,7 @@ def _arrange(
     room = np.zeros((rows * columns, len(_Room._fields)))
     for _ in range(2):  # texts are folded, and ticks chosen, by the room that they leave
         wide, tall = max(wide, _LEAST), max(tall, _LEAST)
-        room[: len(drawn)] = [one.measure(wide, tall * one.panel.tall, beside) for one in drawn]
+        room[: len(drawn)] = [view.measure(wide, tall * view.panel.tall, beside) for view in drawn]
         of_columns, of_rows = (_Room(*room.reshape(rows, columns, -1).max(axis=n).T) for n in (0, 1))
         left, right = of_columns.left + of_columns.upright, of_columns.right.copy()
         left[0], right[-1] = max(left[0], of_columns.aside[0]), max(right[-1], of_columns.beyond[-1])
@@ -582,8 +582,8 @@ def _arrange(
         across_ = left.sum() + right.sum() + 2.0 * _EDGE + (columns - 1) * _ASIDE
         along = top.sum() + bottom.sum() + 2.0 * _EDGE + (rows - 1) * _BELOW + foot
         wide = (size.width - across_) / columns
-        wanted = along + talls.sum() * max(wide * ratio, 0.0 if maps else _LOW)
-        height = size.height or min(wanted, TALLEST)
+        total = along + talls.sum() * max(wide * ratio, 0.0 if maps else _LOW)
+        height = size.height or min(total, TALLEST)
         tall = (height - along) / talls.sum()
         if maps:
             wide, tall = min(wide, tall / ratio), min(tall, wide * ratio)
@@ -598,12 +598,12 @@ def _arrange(
     spare = (size.width - across_ - columns * wide) / 2.0  # maps may be narrower than their room
     x = _EDGE + spare + np.cumsum(left + np.append(0.0, right[:-1] + _ASIDE + wide))
     y = height - _EDGE - np.cumsum(top + talls * tall + np.append(0.0, bottom[:-1] + _BELOW))
-    for n, one in enumerate(drawn):
+    for n, view in enumerate(drawn):
         i, j = divmod(n, columns)
         around = _Room(*room[n])._replace(
             left=of_columns.left[j], above=of_rows.above[i], below=of_rows.below[i]
         )
-        one.place((x[j], y[i], wide, tall * one.panel.tall), around)
+        view.place((x[j], y[i], wide, tall * view.panel.tall), around)
 
 
 class Film:

@@ -238,14 +238,14 @@ def surface(of: Archive) -> Drawing:
         # The same limits for all columns, unless some would fill less than a quarter of them.
         ranges = [along.limits(numbers) for _, numbers, _ in groups]
         low, high = min(y[0] for y in ranges), max(y[1] for y in ranges)
-        alike = high - low <= 4.0 * min(y[1] - y[0] for y in ranges)
+        similar = high - low <= 4.0 * min(y[1] - y[0] for y in ranges)
         for column, (title, numbers, names) in enumerate(groups):
             called = [of.label(i, names) if len(every) > 1 else "" for i in numbers]
             shown = along.shown(of.looks(numbers, names), called, rows=numbers)
-            ylim = (low, high) if alike else ranges[column]
+            ylim = (low, high) if similar else ranges[column]
             panel = surface_panel(shown, ylim, title="" if n else title)
             panel = choice.measured.over_stress(panel, name, of.units) if choice.measured else panel
-            panels.append(replace(panel, y=None) if column and alike else panel)
+            panels.append(replace(panel, y=None) if column and similar else panel)
     columns = len(groups)
     if columns == 1 and width > 4.5 and len(stressed) > 1:  # side by side
         columns = 2
@@ -304,8 +304,8 @@ def friction_along(of: Archive) -> Drawing:
     resultant = next(data[row.path] for row in RESULTANT_RATIO.values() if of.has(row))
     under, scale = np.abs(data[SURFACE_X.path]) < 1.0, of.scaled(next(iter(rows.values())))
     X = data[SURFACE_X.path][under]
-    one = np.array([_of_one_friction(of, i, float(resultant[i]), X) for i in states])
-    uniform = scale.of(one, states)
+    of_states = np.array([_of_one_friction(of, i, float(resultant[i]), X) for i in states])
+    uniform = scale.of(of_states, states)
     pressures = {method: -of.values(row)[states][:, under] for method, row in rows.items()}
     g = of.scene.friction.stress_ratio * data[RATIO_ALONG.path][states][:, under]
     over = {  # at a free end one of the two ends before the other
@@ -365,14 +365,14 @@ def interfaces(of: Archive) -> Drawing:
     depths = depths[numbers] if len(depths) > 1 else depths
     a = bodies[0].half_width
     over_a = np.max([d if unit == "1" else d / b.half_width for d, b in zip(depths, bodies)], axis=0)
-    alike = np.ptp(depths, axis=0) == 0.0
+    same_depths = np.ptp(depths, axis=0) == 0.0
     scale = of.units.scale(CONTACT)
     factor, length = np.max(scale.factor) * a, scale.unit
     if of.units.dimensionless:
         factor, length = (1.0, "$a$") if unit == "1" else (1e3 * a, "mm")
     titles = [
         f"depth {number(depth * factor)} {length}" if same else f"interface {i}"
-        for i, (depth, same) in enumerate(zip(over_a, alike), 1)
+        for i, (depth, same) in enumerate(zip(over_a, same_depths), 1)
     ]
     columns = spread(range(len(over_a)), max(1, int(width / 2.2)))
     position = position_name(of, "position along the interface ")
@@ -477,9 +477,9 @@ class Fields:
         units = self._of.units
         if name != "von_mises" or units.dimensionless:
             return np.full(len(self.Y), np.inf)
-        known = np.array([strength or np.inf for strength in strengths])
+        limits = np.array([strength or np.inf for strength in strengths])
         factor = float(np.max(units.stress.factor * 2.0 * units.half_width / units.load))
-        return factor * known[np.searchsorted(depths, -self.Y)]
+        return factor * limits[np.searchsorted(depths, -self.Y)]
 
     def label(self, name: str) -> str:
         """Label of the colour bar of a quantity."""

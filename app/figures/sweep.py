@@ -143,8 +143,8 @@ class _Sweep:
                 if name not in apart and any(_varies(column.best[own]) for _, own in self.groups)
             ]  # fmt: skip
             answers = [name for name in _ANSWERS if name in changing]
-            asked = [*answers, *_INTENSITIES] if answers else _OF_EDGES
-            shown = [name for name in asked if name in changing] or changing
+            names = [*answers, *_INTENSITIES] if answers else _OF_EDGES
+            shown = [name for name in names if name in changing] or changing
             if {*_INTENSITIES} <= {*shown}:  # over N both ends of a flat punch have the same
                 left, right = (self.columns[name].best for name in _INTENSITIES)
                 if np.allclose(left, right, rtol=_SAME, atol=0.0, equal_nan=True):

@@ -143,8 +143,8 @@ def answers(scene: Scene, first: float, last: float | None, count: int) -> list[
     _require_one("response", scene)
     solid = scene.solid
     if scene.layers or solid.nearly_incompressible:
-        found = "layers" if scene.layers else "ν near 1/2"
-        raise BadInput(f"response: found {found}, expected a uniform solid that waves pass")
+        cause = "layers" if scene.layers else "ν near 1/2"
+        raise BadInput(f"response: found {cause}, expected a uniform solid that waves pass")
     if not is_level(scene.punch.profile):
         raise BadInput(f"response: found a {scene.punch.profile.words()}, expected a level flat punch")
     if scene.elastic_punch or scene.along or scene.solve.own_pressure:
@@ -242,9 +242,9 @@ def flutter(of: Archive) -> Drawing:
     """
     x, values, label, words = _thresholds(of.scene)
     shown = np.where(np.isinf(values), np.nan, values)
-    alike = np.allclose(shown[0], shown[1], rtol=1e-6, equal_nan=True)
+    same = np.allclose(shown[0], shown[1], rtol=1e-6, equal_nan=True)
     names = (
-        ("either sign",) if alike else tuple(rf"$\sigma_{{XY}}/\sigma_{{YY}}$ {sign}" for sign in SIGNS)
+        ("either sign",) if same else tuple(rf"$\sigma_{{XY}}/\sigma_{{YY}}$ {sign}" for sign in SIGNS)
     )
     curves = [Curve(x, y, look, name, JOINED) for y, name, look in zip(shown, names, looks(len(names)))]
     g = float(np.abs(of.data[RATIO.path]).max())

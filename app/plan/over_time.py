@@ -156,7 +156,7 @@ def _interpolated(
     along = [PchipInterpolator(*of) for of in zip(times, over_time(times))]
     rough = [np.ones(len(t) - 1, dtype=bool) for t in times]
     for _ in range(_CUTS):
-        places = [(t[:-1] + _CUT * np.diff(t))[some] for t, some in zip(times, rough)]
+        places = [(t[:-1] + _CUT * np.diff(t))[of_drive] for t, of_drive in zip(times, rough)]
         expected = [g(t) for g, t in zip(along, places)]
         times = [np.union1d(t, more) for t, more in zip(times, places)]
         g = over_time(times)
@@ -167,7 +167,7 @@ def _interpolated(
             off = at[np.abs(of[at] - was) > _FOLLOWED]
             around = np.clip(np.add.outer(off, [-2, -1, 0, 1]).ravel(), 0, len(t) - 2)
             rough.append(np.isin(np.arange(len(t) - 1), around) & (len(t) < _TIMES))
-        if not any(some.any() for some in rough):
+        if not any(of_drive.any() for of_drive in rough):
             break
     return tuple(along)
 
@@ -206,7 +206,7 @@ def _check(scene: Scene, methods: tuple[str, ...]) -> None:
         'a start from rest needs solve.mode = "contact"': scene.solve.mode != "contact",
     }  # fmt: skip
     if any(faults.values()):
-        raise BadInput("time: " + "; ".join(fault for fault, found in faults.items() if found))
+        raise BadInput("time: " + "; ".join(fault for fault, holds in faults.items() if holds))
 
 
 #: Highest degree.
@@ -386,7 +386,7 @@ class Starts:
         slow = min(1.0, gap / 0.25) ** 0.5
         long = 2.0 + 1.5 * max(digits - 3.0, 0.0)
         size = 2.0 * slow * min(1.0, self.shortest / long)
-        seen = min(size, 2.0 / 3.0 * slow) if self.time.every else size  # short waves ahead are output
+        ahead = min(size, 2.0 / 3.0 * slow) if self.time.every else size  # short waves ahead are output
         # A cell further out is longer by a share of its distance from the innermost ones, 1.75 times as
         # much where the error is measured; all the less where short waves follow a faster change.
         growth = 0.15 * 0.4 ** (digits - 3.0) * min(1.0, self.shortest / 2.0) ** 2
@@ -396,10 +396,10 @@ class Starts:
         width, depth = self._reach(fastest(self.response(c)), c)
         if depths:
             slower = min(1.0, self.scene.solid.slowest / self.scene.solid.c_s)
-            size, seen = (min(side * slower, 2.0 * depths[0]) for side in (size, seen))
+            size, ahead = (min(side * slower, 2.0 * depths[0]) for side in (size, ahead))
         coarse, fine = (
             Reached(
-                max(width, 3.0), max(depth, 2.0), size, of, innermost, held, ratio, depths, seen,
+                max(width, 3.0), max(depth, 2.0), size, of, innermost, held, ratio, depths, ahead,
                 (BOX[0] + 1.0, BOX[1]),
             )
             for of, held in ((1.75 * growth, 0.4 * beyond), (growth, beyond))

@@ -165,12 +165,12 @@ class Plan:
 
         A prescribed pressure is compared with its own exact solution: it need not carry the load.
         """
-        known = {row.path for row in self.quantities} | {RATIO.path, *self.positions}
+        computed = {row.path for row in self.quantities} | {RATIO.path, *self.positions}
         own = SOLVED in self.body.lacks
         in_time = self.starts.rules if self.starts else frozenset()
         return in_time | {
             name for name, rule in RULES.items()
-            if {row.path for row in rule.needs} <= known and (rule.own_pressure or not own)
+            if {row.path for row in rule.needs} <= computed and (rule.own_pressure or not own)
         }  # fmt: skip
 
     def shape(self, quantity: Quantity) -> tuple[int, ...]:
@@ -666,8 +666,8 @@ def positions(scenes: Sequence[Scene]) -> tuple[np.ndarray, np.ndarray]:
     reach = min(max(stresses.FARTHEST, *(bent * each[:, 1, -1])), _REACH)
     near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
-    seen, far = stresses.FARTHEST, _beyond(min(max(reach, _ALONG, _ALONG * each.max()), _REACH))
-    X = np.concatenate([np.linspace(-seen, seen, 161), near - 1.0, near + 1.0, -far, far])
+    nearest, far = stresses.FARTHEST, _beyond(min(max(reach, _ALONG, _ALONG * each.max()), _REACH))
+    X = np.concatenate([np.linspace(-nearest, nearest, 161), near - 1.0, near + 1.0, -far, far])
     return surface_grid(reach, sorted(kinks)), np.unique(np.round(X, 9))
 
 

@@ -48,10 +48,10 @@ def make_plans(scene: Scene, done: Callable[[int, int], None] = lambda laws, of:
     kinds = [({quantity.path for quantity in plan.quantities}, plan.states) for plan in plans]
     for kind, plan in zip(kinds, plans):
         if kind != kinds[0]:
-            some = listed(sorted(kind[0] ^ kinds[0][0])[:3]) or "another number of states"
+            extra = listed(sorted(kind[0] ^ kinds[0][0])[:3]) or "another number of states"
             raise BadInput(
                 f"sweep: with {plan.scene.variant} the contact is of another kind than with "
-                f"{plans[0].scene.variant}: {some} is there for one of them only; make two scenes of it"
+                f"{plans[0].scene.variant}: {extra} is there for one of them only; make two scenes of it"
             )
     return plans
 

@@ -195,8 +195,8 @@ class Comparison:
             more = len(self.pairs) - LIMIT
             yield f"and {more} more {'pair' if more == 1 else 'pairs'} of states; choose by --states"
         if any(self._alone):
-            found = ", ".join(f"{n} of {label}" for n, label in zip(self._alone, self.labels) if n)
-            yield f"states without a partner: {found}"
+            alone = ", ".join(f"{n} of {label}" for n, label in zip(self._alone, self.labels) if n)
+            yield f"states without a partner: {alone}"
         if not self._by and max(self._counts) > 1:
             yield "states are paired by their order: their parameters do not agree"
         intensities = any(key[0].startswith("K_I") and row[0] for key, row in self._rows.items())

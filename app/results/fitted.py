@@ -91,8 +91,8 @@ def read(path: Path) -> Table:
     timed = {"time", "position"} <= columns.keys()
     if not (timed or "slip" in columns) or not {"friction", "force"} & columns.keys():
         hint = "; alone, a slip since rest is named slip" if "position" in columns else table.near_miss
-        found = f"found the columns {excerpt(table.names)}"
-        raise BadInput(f"{path}, line 1: {found}, expected {_FORM}{hint}")
+        listing = f"found the columns {excerpt(table.names)}"
+        raise BadInput(f"{path}, line 1: {listing}, expected {_FORM}{hint}")
     if "friction" in columns:
         f = table.numbers(columns["friction"], "")
     elif "load" not in columns:
@@ -101,8 +101,8 @@ def read(path: Path) -> Table:
         both = columns["force"], columns["load"]
         unit = forces.get(both[0], "")
         if not unit or unit != forces.get(both[1]):
-            found = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
-            raise BadInput(f"{path}, line 1: found {found}, expected both in N, or both in N/m")
+            listing = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
+            raise BadInput(f"{path}, line 1: found {listing}, expected both in N, or both in N/m")
         force, load = (table.numbers(n, unit) for n in both)
         if wrong := np.flatnonzero(load * load[:1] <= 0.0).tolist():
             line, _ = table.rows[wrong[0]]
@@ -116,9 +116,9 @@ def read(path: Path) -> Table:
         row = len(clock) - 1 if few else int(back[0]) + 1
         line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
         hint = "; where it falls, as in a loop, write time and position" * (len(back) > 0 and not timed)
-        found = f"{len(clock)} rows" if few else f"a {name} that does not grow"
+        listing = f"{len(clock)} rows" if few else f"a {name} that does not grow"
         raise BadInput(
-            f"{path}, line {line}: found {found}, expected three or more rows in which the {name} grows"
+            f"{path}, line {line}: found {listing}, expected three or more rows in which the {name} grows"
             f"{hint}"
         )
     _require_friction(str(path), X, f)
@@ -148,8 +148,8 @@ def _of_arrays(measured: Measured) -> Table:
     except (TypeError, ValueError) as error:
         raise BadInput(f"arrays: {error}, expected numbers") from None
     if t.ndim != 1 or not t.shape == X.shape == f.shape or len(t) < 3:
-        found = ", ".join(f"{name} {np.shape(of)}" for name, of in given.items())
-        raise BadInput(f"arrays: found the shapes {found}, expected (samples,) of each, 3 or more")
+        shapes = ", ".join(f"{name} {np.shape(of)}" for name, of in given.items())
+        raise BadInput(f"arrays: found the shapes {shapes}, expected (samples,) of each, 3 or more")
     for name, of in zip(given, (t, X, np.append(0.0, f[1:]))):  # at first it is at rest
         if len(wrong := np.flatnonzero(~np.isfinite(of))):
             n = wrong[0]
@@ -224,7 +224,7 @@ class Fit(FittedLaw):
         samples, size = len(f), float(np.sqrt(np.nanmean(f**2)))
         said = [note for table in self.tables for note in table.notes]
         left = [table.measured.f - f for table, f in zip(self.tables, self.f)]
-        steps = np.abs(np.concatenate([np.diff(one) for one in left]))
+        steps = np.abs(np.concatenate([np.diff(rest) for rest in left]))
         scatter = float(np.nanmedian(steps))
         more = self.rms >= max(_MORE * size, _THAN_SCATTER * scatter)
         if more or self.rms >= _FOLLOWS * size:
@@ -246,10 +246,10 @@ class Fit(FittedLaw):
         """Table of all laws, best first."""
         rows = [
             [
-                one.model, f"{one.rms:.3g}", f"{one.aic:.1f}", str(len(one.deviations)),
-                str(len(one.not_determined)), f"{one.seconds:.1f}",
+                fit.model, f"{fit.rms:.3g}", f"{fit.aic:.1f}", str(len(fit.deviations)),
+                str(len(fit.not_determined)), f"{fit.seconds:.1f}",
             ]
-            for one in (self, *self.others)
+            for fit in (self, *self.others)
         ]  # fmt: skip
         columns = ["law", "RMS of f [1]", "AIC", "parameters", "not determined", "time [s]"]
         notes = [f"{name}: {reason}" for name, reason in self.failed.items()]
@@ -309,11 +309,11 @@ def fit(
         try:
             if speedless and kind.depends_on_speed:
                 raise ValueError("depends on the speed: give --speed, as in --speed '1 mm/s'")
-            known, guess = (
+            held, guess = (
                 {key: given[key] for key in parameters(kind) if key in given}
                 for given in (fixed, started)
             )
-            result = solver.fit(kind, [table.measured for table in tables], known, guess, rows, step)
+            result = solver.fit(kind, [table.measured for table in tables], held, guess, rows, step)
             seconds = perf_counter() - begun
             fits.append(Fit(**vars(result), model=name, seconds=seconds, tables=tables))
         except ValueError as error:
@@ -322,7 +322,7 @@ def fit(
         where = listed([table.name for table in tables], 3)
         raise BadInput("\n".join(f"{where}, {name}: {reason}" for name, reason in failed.items()))
     progress.done(len(names), len(names), "laws")
-    best, *others = sorted(fits, key=lambda one: one.aic)
+    best, *others = sorted(fits, key=lambda fit: fit.aic)
     return replace(best, others=tuple(others), failed=failed)
 
 
@@ -380,17 +380,17 @@ def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def _section(one: Fit) -> str:
-    declared = parameters(type(one.law))
-    files = ", ".join(table.name for table in one.tables)
+def _section(fit: Fit) -> str:
+    declared = parameters(type(fit.law))
+    files = ", ".join(table.name for table in fit.tables)
     lines = [
-        f"# Fitted by galinx: {type(one.law).about} to {one.samples} samples",
-        f"# of {files}; root mean square of the residuals of f: {one.rms:.3g} (dimensionless);",
+        f"# Fitted by galinx: {type(fit.law).about} to {fit.samples} samples",
+        f"# of {files}; root mean square of the residuals of f: {fit.rms:.3g} (dimensionless);",
         "# ± is one standard deviation",
         "[friction]",
-        f"model = {json.dumps(one.model)}  # fitted to {files}",
+        f"model = {json.dumps(fit.model)}  # fitted to {files}",
     ]
-    for key, value in one.parameters.items():
+    for key, value in fit.parameters.items():
         parameter = declared[key]
         text: Any = value
         if parameter.columns:
@@ -403,9 +403,9 @@ def _section(one: Fit) -> str:
         # The unit, and the deviation of each number.
         said = [
             ("not determined" + f" (± {error:.2g})" * isfinite(error))
-            if name in one.not_determined
+            if name in fit.not_determined
             else f"± {error:.2g}"
-            for name, error in one.deviations.items()
+            for name, error in fit.deviations.items()
             if name.partition("[")[0] == key
         ]
         comment = ", ".join(filter(None, [unit, *(said or ["not fitted"])]))

@@ -64,11 +64,11 @@ def markup(text: str) -> Markup:
         return f"&#8239;×&#8239;10<sup>{digits}</sup>"
 
     page = str(escape(plain(text))).replace("sigma_", "σ_")
-    page = _RAISED.sub(lambda found: power(normalize("NFKC", found[1])), page)
-    page = _EXPONENT.sub(lambda found: f"<sup>{found[1].replace('-', '−')}</sup>", page)
+    page = _RAISED.sub(lambda match: power(normalize("NFKC", match[1])), page)
+    page = _EXPONENT.sub(lambda match: f"<sup>{match[1].replace('-', '−')}</sup>", page)
     page = _NEGATIVE.sub("−", page)
     page = _INDEXED.sub(r"<i>\1</i><sub>\2</sub>", page)
-    return Markup(_POWER.sub(lambda found: found[1] + power(str(int(found[2])).replace("-", "−")), page))
+    return Markup(_POWER.sub(lambda match: match[1] + power(str(int(match[2])).replace("-", "−")), page))
 
 
 @cache

@@ -163,11 +163,11 @@ class Work:
         with self.clock(_step(CLOSED_FORM)):
             local = task.body.local_exponents(task.response, g, load)
             # Without a solution of states; contacts that methods solved are known by now.
-            known = SimpleNamespace(
+            of_edges = SimpleNamespace(
                 local=local, g=g, places=task.places,
                 half_width=task.body.half_widths(task.response, g, load),
             )  # fmt: skip
-            data |= self._of(LOCAL, known, task.body.loaded(load))
+            data |= self._of(LOCAL, of_edges, task.body.loaded(load))
         return data, solved, partly
 
     def _by(

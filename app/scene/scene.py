@@ -219,9 +219,9 @@ def usual_quantities(scene: Scene) -> tuple[str, ...]:
         return (FRICTION_ALONE, *motions)
     body, quantities = scene.body, [FRICTION_ALONE, INTENSITIES, ON_SURFACE]
     quantities += [AT_INTERFACES] * bool(scene.layers)
-    known = scene.solid.knows_σ_ZZ and YIELD not in body.lacks
+    judged = scene.solid.knows_σ_ZZ and YIELD not in body.lacks
     finite = FINITE in body.modes
-    quantities += [YIELD] * (known and (finite or (STRENGTH not in body.lacks and body.flat)))
+    quantities += [YIELD] * (judged and (finite or (STRENGTH not in body.lacks and body.flat)))
     return tuple(quantities)
 
 
@@ -269,9 +269,9 @@ def _along_the_contact(scene: Scene) -> Iterator[str]:
     """Faults of friction that varies along the contact, one sentence each."""
     if scene.friction.along is None and scene.friction.state != ADVECTED:
         return
-    if found := _not_varying(scene):
+    if fault := _not_varying(scene):
         yield (
-            f"friction varies along the contact, but found {found}; take that away, or give one friction"
+            f"friction varies along the contact, but found {fault}; take that away, or give one friction"
         )
         return
     forward = scene.friction.stress_ratio * scene.legs[0].s

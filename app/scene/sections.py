@@ -641,8 +641,8 @@ class Section:
         models = [*(self.models or ())] * (self.chosen not in given)
         if misnamed := [key for key, value in given.items() if key not in keys and value in models]:
             # The keys of that model are no faults.
-            wanted = f'{self.chosen} = "{given[misnamed[0]]}"'
-            faults.append(f"{name}.{misnamed[0]}: no such key; did you mean {wanted}?")
+            kind = f'{self.chosen} = "{given[misnamed[0]]}"'
+            faults.append(f"{name}.{misnamed[0]}: no such key; did you mean {kind}?")
             return None
         own_faults: list[str] = []
         for alone in (key for key in given if key in keys and keys[key].beside is not None):
@@ -745,7 +745,7 @@ def _meaning(key: str, keys: Mapping[str, Key]) -> list[str]:
     words = [word for word in key.lower().split("_") if len(word) > 2] or [key.lower()]
     patterns = [rf"\b{re.escape(word)}" + r"\b" * (len(word) < 4) for word in words]
     about = {name: entry.about.lower().replace("'", "") for name, entry in keys.items()}
-    hits = {name: sum(bool(re.search(one, text)) for one in patterns) for name, text in about.items()}
+    hits = {name: sum(bool(re.search(each, text)) for each in patterns) for name, text in about.items()}
     most = max(hits.values(), default=0)
     return [name for name, hit in hits.items() if hit == most > 0]
 

@@ -278,8 +278,8 @@ def _stress_panels(rows: Sequence[tuple[str, Mapping[str, list[Shown]]]]) -> lis
     """Panels of both stresses, row by row with title and curves, between limits that all rows share."""
     ylim = {}
     for name in _AXES:
-        every = [one for _, curves in rows for one in curves[name]]
-        values = [y[one.row] for one in every for y in one.along.values.values()]
+        every = [curve for _, curves in rows for curve in curves[name]]
+        values = [y[curve.row] for curve in every for y in curve.along.values.values()]
         ylim[name] = limits(every[0].along.X, np.array(values))
     return [
         surface_panel(curves[name], ylim[name], title=title) for title, curves in rows for name in _AXES

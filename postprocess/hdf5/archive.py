@@ -354,8 +354,8 @@ def opened(path: Path, verified: bool = False) -> Iterator[Archive]:
         UnreadableArchive: no archive, a damaged one, or one that this program does not know.
     """
     with _reading(path):
-        found, there = path.is_file(), path.exists()
-    if not found:
+        is_file, there = path.is_file(), path.exists()
+    if not is_file:
         what = "is not a file" if there else "does not exist"
         raise UnreadableArchive(f"{path} {what}, expected an archive written by galinx")
     with _reading(path):

@@ -56,11 +56,11 @@ def _of_parameters(
     of_laws: dict[str, Quantity] = {}
     for key, parameter in (pair for law in laws for pair in parameters(law).items()):
         if parameter.single:
-            known = of_laws.get(column(key))
+            of_key = of_laws.get(column(key))
             of_laws[column(key)] = Quantity(
                 column(key), "none" if parameter.options else parameter.unit or "1", parameter.about,
                 (STATE,), symbol=parameter.symbol or key,
-                range=known.range | parameter.range if known else parameter.range,
+                range=of_key.range | parameter.range if of_key else parameter.range,
             )  # fmt: skip
     return of_laws | swept.columns(solids, profiles)
 
@@ -100,7 +100,7 @@ def of_any_method(data: Mapping[str, Any], rows: Mapping[str, Quantity], row: Qu
     values = data[row.path]
     if not len(data.get(runs.FAILURES.path, ())) or row.type == TEXT:
         return values
-    for other in (data[one.path] for one in rows.values() if one.path in data):
+    for other in (data[each.path] for each in rows.values() if each.path in data):
         values = np.where(np.isnan(values), other, values)
     return values
 

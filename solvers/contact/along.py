@@ -116,14 +116,14 @@ class FlatAlong(Varying):
         slope = (function(r + step) - function(r - step)) / (2.0 * step + np.finfo(float).tiny)
         of_t, of_r, result = function(t), function(r), np.empty(len(r))
         for first in range(0, len(r), _AT_ONCE):
-            some = slice(first, first + _AT_ONCE)
-            apart = t - r[some, None]
+            block = slice(first, first + _AT_ONCE)
+            apart = t - r[block, None]
             # Next to an end positions are rounded, distances from it are not.
             for end, distance in ((1.0, -self.rule.right), (-1.0, self.rule.left)):
-                apart[r[some] == end] = distance
-            same = np.abs(apart) <= _SAME * room[some, None]
-            quotient = (of_t - of_r[some, None]) / np.where(same, 1.0, apart)
-            result[some] = np.where(same, slope[some, None], quotient) @ dμ
+                apart[r[block] == end] = distance
+            same = np.abs(apart) <= _SAME * room[block, None]
+            quotient = (of_t - of_r[block, None]) / np.where(same, 1.0, apart)
+            result[block] = np.where(same, slope[block, None], quotient) @ dμ
         return result
 
     @cached_property

@@ -191,10 +191,10 @@ class ExactSolution(Solution):
         """Group of one state, which was solved."""
         number = np.arange(len(self._g))[self._rows][state]
         (group,) = (group for group in self.contacts.groups if number in group.rows)
-        one = slice(0, 1)
+        first = slice(0, 1)
         return replace(
-            group, rows=group.rows[one], g=self.g[[state]], half_width=group.half_width[one],
-            centre=group.centre[one],
+            group, rows=group.rows[first], g=self.g[[state]], half_width=group.half_width[first],
+            centre=group.centre[first],
         )  # fmt: skip
 
     @cached_property
@@ -264,8 +264,8 @@ def _turns_of(contacts: Contacts) -> Turns | None:
         kinks = sorted(group.pressure.bends)
         # A weight that is infinite at a free end, times 0 there, has no value at that end.
         exponents = np.column_stack([group.β, group.α])
-        known = exponents[0] > 0.0
-        X = np.concatenate([ENDS[known], kinks])
+        finite = exponents[0] > 0.0
+        X = np.concatenate([ENDS[finite], kinks])
         σ_XX, σ_YY = group.surface(X)
         between = None
         if kinks:
@@ -275,7 +275,7 @@ def _turns_of(contacts: Contacts) -> Turns | None:
             _, between = at_and_between(places, lambda r: group.surface(r)[0], infinite)  # noqa: B023
         σ = np.array([σ_XX, σ_YY, group.ratio(X) * σ_YY])
         turns = Turns(np.tile(X, (len(group.rows), 1)), σ, between)
-        hidden = np.where(group.free & ~known, exponents + 1.0, np.nan)
+        hidden = np.where(group.free & ~finite, exponents + 1.0, np.nan)
         if np.isfinite(hidden).any():
             in_plane, contact = group.surface(_BESIDE_ENDS)
             beside = Surface(Places(_BESIDE_ENDS, np.empty((0, 2))), contact, in_plane)
@@ -305,17 +305,17 @@ class Layers:
             fine, coarse = (
                 replace(pressure, nodes=nodes, rough=layers.kernel.rough) for nodes in (FINE, COARSE)
             )
-            known: Any = [SolvedContact(0.0, fine, before=coarse)], [], 0.0
+            prepared: Any = [SolvedContact(0.0, fine, before=coarse)], [], 0.0
         elif layers.interpolates(g):
             solved, interpolated = layers.solved(g)
             each = zip(*(groups_of(layers, of, np.array([of.g]), np.zeros(1, int)) for of in solved))
-            known = solved, [Nodes(groups) for groups in each], interpolated
+            prepared = solved, [Nodes(groups) for groups in each], interpolated
         else:
-            known = None
+            prepared = None
 
         def states(own: NDArray) -> LayeredSolution:
-            if known:
-                solved, nodes, error = known
+            if prepared:
+                solved, nodes, error = prepared
                 return LayeredSolution(task, layers, solved, nodes, error, own)
             solved, _ = layers.solved(np.unique(own))
             if self.tolerance <= OF_ENDS:

@@ -286,8 +286,8 @@ class Panels(Functions):
         """Parts of panels near places, to the left and to the right of these, by the steps of rules."""
         at = np.clip(x[place], self.ends[panel], self.ends[panel + 1])
         for end in (self.ends[panel], self.ends[panel + 1]):
-            some = end != at
-            places, panels, start, length = place[some], panel[some], at[some], (end - at)[some]
+            beside = end != at
+            places, panels, start, length = place[beside], panel[beside], at[beside], (end - at)[beside]
             near = x[places]
             # Steps need be no shorter than the place is far; where kernels vary all weigh alike.
             needed = np.column_stack([np.abs(start - near), np.full(len(near), self.length)])
@@ -371,8 +371,8 @@ class Panels(Functions):
         integrals = np.empty((len(r), beside.shape[-1]))
         integrals[~under] = beside
         places = np.flatnonzero(under)
-        for some in self.blocks(len(places), _ROWS):
-            at = places[some]
+        for block in self.blocks(len(places), _ROWS):
+            at = places[block]
             integrals[at] = p @ self._graded_rows(kernel, stretched(r[at]))
         return integrals
 
@@ -407,8 +407,8 @@ def summed(
     """Σ kernel(r - t) forces over t, (len(r), functions); kernels of few positions are held at once."""
     return np.concatenate(
         [
-            np.einsum("rtf,t->rf", kernel(some[:, None] - t), forces)
-            for some in np.array_split(r, len(r) * len(t) // _TOGETHER + 1)
+            np.einsum("rtf,t->rf", kernel(block[:, None] - t), forces)
+            for block in np.array_split(r, len(r) * len(t) // _TOGETHER + 1)
         ]
     )
 

@@ -706,11 +706,11 @@ class Solution:
         """As :attr:`.stresses.Turns.between`, by places of each state's own; None without such kinks."""
         if not self.body.along:
             return None
-        found = np.full((2, 2, len(self.g)), np.nan)
+        extremes = np.full((2, 2, len(self.g)), np.nan)
         for state in range(len(self.g)):
             if self._kinks_of_friction(state):
-                found[..., state] = self.between_kinks(state, lambda σ_XX, σ_YY, σ_XY: σ_XX)
-        return None if np.isnan(found).all() else found
+                extremes[..., state] = self.between_kinks(state, lambda σ_XX, σ_YY, σ_XY: σ_XX)
+        return None if np.isnan(extremes).all() else extremes
 
     @cached_property
     def beside_tips(self) -> NDArray[np.float64] | None:

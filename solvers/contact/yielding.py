@@ -745,11 +745,11 @@ class StrengthOfLayers:
         for at_face, face in ((best == 0, upper), (best + 1 == len(depths), lower)):
             if at_face and (there := self._at_depth(state, face))[0] >= values[best]:
                 return *there, -face
-        found = minimize_scalar(
+        result = minimize_scalar(
             lambda depth: -self._at_depth(state, depth)[0], bounds=(upper, lower), method="bounded",
             options={"xatol": _ACCURACY * (lower - upper), "maxiter": 25},
         )  # fmt: skip
-        depth = float(found.x) if -found.fun >= values[best] else depths[best]
+        depth = float(result.x) if -result.fun >= values[best] else depths[best]
         return *self._at_depth(state, depth), -depth
 
     def _at_depth(self, state: int, depth: float) -> tuple[float, float]:

@@ -262,7 +262,7 @@ class Fit:
         They have to be where the estimated error exceeds the tolerance: solved alone it may be smaller.
         """
         speed, z = self.speeds.get(task.number), float(self._sweep.z[task.number])
-        known = self.error is not None or (speed and min(self.estimates) <= z <= max(self.estimates))
+        within = self.error is not None or (speed and min(self.estimates) <= z <= max(self.estimates))
         # Errors of the speeds measured on both sides, the larger ones, and of the fit.
         places = np.sort([*self.estimates])
         low, high = (self.estimates[place] for place in places[around(places, np.array([z]))[0]].tolist())
@@ -273,7 +273,7 @@ class Fit:
         }
         error = Estimate(low.g, low.loads, errors)
         worst = max((values.max() for values in error.of(g).values()), default=0.0)
-        if known and worst <= self._work.plan.tolerance:
+        if within and worst <= self._work.plan.tolerance:
             record = speed.record if speed else size_of(self.space) | vars(WorkDone())
             with self.level(task) as level:
                 yield Solved(level, error, record, not speed)

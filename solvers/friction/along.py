@@ -120,9 +120,9 @@ def advected(law: FrictionLaw, s: int, V: float, a: float, stress_ratio: float) 
         return np.asarray(stress_ratio * law.friction(z, s, V))
 
     mean = s * stress_ratio * float(work(law, start, s, V, 2.0 * a)) / (2.0 * a)
-    known = law.exact(start, s, V, np.zeros(1)) is not None
+    has_exact = law.exact(start, s, V, np.zeros(1)) is not None
     over = lru_cache(lambda a: advected(law, s, V, a, stress_ratio))
-    digits = _EXACT if known else _INTEGRATED
+    digits = _EXACT if has_exact else _INTEGRATED
     kinks, all_kinks = (_kinks(ratio, digits, beside) for beside in (_BESIDE, _BESIDE_WEAK))
     return Along(mean, ratio, kinks, tuple(sorted({*all_kinks} - {*kinks})), over)
 

@@ -48,8 +48,12 @@ class BoucWen(FrictionLaw):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        return {"mu_c": seen.level, "yield_displacement": seen.level / seen.slope, "exponent": 1.2}
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
+        return {
+            "mu_c": measured.level,
+            "yield_displacement": measured.level / measured.slope,
+            "exponent": 1.2,
+        }
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         """dζ/dd [1/m]."""

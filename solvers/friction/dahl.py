@@ -40,8 +40,8 @@ class Dahl(FrictionLaw):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        return {"mu_c": seen.level, "sigma0_over_load": seen.slope}
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
+        return {"mu_c": measured.level, "sigma0_over_load": measured.slope}
 
     def rate(self, z: NDArray, s: int, V: float = 0.0) -> NDArray[np.float64]:
         """df/dd [1/m]."""

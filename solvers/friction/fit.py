@@ -213,10 +213,10 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float, float
     for n, (mean, Δ, bend) in enumerate(zip(v, seconds, slope.tolist())):
         begin, end = mean - 0.5 * bend * Δ, mean + 0.5 * bend * Δ
         smooth = end - begin
-        one = [(mean, end, Δ, smooth)]
+        part = [(mean, end, Δ, smooth)]
         if begin * end < 0.0:
             turn = begin / (begin - end)
-            one = [(0.5 * begin, 0.0, turn * Δ, smooth), (0.5 * end, end, (1.0 - turn) * Δ, smooth)]
+            part = [(0.5 * begin, 0.0, turn * Δ, smooth), (0.5 * end, end, (1.0 - turn) * Δ, smooth)]
         if 2 <= n < len(v) - 2:
             begin = v[n - 1] + 0.5 * change[n - 2] * seconds[n - 1]
             end = v[n + 1] - 0.5 * change[n + 1] * seconds[n + 1]
@@ -224,8 +224,8 @@ def _parts(X: NDArray, t: NDArray) -> list[list[tuple[float, float, float, float
             if abs(end - begin) > _JUMPS * noise and min(abs(mean - begin), abs(mean - end)) > noise:
                 at = (mean - end) / (begin - end)
                 if 1e-3 < at < 1.0 - 1e-3:
-                    one = [(begin, begin, at * Δ, 0.0), (end, end, (1.0 - at) * Δ, 0.0)]
-        parts.append(one)
+                    part = [(begin, begin, at * Δ, 0.0), (end, end, (1.0 - at) * Δ, 0.0)]
+        parts.append(part)
     return parts
 
 
@@ -319,7 +319,7 @@ def fit(
     rms = float(np.sqrt(np.mean((f - whole.f)[whole.used] ** 2)))
     return FittedLaw(
         law, search.values(θ), names, search.numbers(θ), dict(zip(names, deviations.tolist())), vague,
-        np.split(f, np.cumsum([len(one.t) for one in measured])[:-1]), used, rms, every,
+        np.split(f, np.cumsum([len(record.t) for record in measured])[:-1]), used, rms, every,
     )  # fmt: skip
 
 
@@ -341,10 +341,14 @@ class _Fitted:
     def of(cls, kind: type[FrictionLaw], measured: Sequence[Measured]) -> "_Fitted":
         """Measurements as laws of a kind see them."""
         motion, before = list[Move](), 0
-        for one in measured:
-            motion += moves(one.t, one.X, kind.depends_on_speed, before)
-            before += len(one.t)
-        return cls(motion, np.concatenate([one.f for one in measured]), kind.broadcasts or kind.batched)
+        for record in measured:
+            motion += moves(record.t, record.X, kind.depends_on_speed, before)
+            before += len(record.t)
+        return cls(
+            motion,
+            np.concatenate([record.f for record in measured]),
+            kind.broadcasts or kind.batched,
+        )
 
     @cached_property
     def used(self) -> NDArray[np.int64]:
@@ -500,8 +504,8 @@ class _Search:
             self._values[key] = value
             bounds = Range(above=0.0) if len(parameter.measured) > 1 else parameter.range
             usual = look.level / max(look.speed, 1e-12) if parameter.unit else 1.0
-            known = key in fixed or parameter.options or parameter.count
-            for place, number in np.ndenumerate(() if known else np.array(value, dtype=float)):
+            chosen = key in fixed or parameter.options or parameter.count
+            for place, number in np.ndenumerate(() if chosen else np.array(value, dtype=float)):
                 name = f"{key}[{place[0]}, {place[1]}]" if place else key
                 if name in kind.conventions or (place and place[1] not in parameter.measured):
                     continue

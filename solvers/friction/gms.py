@@ -38,11 +38,11 @@ class GeneralisedMaxwellSlip(Elements, StribeckCurve):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
         """Springs of Maxwell slip, whose search among many minima is quick."""
-        springs = seen.fitted(MaxwellSlip)["elements"]
-        rate = 10.0 * seen.speed / seen.length
-        return super().guess(seen) | {"elements": springs, "attraction_rate": rate}
+        springs = measured.fitted(MaxwellSlip)["elements"]
+        rate = 10.0 * measured.speed / measured.length
+        return super().guess(measured) | {"elements": springs, "attraction_rate": rate}
 
     @property
     def α(self) -> NDArray[np.float64]:

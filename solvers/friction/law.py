@@ -67,7 +67,7 @@ class FrictionLaw(Protocol):
     conventions: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
         """Parameters by key with which a fit may begin; others begin with their defaults."""
         return {}
 

@@ -34,8 +34,8 @@ class Bristles(StribeckCurve):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        return {**super().guess(seen), "sigma0_over_load": seen.slope}
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
+        return {**super().guess(measured), "sigma0_over_load": measured.slope}
 
     def friction(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         ζ = z[..., 0]

@@ -30,11 +30,11 @@ class Elements(FrictionLaw):
             raise ValueError(f"elements = {elements}: expected stiffnesses and limits above 0")
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
         """Elements that slide one after the other, each after twice the slip of the one before."""
-        μ = seen.level / seen.rows
-        slips = 0.5 * seen.length * 0.5 ** np.arange(seen.rows)
-        return super().guess(seen) | {"elements": tuple((float(μ / slip), μ) for slip in slips[::-1])}
+        μ = measured.level / measured.rows
+        slips = 0.5 * measured.length * 0.5 ** np.arange(measured.rows)
+        return super().guess(measured) | {"elements": tuple((float(μ / slip), μ) for slip in slips[::-1])}
 
     @property
     def k(self) -> NDArray[np.float64]:

@@ -294,15 +294,15 @@ def _largest(
 
     The largest value is refined for one law alone: friction of many laws at once is monotonic.
     """
-    slip, one = np.linspace(0.0, length, _PLACES), z.ndim == 1
-    if one:  # most happens where a stroke begins, and at the kinks of the law
+    slip, single = np.linspace(0.0, length, _PLACES), z.ndim == 1
+    if single:  # most happens where a stroke begins, and at the kinks of the law
         kinks = law.kinks(z, s, V)
         more = length * np.geomspace(_NEAREST, 1.0, _PLACES), kinks[(kinks > 0.0) & (kinks < length)]
         slip = np.unique(np.concatenate([slip, *more]))
     states = advance(law, z, s, V, length, slip)
     f = s * law.friction(states, s, V)
     largest, padded = f.max(axis=-1), np.pad(f, 1, constant_values=-np.inf)
-    tops = np.flatnonzero((f >= padded[:-2]) & (f >= padded[2:])) if one else np.empty(0, dtype=int)
+    tops = np.flatnonzero((f >= padded[:-2]) & (f >= padded[2:])) if single else np.empty(0, dtype=int)
     for n in tops[np.argsort(-f[tops], kind="stable")][:_TOPS]:
         at, top = slip, int(n)
         for _ in range(_CLOSER):

@@ -47,10 +47,11 @@ class RateAndState(FrictionLaw):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
         return {
-            "reference_friction": seen.level, "reference_speed": seen.speed, "a": 0.02 * seen.level,
-            "b": 0.02 * seen.level, "critical_slip": 0.1 * seen.length,
+            "reference_friction": measured.level, "reference_speed": measured.speed,
+            "a": 0.02 * measured.level, "b": 0.02 * measured.level,
+            "critical_slip": 0.1 * measured.length,
         }  # fmt: skip
 
     def rest(self) -> NDArray[np.float64]:

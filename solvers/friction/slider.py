@@ -138,9 +138,9 @@ class Ride:
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
         values = np.empty((3, len(t)))
         for n in np.unique(which):
-            piece, here = self._motion.pieces[n], which == n
-            since = np.clip(t[here], piece.start, piece.end) - piece.start
-            values[:, here] = self._motion.rows(piece, since).T
+            piece, in_piece = self._motion.pieces[n], which == n
+            since = np.clip(t[in_piece], piece.start, piece.end) - piece.start
+            values[:, in_piece] = self._motion.rows(piece, since).T
         if self._repeats:
             values[0] += cycles * slip
         return values

@@ -55,8 +55,8 @@ class Coulomb(Memoryless):
     μ_C: float = coulomb_coefficient("at_least")
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        return {"mu_c": seen.level}
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
+        return {"mu_c": measured.level}
 
     def level(self, V: float) -> NDArray[np.float64]:
         return np.asarray(self.μ_C)
@@ -81,8 +81,8 @@ class StribeckCurve(FrictionLaw):
     )  # fmt: skip
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        return {"mu_c": seen.least, "mu_s": seen.level, "stribeck_velocity": seen.speed}
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
+        return {"mu_c": measured.least, "mu_s": measured.level, "stribeck_velocity": measured.speed}
 
     def g(self, V: float) -> NDArray[np.float64]:
         """Coefficient of steady sliding at a speed [m/s], without viscous friction."""

@@ -46,9 +46,9 @@ class Table(FrictionLaw):
                 )
 
     @classmethod
-    def guess(cls, seen: MeasuredFriction) -> dict[str, Any]:
-        slips = np.linspace(0.0, seen.length, max(seen.rows, 2))
-        return {"shape": tuple((float(d), seen.level * float(d > 0.0)) for d in slips)}
+    def guess(cls, measured: MeasuredFriction) -> dict[str, Any]:
+        slips = np.linspace(0.0, measured.length, max(measured.rows, 2))
+        return {"shape": tuple((float(d), measured.level * float(d > 0.0)) for d in slips)}
 
     def rest(self) -> NDArray[np.float64]:
         return np.zeros(2)

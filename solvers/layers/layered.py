@@ -71,10 +71,10 @@ class LayersAtSpeed:
         Args:
             k: wavenumbers times a, (n,).
         """
-        found = np.empty((1 + 2 * len(self.layers), len(k), 2, 2), dtype=complex)
-        for here, rows, of_batch, _ in self._batches(k):
-            found[:, here] = of_batch[:, rows]
-        return found[0], found[1::2], found[2::2]
+        values = np.empty((1 + 2 * len(self.layers), len(k), 2, 2), dtype=complex)
+        for columns, rows, of_batch, _ in self._batches(k):
+            values[:, columns] = of_batch[:, rows]
+        return values[0], values[1::2], values[2::2]
 
     def _batches(self, k: NDArray) -> Iterator[tuple[NDArray, NDArray, NDArray, list[Field]]]:
         """Batches of wavenumbers that hold some of k: where k has them, and their rows in the batch; and
@@ -82,7 +82,7 @@ class LayersAtSpeed:
 
         They are kept: fields at all depths go through the same layers.
         """
-        new = np.setdiff1d(k, np.concatenate([np.empty(0), *(known for known, *_ in self._kept)]))
+        new = np.setdiff1d(k, np.concatenate([np.empty(0), *(kept for kept, *_ in self._kept)]))
         if len(new):
             self._keep()
             Z, crossing, fields = np.broadcast_to(self.substrate.down, (len(new), 2, 2)), [], []
@@ -91,10 +91,10 @@ class LayersAtSpeed:
                 crossing += [fields[-1](layer.H)[1], Z]
                 Z = fields[-1](0.0)[0]
             self._kept.append((new, np.array([Z, *crossing[::-1]]), fields[::-1]))
-        for known, of_known, fields in self._kept:
-            here = np.isin(k, known)
-            if here.any():
-                yield here, np.searchsorted(known, k[here]), of_known, fields
+        for kept, of_known, fields in self._kept:
+            columns = np.isin(k, kept)
+            if columns.any():
+                yield columns, np.searchsorted(kept, k[columns]), of_known, fields
 
     @cached_property
     def _kept(self) -> list[tuple[NDArray[np.float64], NDArray[Any], list[Field]]]:
@@ -119,10 +119,10 @@ class LayersAtSpeed:
         Returns:
             Both, (n, 2, 2) each.
         """
-        found = np.empty((2, len(k), 2, 2), dtype=complex)
-        for here, rows, _, fields in self._batches(k):
-            found[:, here] = np.array(fields[i](depth))[:, rows]
-        return found[0], found[1]
+        values = np.empty((2, len(k), 2, 2), dtype=complex)
+        for columns, rows, _, fields in self._batches(k):
+            values[:, columns] = np.array(fields[i](depth))[:, rows]
+        return values[0], values[1]
 
     def excess(self, k: NDArray) -> NDArray[Any]:
         """Stiffness of the surface less that of a half-plane of the solid there, (n, 2, 2)."""

@@ -127,9 +127,9 @@ def _modulus(key: str, about: str) -> float:
     return modulus(key, about, f"{key[0]}_{{{key[1:]}}}")
 
 
-def _ratio(key: str, one: int, other: int) -> float:
-    about = f"Poisson's ratio: contraction along {other} over extension along {one} where {one} is pulled"
-    return parameter(key, about, symbol=rf"\nu_{{{one}{other}}}")
+def _ratio(key: str, i: int, j: int) -> float:
+    about = f"Poisson's ratio: contraction along {j} over extension along {i} where {i} is pulled"
+    return parameter(key, about, symbol=rf"\nu_{{{i}{j}}}")
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def moving():
     "solid", [SOLID, Layered((Layer(0.7, Isotropic(3.0, 0.1, 2.0)),), SOLID)], ids=["uniform", "layer"]
 )
 def test_products_by_quadrature_are_those_of_the_matrices(solid, sharp):
-    mesh = Reached(4.3, 3.1, 1.0, 0.3, 1e-2, depths=(0.7,), seen=0.5, around=(2.0, 1.0))
+    mesh = Reached(4.3, 3.1, 1.0, 0.3, 1e-2, depths=(0.7,), finest=0.5, around=(2.0, 1.0))
     of = motion(solid, 0.5, mesh, 5, sharp)
     u = np.random.default_rng(0).normal(size=of.size)
     for product, expected in (

@@ -260,11 +260,13 @@ def print_sheet(console: Any, sheet: Any) -> None:
     from rich import box
     from rich.table import Table
 
-    for number, columns in enumerate(_parts(sheet, console.width)):
+    if sheet.title:
+        _print_folded(console, sheet.title)
+    heads = any(sheet.columns)
+    for columns in _parts(sheet, console.width):
         table = Table(
-            title=None if number else sheet.title, box=box.SIMPLE_HEAD if any(sheet.columns) else None,
-            title_justify="left", title_style="", header_style="bold", pad_edge=False,
-            padding=(0, 1, 0, 0), show_header=any(sheet.columns),
+            box=box.SIMPLE_HEAD if heads else None, header_style="bold", pad_edge=False,
+            padding=(0, 1 if heads else 2, 0, 0), show_header=heads,
         )  # fmt: skip
         for i in columns:
             words = sheet.words or not i

@@ -67,6 +67,14 @@ class TextTable:
         ]
 
     @property
+    def heads(self) -> str:
+        """What the first line names, in words."""
+        names = [name for name in self.names if name]
+        if len(self.names) > 1:
+            return f"the columns {excerpt(', '.join(names))}" if names else "columns without a name"
+        return "one column; tabs, semicolons or commas separate columns"
+
+    @property
     def near_miss(self) -> str:
         """Hint at the name that a column without one may be meant to have, for the end of a message."""
         valid = [name for names in _NAMES.values() for name in names if len(name) > 1]
@@ -92,7 +100,8 @@ class TextTable:
         try:
             return 1.0 if given in ("", "1", "-") else to_si(f"1 {given}", unit)
         except ValueError as error:
-            raise BadInput(f"{self.path}, line 1, {self.names[column]}: {error}") from None
+            said = str(error).replace("'1 ", "'", 1)  # of which the file has the unit alone
+            raise BadInput(f"{self.path}, line 1, {self.names[column]}: {said}") from None
 
     def _number(self, line: int, row: list[str], column: int) -> float:
         cell = row[column] if column < len(row) else ""

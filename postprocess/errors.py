@@ -2,6 +2,7 @@
 
 import shutil
 from contextlib import suppress
+from errno import EACCES, EPERM, EROFS
 from pathlib import Path
 
 from galinx.texts import bytes_in_words
@@ -42,7 +43,9 @@ def refused(target: Path, error: Exception, needed: int = 0) -> UnwritableArchiv
         The exception, to be raised by the caller.
     """
     reason = getattr(error, "strerror", None) or str(error)
-    space = f"; it needs {bytes_in_words(needed)}" if needed else ""
-    with suppress(OSError):
-        space += f"; {bytes_in_words(shutil.disk_usage(target.parent).free)} are free"
+    space = ""
+    if getattr(error, "errno", None) not in (EACCES, EPERM, EROFS):  # room may be what is missing
+        space = f"; it needs {bytes_in_words(needed)}" if needed else ""
+        with suppress(OSError):
+            space += f"; {bytes_in_words(shutil.disk_usage(target.parent).free)} are free"
     return UnwritableArchive(f"cannot write {target}: {reason}{space}")

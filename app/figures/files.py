@@ -163,7 +163,7 @@ class Files:
             if ending not in kinds:
                 other = _CONVERTED.get(ending)
                 raise BadInput(
-                    f"{option}: found {ending!r} for the {noun} {name}, expected "
+                    f"{option}: found {ending!r} for the {noun}{f' {name}' * (name != noun)}, expected "
                     f"{', '.join(kinds)}{' or a folder' * bool(self.ending)}"
                     + (f"; convert a {other} for {ending}" if other else "")
                 )

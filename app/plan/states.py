@@ -148,7 +148,7 @@ def speeds(scene: Scene) -> tuple[float, ...]:
             alone = f" (by closed_form alone, {limit})" * (not scene.between_free_ends)
             limit = f"the Rayleigh speed {scene.solid.limit() * c_s:.6g} m/s{alone}"
         fault = f"motion.speed = {listed(fast)} m/s: expected less than {limit}"
-        raise BadInput("; ".join([*oddities(scene), fault]))  # what is unusual may be the cause
+        raise BadInput("\n  ".join([fault, *oddities(scene)]))  # what is unusual may be the cause
     return tuple(dict.fromkeys(speed / c_s for speed in scene.motion.speed or ()))
 
 

@@ -25,8 +25,9 @@ from galinx.solvers.parameters import parameters
 from galinx.texts import with_prefix
 
 from ..console import Progress
-from ..errors import BadInput, excerpt, listed, require_one_of, short
+from ..errors import BadInput, listed, require_one_of, short
 from ..scene import read as scenes
+from ..scene.scene import unusual
 from ..scene.values import Number, kind_of
 from ..text_table import read_table
 
@@ -91,8 +92,7 @@ def read(path: Path) -> Table:
     timed = {"time", "position"} <= columns.keys()
     if not (timed or "slip" in columns) or not {"friction", "force"} & columns.keys():
         hint = "; alone, a slip since rest is named slip" if "position" in columns else table.near_miss
-        listing = f"found the columns {excerpt(table.names)}"
-        raise BadInput(f"{path}, line 1: {listing}, expected {_FORM}{hint}")
+        raise BadInput(f"{path}, line 1: found {table.heads}, expected {_FORM}{hint}")
     if "friction" in columns:
         f = table.numbers(columns["friction"], "")
     elif "load" not in columns:
@@ -116,7 +116,7 @@ def read(path: Path) -> Table:
         row = len(clock) - 1 if few else int(back[0]) + 1
         line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
         hint = "; where it falls, as in a loop, write time and position" * (len(back) > 0 and not timed)
-        listing = f"{len(clock)} rows" if few else f"a {name} that does not grow"
+        listing = f"{len(clock)} row" + "s" * (len(clock) != 1) if few else f"a {name} that does not grow"
         raise BadInput(
             f"{path}, line {line}: found {listing}, expected three or more rows in which the {name} grows"
             f"{hint}"
@@ -233,6 +233,9 @@ class Fit(FittedLaw):
                 f"{np.nanmean(np.concatenate(left)):.3g} on average, where the root mean square of f is "
                 f"{size:.3g}, dimensionless; f has the sign of the motion and no offset: is it so there?"
             )
+        for key, parameter in parameters(type(self.law)).items():
+            if key in self.parameters and key not in self.not_determined:
+                said += unusual(key, parameter, self.parameters[key])
         if self.every > 1:
             said.append(f"every {self.every}th sample is fitted, and those where the motion turns")
         elif self.samples < samples:
@@ -283,6 +286,9 @@ def fit(
             fitted to it.
     """
     sources = [data] if isinstance(data, (str, Path, Measured)) else list(data)
+    paths = [str(source) for source in sources if isinstance(source, (str, Path))]
+    if twice := [name for name in dict.fromkeys(paths) if paths.count(name) > 1]:
+        raise BadInput(f"found {listed(twice)} more than once, expected each measurement once")
     names = [*LAWS] if require_one_of("friction law", model, [*LAWS, ALL]) == ALL else [model]
     # Parameters of each law that it has, from texts and numbers.
     fixed, started = (_values(names, given or {}) for given in (fix, start))
@@ -366,7 +372,7 @@ def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for key, value in given.items():
         if key not in declared:
-            raise BadInput(f"found {short(key)!r}, expected KEY=VALUE with {', '.join(declared)}")
+            raise BadInput(f"fix or start: found {short(key)!r}, expected one of {', '.join(declared)}")
         try:
             if declared[key].columns:
                 table = json.loads(value) if isinstance(value, str) else value

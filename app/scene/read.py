@@ -32,8 +32,10 @@ from .scene import Scene, contradictions, in_words, usual_quantities
 from .sections import ADVECTED, SECTIONS, SWEPT, TOLERANCE_IN_TIME, Key
 from .values import Number, Numbers, Or, Rows
 
-#: Place in a message of TOML's reader, and values that stand without quotes: 0,37 and 5 mm and steel.
+#: Place in a message of TOML's reader, quotes of word processors, and values that stand without quotes:
+#: 0,37 and 5 mm and steel.
 _PLACE = re.compile(r"\(at line (\d+),")
+_QUOTE = re.compile("[“”„‟«»‘’]")
 _COMMA = re.compile(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$")
 _UNIT = re.compile(
     r"=\s*([-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\W\d_e%]\S*(?:\s*[*/]\s*\S+)*|[-+]?[\d.]+\s*%)\s*(#.*)?$"
@@ -54,6 +56,8 @@ def explained(text: str, said: str) -> str:
     number, line = place[1], lines[int(place[1]) - 1].strip()
     if said.startswith(("Cannot overwrite a value", "Cannot declare")):
         return f"found {short(line)} in line {number}, whose name stands above already; keep one of them"
+    if quote := _QUOTE.search(line):
+        return f'found {quote[0]} in line {number}, expected straight quotes, as in "210 GPa"'
     if comma := _COMMA.search(line):
         point = comma[1].replace(",", ".")
         return f"found {comma[1]} in line {number}, expected a decimal point, as in {point}"

@@ -408,18 +408,23 @@ def _unusual_numbers(scene: Scene) -> Iterator[str]:
         ("friction", parameters(scene.friction.law), scene.friction.values),
     ):
         for key, parameter in described.items():
-            if not parameter.usual:
-                continue
-            low, high = parameter.usual
-            numbers = np.atleast_1d(values[key]).tolist()
-            # 0 has no unit.
-            odd = [f"{value:g}" for value in numbers if value and not low <= abs(value) <= high]
-            if odd:
-                are, their = ("is", "its unit") if len(odd) == 1 else ("are", "their unit")
-                yield (
-                    f"{section}.{key} = {listed(odd)}{f' {parameter.unit}' * bool(parameter.unit)} {are} "
-                    f"unusual, usual is {low:g} to {high:g}; is {their} as meant?"
-                )
+            yield from unusual(f"{section}.{key}", parameter, values[key])
+
+
+def unusual(name: str, parameter: Parameter, values: Any) -> Iterator[str]:
+    """Warning about values of a parameter beyond the usual ones, none where there are no such."""
+    if not parameter.usual:
+        return
+    low, high = parameter.usual
+    numbers = np.atleast_1d(values).tolist()
+    # 0 has no unit.
+    odd = [f"{value:g}" for value in numbers if value and not low <= abs(value) <= high]
+    if odd:
+        are, their = ("is", "its unit") if len(odd) == 1 else ("are", "their unit")
+        yield (
+            f"{name} = {listed(odd)}{f' {parameter.unit}' * bool(parameter.unit)} {are} "
+            f"unusual, usual is {low:g} to {high:g}; is {their} as meant?"
+        )
 
 
 def _unusual_contact(scene: Scene) -> Iterator[str]:

@@ -26,8 +26,8 @@ _COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]+")
 #: Beginning of a product of units that starts with a divisor, as ``1/m``.
 _ONE = re.compile(r"\s*1\s*(?=/)")
 _FACTOR = re.compile(
-    rf"\s*([*/]?)\s*(%|[^\W\d{_SUPERSCRIPTS}][^\W{_SUPERSCRIPTS}]*)"
-    rf"(?:\s*(?:\*\*|\^)\s*([-+]?[0-9])(?![.\w])|(⁻?[{_SUPERSCRIPTS[1:]}]))?"
+    rf"\s*([*/]?)\s*(%|[^\W\d{_SUPERSCRIPTS}][^\W{_SUPERSCRIPTS}]*?)"
+    rf"(?:\s*(?:\*\*|\^)\s*([-+]?[0-9])(?![.\w])|(⁻?[{_SUPERSCRIPTS[1:]}]|(?<![\d_])[234](?!\w))|(?!\w))"
 )
 
 #: Names of units with their exponents, in the order in which they are written.

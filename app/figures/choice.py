@@ -339,7 +339,7 @@ class Archive:
         ranges = [f"{run[0]}-{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
         return (
             f"{len(missing)} of {len(self.all)} states not shown{without}: "
-            f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by {how}."
+            f"state{'s' * (len(missing) > 1)} {_short(ranges, ',')}; choose by plot {how}."
         )
 
 

@@ -220,7 +220,7 @@ def response_drawing(computed: list[Answer]) -> Drawing:
         "straight down, to which the latter comes at high frequencies. At low ones the stiffness goes "
         "like 1/log ω: a half-plane has none of its own at rest."
     )
-    missing = fewer(len(shown), len(computed), "speeds with frictions")
+    missing = fewer(len(shown), len(computed), "speeds with frictions", "; choose by --set")
     return Drawing("response", caption, render(panels, high=0.72), left_out=missing)
 
 

@@ -30,7 +30,7 @@ class Flat(Profile):
         note="dimensionless results do not depend on it",
     )  # fmt: skip
     tilt: float = parameter(
-        "tilt", "tilt of the base, counterclockwise", "deg", symbol=r"\theta", default=0.0,
+        "tilt", "tilt of the base, counterclockwise", "deg", symbol=r"\phi", default=0.0,
         above=-45.0, below=45.0, usual=(-5.0, 5.0),
         note="positive: the right edge is the higher one, and lifts off first",
     )  # fmt: skip

@@ -94,7 +94,7 @@ def test_a_law_goes_into_a_scene_that_stays_as_it_was_written(here, capsys):
         (("dahl", "none.csv"), "cannot read none.csv"),
         (("stribeck", "slip.csv"), "give --speed, as in --speed '1 mm/s'"),
         (("dahl", "motion.csv", "--speed", "1 m/s"), "but the table tells the time"),
-        (("dahl", "slip.csv", "--fix", "mu=1"), "expected KEY=VALUE with mu_c, sigma0_over_load, delta"),
+        (("dahl", "slip.csv", "--fix", "mu=1"), "fix or start: found 'mu', expected one of mu_c, sigma0"),
         (("dahl", "slip.csv", "--fix", "mu_c=-1"), "mu_c: found -1, expected > 0"),
         (("dahl", "slip.csv", "--fix", "mu_c=1 m"), "mu_c: found '1 m'"),
         (("dahl", "slip.csv", "--fix", "delta"), "--fix delta: expected KEY=VALUE"),

@@ -134,8 +134,10 @@ def test_tables_of_all_conventions_are_one_measurement(tmp_path):
         ("slip,f\n0,0\n2,1\n1,1\n", "line 4: .* the slip grows; .* write time and position"),
         ("position [mm],f\n0,0\n1,1\n2,1\n", "line 1: found the columns .*; alone, a slip"),
         ("slip [mm],fricton\n0,0\n1,1\n", "did you mean friction"),
+        ("slip[mm] f\n0 0\n1 2\n", "found one column; tabs, semicolons or commas separate columns, expe"),
+        ("slip [mm],f\n0,0\n", "line 2: found 1 row, expected three or more rows"),
         ("time,position,f\n0,1,0\n1,1,0\n2,1,0\n", "found one position in all rows, expected a motion"),
-        ("slip [s],f\n0,0\n1,1\n2,1\n", "line 1, slip: found '1 s'"),
+        ("slip [s],f\n0,0\n1,1\n2,1\n", "line 1, slip: found 's'"),
         ("slip [mm],f\n5,0\n5.1,0.2\n5.2,0.3\n", "line 2: found slips from 5 mm to 5.2 mm, expected"),
         ("", "is empty"),
     ],
@@ -200,3 +202,12 @@ def test_friction_that_no_law_follows_is_called_so(model, parameters, offset):
     found = galinx.fit(galinx.Measured(swung.t, swung.X, swung.f + offset), model)
     said = offset > 0.0
     assert any("does not follow the data" in note for note in found.notes) == said
+
+
+def test_friction_in_per_cent_is_said_to_be_unusual(tmp_path):
+    d = np.linspace(0.0, 2e-4, 40)
+    path = written(galinx.Measured(d, d, 40.0 * -np.expm1(-2e4 * d)), tmp_path / "a.csv")
+    (note,) = (note for note in galinx.fit(path, "dahl", fix={"delta": 1.0}).notes if "usual" in note)
+    assert note.startswith("mu_c = 40 is unusual, usual is 0.0001 to 10")
+    with pytest.raises(BadInput, match="more than once, expected each measurement once"):
+        galinx.fit([path, path], "dahl")

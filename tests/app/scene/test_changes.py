@@ -237,7 +237,7 @@ def test_points_pressures_and_depths_may_be_in_files(tmp_path):
         ("X [mm]\n0\n", "line 1: found 1 columns"),
         ("X [mm],P [µm]\n0,1\n\n1,o\n", "line 4, p: found 'o', expected a finite number"),
         ("0,1\n1,inf\n", "line 2: found 'inf', expected a finite number"),
-        ("X [mm],P [MPa]\n0,1\n", r"line 1, p: found .1 MPa. .a pressure., expected"),
+        ("X [mm],P [MPa]\n0,1\n", r"line 1, p: found .MPa. .a pressure., expected"),
         ("X [mm,P [µm]\n0,1\n", r"line 1: found 'X \[mm', expected as in X \[mm\]"),
         (b"X,P\n0,\xff\n", "is not UTF-8"),
         ("", "at least 1 rows of 2 numbers"),

@@ -57,7 +57,7 @@ FAULTS = {
         (_SPEED | {"motion.speed": -1}, 'found -1, expected >= 0; …motion.strokes = ["backward"]'),
         ({"motion.velocity": 1.0}, "no such key; did you mean speed (velocity V)?"),
         ({"solid.E": "210 Gpa"}, "unknown unit 'Gpa' (did you mean GPa?), expected"),
-        (_SPEED | {"motion.speed": 1, "solid.E": 210}, "as meant?…motion.speed = 1 m/s: expected less"),
+        (_SPEED | {"motion.speed": 1, "solid.E": 210}, "expected less…solid.E = 210 Pa is unusual"),
         ({"sloid.nu": 0.25}, "did you mean solid"),
         ({"solid.nu": None}, "solid.nu: missing"),
         ({"solid.material": "STEEL"}, "has 1 fault:…found 'STEEL', …; did you mean steel?"),

@@ -237,6 +237,7 @@ def test_places_ask_for_stresses_inside_and_these_have_places(given):
     [
         ("mu = 0.15", "mu = 0,15", "found 0,15 in line 9, expected a decimal point, as in 0.15"),
         ('"BK7"', "BK7", 'found BK7 in line 3, expected quotes around a text, "BK7"'),
+        ('"BK7"', "“BK7”", "found “ in line 3, expected straight quotes"),
         ('"BK7"', '"BK7', "in line 3, whose text has no quote at its end"),
         ('"5 mm"', "5 mm", 'found 5 mm in line 6, expected quotes around a number and unit, "5 mm"'),
         ('"1 m/s"', "1 m/s # fast", "found 1 m/s in line 11, expected quotes"),

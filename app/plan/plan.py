@@ -50,7 +50,7 @@ from galinx.texts import bytes_in_words, counted
 
 from .. import ranks
 from ..errors import BadInput, listed
-from ..methods import METHODS, OWN_METHODS
+from ..methods import METHODS, OWN_METHODS, refusal_of
 from ..scene.scene import FRICTIONS, Scene, oddities
 from ..scene.sections import keys_set
 from . import elements
@@ -597,10 +597,12 @@ def _quantities(
             and quantity.asked_by in ("", *scene.output.quantities)
             and all(need in computed for need in quantity.needs)
         )
-        kind = METHODS.get(quantity.method)
-        if applies and kind and (why := kind.refusal(scene, scene.body, quantity)):
-            refused.append((quantity, why))
-        elif applies:
+        if not applies:
+            continue
+        kind, body = METHODS.get(quantity.method), scene.body
+        if lack := kind.refusal(scene, body, quantity) if kind else refusal_of(quantity, body, {}):
+            refused.append((quantity, lack))
+        else:
             computed[path] = quantity
     return tuple(computed.values()), refused
 

@@ -164,7 +164,7 @@ class Work:
             local = task.body.local_exponents(task.response, g, load)
             # Without a solution of states; contacts that methods solved are known by now.
             of_edges = SimpleNamespace(
-                local=local, g=g, places=task.places,
+                local=local, g=g, places=task.places, response=task.response,
                 half_width=task.body.half_widths(task.response, g, load),
             )  # fmt: skip
             data |= self._of(LOCAL, of_edges, task.body.loaded(load))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from galinx.solvers.contact.solution import PUNCH
+from galinx.solvers.contact.solution import CLOSED, FLAT, PUNCH, RESTING
 from galinx.solvers.contact.stresses import tension
 from galinx.solvers.parameters import Range
 
@@ -11,6 +11,7 @@ from .quantity import (
     ANYWHERE,
     CLOSED_FORM,
     FEM,
+    LOCAL,
     NOT_NEGATIVE,
     OVER_A,
     QUANTITIES,
@@ -19,7 +20,6 @@ from .quantity import (
     X_OVER_A,
     Quantity,
     by_method,
-    entry,
 )
 
 #: Strain from which on a solid is not linear any more.
@@ -48,14 +48,16 @@ FLUTTER = {
 }  # fmt: skip
 
 
-def _within(name: str, reach: str, what: str, of: Callable[[Any], Any]) -> tuple[Quantity, ...]:
-    """Quantities of a distance from X = -a and from X = a, ``of`` a solution, (states, 2)."""
+def _within(
+    name: str, reach: str, what: str, of: Callable[[Any, Any], Any], requires: tuple[str, ...]
+) -> tuple[Quantity, ...]:
+    """Quantities of a distance from X = -a and from X = a, (2, states), whichever method solves."""
     return tuple(
         Quantity(
             f"states/closed_form/{name}_{side}", "1",
             f"{reach} from {at}, the distance within which {what}, over the half-width",
-            (STATE,), entry(of, ..., i), CLOSED_FORM, PUNCH,
-            range=NOT_NEGATIVE, scale=OVER_A,
+            (STATE,), lambda s, body, i=i: of(s, body)[i], LOCAL, PUNCH,
+            range=NOT_NEGATIVE, scale=OVER_A, requires=requires,
         )
         for i, (side, at) in enumerate({"left": "X = -a", "right": "X = a"}.items())
     )  # fmt: skip
@@ -64,11 +66,11 @@ def _within(name: str, reach: str, what: str, of: Callable[[Any], Any]) -> tuple
 #: The slip velocity is V (1 + u,X).
 SLIP_REVERSED = _within(
     "slip_reversed", "reach of reversed slip", "1 + u,X is negative at the load",
-    lambda s: s.compressed_within(1.0),
+    lambda s, body: body.reversed_within(s.response, s.g), (CLOSED, FLAT, RESTING),
 )  # fmt: skip
 STRAIN = _within(
     "large_strain", "reach of large strain", "|u,X| is beyond 5 % at the load",
-    lambda s: s.strained_within(LARGE_STRAIN),
+    lambda s, body: body.strained_within(s.response, s.g, LARGE_STRAIN), (CLOSED, FLAT),
 )  # fmt: skip
 
 

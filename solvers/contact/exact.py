@@ -17,7 +17,6 @@ from ..approximation import polynomial_through
 from ..layers.kernel import Level
 from ..profiles import jumps, kinks
 from . import AT_INTERFACES, BELOW, INTENSITIES, ON_SURFACE, stresses
-from .closed_form import FlatPunch
 from .edges import EdgeExponents, Exponents
 from .equation import OF_ENDS, LayersUnderPunch, SolvedContact, under_punch
 from .prescribed_pressure import COARSE, FINE
@@ -92,16 +91,6 @@ class ExactSolution(Solution):
     resultant_ratio = property(lambda self: self._of_pressures("resultant_ratio"))
     #: Of friction that varies along the contact: centre of pressure over a, (states,).
     pressure_centre = property(lambda self: self._of_pressures("pressure_centre"))
-
-    def compressed_within(self, strain: float) -> NDArray[np.float64]:
-        """Distances over a from both ends within which -u,X exceeds a strain, (states, 2)."""
-        flat = FlatPunch(self.task.response, self.g)
-        return flat.compressed_within(strain / self.task.body.strain).T
-
-    def strained_within(self, strain: float) -> NDArray[np.float64]:
-        """Distances over a from both ends within which |u,X| exceeds a strain, (states, 2)."""
-        flat = FlatPunch(self.task.response, self.g)
-        return flat.strained_within(strain / self.task.body.strain).T
 
     @property
     def v0(self) -> NDArray[np.float64]:

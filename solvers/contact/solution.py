@@ -39,8 +39,9 @@ FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", 
 STRENGTH = "yield strength"
 #: Stresses of an elastic punch, σ_ZZ included, and the strength at which it yields.
 IN_PUNCH, PUNCH_STRENGTH = "elastic punch", "yield strength of the punch"
-#: A solid without layers, or with some.
+#: A solid without layers, or with some; one that a closed form solves, and a punch whose surface rests.
 UNIFORM, LAYERED = "uniform solid", "layers"
+CLOSED, RESTING = "closed form", "surface of the punch at rest"
 
 _BOTH_ENDS = np.array([-1.0, 1.0])
 #: Jacobi polynomials under a punch that is not flat: smooth profiles need a dozen for the last digits.
@@ -159,6 +160,10 @@ class Contact:
             reasons[LAYERED] = "the solid has no layers"
         if self.along:
             reasons[FLAT] = "friction varies along the contact"
+        if self.no_closed_form:
+            reasons[CLOSED] = self.no_closed_form
+        if getattr(self.solid, "speed", 0.0):
+            reasons[RESTING] = "the punch's surface moves, too"
         return reasons
 
     @property
@@ -215,6 +220,23 @@ class Contact:
                 for value, load in zip(g.tolist(), np.broadcast_to(self.load, g.shape).tolist())
             ]
         return between_ends(response, g, pressures, self.half_width)
+
+    def reversed_within(self, response: HalfPlane, g: NDArray) -> NDArray[np.float64]:
+        """Distances over a from both ends of a flat punch within which slip turns round, (2, states).
+
+        Args:
+            response: of the half-plane at a speed.
+            g: σ_XY/σ_YY, (states,).
+        """
+        from .closed_form import FlatPunch
+
+        return FlatPunch(response, g).compressed_within(1.0 / self.strain)
+
+    def strained_within(self, response: HalfPlane, g: NDArray, strain: float) -> NDArray[np.float64]:
+        """Distances over a from both ends of a flat punch within which |u,X| exceeds a strain."""
+        from .closed_form import FlatPunch
+
+        return FlatPunch(response, g).strained_within(strain / self.strain)
 
     @property
     def yield_places(self) -> NDArray[np.float64]:

@@ -58,7 +58,13 @@ def from_words(words: Iterable[str], unset: Iterable[str] = ()) -> dict[str, Any
             raise BadInput(
                 f"--set {short(word)}: expected section.key=value, as in --set friction.mu_c=0.5"
             )
-        changes[key.strip()] = _value(value.strip())
+        key, value = key.strip(), value.strip()
+        changes[key] = read = _value(value)
+        if value.startswith("{") and isinstance(read, str):
+            raise BadInput(
+                f"--set {key}: found {short(value)!r}, expected a range as in TOML, its texts in "
+                "quotes: '{from=0.1, to=1, number=3, spacing=\"log\"}'"
+            )
     for key in unset:
         if key in changes:
             raise BadInput(f"--set and --unset {short(key)} exclude each other; keep one")

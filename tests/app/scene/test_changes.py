@@ -69,6 +69,10 @@ def test_keys_name_section_and_key(key):
         ("motion.c=" + "[" * 3000 + "]" * 3000, "motion.c"),
         ("friction.mu_c=[{a = 1}]", "mu_c .*: found {'a': 1}, expected"),
         ("title.x=1", "found 'title' without keys"),
+        (
+            "friction.mu={from=0.1, to=1, number=3, spacing=log}",
+            "expected a range as in TOML, its texts in",
+        ),
         ("title=" + "a" * 100_000, "100000 characters"),
         ("title=\udcff", "UTF-8"),
         ("x" * 5000 + ".y=1", "no such section"),

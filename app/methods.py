@@ -62,7 +62,7 @@ class MethodKind:
     of_layers: bool = False
 
 
-def refusal_of(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) -> str:
+def _refusal(quantity: Quantity | None, body: Contact, lacks: dict[str, str]) -> str:
     """Reason why there is no quantity of a contact, "" where there is one, and for None.
 
     Args:
@@ -92,15 +92,15 @@ def _closed_form_refusal(scene: Any, body: Contact, quantity: Quantity | None) -
     lacks = _OF_FLAT_PUNCHES if FLAT in body.lacks and body.ends == SHARP else {}
     if body.along:
         lacks = {word: why for word, why in lacks.items() if word != BELOW}
-    return refusal_of(quantity, body, lacks)
+    return _refusal(quantity, body, lacks)
 
 
 def _integral_equation_refusal(scene: Any, body: Contact, quantity: Quantity | None) -> str:
     if body.no_closed_form:
-        return refusal_of(quantity, body, {})
+        return _refusal(quantity, body, {})
     if SOLVED in body.lacks or CLOSED_FORM in scene.solve.methods:
         return "the solid has no layers, and closed_form knows the solution"
-    return refusal_of(
+    return _refusal(
         quantity, body, dict.fromkeys((BELOW, YIELD), "in a uniform solid closed_form gives it")
     )
 
@@ -154,7 +154,7 @@ def _finite_elements_refusal(scene: Any, body: Contact, quantity: Quantity | Non
         crowded = [crowded_kinks(under.kinks_at_rest) for under in ends]  # type: ignore[attr-defined]
         if all(crowded):
             return f"the punch has {crowded[0]}; {other} takes it"
-    return refusal_of(quantity, body, lacks)
+    return _refusal(quantity, body, lacks)
 
 
 def _closed_form(plan: Any, progress: Any, clock: Any) -> Method:

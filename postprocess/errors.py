@@ -15,6 +15,12 @@ class UnreadableArchive(Exception):
     """
 
 
+class MissingDataset(UnreadableArchive, KeyError):
+    """An archive lacks a dataset that is asked for; in Python a KeyError, as of any mapping."""
+
+    __str__ = Exception.__str__  # a KeyError shows its message in quotes
+
+
 class UnwritableArchive(Exception):
     """The file system refused an archive or another file; the message says why."""
 

@@ -50,7 +50,7 @@ from galinx.texts import bytes_in_words, counted
 
 from .. import ranks
 from ..errors import BadInput, listed
-from ..methods import METHODS, OWN_METHODS, refusal_of
+from ..methods import METHODS, OWN_METHODS
 from ..scene.scene import FRICTIONS, Scene, oddities
 from ..scene.sections import keys_set
 from . import elements
@@ -600,11 +600,17 @@ def _quantities(
         if not applies:
             continue
         kind, body = METHODS.get(quantity.method), scene.body
-        if lack := kind.refusal(scene, body, quantity) if kind else refusal_of(quantity, body, {}):
+        if lack := kind.refusal(scene, body, quantity) if kind else _lack(quantity, body):
             refused.append((quantity, lack))
         else:
             computed[path] = quantity
     return tuple(computed.values()), refused
+
+
+def _lack(quantity: Quantity, body: Contact) -> str:
+    """Reason why a contact has no quantity that needs no method, "" where it has one."""
+    reasons = body.lacks if quantity.requires else {}
+    return next((reasons[word] for word in quantity.requires if word in reasons), "")
 
 
 def _skipped(scene: Scene, contact: bool, words: Collection[str]) -> Iterator[str]:

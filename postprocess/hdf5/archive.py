@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from galinx.files import NewFile
 
 from .. import schema
-from ..errors import UnreadableArchive, refused
+from ..errors import MissingDataset, UnreadableArchive, refused
 from ..quantities import declared, large, of_states, table
 from ..quantities.quantity import STATE
 from ..quantities.runs import SCENE
@@ -273,7 +273,7 @@ class _Datasets(dict[str, Any]):
         datasets: by path.
 
     Raises:
-        UnreadableArchive: a dataset is asked for that the archive does not have.
+        MissingDataset: a dataset is asked for that the archive does not have.
     """
 
     def __init__(self, path: Path, datasets: Iterable[tuple[str, Any]]) -> None:
@@ -281,9 +281,9 @@ class _Datasets(dict[str, Any]):
         self._archive = path
 
     def __missing__(self, name: str) -> NoReturn:
-        raise UnreadableArchive(
-            f"{self._archive}: {name!r} is missing, expected it beside the datasets that are there; take "
-            "another copy or rerun"
+        raise MissingDataset(
+            f"{self._archive}: {name!r} is missing, expected one of the datasets that the archive has; "
+            "if it had it, take another copy or rerun"
         )
 
 

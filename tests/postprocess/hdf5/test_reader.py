@@ -120,8 +120,9 @@ def test_a_dataset_that_is_asked_for_and_missing_is_named(path):
     with opened(path) as file:
         lost("states/alpha")(file)
     data, _ = reader.read(path)
-    with pytest.raises(UnreadableArchive, match="'states/alpha' is missing"):
+    with pytest.raises(UnreadableArchive, match="'states/alpha' is missing") as caught:
         data["states/alpha"]
+    assert isinstance(caught.value, KeyError) and str(caught.value).startswith(str(path))
     with (
         reader.opened(path) as archive,
         pytest.raises(UnreadableArchive, match="'states/alpha' is missing"),

@@ -68,7 +68,7 @@ class TextTable:
 
     @property
     def heads(self) -> str:
-        """What the first line names, in words."""
+        """Names of the columns in the first line, in words."""
         names = [name for name in self.names if name]
         if len(self.names) > 1:
             return f"the columns {excerpt(', '.join(names))}" if names else "columns without a name"

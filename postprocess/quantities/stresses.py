@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galinx.solvers.contact import BELOW, ON_SURFACE, VARYING
-from galinx.solvers.contact.solution import IN_PUNCH, OUT_OF_PLANE
+from galinx.solvers.contact.solution import IN_PUNCH, OUT_OF_PLANE, ZZ_IN_PUNCH
 from galinx.solvers.contact.stresses import principal, von_mises
 from galinx.solvers.parameters import Range
 
@@ -182,13 +182,14 @@ INVARIANTS_INSIDE = {
 
 
 #: Names of stresses in an elastic punch, their meaning, and how they are read.
-_IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray]]] = [
+_IN_PUNCH: list[tuple[str, str, Callable[[Any, Any], NDArray], tuple[str, ...]]] = [
     *(
-        (f"sigma_{ij}", what, entry(lambda s: s.inside_punch, i))
+        (f"sigma_{ij}", what, entry(lambda s: s.inside_punch, i), ())
         for i, (ij, what) in enumerate(_COMPONENTS.items())
     ),
     ("von_mises", "von Mises stress, sigma_ZZ included,",
-     lambda s, body: von_mises(*(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch)))),
+     lambda s, body: von_mises(*(*s.inside_punch, body.of_punch.solid.σ_ZZ(*s.inside_punch))),
+     (ZZ_IN_PUNCH,)),
 ]  # fmt: skip
 #: σ_XX, σ_YY, σ_XY and von Mises in an elastic punch, by method.
 STRESSES_IN_PUNCH = {
@@ -196,9 +197,9 @@ STRESSES_IN_PUNCH = {
         Quantity(
             f"interior/{method}/punch_{name}", "N/(2a)",
             f"{about} in the elastic punch, at X and -Y of the points inside", (STATE, INSIDE), of,
-            method, asked_by=BELOW, requires=(IN_PUNCH,),
+            method, asked_by=BELOW, requires=(IN_PUNCH, *requires),
         )
-        for name, about, of in _IN_PUNCH
+        for name, about, of, requires in _IN_PUNCH
     )
     for method in (CLOSED_FORM, SIE, FEM)
 }  # fmt: skip

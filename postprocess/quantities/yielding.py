@@ -14,6 +14,7 @@ from galinx.solvers.contact.solution import (
     PUNCH_STRENGTH,
     STRENGTH,
     UNIFORM,
+    ZZ_IN_PUNCH,
 )
 from galinx.solvers.contact.yielding import Peak
 from galinx.solvers.parameters import Range
@@ -95,12 +96,12 @@ def _in_punch(s: Any) -> Peak:
 
 PUNCH_VON_MISES, PUNCH_VON_MISES_X, PUNCH_VON_MISES_Y = _largest(
     "punch_von_mises", "von Mises stress in the elastic punch", _in_punch, heights=NOT_NEGATIVE,
-    requires=(IN_PUNCH,),
+    requires=(IN_PUNCH, ZZ_IN_PUNCH),
 )  # fmt: skip
 PUNCH_FIRST_LOAD = _both(
     "punch_first_yield_load", "N/m", "load at first yield of the elastic punch, N per depth",
     lambda s, _: s.strength_of_punch.first_load, mode=FINITE, 
-    requires=(POWER, IN_PUNCH, PUNCH_STRENGTH, UNIFORM),
+    requires=(POWER, IN_PUNCH, ZZ_IN_PUNCH, PUNCH_STRENGTH, UNIFORM),
 )  # fmt: skip
 FIRST_LOAD = _both(
     "first_yield_load", "N/m",

@@ -37,8 +37,9 @@ PUNCH, FINITE = "punch", "finite stresses"
 FLAT, GIVEN_ENDS, SOLVED, POWER, OUT_OF_PLANE = "flat", "given ends", "solved", "power of |X|", "σ_ZZ"
 #: The strength at which a solid yields.
 STRENGTH = "yield strength"
-#: Stresses of an elastic punch, σ_ZZ included, and the strength at which it yields.
-IN_PUNCH, PUNCH_STRENGTH = "elastic punch", "yield strength of the punch"
+#: Stresses of an elastic punch, that out of the plane, and the strength at which it yields.
+IN_PUNCH, ZZ_IN_PUNCH = "elastic punch", "σ_ZZ of the punch"
+PUNCH_STRENGTH = "yield strength of the punch"
 #: A solid without layers, or with some; one that a closed form solves, and a punch whose surface rests.
 UNIFORM, LAYERED = "uniform solid", "layers"
 CLOSED, RESTING = "closed form", "surface of the punch at rest"
@@ -147,7 +148,7 @@ class Contact:
         if self.solid.above is None:
             reasons[IN_PUNCH] = "the punch is rigid"
         elif not self.solid.above.knows_σ_ZZ:
-            reasons[IN_PUNCH] = "σ_ZZ of the punch is not known without punch.solid.stiffness_Z"
+            reasons[ZZ_IN_PUNCH] = "σ_ZZ of the punch is not known without punch.solid.stiffness_Z"
         if self.solid.punch_strength is None:
             reasons[PUNCH_STRENGTH] = "no punch.solid.yield_strength is given"
         if self.solid.layers:

@@ -96,3 +96,17 @@ def test_a_stiff_punch_over_layers_is_a_rigid_one():
     )  # fmt: skip
     for name in ("states/sie/half_width", "states/sie/largest_pressure", "surface/sie/sigma_XX"):
         np.testing.assert_allclose(stiff[name], rigid[name], rtol=1e-6, atol=1e-6, err_msg=name)
+
+
+def test_stresses_in_the_plane_of_a_crystal_need_none_out_of_it():
+    crystal = {
+        "kind": "anisotropic", "rho": 1600, "stiffness": [4e10, 1.2e10, 1.5e10, 1.6e10, 6e9, 1.3e10],
+    }  # fmt: skip
+    alone, known = (
+        pressed("closed_form", ["interior"], crystal | of, profile="parabolic", radius="20 mm").data
+        for of in ({}, {"stiffness_Z": [1e10, 1e10, 1e9]})
+    )
+    for name in ("sigma_XX", "sigma_YY", "sigma_XY"):
+        path = f"interior/closed_form/punch_{name}"
+        np.testing.assert_array_equal(alone[path], known[path])
+    assert {*known} - {*alone} == {"interior/closed_form/punch_von_mises"}

@@ -61,7 +61,7 @@ class TextTable:
 
     @property
     def kinds(self) -> list[str]:
-        """What the columns are: ``"friction"`` of f, of COF and of mu; "" for any other."""
+        """Kinds of the columns: ``"friction"`` for f, COF and mu; "" for any other."""
         return [
             next((kind for kind, valid in _NAMES.items() if name in valid), "") for name in self.names
         ]

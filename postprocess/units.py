@@ -87,7 +87,7 @@ def prefixed(unit: str, size: float) -> tuple[str, float]:
 
 
 def solved(values: Any) -> NDArray[np.float64]:
-    """Those of numbers that are no NaN, which stands for a state without a solution; 1 if all are."""
+    """Numbers without NaN, which stands for a state without a solution; 1 if all are."""
     values = np.ravel(values)
     return values[~np.isnan(values)] if not np.all(np.isnan(values)) else np.ones(1)
 

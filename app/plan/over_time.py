@@ -337,7 +337,7 @@ class Starts:
 
     @property
     def until_turn(self) -> str:
-        """Where the integral equation ends before the motion does, in words; "" elsewhere."""
+        """Time up to which the integral equation follows the motion, in words; "" for all of it."""
         if SIE not in self.methods or len(self.strokes) == 1:
             return ""
         return (

@@ -385,7 +385,7 @@ class Contacts:
 
     @property
     def in_punch(self) -> "Contacts":
-        """The same pressures on the half-plane of an elastic punch, mirrored at Y = 0.
+        """Contacts with these pressures on the half-plane of an elastic punch, mirrored at Y = 0.
 
         There σ_XY has the other sign, and so has the friction.
         """

@@ -1,6 +1,7 @@
 """Models by the name that scenes use."""
 
 from collections.abc import Mapping
+from dataclasses import is_dataclass
 from typing import Any, TypeVar
 
 from galinx.texts import unseen
@@ -62,4 +63,6 @@ def _unlike(model: Any, kind: type) -> str:
     there = {*dir(model), *getattr(model, "__dataclass_fields__", ())}
     members = {name for name in (*vars(kind), *kind.__annotations__) if not name.startswith("_")}
     lacking = sorted((members - there) | {*getattr(model, "__abstractmethods__", ())})
-    return f"{model.__name__} lacks {', '.join(lacking)} of {kind.__name__}" if lacking else ""
+    if lacking:
+        return f"{model.__name__} lacks {', '.join(lacking)} of {kind.__name__}"
+    return "" if is_dataclass(model) else f"{model.__name__} is no dataclass; write @dataclass above it"

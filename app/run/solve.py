@@ -19,6 +19,7 @@ from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.solution import Contact, Method, Solver, Task
 from galinx.solvers.errors import SolveError
 
+from ..errors import BadInput
 from ..methods import METHODS
 from ..plan.plan import Plan
 
@@ -148,6 +149,7 @@ class Work:
     ) -> tuple[dict[str, NDArray], NDArray[np.bool_], bool]:  # fmt: skip
         """Quantities of states by path, NaN where a method fails; where all solve them; if any does."""
         g, load = self.g[rows], None if self.load is None else self.load[rows]
+        g.flags.writeable = False  # for quantities of the user's
         solved = np.ones(len(g), dtype=bool)
         data: dict[str, NDArray] = {}
         partly = not self.methods
@@ -167,7 +169,7 @@ class Work:
                 local=local, g=g, places=task.places, response=task.response,
                 half_width=task.body.half_widths(task.response, g, load),
             )  # fmt: skip
-            data |= self._of(LOCAL, of_edges, task.body.loaded(load))
+            data |= self._of(LOCAL, of_edges, task.body.loaded(load), len(g))
         return data, solved, partly
 
     def _by(
@@ -185,7 +187,7 @@ class Work:
             try:
                 with nullcontext(solver) if solver else self.methods[name].at(alone, np.unique(g)) as own:
                     solution = own.states(g, load) if takes else own.states(g)  # type: ignore[call-arg]
-                    return self._of(name, solution, body), ~solved, ""
+                    return self._of(name, solution, body, len(g)), ~solved, ""
             except SolveError as error:
                 if len(loads) == 1 or task.body.alike:
                     where = "" if load is None or task.body.alike else f"N = {loads[0]:g} N/m: "
@@ -199,12 +201,24 @@ class Work:
                 data[path][rows] = values[path]
         return data, solved, why
 
-    def _of(self, method: str, solution: Any, body: Contact) -> dict[str, NDArray]:
-        return {
-            quantity.path: quantity.of(solution, body)
-            for quantity in self.plan.quantities
-            if quantity.of and quantity.method == method
-        }
+    def _of(self, method: str, solution: Any, body: Contact, states: int) -> dict[str, NDArray]:
+        """Quantities of a method's states by path.
+
+        Raises:
+            BadInput: a quantity of the user's has another shape than it says.
+        """
+        data = {}
+        for quantity in self.plan.quantities:
+            if quantity.of and quantity.method == method:
+                # A copy: what a quantity of the user's changes is its own.
+                data[quantity.path] = values = np.array(quantity.of(solution, body), dtype=float)
+                expected = states, *self.plan.shape(quantity)
+                if values.shape != expected:
+                    raise BadInput(
+                        f"the quantity {quantity.path!r} has the shape {values.shape}, expected "
+                        f"{expected}, {' x '.join(quantity.over)}"
+                    )
+        return data
 
     def _unknown(self, method: str, states: int) -> dict[str, NDArray]:
         return {

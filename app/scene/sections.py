@@ -31,7 +31,7 @@ from galinx.solvers.friction.motion import Partial
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import GRADINGS, Layer
 from galinx.solvers.parameters import Parameter, Range, build_model, fields, parameters
-from galinx.solvers.profiles import PROFILES, Profile, has_free_end
+from galinx.solvers.profiles import PROFILES, Profile, check_functions, has_free_end
 from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
@@ -186,7 +186,8 @@ class Punch:
     """[punch]: a profile, pressed on by each of ``loads`` [N/m].
 
     Raises:
-        ValueError: there is no load, and the contact is as wide as the load makes it.
+        ValueError: there is no load, and the contact is as wide as the load makes it; or the profile's
+            functions give no numbers.
     """
 
     profile: Profile
@@ -197,6 +198,7 @@ class Punch:
     )  # fmt: skip
 
     def __post_init__(self) -> None:
+        check_functions(self.profile)
         if not self.loads and has_free_end(self.profile):
             raise ValueError('missing load, as in load = "100 N/mm": it sets the width of the contact')
         object.__setattr__(self, "loads", tuple(dict.fromkeys(self.loads or (55.3e3,))))

@@ -145,10 +145,13 @@ class Laws(Registry[type[FrictionLaw]]):
         """Check that a law can be registered.
 
         Raises:
-            TypeError: the name is no text, or the law no class with the members of :class:`FrictionLaw`.
+            TypeError: the name is no text, or the law no class with the members of :class:`FrictionLaw`,
+                of which it has to have ``rate`` or ``exact``.
             ValueError: another law has one of its parameters in another unit.
         """
         super().check(name, model)
+        if model.rate is FrictionLaw.rate and model.exact is FrictionLaw.exact:
+            raise TypeError(f"the friction law {name!r}: {model.__name__} has neither rate nor exact")
         for other, law in self.items():
             described = parameters(law)
             for key, own in parameters(model).items():

@@ -4,6 +4,7 @@ from . import punches  # noqa: F401 - adds its profiles
 from .profile import (
     PROFILES,
     Profile,
+    check_functions,
     check_reach,
     cusp,
     exponent,
@@ -18,6 +19,7 @@ from .profile import (
 __all__ = [
     "PROFILES",
     "Profile",
+    "check_functions",
     "check_reach",
     "cusp",
     "exponent",

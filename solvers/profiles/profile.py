@@ -46,6 +46,21 @@ class Profile(Protocol):
         """The punch in a sentence's middle, with units."""
 
 
+def check_functions(profile: Any) -> None:
+    """Check that height and slope of a profile are numbers at positions.
+
+    Raises:
+        ValueError: one is something else, as None where ``return`` is missing.
+    """
+    X = np.array([-1e-9, 1e-9])
+    for name in ("height", "slope"):
+        values = np.asarray(getattr(profile, name)(X))
+        if values.shape != X.shape or values.dtype.kind not in "fiu":
+            raise ValueError(
+                f"{type(profile).__name__}.{name} gives {values!s:.80} at 2 positions, expected 2 numbers"
+            )
+
+
 def has_free_end(profile: Any) -> bool:
     """Return True if an end of the contact is free, not a sharp corner of the punch."""
     return not all(getattr(profile, "sharp", (True, True)))

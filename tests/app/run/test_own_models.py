@@ -1,13 +1,17 @@
 """Models of a user's own, registered from outside: solved by two methods, archived, drawn, refused."""
 
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from support import command, computed, here
 
 import galinx
+from galinx.app.errors import BadInput
 from galinx.solvers.errors import SolveError
+from galinx.solvers.friction.law import FrictionLaw
+from galinx.solvers.profiles.punches import Flat
 
 
 class Failing:
@@ -44,6 +48,59 @@ def test_a_method_of_ones_own_that_fails_is_told_of(monkeypatch):
 
 def _refuse(self, g):
     raise SolveError("provoked")
+
+
+ONE_STATE = {"motion.c": 0.3, "motion.strokes": ["forward"], "motion.X_over_L": 0.8,
+             "solve.methods": ["closed_form"]}  # fmt: skip
+
+
+@pytest.mark.parametrize("shape", ["None", "(1,)"])
+def test_a_profile_without_numbers_is_refused(monkeypatch, shape):
+    """One whose slope returns nothing was flat, and its verdict PASS."""
+    slope = {"None": lambda self, X: None, "(1,)": lambda self, X: X[:1]}[shape]
+    own = type("Forgetful", (Flat,), {"slope": slope})
+    monkeypatch.setitem(galinx.PROFILES, "forgetful", own)
+    with pytest.raises(BadInput, match=r"Forgetful\.slope gives .* at 2 positions, expected 2 numbers"):
+        computed("tables4_5", ONE_STATE | {"punch.profile": "forgetful"})
+
+
+@pytest.mark.parametrize(
+    "of, message",
+    [(lambda s, body: 1.0, r"shape \(\), expected \(1,\), states"),
+     (lambda s, body: np.ones((1, 3)), r"shape \(1, 3\)")],
+)  # fmt: skip
+def test_a_quantity_of_another_shape_is_named(monkeypatch, of, message):
+    row = galinx.Quantity("states/closed_form/own", "1", "own", ("states",), of, "closed_form")
+    monkeypatch.setitem(galinx.QUANTITIES, row.path, row)
+    with pytest.raises(BadInput, match=f"'states/closed_form/own' has the {message}"):
+        computed("tables4_5", ONE_STATE)
+
+
+def test_a_quantity_that_changes_stresses_changes_nothing_archived(monkeypatch):
+    def changing(s, body):
+        s.surface.σ_XX[:] = 0.0
+        return np.ones(len(s.g))
+
+    row = galinx.Quantity("states/closed_form/own", "1", "own", ("states",), changing, "closed_form")
+    sound = computed("tables4_5", ONE_STATE).data["surface/closed_form/sigma_XX"]
+    monkeypatch.setitem(galinx.QUANTITIES, row.path, row)
+    result = computed("tables4_5", ONE_STATE)
+    np.testing.assert_array_equal(result.data["surface/closed_form/sigma_XX"], sound)
+
+
+def test_models_that_cannot_work_are_not_registered():
+    @dataclass(frozen=True)
+    class Still(FrictionLaw):
+        about = "still"
+
+        def friction(self, z, s, V):
+            return z
+
+    bare = type("Bare", (), dict.fromkeys(("about", "height", "slope", "words")))
+    with pytest.raises(TypeError, match="'still': Still has neither rate nor exact"):
+        galinx.LAWS.register("still", Still)
+    with pytest.raises(TypeError, match="'bare': Bare is no dataclass; write @dataclass above it"):
+        galinx.PROFILES.register("bare", bare)
 
 
 OWN = """

@@ -98,10 +98,9 @@ class TextTable:
         """
         given = self.units[column]
         try:
-            return 1.0 if given in ("", "1", "-") else to_si(f"1 {given}", unit)
+            return 1.0 if given in ("", "1", "-") else to_si(f"1 {given}", unit, given)
         except ValueError as error:
-            said = str(error).replace("'1 ", "'", 1)  # of which the file has the unit alone
-            raise BadInput(f"{self.path}, line 1, {self.names[column]}: {said}") from None
+            raise BadInput(f"{self.path}, line 1, {self.names[column]}: {error}") from None
 
     def _number(self, line: int, row: list[str], column: int) -> float:
         cell = row[column] if column < len(row) else ""

@@ -158,8 +158,8 @@ def fit(
     target.write(section.encode())
     names = ["fit", *(f"fit_{n}" for n in range(2, len(best.tables) + 1))]
     Files(folder, overwrite=overwrite, inputs=inputs).write(
-        Drawing(name, "", fitted_figure(tables.measured, f, tables.timed))
-        for name, tables, f in zip(names, best.tables, best.f)
+        Drawing(name, "", fitted_figure(table.measured, f, table.timed))
+        for name, table, f in zip(names, best.tables, best.f)
     )
     if not quiet:
         if law == ALL:

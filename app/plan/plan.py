@@ -674,8 +674,9 @@ def positions(scenes: Sequence[Scene]) -> tuple[np.ndarray, np.ndarray]:
     reach = min(max(stresses.FARTHEST, *(bent * each[:, 1, -1])), _REACH)
     near = np.concatenate([distances(*ends) for ends in zip(each[:, 0].min(0), each[:, 1].max(0))])
     near = np.concatenate([-near, near])
-    nearest, far = stresses.FARTHEST, _beyond(min(max(reach, _ALONG, _ALONG * each.max()), _REACH))
-    X = np.concatenate([np.linspace(-nearest, nearest, 161), near - 1.0, near + 1.0, -far, far])
+    across = np.linspace(-stresses.FARTHEST, stresses.FARTHEST, 161)
+    far = _beyond(min(max(reach, _ALONG, _ALONG * each.max()), _REACH))
+    X = np.concatenate([across, near - 1.0, near + 1.0, -far, far])
     return surface_grid(reach, sorted(kinks)), np.unique(np.round(X, 9))
 
 

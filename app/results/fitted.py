@@ -101,8 +101,8 @@ def read(path: Path) -> Table:
         both = columns["force"], columns["load"]
         unit = forces.get(both[0], "")
         if not unit or unit != forces.get(both[1]):
-            listing = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
-            raise BadInput(f"{path}, line 1: found {listing}, expected both in N, or both in N/m")
+            given = ", ".join(f"{table.names[n]} [{table.units[n]}]" for n in both)
+            raise BadInput(f"{path}, line 1: found {given}, expected both in N, or both in N/m")
         force, load = (table.numbers(n, unit) for n in both)
         if wrong := np.flatnonzero(load * load[:1] <= 0.0).tolist():
             line, _ = table.rows[wrong[0]]
@@ -116,9 +116,9 @@ def read(path: Path) -> Table:
         row = len(clock) - 1 if few else int(back[0]) + 1
         line, name = (table.rows[row][0] if len(clock) else 1), "time" if timed else "slip"
         hint = "; where it falls, as in a loop, write time and position" * (len(back) > 0 and not timed)
-        listing = f"{len(clock)} row" + "s" * (len(clock) != 1) if few else f"a {name} that does not grow"
+        fault = f"{len(clock)} row" + "s" * (len(clock) != 1) if few else f"a {name} that does not grow"
         raise BadInput(
-            f"{path}, line {line}: found {listing}, expected three or more rows in which the {name} grows"
+            f"{path}, line {line}: found {fault}, expected three or more rows in which the {name} grows"
             f"{hint}"
         )
     _require_friction(str(path), X, f)

@@ -147,12 +147,13 @@ _MEASURES = {
 }  # fmt: skip
 
 
-def to_si(value: Any, unit: str) -> float:
+def to_si(value: Any, unit: str, shown: str = "") -> float:
     """A number in SI, or a string with a unit, as a number in ``unit``.
 
     Args:
         value: a number or a text, as TOML gives it.
         unit: the SI unit expected, "" for dimensionless.
+        shown: what a message shows in place of the value, as the unit of a column without its 1.
 
     Raises:
         ValueError: not a number, not finite, an unknown unit or one of the wrong dimension.
@@ -160,7 +161,7 @@ def to_si(value: Any, unit: str) -> float:
     expected = f"a number in {unit} or a string with a unit" if unit else "a dimensionless number"
 
     def fault(why: str = "", form: str = "") -> ValueError:
-        return ValueError(f"found {excerpt(value)}{why}, expected {expected}{form}")
+        return ValueError(f"found {excerpt(shown or value)}{why}, expected {expected}{form}")
 
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise fault()

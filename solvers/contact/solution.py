@@ -204,10 +204,9 @@ class Contact:
         Raises:
             SolveError: no contact carries the load.
         """
-        from .closed_form import FlatPunch
         from .pressure import between_ends
 
-        pressures: list[Any] = [FlatPunch(response, g[:, None])]
+        pressures: list[Any] = [self.flat_punch(response, g[:, None])]
         if self.along:
             from .along import FlatAlong
 
@@ -222,22 +221,11 @@ class Contact:
             ]
         return between_ends(response, g, pressures, self.half_width)
 
-    def reversed_within(self, response: HalfPlane, g: NDArray) -> NDArray[np.float64]:
-        """Distances over a from both ends of a flat punch within which slip turns round, (2, states).
-
-        Args:
-            response: of the half-plane at a speed.
-            g: σ_XY/σ_YY, (states,).
-        """
+    def flat_punch(self, response: HalfPlane, g: NDArray) -> Any:
+        """Closed form of a flat punch with one friction a state; g is σ_XY/σ_YY, as it broadcasts."""
         from .closed_form import FlatPunch
 
-        return FlatPunch(response, g).compressed_within(1.0 / self.strain)
-
-    def strained_within(self, response: HalfPlane, g: NDArray, strain: float) -> NDArray[np.float64]:
-        """Distances over a from both ends of a flat punch within which |u,X| exceeds a strain."""
-        from .closed_form import FlatPunch
-
-        return FlatPunch(response, g).strained_within(strain / self.strain)
+        return FlatPunch(response, g)
 
     @property
     def yield_places(self) -> NDArray[np.float64]:

@@ -31,10 +31,11 @@ class Registry(dict[str, Model]):
         Raises:
             TypeError: the name is no text, or the model not of the kind; the message says what it lacks.
             ValueError: the name is taken: two models of one name could not be told apart in archives; or
-                it has a control character, which these cannot hold.
+                it is blank, begins or ends so, or has a control character, which these cannot hold.
         """
         self.check(name, model)
-        if fault := unseen(name):
+        blank = name.strip() != (name or " ")
+        if fault := unseen(name) or "expected a name, without blanks around it" * blank:
             raise ValueError(f"the {self.noun} {name!r}: {fault}")
         if self.get(name, model) is not model:
             raise ValueError(f"the {self.noun} {name!r} exists; give yours another name")

@@ -191,6 +191,26 @@ def check(model: Any) -> None:
             raise ValueError(f"{field.name} = {value!r} ({key}): expected a finite number{bounds}")
 
 
+def check_gives(model: Any, function: str, shape: tuple[int, ...], *given: Any) -> None:
+    """Check that a function of a model gives numbers.
+
+    Args:
+        model: a model, perhaps a user's own.
+        function: its name.
+        shape: what its numbers should have.
+        given: its arguments.
+
+    Raises:
+        ValueError: it gives something else, as None where ``return`` is missing.
+    """
+    values = np.asarray(getattr(model, function)(*given))
+    if values.shape != shape or values.dtype.kind not in "fiu":
+        found = " ".join(str(values).split())[:80] + f", of shape {values.shape}"
+        raise ValueError(
+            f"{type(model).__name__}.{function} gives {found}, expected numbers of shape {shape}"
+        )
+
+
 def _check_rows(key: str, expected: Parameter, value: Any) -> None:
     if expected.optional and not len(value):
         return

@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from galinx.postprocess.target import LOG, Target
+from galinx.postprocess.errors import Occupied
+from galinx.postprocess.target import LOG, OTHERS, Target, check_archive_name
 
 from .. import ranks
 from ..console import Progress
@@ -16,9 +17,6 @@ from ..errors import BadInput
 
 #: Bytes that file systems allow a name, less those of the ending of what is kept beside an archive.
 _LONGEST = 255 - len(".work.")
-
-#: Endings of files that galinx, or other programs, make of results.
-_OF_FILES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".h5", ".hdf", ".vtkhdf", ".vtu", ".toml"}
 
 
 class _Path(click.Path):
@@ -41,13 +39,13 @@ class _Path(click.Path):
         if self._of in ("file", "archive") and str(value).endswith(os.sep):
             self.fail(f"found {value!r}, the name of a folder; expected a file's, as in {value}NAME")
         path = super().convert(value, param, ctx)
-        if self._of == "folder" and path.suffix.lower() in _OF_FILES and not path.is_dir():
+        if self._of == "folder" and path.suffix.lower() in {*OTHERS, ".h5", ".hdf"} and not path.is_dir():
             self.fail(f"{value}: found a name that ends with {path.suffix}, expected a folder for files")
-        if self._of == "archive" and path.suffix.lower() in _OF_FILES - {".h5", ".hdf"}:
-            self.fail(
-                f"{value}: found a name that ends with {path.suffix}, expected an archive's, as "
-                f"{path.stem}.h5; other commands make tables, figures and pages of it"
-            )
+        if self._of == "archive":
+            try:
+                check_archive_name(path)
+            except Occupied as error:
+                self.fail(str(error))
         return path
 
 

@@ -286,6 +286,10 @@ def fit(
             fitted to it.
     """
     sources = [data] if isinstance(data, (str, Path, Measured)) else list(data)
+    strange = [source for source in sources if not isinstance(source, (str, Path, Measured))]
+    if strange or not sources:
+        found = f"{strange[0]!r:.60}" if strange else "nothing"
+        raise BadInput(f"data: found {found}, expected names of files, or galinx.Measured of arrays")
     paths = [str(source) for source in sources if isinstance(source, (str, Path))]
     if twice := [name for name in dict.fromkeys(paths) if paths.count(name) > 1]:
         raise BadInput(f"found {listed(twice)} more than once, expected each measurement once")

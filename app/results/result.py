@@ -19,7 +19,7 @@ from galinx.postprocess.quantities import of_states, runs, states, table
 from galinx.postprocess.quantities.quantity import ALONG, INNER, INSIDE, INTERFACE, LAYER, POINT, STATE
 from galinx.postprocess.quantities.stresses import INSIDE_X, INSIDE_Y, SURFACE_X
 from galinx.postprocess.tables import Column, parameters, state_columns, states_sheet
-from galinx.postprocess.target import FIELDS, PAGE, Target
+from galinx.postprocess.target import FIELDS, PAGE, Target, check_archive_name
 from galinx.postprocess.units import Units
 
 from ..console import Progress
@@ -308,7 +308,7 @@ class Result:
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
         numbers = np.atleast_1d(state).tolist()
-        write_fields(self.scene, numbers, target, extent, [self._degree(number) for number in numbers])
+        write_fields(self.scene, numbers, target, extent, [*map(self._degree, numbers)])
 
     def displacement(self, state: int = 0, extent: float = 10.0) -> Any:
         """The displacement of a state as a dolfinx function, to go on with in dolfinx; on one rank only.
@@ -334,7 +334,8 @@ class Result:
 
         Raises:
             BadInput: the result was loaded without its stresses.
-            Occupied: the file exists and ``overwrite`` is false, or its folder does not.
+            Occupied: the file exists and ``overwrite`` is false, its folder does not, or the ending is
+                that of another kind of file.
             UnwritableArchive: the file system refused.
         """
         from galinx.postprocess.hdf5.archive import Writer
@@ -342,6 +343,7 @@ class Result:
         missing = {*json.loads(self.attributes.get("datasets", "[]"))} - self.data.keys()
         if missing:
             raise BadInput("this result was loaded without stresses; load it with them to save it")
+        check_archive_name(Path(path))
         with Writer(Target(Path(path), None, overwrite, self.inputs)) as writer:
             for name, value in self.data.items():
                 writer.put(name, value)

@@ -5,7 +5,7 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 """
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -368,7 +368,20 @@ def _of_motion(scene: Scene) -> Iterator[str]:
 
 def oddities(scene: Scene) -> list[str]:
     """Warnings about unusual values, one sentence a key, and about keys without effect."""
-    return [*_unusual_numbers(scene), *_unusual_contact(scene), *_without_strokes(scene)]
+    return [
+        *_unusual_numbers(scene), *_unusual_contact(scene), *_without_strokes(scene), *_apart(scene.legs)
+    ]  # fmt: skip
+
+
+def _apart(legs: Sequence[Leg]) -> Iterator[str]:
+    """Warning about the first stroke that does not begin where the one before ended."""
+    for n, (before, leg) in enumerate(pairwise(legs), 1):
+        if leg.start != before.end:
+            yield (
+                f"motion.strokes: stroke {n} ends at X/L = {before.end:g}, stroke {n + 1} begins at "
+                f"{leg.start:g}; strokes that are written as {{ to = 0.5 }} go on from the last's end"
+            )
+            return
 
 
 def _without_strokes(scene: Scene) -> Iterator[str]:

@@ -25,13 +25,15 @@ from galinx.registry import Registry
 from galinx.solvers.contact import BELOW
 from galinx.solvers.contact.fem_plan import ASSEMBLERS
 from galinx.solvers.friction import LAWS, FrictionLaw
+from galinx.solvers.friction import check_functions as check_law
 from galinx.solvers.friction.along import tabulated
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Partial
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import GRADINGS, Layer
 from galinx.solvers.parameters import Parameter, Range, build_model, fields, parameters
-from galinx.solvers.profiles import PROFILES, Profile, check_functions, has_free_end
+from galinx.solvers.profiles import PROFILES, Profile, has_free_end
+from galinx.solvers.profiles import check_functions as check_profile
 from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program
@@ -198,7 +200,7 @@ class Punch:
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        check_functions(self.profile)
+        check_profile(self.profile)
         if not self.loads and has_free_end(self.profile):
             raise ValueError('missing load, as in load = "100 N/mm": it sets the width of the contact')
         object.__setattr__(self, "loads", tuple(dict.fromkeys(self.loads or (55.3e3,))))
@@ -227,7 +229,7 @@ class Friction:
             are then the products of all tables, each law once.
 
     Raises:
-        ValueError: there are too many laws in ``vary``.
+        ValueError: there are too many laws in ``vary``, or functions of the law give no numbers.
     """
 
     law: type[FrictionLaw]
@@ -273,6 +275,7 @@ class Friction:
         count = sum(prod(map(len, lists.values())) for lists in self._products)
         if self.vary and count > _MOST_LISTED:
             raise ValueError(f"vary: found {count} laws, expected at most {_MOST_LISTED} in all tables")
+        check_law(next(self.laws()))
 
     @property
     def _products(self) -> list[dict[str, tuple[Any, ...]]]:

@@ -144,10 +144,13 @@ class Table(Registry[Quantity]):
         """Add a quantity, and return it.
 
         Raises:
-            TypeError: it is no quantity.
+            TypeError: it is no quantity, or its dimensions are a text.
             ValueError: its path is taken, or a text of it has a control character.
         """
         self.check(getattr(quantity, "path", ""), quantity)
+        if isinstance(quantity.over, str):
+            over = f"over = {quantity.over!r}, expected a tuple"
+            raise TypeError(f"the {self.noun} {quantity.path}: {over}")
         for text in (quantity.unit, quantity.about):
             if fault := unseen(text):
                 raise ValueError(f"the {self.noun} {quantity.path}, {text!r}: {fault}")

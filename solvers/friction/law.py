@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galinx.registry import Registry
 
-from ..parameters import check, parameter, parameters
+from ..parameters import check, check_gives, parameter, parameters
 
 #: Slip, over that on which the state decays by e, up to which :meth:`FrictionLaw.work_of_short` serves.
 SHORT = 0.05
@@ -136,6 +136,21 @@ class FrictionLaw(Protocol):
     def pause(self, z: NDArray, seconds: float) -> NDArray[np.float64]:
         """State after a time at rest [s]; only laws that age change."""
         return z
+
+
+def check_functions(law: FrictionLaw) -> None:
+    """Check that a law's functions give numbers in arrays of their shapes.
+
+    Raises:
+        ValueError: one gives something else, as None where ``return`` is missing.
+    """
+    z, slip = np.asarray(law.rest()), np.array([0.0, 1e-12])
+    check_gives(law, "rest", z.shape or (1,))
+    check_gives(law, "friction", (2,), np.stack([z, z]), 1, 1.0)
+    if law.exact(z, 1, 1.0, slip) is not None:
+        check_gives(law, "exact", (2, *z.shape), z, 1, 1.0, slip)
+    else:
+        check_gives(law, "rate", z.shape, z, 1, 1.0)
 
 
 class Laws(Registry[type[FrictionLaw]]):

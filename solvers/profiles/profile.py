@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from galinx.registry import Registry
 
 from ..errors import SolveError
-from ..parameters import check
+from ..parameters import check, check_gives
 
 
 class Profile(Protocol):
@@ -54,11 +54,7 @@ def check_functions(profile: Any) -> None:
     """
     X = np.array([-1e-9, 1e-9])
     for name in ("height", "slope"):
-        values = np.asarray(getattr(profile, name)(X))
-        if values.shape != X.shape or values.dtype.kind not in "fiu":
-            raise ValueError(
-                f"{type(profile).__name__}.{name} gives {values!s:.80} at 2 positions, expected 2 numbers"
-            )
+        check_gives(profile, name, X.shape, X)
 
 
 def has_free_end(profile: Any) -> bool:

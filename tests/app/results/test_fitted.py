@@ -211,3 +211,9 @@ def test_friction_in_per_cent_is_said_to_be_unusual(tmp_path):
     assert note.startswith("mu_c = 40 is unusual, usual is 0.0001 to 10")
     with pytest.raises(BadInput, match="more than once, expected each measurement once"):
         galinx.fit([path, path], "dahl")
+
+
+@pytest.mark.parametrize("data, found", [([], "nothing"), ([1.5], r"1\.5"), (np.zeros((2, 2)), "array")])
+def test_data_that_are_no_measurements_are_named(data, found):
+    with pytest.raises(BadInput, match=f"data: found {found}.*, expected names of files"):
+        galinx.fit(data, "dahl")

@@ -89,3 +89,11 @@ def test_a_grid_over_moduli_has_the_speed_that_the_scene_gives():
     )  # fmt: skip
     K_I = compute(scene).grid.closed_form_K_I_right
     assert K_I.size == 3 and np.isfinite(K_I).all()
+
+
+def test_an_archive_does_not_replace_another_kind_of_file(exact_run, tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text("kept")
+    with pytest.raises(Occupied, match=r"ends with \.toml, expected an archive's, as scene\.h5"):
+        exact_run.save(scene, overwrite=True)
+    assert scene.read_text() == "kept"

@@ -60,8 +60,35 @@ def test_a_profile_without_numbers_is_refused(monkeypatch, shape):
     slope = {"None": lambda self, X: None, "(1,)": lambda self, X: X[:1]}[shape]
     own = type("Forgetful", (Flat,), {"slope": slope})
     monkeypatch.setitem(galinx.PROFILES, "forgetful", own)
-    with pytest.raises(BadInput, match=r"Forgetful\.slope gives .* at 2 positions, expected 2 numbers"):
+    with pytest.raises(BadInput, match=r"Forgetful\.slope gives .* expected numbers of shape \(2,\)"):
         computed("tables4_5", ONE_STATE | {"punch.profile": "forgetful"})
+
+
+def linear(law, z, s, V):
+    return 0.3 * z[..., 0]
+
+
+@pytest.mark.parametrize(
+    "function, given, message",
+    [("friction", lambda law, z, s, V: 0.3 * s, r"0\.3, of shape \(\), expected numbers of shape \(2,\)"),
+     ("friction", lambda law, z, s, V: None, r"None, .*\(2,\)"),
+     ("friction", lambda law, z, s, V: 0.3 * z, r"\[\[0\.\] \[0\.\]\], of shape \(2, 1\), .*\(2,\)"),
+     ("rate", lambda law, z, s, V: None, r"None, .*\(1,\)"),
+     ("rest", lambda law: 0.0, r"0\.0, .*\(1,\)"),
+     ("exact", lambda law, z, s, V, slip: z + slip, r".* of shape \(2,\), .*\(2, 1\)")],
+)  # fmt: skip
+def test_a_law_without_numbers_is_refused(monkeypatch, function, given, message):
+    own = {"about": "own", "friction": linear, "rate": lambda law, z, s, V: 1e6 * (s - z)}
+    own[function] = given
+    monkeypatch.setitem(galinx.LAWS, "own", dataclass(frozen=True)(type("Own", (FrictionLaw,), own)))
+    with pytest.raises(BadInput, match=rf"friction: Own\.{function} gives {message}"):
+        computed("tables4_5", ONE_STATE | {"friction": {"model": "own"}})
+
+
+@pytest.mark.parametrize("name", ["", " ", "own "])
+def test_names_of_models_are_not_blank(name):
+    with pytest.raises(ValueError, match=f"the profile of the punch {name!r}: expected a name"):
+        galinx.PROFILES.register(name, Flat)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from support import HOME, SCENE, computed, of_sections
+from support import HOME, SCENE, computed, of_sections, scene_of
 
 from galinx import template
 from galinx.app.errors import BadInput
@@ -318,3 +318,15 @@ def test_a_motion_in_time_has_a_tolerance_of_its_own():
     quantities = '[output]\nquantities = ["time"]\n'
     assert parse(punch + time + quantities).solve.tolerance == 1e-3
     assert parse(punch + time + quantities + "[solve]\ntolerance = 1e-4\n").solve.tolerance == 1e-4
+
+
+@pytest.mark.parametrize(
+    "strokes, said",
+    [(["forward", "backward"], ""), ([{"to": 0.9}, {"to": 0.2}], ""), (["backward", "forward"], ""),
+     ([{"to": 0.9}, "backward"], "stroke 1 ends at X/L = 0.9, stroke 2 begins at 1"),
+     (["forward", "backward", "backward"], "stroke 2 ends at X/L = 0, stroke 3 begins at 1")],
+)  # fmt: skip
+def test_strokes_that_do_not_go_on_from_the_last_are_warned_of(strokes, said):
+    said_of = oddities(scene_of("tables4_5", {"motion.strokes": strokes}))
+    (*found,) = (text for text in said_of if "stroke" in text)
+    assert [text.startswith(f"motion.strokes: {said};") for text in found] == [True] * bool(said)

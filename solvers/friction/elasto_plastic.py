@@ -16,6 +16,8 @@ from .lugre import Bristles
 #: Width in y of a panel of Gauss's rule; y beyond that of breakaway squared from which on slip is y and a
 #: constant to the last digit; y at which e^-y is still a number; panels that a step tries at once.
 _WIDTH, _FAR, _LAST, _AT_ONCE = 1.0, 40.0, 700.0, 8
+#: Deflections, evenly spaced, at which friction is looked at from breakaway to steady sliding.
+_WHILE = 32
 #: Gauss's rule of a panel.
 _NODES, _WEIGHTS = leggauss(16)
 
@@ -58,6 +60,14 @@ class ElastoPlastic(Bristles):
     def switches(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
         """Zero at breakaway, (1,)."""
         return s * z / self.g(V) - self.r
+
+    def kinks(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
+        """Slips of breakaway and soon after, while damping ceases; none of a stroke that begins later."""
+        w0 = float(s * z[0] / self.g(V))
+        if w0 >= self.r:
+            return np.zeros(0)
+        w = np.linspace(self.r, 1.0, _WHILE, endpoint=False)
+        return self.g(V) / self.σ0 * (self.r - w0 + _yielding(self.r).slip(w))
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:
         (ζ0, w0, x), steady = self._scaled(z, s, V, slip), s * self.g(V)
@@ -169,9 +179,13 @@ class _Yielding:
 
     def after(self, x: NDArray, w: float | NDArray) -> NDArray[np.float64]:
         """Coordinate y after slips x from w, r <= w < 1; x < 0 counts as none."""
-        target = self._at(-np.log1p(-np.asarray(w)))[0] + np.maximum(x, 0.0)
+        target = self.slip(np.asarray(w)) + np.maximum(x, 0.0)
         y = self._near(np.minimum(target, self._x[-1])) + np.maximum(target - self._x[-1], 0.0)
         return inverted(lambda y: (self._at(y)[0], _slopes(y, self._r)), target, y, self._first)
+
+    def slip(self, w: NDArray) -> NDArray[np.float64]:
+        """Slips from breakaway to w, r <= w < 1."""
+        return self._at(-np.log1p(-w))[0]
 
     def short(self, x: NDArray, w: float) -> NDArray[np.float64]:
         """∫ (1 - w) dx over slips x from w."""

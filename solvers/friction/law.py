@@ -122,7 +122,7 @@ class FrictionLaw(Protocol):
         return np.zeros(0)
 
     def kinks(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:
-        """Slips [m] from z at which f has a kink in its exact solution, (any,)."""
+        """Slips [m] from z at which f has a kink in its exact solution, or soon turns, (any,)."""
         return np.zeros(0)
 
     def flow(self, z: NDArray, s: int, V: float) -> NDArray[np.float64]:

@@ -227,15 +227,18 @@ def follow(
     for leg, X in zip(all_legs, places):
         speed = V if leg.speed is None else leg.speed
         slip, whole = length * np.abs(X - leg.start), length * leg.length
-        with np.errstate(all="ignore"):  # f is checked below
+        with np.errstate(all="ignore"):  # both are checked below
             states = advance(law, law.pause(z, leg.rest), leg.s, speed, whole, np.append(slip, whole))
             passed = states[..., :-1, :]
-            f = law.friction(passed, leg.s, speed)
-        if not np.isfinite(f).all():
+            f = 1.0 * law.friction(passed, leg.s, speed)
+        if odd := [
+            what
+            for what, of in (("friction coefficient", f), ("state", states))
+            if not np.isfinite(of).all()
+        ]:
             raise ValueError(
-                f"along {leg.name} found a friction coefficient that is not finite; expected "
-                f"parameters of {law.about} with which doubles can compute it: is one of them far from "
-                "its usual size?"
+                f"along {leg.name} found a {odd[0]} that is not finite; expected parameters of "
+                f"{law.about} with which doubles can compute it: is one of them far from its usual size?"
             )
         result.append(Stroke(passed, f))
         z = _last(states, z)
@@ -300,13 +303,14 @@ def _largest(
         more = length * np.geomspace(_NEAREST, 1.0, _PLACES), kinks[(kinks > 0.0) & (kinks < length)]
         slip = np.unique(np.concatenate([slip, *more]))
     states = advance(law, z, s, V, length, slip)
-    f = s * law.friction(states, s, V)
+    f = float(s) * law.friction(states, s, V)
     largest, padded = f.max(axis=-1), np.pad(f, 1, constant_values=-np.inf)
     tops = np.flatnonzero((f >= padded[:-2]) & (f >= padded[2:])) if single else np.empty(0, dtype=int)
     for n in tops[np.argsort(-f[tops], kind="stable")][:_TOPS]:
         at, top = slip, int(n)
         for _ in range(_CLOSER):
-            at = np.linspace(at[max(top - 1, 0)], at[min(top + 1, len(at) - 1)], _PLACES)
-            f = s * law.friction(advance(law, z, s, V, length, at), s, V)
+            sides = at[max(top - 1, 0)], at[top], at[min(top + 1, len(at) - 1)]
+            at = np.unique(np.linspace(sides[:2], sides[1:], _PLACES // 2))
+            f = float(s) * law.friction(advance(law, z, s, V, length, at), s, V)
             largest, top = np.maximum(largest, f.max()), int(np.argmax(f))
     return largest, states

@@ -85,6 +85,37 @@ def test_a_law_without_numbers_is_refused(monkeypatch, function, given, message)
         computed("tables4_5", ONE_STATE | {"friction": {"model": "own"}})
 
 
+@dataclass(frozen=True)
+class Whole(FrictionLaw):
+    """Friction of whole numbers."""
+
+    about = "whole"
+
+    def exact(self, z, s, V, slip):
+        return np.zeros((len(slip), 1))
+
+    def friction(self, z, s, V):
+        return np.full(np.shape(z)[:-1], s)
+
+
+class Lost(Whole):
+    """The same, with a state that is lost."""
+
+    def exact(self, z, s, V, slip):
+        return np.full((len(slip), 1), np.nan)
+
+
+def test_friction_may_be_whole_numbers_but_a_state_is_a_number(monkeypatch):
+    monkeypatch.setitem(galinx.LAWS, "own", Whole)
+    of_law = {"friction": {"model": "own"}, "output.quantities": ["friction"], "solve.methods": []}
+    result = computed("tables4_5", ONE_STATE | of_law)
+    assert result.data["states/f"][0] == 1.0
+    assert result.data["loops/breakaway"][0] == result.scene.punch.load
+    monkeypatch.setitem(galinx.LAWS, "own", Lost)
+    with pytest.raises(BadInput, match="along FM1 found a state that is not finite"):
+        computed("tables4_5", ONE_STATE | of_law)
+
+
 @pytest.mark.parametrize("name", ["", " ", "own "])
 def test_names_of_models_are_not_blank(name):
     with pytest.raises(ValueError, match=f"the profile of the punch {name!r}: expected a name"):

@@ -10,6 +10,7 @@ from support import THOROUGH
 from galinx.solvers.friction import LAWS
 from galinx.solvers.friction.elasto_plastic import ElastoPlastic
 from galinx.solvers.friction.integrate import adaptively, closely, exactly, work
+from galinx.solvers.friction.motion import legs, works
 from galinx.solvers.parameters import build_model
 
 #: Random sets of parameters, each with a motion of its own.
@@ -185,3 +186,15 @@ def test_parameters_outside_their_range_are_refused(name, changes, said):
     build_model(LAWS[name], good)
     with pytest.raises(ValueError, match=said):
         build_model(LAWS[name], good | changes)
+
+
+@pytest.mark.parametrize("r, damping", [(0.7, 0.5), (0.98, 0.02), (0.9999, 0.02), (0.9999, 5.0)])
+def test_the_largest_friction_just_after_breakaway(r, damping):
+    """It is that of the deflections w passed: w + σ₁V/g (1 - α w), over g."""
+    g, σ0, V = 0.4, 2e4, 1e-2
+    law = ElastoPlastic(μ_C=g, μ_S=g, v_S=1e-3, σ0=σ0, σ1=damping * g / V, r=r)
+    w = np.append(np.linspace(0.0, r, 11), r + (1.0 - r) * np.geomspace(1e-6, 1.0 - 1e-9, 200_001))
+    α = np.where(w > r, 0.5 * (1.0 + np.sin(np.pi * (w - 0.5 * (1.0 + r)) / (1.0 - r))), 0.0)
+    largest = g * (w + damping * (1.0 - α * w)).max()
+    _, found, _ = works(law, legs(["forward"]), 7.0 * g / σ0, V, exactly)
+    assert found[0, 0] == pytest.approx(largest, rel=1e-8)

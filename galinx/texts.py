@@ -35,7 +35,7 @@ def bytes_in_words(count: float, digits: int = 3) -> str:
 _SMALL, _LARGE = 1e-3, 1e6
 
 _GREEK = {"α": "alpha", "β": "beta"}
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_RAISED = str.maketrans("-0123456789()", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹⁽⁾")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -86,7 +86,8 @@ def plain(text: str) -> str:
 
     def formula(match: re.Match[str]) -> str:
         characters = match[1].replace(r"\times", "×").replace(r"\,", "\u202f")
-        characters = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(_RAISED), characters)
+        raised = r"\^\{(-?\d+|\(\d+\))\}"
+        characters = re.sub(raised, lambda power: power[1].translate(_RAISED), characters)
         characters = re.sub(r"\\(?:mathrm|mathit|text)\{((?:[^{}]|\{[^{}]*\})*)\}", r"\1", characters)
         characters = re.sub(r"\\([A-Za-z]+)", greek, characters)
         characters = re.sub(r"_\{?(\d)\}?", lambda index: index[1].translate(_LOWERED), characters)

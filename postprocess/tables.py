@@ -532,7 +532,7 @@ def _notes(data: Mapping[str, Any], units: Units, columns: Sequence[Column]) -> 
         yield "σ_XX: further than 0.01 a from sharp edges, at which it is infinite"
     if "K_I, right" in heads and not units.dimensionless:
         where = "both ends" if "half-width" in heads else "X = -a and X = a"
-        yield f"K_I: limit of the pressure times (2π distance)^-exponent, at {where}"
+        yield f"K_I: limit of the pressure times (2π distance)^(-exponent), at {where}"
     if units.dimensionless and "half-width" in heads:
         yield f"half-width, centre: {units.of_a}"
         yield "X/a, Y/a and N/(2a): a is the half-width of each contact, and X is from its middle"

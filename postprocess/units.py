@@ -231,7 +231,7 @@ class Units:
         return float(max(finite, default=0.0))
 
     def _intensity(self, row: Quantity, name: str) -> Scaled | None:
-        """K_I: the limit of the pressure times (2π distance)^-exponent, whose unit has that power.
+        """K_I: the limit of the pressure times (2π distance)^(-exponent), whose unit has that power.
 
         The dimensionless one is the limit of the pressure over N/a and the weight (1 - r)^α (1 + r)^β of
         a flat punch.

@@ -238,9 +238,9 @@ def plot(
 ) -> None:  # fmt: skip
     """Draw what ARCHIVE holds, as figures for a column or a page of a journal, or as a film of strokes.
 
-    Without options these are the stresses on the surface and below it, what follows from what is swept,
-    and the friction loop; states and axes are chosen automatically. States that a figure does not show
-    are named.
+    Without options these are the stresses on the surface, at interfaces and below, what follows from what
+    is swept, and the friction loop; states and axes are chosen automatically. States that a figure does
+    not show are named.
 
     Example: ./run.sh plot tables.h5 -o figures --states 0,4,7 --quantity sigma_XX --size 3.5in
     """

@@ -130,7 +130,7 @@ FIGURES = {
     ),
     "slider": _Figure(friction.slider, _holds(runs.TIMES), usual=_ALWAYS),
     "time": _Figure(motion.time, _holds(over_time.TIMES), usual=_ALWAYS),
-    "interfaces": _Figure(stresses.interfaces, _has("interfaces"), _STRESSES),
+    "interfaces": _Figure(stresses.interfaces, _has("interfaces"), _STRESSES, _ALWAYS),
     "pressures": _Figure(motion.pressures, _holds(*motion.PRESSURES)),
     "stresses": _Figure(motion.stresses, motion.has_surface),
     "energies": _Figure(motion.energies, _holds(*motion.ENERGIES)),

@@ -7,6 +7,7 @@ Parameters that distinguish an archive's states say which of them a figure shows
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -163,16 +164,25 @@ class Archive:
         """Names of the parameters that differ between some states, between all if not given."""
         return [name for name in self.parameters if len(self.distinct(name, states)) > 1]
 
+    @cached_property
+    def speeds(self) -> NDArray[np.float64]:
+        """Speed of every state [m/s], (states,); those that differ by rounding alone are one."""
+        V = self.data[SPEED.path] * self.data.get(WAVE_SPEED.path, self.c_s)
+        return np.array([float(f"{speed:.12g}") for speed in V])
+
+    @cached_property
+    def by_c(self) -> bool:
+        """True in a sweep over solids at few c, each of which is several speeds."""
+        return len(np.unique(self.data[SPEED.path])) < len(np.unique(self.speeds))
+
     def parameter(self, name: str) -> NDArray:
         """Values of a parameter in all states, (states,); speeds over the wave speed of the first solid.
 
-        In a sweep over solids one speed has several c, as the wave speed differs.
+        In a sweep over solids one speed has several c, or one c several speeds: fewer are the parameter.
         """
-        values = self.data[column(name)]
-        if name != C or WAVE_SPEED.path not in self.data:
-            return values
-        V = values * self.data[WAVE_SPEED.path]
-        return np.array([float(f"{speed:.12g}") for speed in V]) / self.c_s
+        if name == C and WAVE_SPEED.path in self.data and not self.by_c:
+            return self.speeds / self.c_s
+        return self.data[column(name)]
 
     def distinct(self, name: str, states: NDArray | Sequence[int] | None = None) -> list[Any]:
         """Distinct values of a parameter: numbers in ascending order, texts in the order of states."""
@@ -236,7 +246,8 @@ class Archive:
             return _short([str(value) for value in values])
         symbol, factor, in_unit = self.axis(name)
         text = f"${symbol} = {_short([number(factor * value) for value in values])}{unit(in_unit)}$"
-        if name == C and symbol != "V" and self.units.dimensionless and len(values) == 1:
+        own = name == C and symbol != "V" and not self.by_c
+        if own and self.units.dimensionless and len(values) == 1:
             text += f" (${number(values[0] * self.c_s)}{unit('m/s')}$)"
         return text
 
@@ -244,6 +255,8 @@ class Archive:
         """Symbol in TeX of a numeric parameter, what its values are multiplied by, and its unit."""
         row = self.parameters[name]
         scaled = self.units(row, name)
+        if name == C and self.by_c:
+            return str(row.symbol), 1.0, "1"
         if name == C and scaled and WAVE_SPEED.path in self.data:
             if self.units.dimensionless:  # over c_s one speed has several numbers
                 return "V", self.c_s, "m/s"

@@ -166,9 +166,9 @@ class _Sweep:
             raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
         if name not in of.parameters:
             return name, named(columns[name].about, columns[name].unit), columns[name].best
-        if requested == "speed" and of.units.dimensionless:
-            return name, "speed $V$ (m/s)", of.parameter(C) * of.c_s
-        if name == C and of.axis(C)[2] == "1":
+        if requested == "speed" and (of.units.dimensionless or of.by_c):
+            return name, "speed $V$ (m/s)", of.speeds
+        if name == C and of.axis(C)[2] == "1" and not of.by_c:
             self.beside = "speed (m/s)", of.c_s
         return name, *self._axis(name)
 

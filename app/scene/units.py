@@ -78,7 +78,7 @@ _UNITS = {
     "µs": (-6, (0, 0, 1)), "μs": (-6, (0, 0, 1)), "us": (-6, (0, 0, 1)),
     "N": (0, (1, 1, -2)), "mN": (-3, (1, 1, -2)), "kN": (3, (1, 1, -2)), "MN": (6, (1, 1, -2)),
     "Pa": (0, (-1, 1, -2)), "kPa": (3, (-1, 1, -2)), "MPa": (6, (-1, 1, -2)), "GPa": (9, (-1, 1, -2)),
-    "%": (-2, (0, 0, 0)),  # not every pint has it
+    "%": (-2, (0, 0, 0)), "percent": (-2, (0, 0, 0)),  # not every pint has them
 }  # fmt: skip
 
 
@@ -210,8 +210,8 @@ def _by_pint(number: float, given: Units, target: Units) -> float:
             try:
                 of_pint = table.get_name(name)
             except pint.UndefinedUnitError:
-                if name == "%":
-                    raise ValueError("with %, which dimensionless numbers have") from None
+                if _UNITS.get(name, (0, ()))[1] == (0, 0, 0):
+                    raise ValueError(f"with {name}, which dimensionless numbers have") from None
                 hint = meant(name, _UNITS).removeprefix("; ")
                 why = f"with the unknown unit {excerpt(name)}" + f" ({hint})" * bool(hint)
                 raise ValueError(why) from None

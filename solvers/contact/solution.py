@@ -154,9 +154,8 @@ class Contact:
         if self.solid.layers:
             reasons[UNIFORM] = "the solid has layers, each with a strength of its own"
             if not self.finite:
-                reasons.setdefault(
-                    YIELD, "over layers it is known below punches alone, with two free ends and no tip"
-                )
+                needs = "over layers it needs a punch with two free ends and no tip, as a cylinder"
+                reasons.setdefault(YIELD, needs)
         else:
             reasons[LAYERED] = "the solid has no layers"
         if self.along:

@@ -201,3 +201,16 @@ def test_places_are_over_the_half_width_where_they_have_no_unit(dimensionless, n
     (axis, *_) = drawn(result, "parameters", **choice).figure.axes
     label = " ".join(axis.get_ylabel().split())
     assert label.endswith(name) and label.count("over") == dimensionless
+
+
+@pytest.mark.parametrize("key, told", [("c", r"c = "), ("speed", r"V = ")])
+def test_over_a_modulus_curves_are_at_the_speeds_that_are_given(key, told):
+    """Of three c and three moduli there are nine speeds, and of three speeds nine c."""
+    speeds = {"c": [0.1, 0.2, 0.3], "speed": ["300 m/s", "600 m/s", "900 m/s"]}[key]
+    solid = {"solid": {"E": ["100 GPa", "200 GPa", "400 GPa"], "nu": 0.3, "rho": 7800.0}}
+    result = computed("cylinder", ROUND | solid | {"motion.c": None, f"motion.{key}": speeds})
+    figure = drawn(result, "parameters", units=result.units(False)).figure
+    assert {axis.get_xlabel() for axis in figure.axes} == {"Young's modulus $\\mathrm{E}$ (GPa)"}
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert len(labels) == 3 and all(re.search(told, label) for label in labels)
+    assert [len(curve.get_xdata()) for curve in curves(figure.axes[0])[:3]] == [3, 3, 3]

@@ -28,7 +28,7 @@ e^(-2sH/c_d) where plane waves go down and up. As Re s > 0 it is analytic along 
 that its transform back to X goes along it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, cos, log, pi
@@ -44,8 +44,9 @@ from ..layers.stiffness import Medium, Uniform
 from ..solids.admittance import Admittance
 from ..solids.half_plane import HalfPlane
 
-#: Gauss's points of a panel along a way, and panels' width in the logarithm of the distance from its end.
-_POINTS, _WIDTH = 12, 0.8
+#: Number of Gauss's points of a panel along a way, these and their weights, and panels' width in the
+#: logarithm of the distance from its end.
+_POINTS, (_NODES, _WEIGHTS), _WIDTH = 12, leggauss(12), 0.8
 #: Decay after which an integrand is negligible; panels of a way, of which few are used, as long as that.
 _GONE, _FARTHEST = 32.0, 80
 #: Directions of the ways below the real axis, and how far from the fastest decay one is taken.
@@ -56,12 +57,16 @@ _PANELS, _HALVINGS, _ACCURACY = 3, 14, 1e-10
 _TURN = 7.0
 #: Places of a panel, -1 to 1, at which its polynomial is compared with the function.
 _BETWEEN = np.linspace(-0.9, 0.9, 4)
-#: Width of panels of distances that have the same points.
-_PANEL = 0.125
-#: Number of distances from which on exponentials are products, with panels in common.
-_MANY = 64
 #: Distances are treated together where one is so many times another at most.
 _RATIO = 4.0
+#: Distances times s over the radius up to which responses are series, terms of these, and points of a
+#: circle, of what share of the radius, on which Laurent's series is found.
+_NEAR, _TERMS, _ON_CIRCLE, _OF_RADIUS = 5.0, 36, 128, 0.7
+#: Width of panels of a single point.
+_NO_WIDTH = 1e-300
+
+#: Distances in panels, which rise and have the same points each, (panels, points), or several of these.
+Distances = Sequence[NDArray]
 
 
 @dataclass(frozen=True)
@@ -81,26 +86,76 @@ class Kernel:
     c: float
     rayleigh: float
 
-    def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+    def __call__(self, x: Distances, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
         """v̂ of line loads σ_YY and σ_XY, and û of them, (4, n).
 
         Args:
-            x: distances > 0, (n,).
+            x: distances > 0.
             s: over c_s/a, Re s >= 0.
             slopes: of these along X instead.
         """
         if s.imag < 0.0:  # in time it is real
             return np.conj(self(x, np.conj(s), slopes))
-        values = np.zeros((4, len(x)), dtype=complex)
-        group = np.floor(np.log(x / x.max()) / log(_RATIO) + 1e-9)
+        parts = []
+        for panels in x:
+            near = abs(s) * panels[:, -1] < _NEAR * self._radius
+            values = np.empty((4, *panels.shape), dtype=complex)
+            values[:, near] = self._near(panels[near], s, slopes)
+            values[:, ~near] = self._far(panels[~near], s, slopes)
+            parts.append(values.reshape(4, -1))
+        return np.concatenate(parts, axis=1)
+
+    def _far(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
+        """Displacements, or their slopes, by integrals along the ways, (4, panels, points)."""
+        values = np.empty((4, *x.shape), dtype=complex)
+        group = np.floor(np.log(x[:, -1] / x.max(initial=0.0)) / log(_RATIO) + 1e-9)
         for number in np.unique(group):
             values[:, group == number] = self._of(x[group == number], s, slopes)
         ζ, residue = self._pole
         wave = (-s * ζ if slopes else 1.0) * np.exp(-s * ζ * x)
-        return values + residue[:, None] * wave
+        return values + residue[:, None, None] * wave
+
+    @property
+    def _radius(self) -> float:
+        """Least distance over c_s of c from the speed of the wave along the surface, either way."""
+        return self.rayleigh - abs(self.c)
+
+    def _near(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
+        """Displacements, or their slopes, by the series, (4, panels, points)."""
+        a, b = self._series
+        w, n = s * x / self._radius, np.arange(_TERMS)
+        powers, logs = w[..., None] ** n, np.log(w)
+        if not slopes:
+            return np.moveaxis(powers @ a + logs[..., None] * (powers @ b), -1, 0)
+        regular, singular = (powers[..., :-1] @ (n[1:, None] * of[1:]) for of in (a, b))
+        of_w = regular + logs[..., None] * singular + (powers @ b) / w[..., None]
+        return np.moveaxis(s / self._radius * of_w, -1, 0)
+
+    @cached_property
+    def _series(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coefficients a and b of v̂ = Σ (a + b ln w) wⁿ in w = s x/radius, real, (terms, 4) each.
+
+        b follows from Laurent's series of the integrand beyond all singularities; a from values.
+        """
+        n, angles = np.arange(_TERMS), 2.0 * pi * np.arange(_ON_CIRCLE) / _ON_CIRCLE
+        ζ = np.exp(-1j * angles) / (_OF_RADIUS * self._radius)
+        jumps = ζ * (self._rows(ζ) - self._rows(ζ, below=True))
+        laurent = np.fft.fft(jumps).T[:_TERMS] / _ON_CIRCLE / _OF_RADIUS ** n[:, None]
+        factorials = np.cumprod(np.maximum(n, 1.0))[:, None]
+        b = (-1j / (2.0 * pi) * (-1.0) ** n[:, None] * laurent / factorials).real
+        turned = np.exp(0.5j * pi * np.linspace(0.0, 1.0, _TERMS // 2))
+        w = _NEAR * np.outer([0.3, 0.65, 1.0], turned).ravel()
+        values = np.concatenate([self._far(np.array([[self._radius]]), of, False) for of in w], axis=1)
+        powers = w[:, None] ** n
+        known = (powers @ b) * np.log(w)[:, None]
+        scale = float(_NEAR) ** n
+        rest, scaled = values[..., 0].T - known, powers / scale
+        equations, right = (np.concatenate([of.real, of.imag]) for of in (scaled, rest))
+        a, *_ = np.linalg.lstsq(equations, right, rcond=1e-15)
+        return a / scale[:, None], b
 
     def _of(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
-        """Displacements without the wave along the surface, or their slopes, (4, n)."""
+        """Displacements without the wave along the surface, or their slopes, (4, panels, points)."""
         ψ = float(np.angle(s))
         down = int(np.abs(_DIRECTIONS - ψ).argmin())
         last = _GONE / (abs(s) * cos(ψ - _DIRECTIONS[down]) * float(x.min()))
@@ -110,9 +165,9 @@ class Kernel:
             (ζ[felt], values[:, felt]),
             *self._ways(down, max(0, ceil(log(last / self._first) / _WIDTH))),
         ]
-        displacements = np.zeros((4, len(x)), dtype=complex)
+        displacements = np.zeros((4, *x.shape), dtype=complex)
         for ζ, values in ways:
-            displacements += (values * (-s * ζ) if slopes else values) @ _exponentials(-s * ζ, x).T
+            displacements += _sums(values * (-s * ζ) if slopes else values, -s * ζ, x)
         return displacements
 
     @cached_property
@@ -177,11 +232,10 @@ class Kernel:
     def _halved(self, n: int) -> tuple[NDArray, NDArray]:
         """Points (panels, k) and weighted values (4, panels, k), with each panel halved n times."""
         if n not in self._all_halved:
-            t, w = leggauss(_POINTS)
-            finer = ((2.0 * np.arange(2**n)[:, None] + 1.0 + t) / 2**n - 1.0).ravel()
+            finer = ((2.0 * np.arange(2**n)[:, None] + 1.0 + _NODES) / 2**n - 1.0).ravel()
             which, start, length, values = self._panels
             ζ, _ = self._between(which[:, None], start[:, None] + length[:, None] * (1.0 + finer) / 2.0)
-            weighted = values @ (interpolation(_POINTS, finer) * np.tile(w, 2**n)[:, None]).T
+            weighted = values @ (interpolation(_POINTS, finer) * np.tile(_WEIGHTS, 2**n)[:, None]).T
             weighted = weighted * (1j / (2.0 * pi) * length / 2.0 ** (n + 1))[:, None, None]
             self._all_halved[n] = ζ, weighted.swapaxes(0, 1)
         return self._all_halved[n]
@@ -199,7 +253,6 @@ class Kernel:
             Number of the edge before each panel, start and length in φ, (panels,) each, and values times
             slopes at Gauss's points, (panels, 4, points).
         """
-        t, _ = leggauss(_POINTS)
         pending = [
             (n, k / _PANELS, 1.0 / _PANELS) for n in range(len(self._edges) - 1) for k in range(_PANELS)
         ]
@@ -207,11 +260,11 @@ class Kernel:
         for halvings in range(_HALVINGS + 1):
             again = []
             for n, start, length in pending:
-                at = np.append(t, _BETWEEN)
+                at = np.append(_NODES, _BETWEEN)
                 ζ, slope = self._between(np.array(n), start + length * (1.0 + at) / 2.0)
                 values = self._rows(ζ) * slope
-                at_gauss, between = values[:, : len(t)], values[:, len(t) :]
-                off = np.abs(at_gauss @ interpolation(_POINTS, _BETWEEN).T - between).max()
+                at_gauss, between = values[:, :_POINTS], values[:, _POINTS:]
+                off = np.abs(at_gauss @ _TO_BETWEEN.T - between).max()
                 if off > _ACCURACY * np.abs(values).max() and halvings < _HALVINGS:
                     again += [(n, start, length / 2.0), (n, start + length / 2.0, length / 2.0)]
                 else:
@@ -227,32 +280,40 @@ def interpolation(points: int, at: NDArray) -> NDArray[np.float64]:
     return np.asarray(legvander(at, points - 1) @ to_legendre)
 
 
-def _exponentials(a: NDArray, x: NDArray) -> NDArray[np.complex128]:
-    """Exponentials exp(a x), (x, a); products of a few where x are points of even panels."""
-    if len(x) < _MANY:
-        return np.asarray(np.exp(np.multiply.outer(x, a)))
-    steps = np.mod(x, _PANEL)
-    _, first, step = np.unique(np.round(steps, 12), return_index=True, return_inverse=True)
-    places, place = np.unique(np.round((x - steps) / _PANEL), return_inverse=True)
-    whole, rest = (np.exp(np.multiply.outer(of, a)) for of in (places * _PANEL, steps[first]))
-    product = whole[place]
-    product *= rest[step]
-    return np.asarray(product)
+#: Matrix from values at a panel's points to those between.
+_TO_BETWEEN = interpolation(_POINTS, _BETWEEN)
+
+
+def _sums(values: NDArray, a: NDArray, x: NDArray) -> NDArray[np.complex128]:
+    """Sums of exponentials Σ values exp(a x), values (4, a), at distances in panels: (4, panels, points).
+
+    In panels of the same width they are a product of matrices: of the values times the exponentials at
+    the points of one panel, and of the exponentials at the panels' starts.
+    """
+    sums = np.empty((4, *x.shape), dtype=complex)
+    widths = np.round(np.log(np.ptp(x, axis=1) + _NO_WIDTH), 9)
+    _, alike, counts = np.unique(widths, return_inverse=True, return_counts=True)
+    alone = counts[alike] == 1
+    sums[:, alone] = (values @ np.exp(np.multiply.outer(a, x[alone].ravel()))).reshape(4, -1, x.shape[1])
+    for number in np.flatnonzero(counts > 1):
+        panels = np.flatnonzero(alike == number)
+        within = np.exp(np.multiply.outer(x[panels[0]] - x[panels[0], 0], a))
+        starts = np.exp(np.multiply.outer(a, x[panels, 0]))
+        of_panels = (values[:, None] * within).reshape(-1, len(a)) @ starts
+        sums[:, panels] = of_panels.reshape(4, x.shape[1], -1).swapaxes(1, 2)
+    return sums
 
 
 def _distances(first: float, panels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points and weights along a way: its end is a square root, far away powers and a decay."""
-    t, w = leggauss(_POINTS)
-    near, weights = first * ((1.0 + t) / 2.0) ** 2, first * (1.0 + t) / 2.0 * w
+    near, weights = first * ((1.0 + _NODES) / 2.0) ** 2, first * (1.0 + _NODES) / 2.0 * _WEIGHTS
     starts = log(first) + _WIDTH * np.arange(panels)[:, None]
-    v = np.exp(starts + _WIDTH * (1.0 + t) / 2.0)
-    return np.append(near, v.ravel()), np.append(weights, (v * _WIDTH / 2.0 * w).ravel())
+    v = np.exp(starts + _WIDTH * (1.0 + _NODES) / 2.0)
+    return np.append(near, v.ravel()), np.append(weights, (v * _WIDTH / 2.0 * _WEIGHTS).ravel())
 
 
 #: Decay after which echoes are negligible, wavenumbers at which it is computed; panels of these at least.
 _ECHOES_GONE, _WAVENUMBERS, _FEWEST = 34.0, np.geomspace(1e-3, 1e5, 161), 8
-#: Wavenumbers whose exponentials are computed at once.
-_TOGETHER = 512
 
 
 @dataclass(frozen=True)
@@ -326,38 +387,36 @@ class Echoes:
     sheets: UniformLayers
     c: float
 
-    def __call__(self, x: NDArray, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
+    def __call__(self, x: Distances, s: complex, slopes: bool = False) -> NDArray[np.complex128]:
         """v̂ of line loads σ_YY and σ_XY, and û of them, (4, n).
 
         Args:
-            x: distances, (n,).
+            x: distances.
             s: over c_s/a, Re s > 0.
             slopes: of these along X instead.
         """
         # Displacements by k > 0 are the conjugates of those by -k at the conjugate of s.
         return np.asarray(self._half(x, s, slopes) + self._half(x, np.conj(s), slopes).conj())
 
-    def _half(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
+    def _half(self, x: Distances, s: complex, slopes: bool) -> NDArray[np.complex128]:
         """Displacements by all k < 0, or their slopes, (4, n)."""
+        displacements = np.zeros((4, sum(panels.size for panels in x)), dtype=complex)
         if (last := self._last(s)) == 0.0:
-            return np.zeros((4, len(x)), dtype=complex)
-        t, w = leggauss(_POINTS)
-        interpolate = interpolation(_POINTS, _BETWEEN)
-        count = max(_FEWEST, ceil(last * float(x.max()) / _TURN))
+            return displacements
+        count = max(_FEWEST, ceil(last * max(float(panels.max()) for panels in x) / _TURN))
         starts, length, most = np.arange(count) * (last / count), last / count, 0.0
-        displacements = np.zeros((4, len(x)), dtype=complex)
         for halvings in range(_HALVINGS + 1):
-            κ = starts[:, None] + length * (1.0 + np.append(t, _BETWEEN)) / 2.0
+            κ = starts[:, None] + length * (1.0 + np.append(_NODES, _BETWEEN)) / 2.0
             values = self._values(-κ.ravel(), s).reshape(4, *κ.shape)
             at_gauss, between = values[..., :_POINTS], values[..., _POINTS:]
             most = max(most, float(np.abs(values).max()))
-            off = np.abs(at_gauss @ interpolate.T - between).max(axis=(0, 2))
+            off = np.abs(at_gauss @ _TO_BETWEEN.T - between).max(axis=(0, 2))
             fine = (off <= _ACCURACY * most) | (halvings == _HALVINGS)
             k = -κ[fine, :_POINTS].ravel()
-            factor = np.tile(length / 2.0 * w, int(fine.sum())) * ((1j * k) if slopes else 1.0)
+            factor = np.tile(length / 2.0 * _WEIGHTS, int(fine.sum())) * ((1j * k) if slopes else 1.0)
             weighted = at_gauss[:, fine].reshape(4, -1) * factor
-            for block in (slice(n, n + _TOGETHER) for n in range(0, len(k), _TOGETHER)):
-                displacements += weighted[:, block] @ np.exp(1j * np.outer(k[block], x))
+            sums = [_sums(weighted, 1j * k, panels).reshape(4, -1) for panels in x]
+            displacements += np.concatenate(sums, axis=1)
             starts, length = np.repeat(starts[~fine], 2), length / 2.0
             starts[1::2] += length
             if not len(starts):
@@ -377,7 +436,7 @@ class Echoes:
 
 
 #: Response on one side of a line load: v̂ of σ_YY and of σ_XY, then û of them, at distances, or slopes.
-Side = Callable[[NDArray, complex, bool], NDArray[np.complex128]]
+Side = Callable[[Distances, complex, bool], NDArray[np.complex128]]
 
 
 def fastest(half_plane: HalfPlane) -> float:
@@ -405,7 +464,7 @@ def both_sides(half_plane: HalfPlane, rayleigh: float, way: int) -> tuple[Side, 
     behind: list[Side] = [Kernel(surface.mirrored, -V, rayleigh)]
     behind += [Echoes(sheets.mirrored, -V) for sheets in layers]
 
-    def mirrored(x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
+    def mirrored(x: Distances, s: complex, slopes: bool) -> NDArray[np.complex128]:
         values = sum(part(x, s, slopes) for part in behind)
         return np.asarray(_MIRRORED * (-values if slopes else values))
 

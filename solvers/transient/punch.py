@@ -300,9 +300,10 @@ class AlongSurface:
         # Edges of panels of distances over a, growing from 0, or from little less than the least.
         self._edges = divided(edges, s, 1.0 / (rayleigh - response.c))
         self._x, _ = gauss_in_panels(self._edges, _POINTS)
+        panels = self._x.reshape(-1, _POINTS)
         # û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each.
         self._tables = [
-            np.array([kernel(self._x, at, True)[2:] for at in s])
+            np.array([kernel((panels,), at, True)[2:] for at in s])
             for kernel in both_sides(response, rayleigh, way)
         ]
 

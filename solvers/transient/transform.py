@@ -227,13 +227,16 @@ class Transformed:
         """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
         t, _ = leggauss(_SAMPLES)
         middle, half = 2.0 - _EVEN / 2.0, _EVEN / 2.0
-        short = self._x > 2.0 - 0.5 * _EVEN
+        panels = self._x.reshape(-1, _POINTS)
+        before = panels[:, 0] <= 2.0 - 0.5 * _EVEN
+        short = np.repeat(~before, _POINTS)
         between = interpolation(_SAMPLES, (self._x[short] - middle) / half)
-        x, values = np.append(self._x[~short], middle + half * t), []
+        x, values = (panels[before], (middle + half * t)[None]), []
         for kernel in self._kernels:
-            sampled = np.array([kernel(x, s, False) for s in self.s])
             whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
-            whole[..., ~short] = sampled[..., :-_SAMPLES]
-            whole[..., short] = sampled[..., -_SAMPLES:] @ between.T
+            for n, s in enumerate(self.s):
+                sampled = kernel(x, s, False)
+                whole[n][:, ~short] = sampled[:, :-_SAMPLES]
+                whole[n][:, short] = sampled[:, -_SAMPLES:] @ between.T
             values.append(whole)
         return values[0], values[1]

@@ -47,10 +47,25 @@ def test_kernels_of_any_solid_are_the_transform_of_their_symbols(seed):
     limit = solid.limit()
     c, s = rng.uniform(-0.8, 0.8) * limit, complex(2.0, rng.uniform(0.0, 3.0))
     surface = Admittance.of(solid.response(0.0))
-    found = Kernel(surface, c, limit)(np.array([0.4]), s)[:, 0]
+    found = Kernel(surface, c, limit)(np.array([[[0.4]]]), s)[:, 0]
     as_any = isotropic_as("anisotropic", solid) if seed > 3 else solid
     expected = of_any_solid(stiffness(as_any.response(0.0)), c, 0.4, s)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("c", [-0.97, -0.4, 0.0, 0.7, 0.97])
+@pytest.mark.parametrize("seed", range(6))
+def test_near_a_load_the_series_is_the_integral(seed, c):
+    """Up to the distance at which one takes over, for any phase of s, displacements and their slopes."""
+    rng, solid = np.random.default_rng(seed), [*map(random_solid, range(4)), *KNOWN][seed]
+    limit = solid.limit()
+    kernel = Kernel(Admittance.of(solid.response(0.0)), c * limit, limit)
+    for x, ψ in zip(10.0 ** rng.uniform(-6.0, 0.7, 6), rng.uniform(0.0, 0.5 * np.pi, 6)):
+        s, x = np.exp(1j * ψ), np.array([[x * (1.0 - abs(c)) * limit]])
+        for slopes in (False, True):
+            exact = kernel._far(x, s, slopes)
+            found = kernel._near(x, s, slopes)
+            np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-11 * np.abs(exact).max())
 
 
 def test_roots_meet_at_speeds_of_waves_in_isotropic_solids():
@@ -98,7 +113,7 @@ def test_echoes_are_the_transform_of_their_symbol():
     """By the trapezoidal rule along the whole axis of k."""
     c, s, x = 0.3, 1.5 + 4.0j, np.array([0.05, 0.4, 1.7])
     κ = np.linspace(-80.0, 80.0, 16000)  # an even number: none at 0, where a formula divides
-    found = Echoes(SHEETS, c)(x, s)
+    found = Echoes(SHEETS, c)(x[None, None], s)
     left, of = κ < 0.0, np.empty((len(κ), 2, 2), dtype=complex)
     of[left] = SHEETS.change(κ[left], c + 1j * s / κ[left])
     # Fields of k > 0 are the conjugates of those of -k and the conjugate of s.

@@ -14,14 +14,15 @@ QUICK = {"motion.c": [0.2, 0.5], "time.end": 0.5, "time.load_ramp": 0.5, "solve.
 
 
 def test_ranks_share_out_starts(monkeypatch):
-    """Whoever computes a start finds the same, and all of it reaches rank 0."""
+    """The second start is what it is alone, and all of both reaches rank 0."""
     scene, found = galinx.template("start_from_rest", QUICK), Memory()
     compute(scene, found)
     told = {path: values for path, values in found.items() if path.startswith("time/")}
     assert bool(told) == (MPI.COMM_WORLD.rank == 0)
     monkeypatch.setattr(ranks, "_rank_and_size", lambda: (0, 1))
-    plan = make_plan(scene)
-    alone = solve_motions(plan.starts, Clock())
+    second = make_plan(galinx.template("start_from_rest", QUICK | {"motion.c": 0.5}))
+    alone = solve_motions(second.starts, Clock())
     assert {"time/sie/v0", "time/fem/v0"} < alone.keys()
     for path, values in told.items():
-        np.testing.assert_allclose(values, alone[path], rtol=1e-9, atol=1e-12, err_msg=path)
+        last = values[-len(alone[path]) :]
+        np.testing.assert_allclose(last, alone[path], rtol=1e-9, atol=1e-12, err_msg=path)

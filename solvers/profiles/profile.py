@@ -46,15 +46,47 @@ class Profile(Protocol):
         """The punch in a sentence's middle, with units."""
 
 
+#: Share of a change of height by which the integral of the slope may differ.
+_OTHER = 0.05
+
+
 def check_functions(profile: Any) -> None:
-    """Check that height and slope of a profile are numbers at positions.
+    """Check that height and slope of a profile are numbers at positions, and that it has ends.
 
     Raises:
-        ValueError: one is something else, as None where ``return`` is missing.
+        ValueError: one is something else, as None where ``return`` is missing, or ends are nowhere.
     """
+    if not has_free_end(profile) and not hasattr(profile, "half_width"):
+        raise ValueError(
+            f"{type(profile).__name__} lacks half_width, of its contact between sharp corners; for free "
+            "ends it needs sharp = (False, False)"
+        )
     X = np.array([-1e-9, 1e-9])
     for name in ("height", "slope"):
         check_gives(profile, name, X.shape, X)
+
+
+def check_slope(profile: Any, half_width: float) -> None:
+    """Check that the slope of a profile is the derivative of its height.
+
+    Args:
+        profile: the punch.
+        half_width: of a contact [m]; the middle of that is looked at.
+
+    Raises:
+        ValueError: it is another function's.
+    """
+    X = half_width * np.linspace(-0.25, 0.25, 129)
+    height, slope = profile.height(X), profile.slope(X)
+    pieces = 0.5 * (slope[1:] + slope[:-1]) * np.diff(X)
+    for half in (slice(0, 65), slice(64, 129)):
+        rise, risen = height[half][-1] - height[half][0], pieces[half.start : half.stop - 1]
+        if abs(rise - risen.sum()) > _OTHER * max(abs(rise), np.abs(risen).sum()):
+            raise ValueError(
+                f"{type(profile).__name__}.slope is not the derivative of the height: from X = "
+                f"{X[half][0]:.3g} m to {X[half][-1]:.3g} m it adds up to {risen.sum():.3g} m, and the "
+                f"height changes by {rise:.3g} m"
+            )
 
 
 def has_free_end(profile: Any) -> bool:

@@ -64,6 +64,21 @@ def test_a_profile_without_numbers_is_refused(monkeypatch, shape):
         computed("tables4_5", ONE_STATE | {"punch.profile": "forgetful"})
 
 
+@pytest.mark.parametrize(
+    "members, message",
+    [({}, r"Own lacks half_width, .* for free ends it needs sharp = \(False, False\)"),
+     ({"sharp": (False, False), "slope": lambda self, X: 50.0 * X},
+      r"Own\.slope is not the derivative of the height")],
+)  # fmt: skip
+def test_a_profile_that_contradicts_itself_is_refused(monkeypatch, members, message):
+    """With the height of one radius and the slope of another, pressures were those of the slope."""
+    own = {"about": "own", "height": lambda self, X: 50.0 * X**2, "slope": lambda self, X: 100.0 * X}
+    own |= {"words": lambda self: "own punch"} | members
+    monkeypatch.setitem(galinx.PROFILES, "own", dataclass(frozen=True)(type("Own", (), own)))
+    with pytest.raises(BadInput, match=message):
+        computed("cylinder", ONE_STATE | {"punch": {"profile": "own", "load": 1e5}})
+
+
 def linear(law, z, s, V):
     return 0.3 * z[..., 0]
 

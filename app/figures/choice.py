@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, column, solved_states, table
 from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
-from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED
+from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED, SPEED_LIMIT
 from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import parameters
 from galinx.postprocess.units import Scaled, Units
@@ -239,6 +239,11 @@ class Archive:
         """Sentence on the parameters that some states share and others have otherwise; "" for none."""
         fixed = [name for name in self.varied() if name not in self.varied(states)]
         return f" All at {self.text(int(states[0]), fixed)}." if fixed else ""
+
+    def formal(self, states: Sequence[int]) -> str:
+        """Sentence on states at speeds at which waves along the surface are slower; "" for none."""
+        beyond = (self.speeds >= self.data[SPEED_LIMIT.path])[list(states)].any()
+        return " Beyond the speed of waves along the surface the closed form is formal." * bool(beyond)
 
     def values_label(self, name: str, values: Sequence[Any]) -> str:
         """Parameter with several values, of many the first, with formulas in TeX."""

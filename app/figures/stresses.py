@@ -166,14 +166,15 @@ def surface_panel(
         options: further attributes of the panel.
     """
     curves, ranges, places, half = [], [], [], _UNDER
-    for k, (along, row, look, label, width) in enumerate(shown):
-        X, values = along.X, {method: y[row] for method, y in along.values.items()}
-        every = np.array(list(values.values()))
-        own = along.half or _needed(X, every[0])
-        half, inside = max(half, own), np.abs(X) <= own
-        ranges.append(limits(X, every[:1]))
+    for along, row, *_ in shown:
+        first = next(iter(along.values.values()))[row]
+        half = max(half, along.half or _needed(along.X, first))
+        ranges.append(limits(along.X, first[None]))
         places.append(along.places[row])
-        a, b = places[-1]
+    xlim = min(b - half * a for a, b in places), max(b + half * a for a, b in places)
+    for k, ((along, row, look, label, width), (a, b)) in enumerate(zip(shown, places)):
+        X, values = along.X, {method: y[row] for method, y in along.values.items()}
+        inside = (xlim[0] <= b + a * X) & (b + a * X <= xlim[1])
         for curve in both(X, values, look, label, k / len(shown)):
             x, y = X[inside], np.asarray(curve.y)[inside]
             thin = width
@@ -188,8 +189,7 @@ def surface_panel(
     ends = sorted({(round(b - a, 12), round(b + a, 12)) for a, b in places})
     same = half >= _BESIDE and np.allclose(ends, ends[0], rtol=1e-9)
     panel = Panel(
-        shown[0].along.position, shown[0].along.axis, curves=curves,
-        xlim=(min(b - half * a for a, b in places), max(b + half * a for a, b in places)),
+        shown[0].along.position, shown[0].along.axis, curves=curves, xlim=xlim,
         ylim=ylim or (float(low.min()), float(high.max())), at_y=(0.0,),
         bands=ends if shown[0].along.half else ends[:1] * same,
     )  # fmt: skip
@@ -256,7 +256,7 @@ def surface(of: Archive) -> Drawing:
     )
     if same:
         caption += " Over N/(2a) they are the same under every load."
-    caption += alike_at + of.all_at(every)
+    caption += alike_at + of.all_at(every) + of.formal(every)
     missing = of.not_shown(every, "--figure surface --states")
     return Drawing("surface", caption, figure, left_out=missing)
 
@@ -363,16 +363,14 @@ def interfaces(of: Archive) -> Drawing:
     unit, depths = interface_depths(of.data)
     bodies = [of_state(of.scene, i)[0].body for i in (numbers if len(depths) > 1 else [0])]
     depths = depths[numbers] if len(depths) > 1 else depths
-    a = bodies[0].half_width
     over_a = np.max([d if unit == "1" else d / b.half_width for d, b in zip(depths, bodies)], axis=0)
-    same_depths = np.ptp(depths, axis=0) == 0.0
-    scale = of.units.scale(CONTACT)
-    factor, length = np.max(scale.factor) * a, scale.unit
+    scale, in_a = of.units.scale(CONTACT), unit == "1"
+    factor, length = np.max(scale.factor) * (bodies[0].half_width if in_a else 1.0), scale.unit
     if of.units.dimensionless:
-        factor, length = (1.0, "$a$") if unit == "1" else (1e3 * a, "mm")
+        factor, length = (1.0, "$a$") if in_a else (1e3, "mm")
     titles = [
         f"depth {number(depth * factor)} {length}" if same else f"interface {i}"
-        for i, (depth, same) in enumerate(zip(over_a, same_depths), 1)
+        for i, (depth, same) in enumerate(zip(depths[0], np.ptp(depths, axis=0) == 0.0), 1)
     ]
     columns = spread(range(len(over_a)), max(1, int(width / 2.2)))
     position = position_name(of, "position along the interface ")

@@ -85,7 +85,7 @@ def parameters(of: Archive) -> Drawing:
     shown = np.concatenate([states for _, states in sweep.groups]).tolist()
     at = f" at {of.text(shown[0], list(sweep.fixed))}" if sweep.fixed else ""
     over = plain(f"{sweep.label} and {panels[0].y}" if maps else sweep.label)
-    caption = f"What follows from {over}{at}.{sweep.same}"
+    caption = f"What follows from {over}{at}.{sweep.same}{of.formal(shown)}"
     if any(sweep.columns[name].unit == "a" for name in sweep.drawn):
         caption += f" Half-width and centre are over {of.units.of_a}."
     if maps:
@@ -116,7 +116,8 @@ class _Sweep:
     def __init__(self, of: Archive) -> None:
         self._of, self.columns = of, columns_of(of)
         choice, every, self.same = of.choice, of.selected(), ""
-        once = of.once(every, *(column.best for column in self.columns.values()))
+        asked = [*self.columns.keys() & {*choice.y}] or [*self.columns.keys() & {*_ANSWERS, *_OF_EDGES}]
+        once = of.once(every, *(self.columns[name].best for name in asked or self.columns))
         if of.varied(once[0]) and not (choice.x or choice.by):
             every, self.same = once
         self.beside: tuple[str, float] | None = None
@@ -160,7 +161,8 @@ class _Sweep:
         if requested:
             require_one_of("x", requested, [*numeric, "speed", *columns])
         swept = _swept(of, selected) or of.varied(selected)
-        usual = next((name for name in swept if name in numeric), "")
+        swept = [name for name in swept if name in numeric]
+        usual = next((name for name in swept if self._answers(name, selected)), next(iter(swept), ""))
         name = C if requested == "speed" else requested or usual
         if not name:
             raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
@@ -171,6 +173,13 @@ class _Sweep:
         if name == C and of.axis(C)[2] == "1" and not of.by_c:
             self.beside = "speed (m/s)", of.c_s
         return name, *self._axis(name)
+
+    def _answers(self, name: str, selected: NDArray) -> bool:
+        """True where what people ask for changes with a parameter, others held."""
+        of = self._of
+        states = of.where(selected, **of.fixed([n for n in of.varied(selected) if n != name], selected))
+        asked = self.columns.keys() & {*_ANSWERS, *_OF_EDGES}
+        return any(_varies(self.columns[answer].best[states]) for answer in asked)
 
     def _axis(self, name: str) -> tuple[str, NDArray]:
         """Name of the axis of a parameter, and its numbers, (states,)."""

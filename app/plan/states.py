@@ -252,6 +252,8 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     friction, (speed, load, law, place), c = scene.friction, order.numbers, order.c
     legs = np.repeat(np.arange(len(scene.legs)), [len(X) for X in scene.places])[place]
     own = np.array([np.nan if leg.speed is None else leg.speed for leg in scene.legs])[legs]
+    V = {speed / scene.solid.c_s: speed for speed in scene.motion.speed or ()}  # c·c_s would be rounded
+    given = np.array([V.get(c, c * scene.solid.c_s) for c in order.given])
     lengths, N = np.array([leg.length for leg in scene.legs])[legs], np.array(order.loads)
     ways = headings(scene, [leg.s for leg in scene.legs])[legs]
     half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
@@ -264,7 +266,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         **({"load": N[load]} if len(N) > 1 else {}),
         **{key: np.full(f.size, value) for key, value in scene.swept.items()},
         **{key: column[law] for key, column in friction.columns().items()},
-        "speed": np.where(np.isnan(own), np.multiply(order.given, scene.solid.c_s)[speed], own),
+        "speed": np.where(np.isnan(own), given[speed], own),
         **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c, ways))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
         "wave_crossings": np.where((c > 0.0) & (not scene.steady), crossings, np.nan),  # of strokes

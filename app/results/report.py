@@ -126,7 +126,7 @@ def _trace(curve: Curve) -> dict[str, Any]:
     dash = dash if isinstance(dash, str) else ",".join(f"{2.0 * part:g}px" for part in dash[1])
     return {
         "x": _numbers(curve.x, 10), "y": _numbers(curve.y), "mode": _MODES[curve.form],
-        "name": plain(curve.label) or METHODS[FEM] * (curve.form == MARKERS),
+        "name": _label(curve.label) or METHODS[FEM] * (curve.form == MARKERS),
         "showlegend": bool(curve.label),
         "line": {"color": colour, "width": 1.6 * curve.width, "dash": _DASHES.get(dash, dash)},
         "marker": {"color": colour, "size": 3 if curve.form == DOTS else 6,
@@ -172,8 +172,8 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     """Stresses of states behind a slider, along the surface and below it; None where there are none.
 
     Returns:
-        ``states``: labels in HTML; ``of``: number of all states; ``surface``: for each stress a chart a
-        state; ``maps``: name and charts of each stress inside.
+        ``states``: labels in HTML; ``of``: number of all with a solution; ``surface``: for each stress a
+        chart a state; ``maps``: name and charts of each stress inside.
     """
     below, surface = map_names(of), stresses_along(of)
     if not surface and not below:
@@ -185,7 +185,7 @@ def explorer(of: Archive) -> dict[str, Any] | None:
     varied = of.varied()
     made: dict[str, Any] = {
         "states": [str(markup(f"state {i}{': ' * bool(varied)}{of.text(i, varied)}")) for i in shown],
-        "of": len(of.all), "surface": [], "maps": [],
+        "of": len(of.selected()), "surface": [], "maps": [],
     }  # fmt: skip
     for along in surface.values():
         label = METHODS[min(along.values, key=lambda method: method == FEM)]  # that of the line

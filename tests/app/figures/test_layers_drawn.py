@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from legible import curves, drawn
-from support import computed
+from support import computed, of_sections
 
+from galinx import compute
 from galinx.app.figures import waves
 from galinx.app.figures.choice import size
 from galinx.app.figures.stresses import Along, Shown, surface_panel
@@ -127,3 +128,22 @@ def test_a_panel_reaches_beyond_the_largest_tension_beside_the_contact(peak, hal
     σ = np.where(np.abs(X) < 1.0, -1.0, 0.1 - 0.01 * np.abs(np.abs(X) - peak))
     panel = surface_panel([Shown(Along(X, "", {"sie": σ[None]}, [(1.0, 0.0)]), 0, *looks(1))])
     assert panel.xlim == (-half, half)
+
+
+def test_titles_have_the_depth_under_contacts_of_any_width_and_curves_reach_across():
+    """Under a stiffer coating the contact is narrower: depths over its half-width are larger."""
+    layer = {"E": ["100 GPa", "400 GPa"], "nu": 0.25, "rho": 5e3, "thickness": ["0.2 mm", "0.5 mm"]}
+    run = compute(of_sections(
+        layer=[layer], solid={"E": "210 GPa", "nu": 0.3, "rho": 7850.0},
+        punch={"profile": "parabolic", "radius": "50 mm", "load": "100 N/mm"},
+        friction={"mu": 0.15}, motion={"speed": "1 m/s"},
+        solve={"methods": ["sie"]}, output={"quantities": ["interfaces"]},
+    ))  # fmt: skip
+    figure = drawn(run, "interfaces", units=run.units(False), states=(0, 2)).figure
+    assert figure.axes[0].get_title(loc="left").endswith("depth 200 µm")
+    widths = run.data["states/sie/half_width"][[0, 2]]
+    assert np.ptp(widths) > 0.1 * widths.max()
+    for axis in figure.axes[:3]:
+        low, high = axis.get_xlim()
+        ends = [curve.get_xdata()[[0, -1]] for curve in curves(axis) if len(curve.get_xdata()) > 2]
+        assert all(first < 0.95 * low and last > 0.95 * high for first, last in ends)

@@ -214,3 +214,14 @@ def test_over_a_modulus_curves_are_at_the_speeds_that_are_given(key, told):
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert len(labels) == 3 and all(re.search(told, label) for label in labels)
     assert [len(curve.get_xdata()) for curve in curves(figure.axes[0])[:3]] == [3, 3, 3]
+
+
+def test_numbers_are_drawn_over_what_changes_them():
+    """E at a given c changes the speed of waves alone, and stands first; stresses follow from μ."""
+    changes = {"solid.E": ["100 GPa", "200 GPa", "300 GPa"], "friction.mu_c": [0.1, 0.3, 0.5]}
+    given = {"motion.strokes": ["forward"], "motion.X_over_L": 1.0, "motion.c": [0.3, 0.99]}
+    result = computed("tables4_5", CLOSED_FORM | changes | given | {"output.quantities": ["sif"]})
+    drawing = drawn(result, "parameters")
+    assert {axis.get_xlabel() for axis in drawing.figure.axes} == {"Coulomb's coefficient $\\mu_C$"}
+    assert any("intensity" in axis.get_ylabel() for axis in drawing.figure.axes)
+    assert "They are the same for every E" in drawing.caption and "is formal" in drawing.caption

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import SCENE, of_sections
+from support import CLOSED_FORM, SCENE, computed, of_sections
 
 from galinx import compute, load, read_scene
 from galinx.app.errors import BadInput
@@ -97,3 +97,11 @@ def test_an_archive_does_not_replace_another_kind_of_file(exact_run, tmp_path):
     with pytest.raises(Occupied, match=r"ends with \.toml, expected an archive's, as scene\.h5"):
         exact_run.save(scene, overwrite=True)
     assert scene.read_text() == "kept"
+
+
+def test_a_grid_over_moduli_has_the_speeds_that_were_given_to_the_last_digit():
+    """As c times the wave speed 250 m/s was 249.99999999999997 in one solid, and half of the grid NaN."""
+    speeds = {"motion.c": None, "motion.speed": ["100 m/s", "250 m/s"]}
+    result = computed("tables4_5", CLOSED_FORM | speeds | {"solid.E": ["2 GPa", "3.3 GPa"]})
+    assert result.grid.speed.values.tolist() == [100.0, 250.0]
+    assert not np.isnan(result.grid.closed_form_K_I).any()

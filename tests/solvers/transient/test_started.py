@@ -71,7 +71,8 @@ def test_both_methods_agree(name):
 def test_both_methods_agree_on_random_solids(changes, seed):
     """What is left is K_I of the finite elements at strongly singular ends."""
     rng, solid = np.random.default_rng(seed), random_solid(seed)
-    c, (one, other) = rng.uniform(0.0, 0.8) * solid.limit(), rng.uniform(-0.7, 0.7, 2)
+    c, drawn = rng.uniform(0.0, 0.8) * solid.limit(), rng.uniform(-0.7, 0.7, 2)
+    one, other = drawn * min(1.0, 0.6 * min(solid.flutter(c)))  # beyond flutter nothing is well posed
     g, end, steps = (lambda t: one + other * np.sin(t), 4.0, 50) if changes else (one, 5.0, 60)
     found = differences(solid, c, g, end, steps, degree=9)
     assert found[0] < (1e-4 if changes else 3e-4) and found[2] < 3e-3

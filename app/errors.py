@@ -110,6 +110,8 @@ def require_one_of(what: str, word: str, valid: Collection[str]) -> str:
     Raises:
         BadInput: it is not; the message names the nearest, or all.
     """
+    if not isinstance(word, str):
+        raise BadInput(f"{what}: found {excerpt(word)}, expected a text; valid: {', '.join(valid)}")
     if word in valid:
         return word
     raise BadInput(f"{what} {short(word)!r}: there is none{nearest(word, valid)}")

@@ -42,6 +42,9 @@ class Registry(dict[str, Model]):
         self[name] = model
         return model
 
+    def __missing__(self, name: Any) -> Model:
+        raise KeyError(f"the {self.noun} {name!r}: there is none; valid: {', '.join(self)}")
+
     def check(self, name: str, model: Any) -> None:
         """Check that a model can be registered.
 

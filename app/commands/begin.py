@@ -100,8 +100,8 @@ def _pairs(option: str, words: Iterable[str]) -> dict[str, str]:
     help="Of a table of slips, as '1 mm/s'; may be repeated, for each.",
 )  # fmt: skip
 @click.option(
-    "--rows", type=click.IntRange(1, 20), default=3, show_default=True,
-    help="Of a law's table, as the springs of Maxwell slip.",
+    "--rows", type=int, default=3, show_default=True,
+    help="Of a law's table, as the springs of Maxwell slip; 1 to 20.",
 )  # fmt: skip
 @click.option("--into", type=options.FILE, metavar="SCENE", help="Scene whose friction law is replaced.")
 @click.option(

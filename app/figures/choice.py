@@ -73,8 +73,14 @@ def short_name(row: Quantity) -> str:
 
 
 def words(names: str | Sequence[str]) -> tuple[str, ...]:
-    """The words between commas, or those of a list."""
+    """The words between commas, or those of a list.
+
+    Raises:
+        BadInput: there are none.
+    """
     if not isinstance(names, str):
+        if not np.iterable(names) or not all(isinstance(name, str) for name in names):
+            raise BadInput(f"found {names!r:.60}, expected names, as a text or a list of texts")
         return tuple(names)
     return tuple(word.strip() for word in names.split(",") if word.strip())
 

@@ -21,7 +21,7 @@ from galinx.postprocess.tables import (
 )
 from galinx.postprocess.units import Units
 
-from ..errors import BadInput, listed, short
+from ..errors import BadInput, excerpt, listed, short
 from ..scene.changes import differences
 from ..scene.read import constants
 from .result import Result
@@ -279,7 +279,13 @@ def compare(first: Result, *others: Result, dimensionless: bool = False) -> list
     Args:
         first, others: results.
         dimensionless: stresses over N/(2a), lengths over a, speeds over c_s.
+
+    Raises:
+        BadInput: one is no result.
     """
+    for result in (first, *others):
+        if not isinstance(result, Result):
+            raise BadInput(f"compare: found {excerpt(result)}, expected results, as load gives")
     return Comparison([first, *others], dimensionless).columns()
 
 

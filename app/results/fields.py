@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from itertools import chain
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -192,7 +193,18 @@ def _for_finite_elements(scene: Scene, speeds: set[float]) -> Scene:
     )
 
 
-def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 0.0) -> Any:
+def _check_extent(scene: Scene, extent: float) -> None:
+    """Raise BadInput for what is no distance over a that a scene's mesh holds."""
+    limit = farthest_inside(scene)
+    if not (isinstance(extent, Real) and 0.0 < extent <= limit):
+        found = f"{extent:g} a" if isinstance(extent, Real) else f"{extent!r:.60}"
+        raise BadInput(
+            f"extent: found {found}, expected more than 0 and at most {limit:g} a with the "
+            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
+        )
+
+
+def displacement(scene: Scene, number: int, degree: int | None = None, extent: float = 10.0) -> Any:
     """Displacement [m] of a state as a dolfinx function on a mesh of the solid [m].
 
     Arguments are those of :func:`solve_states`.
@@ -206,6 +218,7 @@ def displacement(scene: Scene, number: int, degree: int | None = None, extent: f
         raise BadInput(
             f"displacement: found {ranks.size()} ranks, expected one: the mesh is not shared out"
         )
+    _check_extent(scene, extent)
     with closing(solve_states(scene, [number], [degree], extent)) as states:
         from galinx.solvers.fem.export import in_physical_plane
 
@@ -285,12 +298,7 @@ def write_fields(
         SolveError: the equations could not be solved.
         UnwritableArchive: the file system refused.
     """
-    limit = farthest_inside(scene)
-    if not 0.0 < extent <= limit:
-        raise BadInput(
-            f"extent: found {extent:g} a, expected more than 0 and at most {limit:g} a with the "
-            f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
-        )
+    _check_extent(scene, extent)
     states = solve_states(scene, numbers, degrees, extent)
     from mpi4py import MPI
 

@@ -5,7 +5,7 @@ Measured friction comes as arrays, or from tables (:func:`read`).
 
 import json
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import isfinite
@@ -143,6 +143,8 @@ def _of_arrays(measured: Measured) -> Table:
         BadInput: they are no friction along a motion.
     """
     given = {"t": measured.t, "X": measured.X, "f": measured.f}
+    if any(np.ma.isMaskedArray(of) or np.iscomplexobj(of) for of in given.values()):
+        raise BadInput("arrays: found masked or complex numbers, expected real ones without a mask")
     try:
         t, X, f = (np.asarray(of, dtype=float) for of in given.values())
     except (TypeError, ValueError) as error:
@@ -171,6 +173,8 @@ def _require_friction(name: str, X: NDArray, f: NDArray) -> None:
 
 #: Name that stands for every law.
 ALL = "all"
+#: Most rows of a law's table.
+MOST_ROWS = 20
 #: What a law leaves of friction over its size from which on it does not follow it; the same where the
 #: scatter from sample to sample is so many times less, and shows that more than noise is left.
 _FOLLOWS, _MORE, _THAN_SCATTER = 0.5, 0.05, 3.0
@@ -267,7 +271,7 @@ def fit(
     start: Mapping[str, Any] | None = None,
     speed: Any = (),
     rows: int = 3,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Fit:
     """Friction law nearest to measured friction, of all laws that of the least Akaike's criterion.
 
@@ -279,13 +283,14 @@ def fit(
         start: parameters by key with which the search begins.
         speed: of tables of slips, in m/s or a text with a unit; one for all, or one for each.
         rows: number of rows of a law's table, as the springs of Maxwell slip.
-        progress: shows the work.
+        progress: shows the work; True for a bar on a terminal.
 
     Raises:
         BadInput: there is no such law, a table is none, its friction drives the motion, or no law can be
             fitted to it.
     """
-    sources = [data] if isinstance(data, (str, Path, Measured)) else list(data)
+    one = isinstance(data, (str, Path, Measured)) or not np.iterable(data)
+    sources: list[Any] = [data] if one else list(data)  # type: ignore[arg-type]
     strange = [source for source in sources if not isinstance(source, (str, Path, Measured))]
     if strange or not sources:
         found = f"{strange[0]!r:.60}" if strange else "nothing"
@@ -293,6 +298,8 @@ def fit(
     paths = [str(source) for source in sources if isinstance(source, (str, Path))]
     if twice := [name for name in dict.fromkeys(paths) if paths.count(name) > 1]:
         raise BadInput(f"found {listed(twice)} more than once, expected each measurement once")
+    if not isinstance(rows, int) or not 1 <= rows <= MOST_ROWS:
+        raise BadInput(f"rows: found {rows!r}, expected a whole number from 1 to {MOST_ROWS}")
     names = [*LAWS] if require_one_of("friction law", model, [*LAWS, ALL]) == ALL else [model]
     # Parameters of each law that it has, from texts and numbers.
     fixed, started = (_values(names, given or {}) for given in (fix, start))
@@ -308,30 +315,31 @@ def fit(
             )
     fits: list[Fit] = []
     failed: dict[str, str] = {}
-    progress = progress or Progress(quiet=True)
-    for n, name in enumerate(names):
-        progress.say(LAWS[name].about)
-        begun, kind = perf_counter(), LAWS[name]
+    quiet = nullcontext(progress or Progress(quiet=True))
+    with Progress() if progress is True else quiet as shown:
+        for n, name in enumerate(names):
+            shown.say(LAWS[name].about)
+            begun, kind = perf_counter(), LAWS[name]
 
-        def step(done: int, of: int, before: int = n) -> None:
-            progress.done(before + done / of, len(names), "laws")
+            def step(done: int, of: int, before: int = n) -> None:
+                shown.done(before + done / of, len(names), "laws")
 
-        try:
-            if speedless and kind.depends_on_speed:
-                raise ValueError("depends on the speed: give --speed, as in --speed '1 mm/s'")
-            held, guess = (
-                {key: given[key] for key in parameters(kind) if key in given}
-                for given in (fixed, started)
-            )
-            result = solver.fit(kind, [table.measured for table in tables], held, guess, rows, step)
-            seconds = perf_counter() - begun
-            fits.append(Fit(**vars(result), model=name, seconds=seconds, tables=tables))
-        except ValueError as error:
-            failed[name] = str(error)
+            try:
+                if speedless and kind.depends_on_speed:
+                    raise ValueError("depends on the speed: give --speed, as in --speed '1 mm/s'")
+                held, guess = (
+                    {key: given[key] for key in parameters(kind) if key in given}
+                    for given in (fixed, started)
+                )
+                result = solver.fit(kind, [table.measured for table in tables], held, guess, rows, step)
+                seconds = perf_counter() - begun
+                fits.append(Fit(**vars(result), model=name, seconds=seconds, tables=tables))
+            except ValueError as error:
+                failed[name] = str(error)
+        shown.done(len(names), len(names), "laws")
     if not fits:
         where = listed([table.name for table in tables], 3)
         raise BadInput("\n".join(f"{where}, {name}: {reason}" for name, reason in failed.items()))
-    progress.done(len(names), len(names), "laws")
     best, *others = sorted(fits, key=lambda fit: fit.aic)
     return replace(best, others=tuple(others), failed=failed)
 
@@ -342,7 +350,7 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
     Raises:
         BadInput: there are other numbers of speeds than of tables of slips, or one is no speed.
     """
-    texts = [given] if isinstance(given, (str, int, float)) else list(given)
+    texts = [] if given is None else [given] if np.ndim(given) == 0 else list(given)
     slips = sum(not table.timed for table in tables)
     if texts and not slips:
         raise BadInput("--speed: found one, but the table tells the time; leave it away")
@@ -354,7 +362,7 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
     for text in texts:
         try:
             with suppress(TypeError, ValueError):  # else a text with a unit
-                text = float(text)
+                text = text if isinstance(text, bytes) else float(text)
             speeds.append(Number("m/s")(text))
         except ValueError as error:
             raise BadInput(f"--speed: {error}") from None
@@ -366,6 +374,18 @@ def _at_speeds(tables: list[Table], given: Any) -> tuple[tuple[Table, ...], bool
     return tuple(moving), bool(slips and not speeds)
 
 
+def _rows(given: Any) -> list[list[Any]]:
+    """Rows of a table, from such or a text.
+
+    Raises:
+        ValueError: they are none.
+    """
+    try:
+        return [list(row) for row in (json.loads(given) if isinstance(given, str) else given)]
+    except (TypeError, ValueError):
+        raise ValueError(f"found {given!r:.60}, expected rows, as [[1e4, 0.1], [1e3, 0.2]]") from None
+
+
 def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters by key, of one or the other law, from numbers or texts.
 
@@ -374,13 +394,14 @@ def _values(names: list[str], given: Mapping[str, Any]) -> dict[str, Any]:
     """
     declared = {key: entry for name in names for key, entry in parameters(LAWS[name]).items()}
     values: dict[str, Any] = {}
+    if not isinstance(given, Mapping):
+        raise BadInput(f"fix or start: found {given!r:.60}, expected numbers by key, as {{'mu_c': 0.3}}")
     for key, value in given.items():
         if key not in declared:
             raise BadInput(f"fix or start: found {short(key)!r}, expected one of {', '.join(declared)}")
         try:
             if declared[key].columns:
-                table = json.loads(value) if isinstance(value, str) else value
-                value = [list(row) for row in table]
+                value = _rows(value)
             elif not declared[key].options:
                 with suppress(TypeError, ValueError):  # else a text with a unit
                     value = float(value)

@@ -5,7 +5,7 @@ In a notebook a result shows its title, verdict and states as HTML.
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from functools import cached_property
 from html import escape
@@ -23,7 +23,7 @@ from galinx.postprocess.target import FIELDS, PAGE, Target, check_archive_name
 from galinx.postprocess.units import Units
 
 from ..console import Progress
-from ..errors import BadInput, short
+from ..errors import BadInput, require_one_of, short
 from ..run.flow import Memory
 from ..run.flow import compute as compute_into
 from ..scene import read as scenes
@@ -212,6 +212,8 @@ class Result:
         if isinstance(states, str):
             states = numbers(states) if states else ()
         states = tuple(np.atleast_1d(states).tolist())
+        if strange := [state for state in states if type(state) is not int]:
+            raise BadInput(f"states: found {strange[0]!r:.60}, expected whole numbers")
         if not isinstance(size, choice.Size | None):
             size = choice.size(str(size))
         if isinstance(measured, str | Path):
@@ -225,16 +227,18 @@ class Result:
         Args:
             name: of a drawing, as ``"friction"`` or ``"surface"``; that one if not given, or that of
                 friction where there are no stresses.
-            options: as in :meth:`drawings`.
+            options: as in :meth:`drawings`, where ``figures`` is another word for the name.
 
         Raises:
-            BadInput: the result has no such figure.
+            BadInput: the result has no such figure, or several are named.
         """
         from ..figures.archive import names
         from ..figures.files import content
 
         usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
-        (drawing,) = self.drawings(figures=(name or usual,), **options)
+        (drawing, *more) = self.drawings(**{"figures": name or usual} | options)
+        if more:
+            raise BadInput(f"found {1 + len(more)} figures, expected one; plot(folder) writes several")
         figure: Any = drawing.figure  # notebooks know how to show figures of pyplot alone
         figure._repr_png_ = lambda: content(figure, "png", 110)
         return figure
@@ -262,6 +266,11 @@ class Result:
             UnwritableArchive: the file system refused.
         """
         if to is None:
+            if name != "galinx" or formats or dpi:
+                raise BadInput(
+                    "name, formats and dpi are of files: expected a folder or a file before them; figure "
+                    "takes the name of a figure"
+                )
             return self.figure(dimensionless=dimensionless, **options)
         from ..figures.archive import write
         from ..figures.choice import words
@@ -371,14 +380,14 @@ def template(name: str, changes: dict[str, Any] | None = None) -> Scene:
     Raises:
         BadInput: no such scene, or the changed one has faults.
     """
-    from ..errors import BadInput, excerpt, nearest
     from ..scene.changes import changed
     from ..scene.library import templates
 
     available = templates()
-    if name not in available:
-        raise BadInput(f"template {excerpt(name)}: no such scene{nearest(str(name), available)}")
-    return scenes.parse(changed(available[name], changes or {}), name)
+    text = available[require_one_of("template", name, available)]
+    if not isinstance(changes, Mapping | None):
+        raise BadInput(f"template: found {changes!r:.60}, expected values by key, as {{'motion.c': 0.3}}")
+    return scenes.parse(changed(text, changes or {}), name)
 
 
 def compute(scene: Scene | Path | str, progress: bool = False) -> Result:

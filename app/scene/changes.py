@@ -122,6 +122,8 @@ def changed(text: str, changes: Mapping[str, Any], name: str = "scene") -> str:
     Raises:
         BadInput: the text is not TOML, a key is not of that form, or one to be removed does not exist.
     """
+    if strange := [key for key in changes if not isinstance(key, str)]:
+        raise BadInput(f"{name} cannot be changed: found the key {excerpt(strange[0])}, expected a text")
     try:
         tree = tomlkit.parse(text)
         values = _keys(tree)

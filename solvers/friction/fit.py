@@ -309,6 +309,7 @@ def fit(
         θ = search.begin
     residuals = fitted.residuals(search, θ[None])[0]
     if np.abs(residuals).max() >= _REJECTED:
+        search.law(search.begin)  # says what is wrong with what is fixed
         raise ValueError("no start of the search leads to a law; fix or start other parameters")
     law, names = search.law(θ), search.names
     spread = float(residuals @ residuals) / (len(residuals) - len(θ))

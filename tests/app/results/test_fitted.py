@@ -217,3 +217,28 @@ def test_friction_in_per_cent_is_said_to_be_unusual(tmp_path):
 def test_data_that_are_no_measurements_are_named(data, found):
     with pytest.raises(BadInput, match=f"data: found {found}.*, expected names of files"):
         galinx.fit(data, "dahl")
+
+
+@pytest.mark.parametrize(
+    "options, said",
+    [({"rows": 0}, "rows: found 0, expected a whole number from 1 to 20"),
+     ({"rows": 1.5}, r"rows: found 1\.5"),
+     ({"fix": "k"}, "fix or start: found 'k', expected numbers by key"),
+     ({"fix": {"elements": 3}}, "elements: found 3, expected rows"),
+     ({"fix": {"elements": "[[1, .2]]"}}, r"elements: found .*, expected rows"),
+     ({"fix": {"elements": [[-1.0, 0.1]]}}, "expected stiffnesses and limits above 0"),
+     ({"model": None}, "friction law: found None, expected a text")],
+)  # fmt: skip
+def test_options_of_a_fit_that_are_none_are_named(options, said):
+    t = np.linspace(0.0, 1.0, 60)
+    measured = galinx.Measured(t, 1e-4 * t, 0.3 * -np.expm1(-20.0 * t))
+    with pytest.raises(BadInput, match=said):
+        galinx.fit(measured, **{"model": "maxwell_slip"} | options)
+
+
+def test_masked_samples_are_refused():
+    """Without their mask they are numbers like others."""
+    t = np.linspace(0.0, 1.0, 60)
+    f = np.ma.array(np.where(t > 0.6, 9.0, 0.4), mask=t > 0.6)
+    with pytest.raises(BadInput, match="found masked or complex numbers"):
+        galinx.fit(galinx.Measured(t, t, f), "coulomb")

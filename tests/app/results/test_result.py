@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support import CLOSED_FORM, SCENE, computed, of_sections
 
-from galinx import compute, load, read_scene
+from galinx import LAWS, compare, compute, load, read_scene, template
 from galinx.app.errors import BadInput
 from galinx.app.results.check import faults
 from galinx.postprocess.errors import Occupied
@@ -105,3 +105,31 @@ def test_a_grid_over_moduli_has_the_speeds_that_were_given_to_the_last_digit():
     result = computed("tables4_5", CLOSED_FORM | speeds | {"solid.E": ["2 GPa", "3.3 GPa"]})
     assert result.grid.speed.values.tolist() == [100.0, 250.0]
     assert not np.isnan(result.grid.closed_form_K_I).any()
+
+
+@pytest.mark.parametrize(
+    "call, said",
+    [(lambda r: r.figure(3), "found 3, expected names"),
+     (lambda r: r.figure(figures="friction,surface"), "found 2 figures, expected one"),
+     (lambda r: r.plot(name="friction"), r"figure takes the name of a figure"),
+     (lambda r: r.choice(states=1.5), r"states: found 1\.5, expected whole numbers"),
+     (lambda r: r.choice(y=3), "found 3, expected names"),
+     (lambda r: r.figure(method=3), "method: found 3, expected a text; valid: closed_form"),
+     (lambda r: r.displacement(extent=-1.0), "extent: found -1 a, expected more than 0"),
+     (lambda r: compare(r, "b.h5"), r"compare: found 'b\.h5', expected results"),
+     (lambda r: template([]), r"template: found \[\], expected a text"),
+     (lambda r: template("fig9", "c"), "template: found 'c', expected values by key"),
+     (lambda r: template("fig9", {3: 0.3}), "found the key 3, expected a text")],
+)  # fmt: skip
+def test_what_is_no_argument_is_named(exact_run, call, said):
+    with pytest.raises(BadInput, match=said):
+        call(exact_run)
+
+
+def test_a_figure_is_plotted_by_its_name_in_any_argument(exact_run):
+    assert len(exact_run.plot(figures="friction").axes) == len(exact_run.figure("friction").axes)
+
+
+def test_a_model_that_is_not_registered_is_told_with_those_that_are():
+    with pytest.raises(KeyError, match=r"the friction law 'nosuch': there is none; valid: .*dahl"):
+        LAWS["nosuch"]

@@ -153,6 +153,8 @@ class Plan:
         if self.asks(stresses.BELOW):
             X, Y = self.places.points.T
             datasets |= {stresses.INSIDE_X.path: X, stresses.INSIDE_Y.path: Y}
+            if grid := self.scene.output.map:
+                datasets[stresses.MAP.path] = np.array([count for *_, count in reversed(grid)])
         if self.asks(layers.AT_INTERFACES):
             unit, depths = self.body.depths
             datasets[layers.DEPTHS[unit].path] = depths

@@ -24,7 +24,7 @@ from galinx.clock import Clock
 from galinx.postprocess.compare import RULES, comparisons
 from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.over_time import IN_TIME
-from galinx.postprocess.quantities import declared, runs, stresses
+from galinx.postprocess.quantities import declared, runs
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.quantities.states import RATIO
 from galinx.postprocess.validity import THRESHOLDS, Steady, Validity
@@ -281,8 +281,6 @@ def compute(
         plans = make_plans(scene, partial(progress.done, what="friction loops"))
         plan, states = plans[0], joined_states(plans)
         put({runs.SCENE.path: scene.text} | states.datasets | joined_positions(plans))
-        if plan.asks(stresses.BELOW) and scene.output.map:
-            put({stresses.MAP.path: np.array([count for *_, count in reversed(scene.output.map)])})
     if scene.slider:
         with clock("slider"):
             progress.say("slider")

@@ -60,6 +60,7 @@ def of_scene(old, new):
     "changed, message",
     [
         (times("states/g", -1.0), "states/g holds something else"),
+        (value("interior/map", 3), "interior/map holds other positions than its scene gives"),
         (value("states/motion", "BM7"), "states/motion holds something else"),
         (of_scene("mu_c", "delta = 0.9\nmu_c"), "states/f holds something else"),
         (of_scene("X_over_L = 0.8", "X_over_L = [0.7, 0.8]"), "it holds 2 states, its scene has 4"),

@@ -26,7 +26,7 @@ _WIDE = 1e-3
 _SEARCH, _FIT = (1e-4, 30), (1e-7, 40)
 #: Relative difference of sums of squares below which two starts led to one law, and times that starts
 #: lead to the best one again until the search ends.
-_AGAIN, _ENOUGH = 1e-4, 4
+_AGAIN, _ENOUGH = 1e-4, 8
 #: Residual where a law rejects its parameters.
 _REJECTED = 1e3
 #: Distance from the bounds of an open range that a fit keeps.
@@ -390,6 +390,8 @@ def _best_start(
     for n in range(1, _STARTS):
         step(n, _STARTS)
         θ = search.begin + search.reach * rng.uniform(-1.0, 1.0, len(search.begin))
+        if n % 2:  # some unknowns alone, as of one spring: others are right already
+            θ = np.where(rng.random(len(θ)) < 0.4, θ, best.x)
         result = _least(data, search, np.clip(θ, search.low, search.high), *_SEARCH)
         if result.cost < (1.0 - _AGAIN) * best.cost:
             best, again = result, 0

@@ -275,3 +275,16 @@ def test_the_search_passes_by_minima_that_leave_more(name, true, samples):
     f[0] = 0.0
     f += NOISE * np.random.default_rng(0).standard_normal(samples)
     assert fit(kind, [Measured(t, X, f)], {}, {}).rms < 1.1 * NOISE
+
+
+@pytest.mark.parametrize("seed", [11, 26, 37])
+def test_three_springs_are_told_from_false_minima(seed):
+    """Starts that knew nothing of one another left up to 20 times the noise of these."""
+    rng, turns = np.random.default_rng(seed), 1e-4 * np.array([0.0, 1.0, 0.2, 0.8, 0.3, 1.0])
+    limits, slips = 0.4 * rng.dirichlet([2, 2, 2]), np.exp(rng.uniform(*np.log([2e-6, 9e-5]), 3))
+    reached = np.append(0.0, np.cumsum(np.abs(np.diff(turns))))
+    t = np.linspace(0.0, reached[-1], 240)
+    kind, X = LAWS["maxwell_slip"], np.interp(t, reached, turns)
+    law = build_model(kind, {"elements": tuple(zip((limits / slips).tolist(), limits.tolist()))})
+    f = friction(law, moves(t, X, kind.depends_on_speed), len(t)) + 1e-4 * rng.standard_normal(len(t))
+    assert fit(kind, [Measured(t, X, f)], {}, {}, 3).rms < 1.2e-4

@@ -321,8 +321,8 @@ def _columns(
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():
             least = stress * (row.unit == "N/(2a)") * (10.0 if row.method == FEM else 1.0)
-            if place or row.scale in (CONTACT, OVER_A):
-                least = length
+            if place or row.scale in (CONTACT, OVER_A):  # what has no sign is as small as it is
+                least = length if row.range.at_least is None else 0.0
             columns.append(
                 Column(
                     f"{head}/a" if units.dimensionless and (place or row.scale == OVER_A) else head,

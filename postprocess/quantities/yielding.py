@@ -121,7 +121,7 @@ REACH_LEFT, REACH_RIGHT = (
 DEPTH = _both(
     "yield_depth", "1",
     f"depth of yield, the largest at the load, over the half-width; {_BEYOND}",
-    lambda s, _: s.strength.depth, requires=(STRENGTH, UNIFORM), scale=OVER_A,
+    lambda s, _: s.strength.depth, requires=(STRENGTH, UNIFORM), scale=OVER_A, range=NOT_NEGATIVE,
 )  # fmt: skip
 ESTIMATE_YIELD = Quantity(
     "states/fem/estimate_yield", "1",

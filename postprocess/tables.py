@@ -723,9 +723,10 @@ def starts_sheet(data: dict[str, Any], units: Units, width: int = 0) -> Sheet:
         ),
         _Spec("centre in steady motion", over_time.STEADY_CENTRE, 5),
     )  # fmt: skip
+    numbers = _columns(data, units, specs, archived=True)
     columns = [
         Column("direction", ways, "none"),
-        *_columns(data, units, specs, archived=True),
+        *(column for column in numbers if np.isfinite(column.values).any()),
         *_occurring(
             [Column("off steady motion", 100.0 * data[over_time.OFF[method].path], "%", digits=3)]
         ),

@@ -90,8 +90,8 @@ def chart(panel: Panel) -> dict[str, Any]:
     layout: dict[str, Any] = {
         "title": {"text": _label(panel.title)} if panel.title else {},
         "xaxis": _axis(_label(panel.x or ""), panel.xlim, "x" in panel.log),
-        # In lines of 34 letters, which are no longer than a chart is high.
-        "yaxis": _axis(_label(folded((panel.y or "") + unit, 34)), panel.ylim, "y" in panel.log),
+        # In lines of 30 letters, which are no longer than a chart is high.
+        "yaxis": _axis(_label(folded((panel.y or "") + unit, 30)), panel.ylim, "y" in panel.log),
         "shapes": [_shape("y", "rect", "x", *band) for band in panel.bands]
         + [_shape("y", "line", "x", x, x) for x in panel.at_x]
         + [_shape("x", "line", "y", y, y) for y in panel.at_y],

@@ -13,6 +13,7 @@ from galinx.app.plan.plan import make_plan
 from galinx.app.results.check import faults
 from galinx.postprocess.compare import RULES, checked
 from galinx.postprocess.over_time import DONE, HELD, energy_imbalance
+from galinx.postprocess.tables import starts_sheet
 from galinx.solvers.errors import SolveError
 from galinx.solvers.fem.linear import LinearSolver
 from galinx.solvers.solids.isotropic import Isotropic
@@ -254,6 +255,9 @@ def test_friction_by_its_law_is_followed_by_both_methods():
         by_fem, by_sie = (data[f"time/surface/{of}/{name}"][0][:, away] for of in ("fem", "sie"))
         assert by_sie.shape[0] == 2 and np.ptp(by_sie[-1]) > 0.2
         np.testing.assert_allclose(by_fem, by_sie, atol=0.02 * np.abs(by_sie).max())
+    nowhere = {path: np.nan * values for path, values in data.items() if "time/fem/K_I" in path}
+    for known, there in ((data, True), (data | nowhere, False)):  # numbers that no start has are no row
+        assert any("K_I left" in row[0] for row in starts_sheet(known, result.units()).rows) == there
 
 
 #: A coating that starts from rest.

@@ -61,7 +61,7 @@ _BETWEEN = np.linspace(-0.9, 0.9, 4)
 _RATIO = 4.0
 #: Distances times s over the radius up to which responses are series, terms of these, and points of a
 #: circle, of what share of the radius, on which Laurent's series is found.
-_NEAR, _TERMS, _ON_CIRCLE, _OF_RADIUS = 5.0, 36, 128, 0.7
+_NEAR, _TERMS, _ON_CIRCLE, _OF_RADIUS = 3.0, 28, 128, 0.7
 #: Width of panels of a single point.
 _NO_WIDTH = 1e-300
 

@@ -10,7 +10,7 @@ from stroh import admittances
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.admittance import Admittance
 from galinx.solvers.solids.isotropic import Isotropic
-from galinx.solvers.transient.line_load import Echoes, Kernel, UniformLayers
+from galinx.solvers.transient.line_load import _NEAR, Echoes, Kernel, UniformLayers
 
 
 def panels(edges):
@@ -60,7 +60,7 @@ def test_near_a_load_the_series_is_the_integral(seed, c):
     rng, solid = np.random.default_rng(seed), [*map(random_solid, range(4)), *KNOWN][seed]
     limit = solid.limit()
     kernel = Kernel(Admittance.of(solid.response(0.0)), c * limit, limit)
-    for x, ψ in zip(10.0 ** rng.uniform(-6.0, 0.7, 6), rng.uniform(0.0, 0.5 * np.pi, 6)):
+    for x, ψ in zip(10.0 ** rng.uniform(-6.0, np.log10(_NEAR), 6), rng.uniform(0.0, 0.5 * np.pi, 6)):
         s, x = np.exp(1j * ψ), np.array([[x * (1.0 - abs(c)) * limit]])
         for slopes in (False, True):
             exact = kernel._far(x, s, slopes)

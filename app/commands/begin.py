@@ -101,7 +101,7 @@ def _pairs(option: str, words: Iterable[str]) -> dict[str, str]:
 )  # fmt: skip
 @click.option(
     "--rows", type=int, default=3, show_default=True,
-    help="Of a law's table, as the springs of Maxwell slip; 1 to 20.",
+    help="Rows of a law's table, as the springs of Maxwell slip; 1 to 20.",
 )  # fmt: skip
 @click.option("--into", type=options.FILE, metavar="SCENE", help="Scene whose friction law is replaced.")
 @click.option(

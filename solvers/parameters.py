@@ -205,9 +205,10 @@ def check_gives(model: Any, function: str, shape: tuple[int, ...], *given: Any) 
     """
     values = np.asarray(getattr(model, function)(*given))
     if values.shape != shape or values.dtype.kind not in "fiu":
-        found = " ".join(str(values).split())[:80] + f", of shape {values.shape}"
+        text = " ".join(str(values).split())[:80]
         raise ValueError(
-            f"{type(model).__name__}.{function} gives {found}, expected numbers of shape {shape}"
+            f"{type(model).__name__}.{function} gives {text}, of shape {values.shape}, expected numbers "
+            f"of shape {shape}"
         )
 
 

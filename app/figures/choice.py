@@ -246,7 +246,7 @@ class Archive:
         fixed = [name for name in self.varied() if name not in self.varied(states)]
         return f" All at {self.text(int(states[0]), fixed)}." if fixed else ""
 
-    def formal(self, states: Sequence[int]) -> str:
+    def formal(self, states: NDArray | Sequence[int]) -> str:
         """Sentence on states at speeds at which waves along the surface are slower; "" for none."""
         beyond = (self.speeds >= self.data[SPEED_LIMIT.path])[list(states)].any()
         return " Beyond the speed of waves along the surface the closed form is formal." * bool(beyond)

@@ -116,8 +116,8 @@ class _Sweep:
     def __init__(self, of: Archive) -> None:
         self._of, self.columns = of, columns_of(of)
         choice, every, self.same = of.choice, of.selected(), ""
-        asked = [*self.columns.keys() & {*choice.y}] or [*self.columns.keys() & {*_ANSWERS, *_OF_EDGES}]
-        once = of.once(every, *(self.columns[name].best for name in asked or self.columns))
+        considered = self.columns.keys() & ({*choice.y} or {*_ANSWERS, *_OF_EDGES}) or self.columns
+        once = of.once(every, *(self.columns[name].best for name in considered))
         if of.varied(once[0]) and not (choice.x or choice.by):
             every, self.same = once
         self.beside: tuple[str, float] | None = None
@@ -178,8 +178,8 @@ class _Sweep:
         """True where what people ask for changes with a parameter, others held."""
         of = self._of
         states = of.where(selected, **of.fixed([n for n in of.varied(selected) if n != name], selected))
-        asked = self.columns.keys() & {*_ANSWERS, *_OF_EDGES}
-        return any(_varies(self.columns[answer].best[states]) for answer in asked)
+        answers = self.columns.keys() & {*_ANSWERS, *_OF_EDGES}
+        return any(_varies(self.columns[answer].best[states]) for answer in answers)
 
     def _axis(self, name: str) -> tuple[str, NDArray]:
         """Name of the axis of a parameter, and its numbers, (states,)."""

@@ -197,9 +197,9 @@ def _check_extent(scene: Scene, extent: float) -> None:
     """Raise BadInput for what is no distance over a that a scene's mesh holds."""
     limit = farthest_inside(scene)
     if not (isinstance(extent, Real) and 0.0 < extent <= limit):
-        found = f"{extent:g} a" if isinstance(extent, Real) else f"{extent!r:.60}"
+        given = f"{extent:g} a" if isinstance(extent, Real) else f"{extent!r:.60}"
         raise BadInput(
-            f"extent: found {found}, expected more than 0 and at most {limit:g} a with the "
+            f"extent: found {given}, expected more than 0 and at most {limit:g} a with the "
             f"{scene.solve.mesh} mesh at the tolerance {scene.solve.tolerance:g}"
         )
 

@@ -289,12 +289,12 @@ def fit(
         BadInput: there is no such law, a table is none, its friction drives the motion, or no law can be
             fitted to it.
     """
-    one = isinstance(data, (str, Path, Measured)) or not np.iterable(data)
-    sources: list[Any] = [data] if one else list(data)  # type: ignore[arg-type]
+    single = isinstance(data, (str, Path, Measured)) or not np.iterable(data)
+    sources: list[Any] = [data] if single else list(data)  # type: ignore[arg-type]
     strange = [source for source in sources if not isinstance(source, (str, Path, Measured))]
     if strange or not sources:
-        found = f"{strange[0]!r:.60}" if strange else "nothing"
-        raise BadInput(f"data: found {found}, expected names of files, or galinx.Measured of arrays")
+        source = f"{strange[0]!r:.60}" if strange else "nothing"
+        raise BadInput(f"data: found {source}, expected names of files, or galinx.Measured of arrays")
     paths = [str(source) for source in sources if isinstance(source, (str, Path))]
     if twice := [name for name in dict.fromkeys(paths) if paths.count(name) > 1]:
         raise BadInput(f"found {listed(twice)} more than once, expected each measurement once")
@@ -315,8 +315,8 @@ def fit(
             )
     fits: list[Fit] = []
     failed: dict[str, str] = {}
-    quiet = nullcontext(progress or Progress(quiet=True))
-    with Progress() if progress is True else quiet as shown:
+    own = progress if isinstance(progress, Progress) else None  # which its owner ends
+    with nullcontext(own) if own else Progress(quiet=not progress) as shown:
         for n, name in enumerate(names):
             shown.say(LAWS[name].about)
             begun, kind = perf_counter(), LAWS[name]

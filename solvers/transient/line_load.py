@@ -147,9 +147,9 @@ class Kernel:
         w = _NEAR * np.outer([0.3, 0.65, 1.0], turned).ravel()
         values = np.concatenate([self._far(np.array([[self._radius]]), of, False) for of in w], axis=1)
         powers = w[:, None] ** n
-        known = (powers @ b) * np.log(w)[:, None]
+        singular = (powers @ b) * np.log(w)[:, None]
         scale = float(_NEAR) ** n
-        rest, scaled = values[..., 0].T - known, powers / scale
+        rest, scaled = values[..., 0].T - singular, powers / scale
         equations, right = (np.concatenate([of.real, of.imag]) for of in (scaled, rest))
         a, *_ = np.linalg.lstsq(equations, right, rcond=1e-15)
         return a / scale[:, None], b
@@ -292,11 +292,11 @@ def _sums(values: NDArray, a: NDArray, x: NDArray) -> NDArray[np.complex128]:
     """
     sums = np.empty((4, *x.shape), dtype=complex)
     widths = np.round(np.log(np.ptp(x, axis=1) + _NO_WIDTH), 9)
-    _, alike, counts = np.unique(widths, return_inverse=True, return_counts=True)
-    alone = counts[alike] == 1
+    _, width, counts = np.unique(widths, return_inverse=True, return_counts=True)
+    alone = counts[width] == 1
     sums[:, alone] = (values @ np.exp(np.multiply.outer(a, x[alone].ravel()))).reshape(4, -1, x.shape[1])
     for number in np.flatnonzero(counts > 1):
-        panels = np.flatnonzero(alike == number)
+        panels = np.flatnonzero(width == number)
         within = np.exp(np.multiply.outer(x[panels[0]] - x[panels[0], 0], a))
         starts = np.exp(np.multiply.outer(a, x[panels, 0]))
         of_panels = (values[:, None] * within).reshape(-1, len(a)) @ starts

@@ -67,7 +67,7 @@ def unit(name: str) -> str:
 
 def in_tex(name: str) -> str:
     """Unit with its exponent in TeX, for an axis: ``MPa·m^(-β)`` as ``MPa·m$^{-\\beta}$``."""
-    name = re.sub(r"\^(-?\d+)", r"$^{\1}$", name)
+    name = re.sub(r"\^(-?\d+(?:\.\d+)?)", r"$^{\1}$", name)
     return re.sub(r"\^\(-([αβ])\)", lambda of: f"$^{{-\\{_GREEK[of[1]]}}}$", name)
 
 

@@ -66,8 +66,8 @@ SECTION = Kind("a section fitted by galinx", rb"# Fitted by galinx", endings=(".
 TABLES = Kind("tables of galinx", rb"\s*(Table 1\. Dahl|Statements of the study)")
 LOG = Kind("a log of galinx", rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} |\Z", "--log", False)
 
-#: Endings of files that are read, or made of results by galinx or other programs, beside archives.
-OTHERS = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".vtkhdf", ".vtu", ".toml"}
+#: Endings of files that are no archives.
+NO_ARCHIVES = {".pdf", ".png", ".svg", ".html", ".csv", ".txt", ".vtkhdf", ".vtu", ".toml"}
 
 
 def check_archive_name(path: Path) -> None:
@@ -76,10 +76,10 @@ def check_archive_name(path: Path) -> None:
     Raises:
         Occupied: it is.
     """
-    if path.suffix.lower() in OTHERS:
+    if path.suffix.lower() in NO_ARCHIVES:
         raise Occupied(
             f"{path}: found a name that ends with {path.suffix}, expected an archive's, as "
-            f"{path.stem}.h5; other commands make tables, figures and pages of it"
+            f"{path.stem.removesuffix('.h5')}.h5; other commands make tables, figures and pages of it"
         )
 
 

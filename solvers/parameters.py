@@ -197,18 +197,21 @@ def check_gives(model: Any, function: str, shape: tuple[int, ...], *given: Any) 
     Args:
         model: a model, perhaps a user's own.
         function: its name.
-        shape: what its numbers should have.
+        shape: of the array that it should give, () for a number.
         given: its arguments.
 
     Raises:
         ValueError: it gives something else, as None where ``return`` is missing.
     """
-    values = np.asarray(getattr(model, function)(*given))
-    if values.shape != shape or values.dtype.kind not in "fiu":
+    with np.errstate(all="ignore"):
+        answer = getattr(model, function)(*given)
+    values = np.asarray(answer)
+    listed = isinstance(answer, (list, tuple))
+    if listed or values.shape != shape or values.dtype.kind not in "fiu":
         text = " ".join(str(values).split())[:80]
         raise ValueError(
-            f"{type(model).__name__}.{function} gives {text}, of shape {values.shape}, expected numbers "
-            f"of shape {shape}"
+            f"{type(model).__name__}.{function} gives {text}, {'a list' if listed else 'of shape'} "
+            f"{values.shape}, expected an array of numbers of shape {shape}"
         )
 
 

@@ -9,7 +9,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.app.scene.read import parse
 from galinx.solvers.friction.law import FrictionLaw
-from galinx.texts import unseen
+from galinx.texts import in_tex, plain, unseen
 
 
 @pytest.mark.parametrize("code", [0, 7, 10, 27, 127, 0x9B, 0x2028, 0x202E, 0x2066, 0x061C, 0xD800])
@@ -62,3 +62,8 @@ def test_what_is_no_model_is_refused_where_it_is_registered(registry, model, fau
     with pytest.raises(TypeError, match="expected a text for its name"):
         models.register(7, next(iter(models.values())))
     assert "mine" not in models and 7 not in models
+
+
+def test_exponents_are_raised_and_numbers_of_layers_are_no_powers():
+    assert in_tex("kg/m^3") == "kg/m$^{3}$" and in_tex("N/m^1.5") == "N/m$^{1.5}$"
+    assert plain(r"$\mathrm{E}^{(1)} = 2 \times 10^{-3}$") == "E⁽¹⁾ = 2 × 10⁻³"

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from galinx.postprocess.errors import Occupied
-from galinx.postprocess.target import LOG, OTHERS, Target, check_archive_name
+from galinx.postprocess.target import LOG, NO_ARCHIVES, Target, check_archive_name
 
 from .. import ranks
 from ..console import Progress
@@ -39,7 +39,8 @@ class _Path(click.Path):
         if self._of in ("file", "archive") and str(value).endswith(os.sep):
             self.fail(f"found {value!r}, the name of a folder; expected a file's, as in {value}NAME")
         path = super().convert(value, param, ctx)
-        if self._of == "folder" and path.suffix.lower() in {*OTHERS, ".h5", ".hdf"} and not path.is_dir():
+        of_file = path.suffix.lower() in {*NO_ARCHIVES, ".h5", ".hdf"}
+        if self._of == "folder" and of_file and not path.is_dir():
             self.fail(f"{value}: found a name that ends with {path.suffix}, expected a folder for files")
         if self._of == "archive":
             try:

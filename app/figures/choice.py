@@ -79,9 +79,10 @@ def words(names: str | Sequence[str]) -> tuple[str, ...]:
         BadInput: there are none.
     """
     if not isinstance(names, str):
-        if not np.iterable(names) or not all(isinstance(name, str) for name in names):
+        several = tuple(names) if np.iterable(names) else (None,)
+        if not all(isinstance(name, str) for name in several):
             raise BadInput(f"found {names!r:.60}, expected names, as a text or a list of texts")
-        return tuple(names)
+        return several
     return tuple(word.strip() for word in names.split(",") if word.strip())
 
 
@@ -222,7 +223,7 @@ class Archive:
                 for other in each[1:] for y in curves
             ):  # fmt: skip
                 states, idle = each[0], [*idle, plain(f"${self.axis(name)[0]}$")]
-        return states, f" They are the same for every {' and '.join(idle)}." * bool(idle)
+        return states, f" Results are the same for every {' and '.join(idle)}." * bool(idle)
 
     def ordered(self, states: NDArray) -> NDArray[np.int64]:
         """Some states in the order of their parameters, the first parameter slowest."""

@@ -161,8 +161,7 @@ class _Sweep:
         if requested:
             require_one_of("x", requested, [*numeric, "speed", *columns])
         swept = _swept(of, selected) or of.varied(selected)
-        swept = [name for name in swept if name in numeric]
-        usual = next((name for name in swept if self._answers(name, selected)), next(iter(swept), ""))
+        usual = next((name for name in swept if name in numeric), "")
         name = C if requested == "speed" else requested or usual
         if not name:
             raise BadInput("--x: the states differ in no number; name one of " + ", ".join(numeric))
@@ -173,13 +172,6 @@ class _Sweep:
         if name == C and of.axis(C)[2] == "1" and not of.by_c:
             self.beside = "speed (m/s)", of.c_s
         return name, *self._axis(name)
-
-    def _answers(self, name: str, selected: NDArray) -> bool:
-        """True where what people ask for changes with a parameter, others held."""
-        of = self._of
-        states = of.where(selected, **of.fixed([n for n in of.varied(selected) if n != name], selected))
-        answers = self.columns.keys() & {*_ANSWERS, *_OF_EDGES}
-        return any(_varies(self.columns[answer].best[states]) for answer in answers)
 
     def _axis(self, name: str) -> tuple[str, NDArray]:
         """Name of the axis of a parameter, and its numbers, (states,)."""

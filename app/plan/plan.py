@@ -46,6 +46,7 @@ from galinx.solvers.contact.fem_plan import (
 from galinx.solvers.contact.solution import FINITE, GIVEN_ENDS, SOLVED, Contact, Places, Task
 from galinx.solvers.contact.stresses import distances
 from galinx.solvers.errors import SolveError
+from galinx.solvers.profiles import check_slope
 from galinx.texts import bytes_in_words, counted
 
 from .. import ranks
@@ -220,11 +221,16 @@ def _faults(
     for load in sorted({body.load, min(states.loads), max(states.loads)}) if methods else ():
         at_load = body.loaded(load)
         try:
-            at_load.half_width  # noqa: B018 - cached
+            half_width = float(at_load.half_width)
         except SolveError as error:
             if load == body.load:  # results are in units of this contact; methods report others
                 yield f"punch.load: found {load:g} N/m: {error}"
             continue
+        try:
+            check_slope(body.profile, half_width)
+        except ValueError as error:
+            yield f"punch: {error}"
+            break
         magnitudes = {"Pa": at_load.stress, "of the modulus": at_load.strain, "m": at_load.displacement}
         if wrong := [f"{x:g} {unit}" for unit, x in magnitudes.items() if not _LEAST <= x <= _MOST]:
             yield (

@@ -97,7 +97,7 @@ def solve_states(
     if not numbers:
         raise BadInput("states: found none, expected numbers of some")
     count = len(order(scene)) * len(scene.each)
-    if missing := [number for number in numbers if number not in range(count)]:
+    if missing := [number for number in numbers if not 0 <= number < count]:
         raise BadInput(
             f"state {missing[0]}: no such state; expected 0 to {count - 1}, the scene has {count}"
         )

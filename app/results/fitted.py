@@ -9,6 +9,7 @@ from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import isfinite
+from numbers import Integral
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -298,7 +299,7 @@ def fit(
     paths = [str(source) for source in sources if isinstance(source, (str, Path))]
     if twice := [name for name in dict.fromkeys(paths) if paths.count(name) > 1]:
         raise BadInput(f"found {listed(twice)} more than once, expected each measurement once")
-    if not isinstance(rows, int) or not 1 <= rows <= MOST_ROWS:
+    if not isinstance(rows, Integral) or not 1 <= rows <= MOST_ROWS:
         raise BadInput(f"rows: found {rows!r}, expected a whole number from 1 to {MOST_ROWS}")
     names = [*LAWS] if require_one_of("friction law", model, [*LAWS, ALL]) == ALL else [model]
     # Parameters of each law that it has, from texts and numbers.

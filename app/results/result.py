@@ -211,9 +211,7 @@ class Result:
         figures, quantities, y = (choice.words(names) for names in (figures, quantities, y))
         if isinstance(states, str):
             states = numbers(states) if states else ()
-        states = tuple(np.atleast_1d(states).tolist())
-        if strange := [state for state in states if type(state) is not int]:
-            raise BadInput(f"states: found {strange[0]!r:.60}, expected whole numbers")
+        states = tuple(_whole(states))
         if not isinstance(size, choice.Size | None):
             size = choice.size(str(size))
         if isinstance(measured, str | Path):
@@ -233,12 +231,15 @@ class Result:
             BadInput: the result has no such figure, or several are named.
         """
         from ..figures.archive import names
+        from ..figures.choice import words
         from ..figures.files import content
 
         usual = "surface" if "surface" in names(self.data, self.scene) else "friction"
-        (drawing, *more) = self.drawings(**{"figures": name or usual} | options)
-        if more:
-            raise BadInput(f"found {1 + len(more)} figures, expected one; plot(folder) writes several")
+        chosen = words(options.pop("figures", "")) or words(name or usual)
+        if len(chosen) > 1 or (name and chosen != words(name)):
+            several = ", ".join(dict.fromkeys([*words(name), *chosen]))
+            raise BadInput(f"found the figures {several}, expected one; plot(folder) writes several")
+        (drawing,) = self.drawings(figures=chosen, **options)
         figure: Any = drawing.figure  # notebooks know how to show figures of pyplot alone
         figure._repr_png_ = lambda: content(figure, "png", 110)
         return figure
@@ -316,7 +317,7 @@ class Result:
         from .fields import write_fields
 
         target = Target(Path(path), FIELDS, overwrite, self.inputs)
-        numbers = np.atleast_1d(state).tolist()
+        numbers = _whole(state)
         write_fields(self.scene, numbers, target, extent, [*map(self._degree, numbers)])
 
     def displacement(self, state: int = 0, extent: float = 10.0) -> Any:
@@ -336,7 +337,8 @@ class Result:
         """
         from .fields import displacement
 
-        return displacement(self.scene, state, self._degree(state), extent)
+        (number,) = _whole(state)
+        return displacement(self.scene, number, self._degree(number), extent)
 
     def save(self, path: Path | str, overwrite: bool = False) -> None:
         """Write an archive.
@@ -363,6 +365,18 @@ class Result:
         degrees = self.data.get(runs.RECORD["degree"].path, ())
         solved = runs.states_of_speeds(self.data, len(self.scene.each)) if len(degrees) else ()
         return next((int(p) or None for p, numbers in zip(degrees, solved) if number in numbers), None)
+
+
+def _whole(states: Any) -> list[int]:
+    """Numbers of states, from one or several.
+
+    Raises:
+        BadInput: some are no whole numbers.
+    """
+    numbers = np.atleast_1d(states).ravel().tolist()
+    if strange := [number for number in numbers if type(number) is not int]:
+        raise BadInput(f"states: found {strange[0]!r:.60}, expected whole numbers")
+    return numbers
 
 
 def read_scene(path: Path | str, changes: dict[str, Any] | None = None) -> Scene:

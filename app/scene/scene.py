@@ -6,7 +6,6 @@ need each other, :func:`oddities` values that look unusual, because their unit m
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -29,7 +28,6 @@ from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.parameters import Parameter, parameters
 from galinx.solvers.parameters import values as constants
-from galinx.solvers.profiles import check_slope
 from galinx.solvers.solids import Solid
 from galinx.solvers.solids.pair import Pair
 
@@ -263,20 +261,8 @@ def contradictions(scene: Scene) -> list[str]:
     of_keys = (text for text, holds in faults.items() if holds)
     return [
         *_of_motion(scene), *of_keys, *_of_planes(scene), *_of_elastic_punch(scene),
-        *_along_the_contact(scene), *_of_slope(scene),
+        *_along_the_contact(scene),
     ]  # fmt: skip
-
-
-def _of_slope(scene: Scene) -> Iterator[str]:
-    """Fault of a punch, perhaps a user's own, whose slope is not that of its height."""
-    if FRICTIONS.issuperset(scene.output.quantities):
-        return
-    with suppress(ValueError):  # a load without a contact is a fault of the plan
-        half_width = float(scene.body.half_width)
-        try:
-            check_slope(scene.punch.profile, half_width)
-        except ValueError as error:
-            yield f"punch: {error}"
 
 
 def _along_the_contact(scene: Scene) -> Iterator[str]:

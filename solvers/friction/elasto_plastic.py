@@ -17,7 +17,7 @@ from .lugre import Bristles
 #: constant to the last digit; y at which e^-y is still a number; panels that a step tries at once.
 _WIDTH, _FAR, _LAST, _AT_ONCE = 1.0, 40.0, 700.0, 8
 #: Deflections, evenly spaced, at which friction is looked at from breakaway to steady sliding.
-_WHILE = 32
+_DEFLECTIONS = 32
 #: Gauss's rule of a panel.
 _NODES, _WEIGHTS = leggauss(16)
 
@@ -66,7 +66,7 @@ class ElastoPlastic(Bristles):
         w0 = float(s * z[0] / self.g(V))
         if w0 >= self.r:
             return np.zeros(0)
-        w = np.linspace(self.r, 1.0, _WHILE, endpoint=False)
+        w = np.linspace(self.r, 1.0, _DEFLECTIONS, endpoint=False)
         return self.g(V) / self.σ0 * (self.r - w0 + _yielding(self.r).slip(w))
 
     def exact(self, z: NDArray, s: int, V: float, slip: NDArray) -> NDArray[np.float64]:

@@ -59,13 +59,15 @@ _TURN = 7.0
 _BETWEEN = np.linspace(-0.9, 0.9, 4)
 #: Distances are treated together where one is so many times another at most.
 _RATIO = 4.0
-#: Distances times s over the radius up to which responses are series, terms of these, and points of a
-#: circle, of what share of the radius, on which Laurent's series is found.
+#: Distances times s up to which responses are series, over :attr:`Kernel._radius`, terms of these, and
+#: points of a circle, of what share of that radius, on which Laurent's series is found.
 _NEAR, _TERMS, _ON_CIRCLE, _OF_RADIUS = 3.0, 28, 128, 0.7
+#: Exponents whose exponentials are computed at once.
+_TOGETHER = 4096
 #: Width of panels of a single point.
 _NO_WIDTH = 1e-300
 
-#: Distances in panels, which rise and have the same points each, (panels, points), or several of these.
+#: Arrays (panels, points) of distances, which rise; panels of one array have the same points.
 Distances = Sequence[NDArray]
 
 
@@ -117,7 +119,7 @@ class Kernel:
 
     @property
     def _radius(self) -> float:
-        """Least distance over c_s of c from the speed of the wave along the surface, either way."""
+        """Distance over c_s from c to the nearer velocity, ±, of the wave along the surface."""
         return self.rayleigh - abs(self.c)
 
     def _near(self, x: NDArray, s: complex, slopes: bool) -> NDArray[np.complex128]:
@@ -290,6 +292,9 @@ def _sums(values: NDArray, a: NDArray, x: NDArray) -> NDArray[np.complex128]:
     In panels of the same width they are a product of matrices: of the values times the exponentials at
     the points of one panel, and of the exponentials at the panels' starts.
     """
+    if len(a) > _TOGETHER:
+        first, rest = slice(_TOGETHER), slice(_TOGETHER, None)
+        return _sums(values[:, first], a[first], x) + _sums(values[:, rest], a[rest], x)
     sums = np.empty((4, *x.shape), dtype=complex)
     widths = np.round(np.log(np.ptp(x, axis=1) + _NO_WIDTH), 9)
     _, width, counts = np.unique(widths, return_inverse=True, return_counts=True)

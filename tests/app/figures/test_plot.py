@@ -224,4 +224,4 @@ def test_numbers_are_drawn_over_what_changes_them():
     drawing = drawn(result, "parameters")
     assert {axis.get_xlabel() for axis in drawing.figure.axes} == {"Coulomb's coefficient $\\mu_C$"}
     assert any("intensity" in axis.get_ylabel() for axis in drawing.figure.axes)
-    assert "They are the same for every E" in drawing.caption and "is formal" in drawing.caption
+    assert "Results are the same for every E" in drawing.caption and "is formal" in drawing.caption

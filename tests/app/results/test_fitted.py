@@ -242,3 +242,10 @@ def test_masked_samples_are_refused():
     f = np.ma.array(np.where(t > 0.6, 9.0, 0.4), mask=t > 0.6)
     with pytest.raises(BadInput, match="found masked or complex numbers"):
         galinx.fit(galinx.Measured(t, t, f), "coulomb")
+
+
+def test_a_fit_shows_its_work_where_it_is_asked_to():
+    t = np.linspace(0.0, 1.0, 60)
+    measured = galinx.Measured(t, 1e-4 * t, 0.3 * -np.expm1(-20.0 * t))
+    shown = galinx.fit(measured, "dahl", progress=True, rows=np.int64(2))
+    assert shown.rms == galinx.fit(measured, "dahl").rms

@@ -110,7 +110,9 @@ def test_a_grid_over_moduli_has_the_speeds_that_were_given_to_the_last_digit():
 @pytest.mark.parametrize(
     "call, said",
     [(lambda r: r.figure(3), "found 3, expected names"),
-     (lambda r: r.figure(figures="friction,surface"), "found 2 figures, expected one"),
+     (lambda r: r.figure(figures="friction,surface"), "found the figures friction, surface, expected"),
+     (lambda r: r.figure("friction", figures="surface"), "found the figures friction, surface, expected"),
+     (lambda r: r.fields("f.vtkhdf", state=0.0), r"states: found 0\.0, expected whole numbers"),
      (lambda r: r.plot(name="friction"), r"figure takes the name of a figure"),
      (lambda r: r.choice(states=1.5), r"states: found 1\.5, expected whole numbers"),
      (lambda r: r.choice(y=3), "found 3, expected names"),
@@ -127,7 +129,8 @@ def test_what_is_no_argument_is_named(exact_run, call, said):
 
 
 def test_a_figure_is_plotted_by_its_name_in_any_argument(exact_run):
-    assert len(exact_run.plot(figures="friction").axes) == len(exact_run.figure("friction").axes)
+    plotted = exact_run.plot(figures=(name for name in ["friction"]))
+    assert len(plotted.axes) == len(exact_run.figure("friction").axes)
 
 
 def test_a_model_that_is_not_registered_is_told_with_those_that_are():

@@ -1,6 +1,6 @@
 """Models of a user's own, registered from outside: solved by two methods, archived, drawn, refused."""
 
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,8 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.law import FrictionLaw
+from galinx.solvers.parameters import build_model
+from galinx.solvers.profiles import check_slope
 from galinx.solvers.profiles.punches import Flat
 
 
@@ -60,7 +62,9 @@ def test_a_profile_without_numbers_is_refused(monkeypatch, shape):
     slope = {"None": lambda self, X: None, "(1,)": lambda self, X: X[:1]}[shape]
     own = type("Forgetful", (Flat,), {"slope": slope})
     monkeypatch.setitem(galinx.PROFILES, "forgetful", own)
-    with pytest.raises(BadInput, match=r"Forgetful\.slope gives .* expected numbers of shape \(2,\)"):
+    with pytest.raises(
+        BadInput, match=r"Forgetful\.slope gives .* expected an array of numbers of shape \(2,\)"
+    ):
         computed("tables4_5", ONE_STATE | {"punch.profile": "forgetful"})
 
 
@@ -79,16 +83,46 @@ def test_a_profile_that_contradicts_itself_is_refused(monkeypatch, members, mess
         computed("cylinder", ONE_STATE | {"punch": {"profile": "own", "load": 1e5}})
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_built_in_profiles_do_not_contradict_themselves(seed):
+    """Flat parts that end just within what is looked at, steep powers and random tables among them."""
+    rng = np.random.default_rng(seed)
+    for _ in range(40):
+        a, X = 10.0 ** rng.uniform(-6.0, -1.0), np.sort(rng.uniform(-2.0, 2.0, 12))
+        height = np.maximum(np.abs(X) ** rng.uniform(1.5, 5.0) - rng.uniform(0.0, 0.1), 0.0)
+        kinds = {
+            "rounded_flat": {"flat_half_width": a / rng.uniform(1.0, 8.0), "radius": 100.0 * a},
+            "power": {"exponent": rng.uniform(1.01, 15.0), "coefficient": 2.0}, "wedge": {"slope": 1e-4},
+            "flat": {"half_width": a, "tilt": 1e-4}, "table": {"shape": [*zip(a * X, 1e-3 * a * height)]},
+        }  # fmt: skip
+        profiles = []
+        for kind, given in kinds.items():
+            with suppress(ValueError):  # random points that are no punch
+                profiles.append(build_model(galinx.PROFILES[kind], given))
+        assert len(profiles) >= 4
+        for profile in profiles:
+            check_slope(profile, a)
+
+
+def test_a_load_without_a_contact_is_a_fault_of_the_scene():
+    shape = [[-1e-4, 1e-6], [0.0, 0.0], [1e-4, 1e-6]]
+    with pytest.raises(BadInput, match=r"punch\.load: found 1e\+06 N/m: the contact would reach"):
+        computed("cylinder", ONE_STATE | {"punch": {"profile": "table", "shape": shape, "load": 1e6}})
+
+
 def linear(law, z, s, V):
     return 0.3 * z[..., 0]
 
 
 @pytest.mark.parametrize(
     "function, given, message",
-    [("friction", lambda law, z, s, V: 0.3 * s, r"0\.3, of shape \(\), expected numbers of shape \(2,\)"),
-     ("friction", lambda law, z, s, V: None, r"None, .*\(2,\)"),
-     ("friction", lambda law, z, s, V: 0.3 * z, r"\[\[0\.\] \[0\.\]\], of shape \(2, 1\), .*\(2,\)"),
+    [("friction", lambda law, z, s, V: 0.3 * s, r"0\.3, of shape \(\), expected an array of .* \(2,\)"),
+     ("friction", lambda law, z, s, V: None, r"None, .*\(\)"),
+     ("friction", lambda law, z, s, V: 0.3 * z, r"\[0\.\], of shape \(1,\), .*\(\)"),
+     ("friction", lambda law, z, s, V: 0.3 * z[:, 0] if np.ndim(z) > 1 else 0.3 * z, r"\[0\.\], .*\(\)"),
+     ("friction", lambda law, z, s, V: [0.3] * len(z), r"\[0\.3\], a list .*\(\)"),
      ("rate", lambda law, z, s, V: None, r"None, .*\(1,\)"),
+     ("rest", lambda law: np.zeros(0), r"\[\], .*\(1,\)"),
      ("rest", lambda law: 0.0, r"0\.0, .*\(1,\)"),
      ("exact", lambda law, z, s, V, slip: z + slip, r".* of shape \(2,\), .*\(2, 1\)")],
 )  # fmt: skip
@@ -159,6 +193,12 @@ def test_a_quantity_that_changes_stresses_changes_nothing_archived(monkeypatch):
     monkeypatch.setitem(galinx.QUANTITIES, row.path, row)
     result = computed("tables4_5", ONE_STATE)
     np.testing.assert_array_equal(result.data["surface/closed_form/sigma_XX"], sound)
+
+
+def test_dimensions_of_a_quantity_are_no_text():
+    row = galinx.Quantity("states/own", "1", "own", "states", lambda s, body: np.ones(1))
+    with pytest.raises(TypeError, match="states/own: over = 'states', expected a tuple"):
+        galinx.QUANTITIES.add(row)
 
 
 def test_models_that_cannot_work_are_not_registered():

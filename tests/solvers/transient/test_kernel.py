@@ -68,6 +68,20 @@ def test_near_a_load_the_series_is_the_integral(seed, c):
             np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-11 * np.abs(exact).max())
 
 
+@pytest.mark.parametrize("slopes", [False, True])
+def test_panels_together_have_the_responses_of_each_distance_alone(slopes):
+    """Of one width and of several, near and far, in one array and in two."""
+    t, s = np.polynomial.legendre.leggauss(6)[0], 1.5 + 20.0j
+    edges = np.concatenate([2.0 ** -np.arange(9.0, 3.0, -1.0), np.linspace(0.125, 1.5, 12)])
+    many = edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (1.0 + t)
+    arrays, surface = (many, np.array([[1.7, 1.9]])), Admittance.of(STACK.response(0.0))
+    for response in (Kernel(surface, 0.3, STACK.surface.limit()), Echoes(SHEETS, 0.3)):
+        alone = [response((np.array([[x]]),), s, slopes) for of in arrays for x in of.ravel()]
+        together = response(arrays, s, slopes)
+        scale = np.abs(together).max()
+        np.testing.assert_allclose(together, np.hstack(alone), rtol=0.0, atol=1e-11 * scale)
+
+
 def test_roots_meet_at_speeds_of_waves_in_isotropic_solids():
     """Those of shear and pressure; nothing is faster, and straight down waves are these two."""
     solid = Isotropic(1.0, 0.3, 1.0)

@@ -155,6 +155,7 @@ class _Spec(NamedTuple):
         digits: that are shown.
         taken: gives the column's numbers from the quantity's values, and from an archive's data.
         name: in tables for programs, of a column that is no dataset's; "" for that of the quantity.
+        exact: True where no small number is rounding.
     """
 
     head: str
@@ -162,6 +163,7 @@ class _Spec(NamedTuple):
     digits: int = 4
     taken: Callable[[Any, Mapping[str, Any]], Any] = lambda values, _: values
     name: str = ""
+    exact: bool = False
 
 
 def _nth(n: int) -> Callable[[Any, Any], Any]:
@@ -237,7 +239,7 @@ def state_columns(data: Mapping[str, Any], units: Units) -> list[Column]:
         _Spec("at Y", yielding.VON_MISES_Y),
     )  # fmt: skip
     results += _yields(data, units)
-    results += _occurring(columns(_Spec("depth of yield", yielding.DEPTH)))
+    results += _occurring(columns(_Spec("depth of yield", yielding.DEPTH, exact=True)))
     results += columns(
         _Spec("von Mises in the punch", yielding.PUNCH_VON_MISES),
         _Spec("at X", yielding.PUNCH_VON_MISES_X), _Spec("at Y", yielding.PUNCH_VON_MISES_Y),
@@ -307,7 +309,7 @@ def _columns(
     # Places and lengths of the contact, and stresses over N/(2a), up to which they are rounding.
     length, stress = (solved(scale.factor).max() for scale in (units.scale(OVER_A), units.stress))
     length, stress = 5e-6 * length, 5e-8 * stress  # ten times as much by finite elements
-    for head, rows, digits, taken, name in specs:
+    for head, rows, digits, taken, name, exact in specs:
         if not (place := head.startswith("at ")):
             owner = None
         by_method = {"": rows} if isinstance(rows, Quantity) else rows
@@ -321,8 +323,8 @@ def _columns(
             columns.append(Column(head, [*map(str, values)], "none", scaled.name, path))
         elif archived or np.isfinite(data[row.path]).any():
             least = stress * (row.unit == "N/(2a)") * (10.0 if row.method == FEM else 1.0)
-            if place or row.scale in (CONTACT, OVER_A):  # what has no sign is as small as it is
-                least = length if row.range.at_least is None else 0.0
+            if place or row.scale in (CONTACT, OVER_A):
+                least = 0.0 if exact else length
             columns.append(
                 Column(
                     f"{head}/a" if units.dimensionless and (place or row.scale == OVER_A) else head,

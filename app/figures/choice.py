@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from galinx.postprocess.quantities import Quantity, column, solved_states, table
 from galinx.postprocess.quantities.quantity import FEM, METHODS, TEXT
-from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED, SPEED_LIMIT
+from galinx.postprocess.quantities.states import LOAD, MOTION, POSITION, SPEED, SPEED_LIMIT, VELOCITY
 from galinx.postprocess.quantities.swept import WAVE_SPEED
 from galinx.postprocess.tables import parameters
 from galinx.postprocess.units import Scaled, Units
@@ -76,7 +76,7 @@ def words(names: str | Sequence[str]) -> tuple[str, ...]:
     """The words between commas, or those of a list.
 
     Raises:
-        BadInput: there are none.
+        BadInput: they are no texts.
     """
     if not isinstance(names, str):
         several = tuple(names) if np.iterable(names) else (None,)
@@ -174,13 +174,13 @@ class Archive:
     @cached_property
     def speeds(self) -> NDArray[np.float64]:
         """Speed of every state [m/s], (states,); those that differ by rounding alone are one."""
-        V = self.data[SPEED.path] * self.data.get(WAVE_SPEED.path, self.c_s)
-        return np.array([float(f"{speed:.12g}") for speed in V])
+        return np.array([float(f"{speed:.12g}") for speed in self.data[VELOCITY.path]])
 
     @cached_property
     def by_c(self) -> bool:
         """True in a sweep over solids at few c, each of which is several speeds."""
-        return len(np.unique(self.data[SPEED.path])) < len(np.unique(self.speeds))
+        of_solids = WAVE_SPEED.path in self.data
+        return of_solids and len(np.unique(self.data[SPEED.path])) < len(np.unique(self.speeds))
 
     def parameter(self, name: str) -> NDArray:
         """Values of a parameter in all states, (states,); speeds over the wave speed of the first solid.
@@ -249,7 +249,7 @@ class Archive:
 
     def formal(self, states: NDArray | Sequence[int]) -> str:
         """Sentence on states at speeds at which waves along the surface are slower; "" for none."""
-        beyond = (self.speeds >= self.data[SPEED_LIMIT.path])[list(states)].any()
+        beyond = (self.data[VELOCITY.path] >= self.data[SPEED_LIMIT.path])[list(states)].any()
         return " Beyond the speed of waves along the surface the closed form is formal." * bool(beyond)
 
     def values_label(self, name: str, values: Sequence[Any]) -> str:

@@ -24,16 +24,14 @@ from galinx.postprocess.quantities.swept import MOST_LAYERS
 from galinx.registry import Registry
 from galinx.solvers.contact import BELOW
 from galinx.solvers.contact.fem_plan import ASSEMBLERS
-from galinx.solvers.friction import LAWS, FrictionLaw
-from galinx.solvers.friction import check_functions as check_law
+from galinx.solvers.friction import LAWS, FrictionLaw, check_law
 from galinx.solvers.friction.along import tabulated
 from galinx.solvers.friction.integrate import INTEGRATORS
 from galinx.solvers.friction.motion import Partial
 from galinx.solvers.friction.slider import Slider
 from galinx.solvers.layers.layered import GRADINGS, Layer
 from galinx.solvers.parameters import Parameter, Range, build_model, fields, parameters
-from galinx.solvers.profiles import PROFILES, Profile, has_free_end
-from galinx.solvers.profiles import check_functions as check_profile
+from galinx.solvers.profiles import PROFILES, Profile, check_profile, has_free_end
 from galinx.solvers.solids import SOLIDS, Isotropic, Solid
 
 from ..console import program

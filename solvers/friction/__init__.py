@@ -11,6 +11,6 @@ from . import (  # noqa: F401 - each adds its law
     stribeck,
     table,
 )
-from .law import LAWS, FrictionLaw, check_functions
+from .law import LAWS, FrictionLaw, check_law
 
-__all__ = ["LAWS", "FrictionLaw", "check_functions"]
+__all__ = ["LAWS", "FrictionLaw", "check_law"]

@@ -138,7 +138,7 @@ class FrictionLaw(Protocol):
         return z
 
 
-def check_functions(law: FrictionLaw) -> None:
+def check_law(law: FrictionLaw) -> None:
     """Check that a law's functions give numbers in arrays of their shapes.
 
     Raises:

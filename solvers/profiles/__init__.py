@@ -4,7 +4,7 @@ from . import punches  # noqa: F401 - adds its profiles
 from .profile import (
     PROFILES,
     Profile,
-    check_functions,
+    check_profile,
     check_reach,
     check_slope,
     cusp,
@@ -20,7 +20,7 @@ from .profile import (
 __all__ = [
     "PROFILES",
     "Profile",
-    "check_functions",
+    "check_profile",
     "check_reach",
     "check_slope",
     "cusp",

@@ -52,7 +52,7 @@ class Profile(Protocol):
 _UNLIKE, _LEVEL = 0.02, 1e-11
 
 
-def check_functions(profile: Any) -> None:
+def check_profile(profile: Any) -> None:
     """Check that height and slope of a profile are numbers at positions, and that it has ends.
 
     Raises:

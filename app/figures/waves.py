@@ -285,9 +285,12 @@ def _thresholds(scene: Scene) -> tuple[NDArray, NDArray, str, str]:
         )
         return _LENGTHS, values, "wavelength over thickness of the layers", words
     if scene.elastic_punch:
-        c, (way,) = np.linspace(0.0, 0.99 * solid.limit(), _SPEEDS), headings(scene, [scene.legs[0].s])
-        values = np.array([solid.flutter(speed) for speed in np.copysign(c, way).tolist()]).T
-        words = f"over the speed of the plate, the punch moving to {'+' if way > 0 else '-'}X"
+        c = np.linspace(0.0, 0.99 * solid.limit(), _SPEEDS)
+        ways = headings(scene, scene.legs[0].s, c)
+        values = np.array([solid.flutter(speed) for speed in np.copysign(c, ways).tolist()]).T
+        words = f"over the speed of the plate, the punch moving to {'+' if ways[-1] > 0 else '-'}X"
+        if ways[0] != ways[-1]:
+            words += ", but in the other direction where its own solid is faster than the plate"
         return c, values, "speed of the plate $c = V/c_s$", words
     plate: Solid = scene.half_plane.solid
     each = [replace(plate, angle=angle).flutter() for angle in _ANGLES.tolist()]  # type: ignore[type-var]

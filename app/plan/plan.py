@@ -56,7 +56,7 @@ from ..scene.scene import FRICTIONS, Scene, oddities
 from ..scene.sections import keys_set
 from . import elements
 from .over_time import Starts, starts
-from .states import Order, States, enumerate_states, order
+from .states import Order, States, enumerate_states, order, overtaken
 
 #: Most floating-point numbers that the states of a chunk hold at once, and bytes of each while they are
 #: computed.
@@ -319,10 +319,10 @@ def _overtaken(scene: Scene, speeds: Sequence[float]) -> Iterator[str]:
     turned, none = friction.stress_ratio > 0.0, not np.any(friction.values.get("mu_c", 1.0))
     if punch is None or turned or none:
         return
-    own, least = punch.speed, min(speeds) * scene.solid.c_s
-    if own > least * (1.0 + 1e-12):
+    if overtaken(scene, least := min(speeds)):
+        least *= scene.solid.c_s
         yield (
-            f"punch.solid.speed = {own:g} m/s is above the speed over the plate, {least:g} m/s: slip is "
+            f"punch.solid.speed = {punch.speed:g} m/s is above the speed over the plate, {least:g} m/s: slip is "
             'backward, and friction is that of forward slip; friction.sign = "eq25" turns it'
         )
 

@@ -222,16 +222,25 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     })  # fmt: skip
 
 
-def headings(scene: Scene, directions: ArrayLike) -> NDArray[np.int64]:
+def headings(scene: Scene, directions: ArrayLike, c: ArrayLike = np.inf) -> NDArray[np.int64]:
     """Directions ±1 of strokes along X.
 
-    By the study's Eq 25 friction under a forward stroke is that of a punch that moves towards -X.
+    By the study's Eq 25 friction under a forward stroke is that of a punch that moves towards -X. Where
+    the punch's own solid is faster than the plate, it is that of slip to -X in motion to X.
 
     Args:
         scene: gives the sign of friction.
         directions: of the strokes, 1 forward, -1 backward.
+        c: speeds over c_s.
     """
-    return np.asarray(directions, dtype=np.int64) * round(-scene.friction.stress_ratio)
+    turned = (scene.friction.stress_ratio > 0.0) & ~overtaken(scene, c)
+    return np.asarray(directions, dtype=np.int64) * np.where(turned, -1, 1)
+
+
+def overtaken(scene: Scene, c: ArrayLike) -> NDArray[np.bool_]:
+    """True at speeds over c_s of a plate that is slower than the punch's own solid."""
+    own = scene.elastic_punch.speed if scene.elastic_punch else 0.0
+    return np.asarray(own > np.asarray(c) * scene.solid.c_s * (1.0 + 1e-12))
 
 
 def _of_all(order: Order, values: NDArray) -> NDArray:
@@ -255,7 +264,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     V = {speed / scene.solid.c_s: speed for speed in scene.motion.speed or ()}  # c·c_s would be rounded
     given = np.array([V.get(c, c * scene.solid.c_s) for c in order.given])
     lengths, N = np.array([leg.length for leg in scene.legs])[legs], np.array(order.loads)
-    ways = headings(scene, [leg.s for leg in scene.legs])[legs]
+    ways = headings(scene, np.array([leg.s for leg in scene.legs])[legs], c)
     half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
     with np.errstate(divide="ignore", invalid="ignore"):  # by a wave of speed c_s: L/(2 a c)
         crossings = lengths * friction.pre_sliding / (2.0 * half_widths[load] * c)

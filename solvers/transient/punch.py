@@ -271,8 +271,8 @@ class Residual:
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.5, 14
-#: Steps of the double exponential rule along the contact, or its part on one side.
-_STEPS = 241
+#: Step of the double exponential rule along the contact, or its part on one side.
+_STEP = 0.028
 #: Points of the pressure in its effect beside the contact.
 _FEW = 128
 
@@ -335,7 +335,8 @@ class AlongSurface:
         for n, X in enumerate(sign * self._X):
             if X > -1.0:
                 last, beyond = min(X, 1.0), max(X - 1.0, 0.0)
-                near, far, w = (of[0] for of in double_exponential(np.array([last + 1.0]), _STEPS))
+                length, least = np.array([last + 1.0]), min(α, β)
+                near, far, w = (of[0] for of in double_exponential(length, _STEP, least))
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
                 sums[:, n] = self._interpolation(beyond + near).T @ (

@@ -20,9 +20,8 @@ from ..contact.equation import jacobi
 from ..solids.half_plane import HalfPlane
 from .line_load import both_sides, interpolation
 
-#: Steps, for so many polynomials, and half-length of the double exponential rule along the overlap of two
-#: shifted contacts.
-_STEPS, _FOR, _LENGTH = 121, 24, 3.4
+#: Step of the double exponential rule along the overlap of two shifted contacts, of so many polynomials.
+_STEP, _FOR = 0.056, 24
 
 
 class Weighted:
@@ -89,14 +88,22 @@ class Basis:
         return self.pressure.polynomials(np.array([-1.0, 1.0]))
 
 
-def shared(x: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]:
+def shared(
+    x: NDArray, length: NDArray, tests: Weighted, trials: Weighted
+) -> NDArray[np.float64]:
     """∫ τ_i(X) σ_j(X - x) dX of tests τ and trials σ with their weights, at distances x > 0 and at -x.
+
+    Args:
+        x: distances, (x,).
+        length: of the overlap, 2 - x, which rounding would spoil where it is short, (x,).
+        tests, trials: weighted polynomials.
 
     Returns:
         (2, x, tests, trials).
     """
     terms = max(tests.terms, trials.terms)
-    d, e, weights = double_exponential(2.0 - x, _STEPS * max(terms, _FOR) // _FOR)
+    least = min(tests.α, tests.β, trials.α, trials.β)
+    d, e, weights = double_exponential(length, _STEP * _FOR / max(terms, _FOR), least)
     x = x[:, None]
     products = []
     for from_right, from_left, trial_from_right, trial_from_left in (
@@ -119,12 +126,27 @@ def _norm(j: int, α: float, β: float) -> float:
     return exp(0.5 * (square - log(2.0 * j)))
 
 
-def double_exponential(length: NDArray, steps: int) -> tuple[NDArray, NDArray, NDArray]:
-    """Double exponential rule on intervals: distances from both ends and weights, (n, steps) each."""
-    u = np.linspace(-_LENGTH, _LENGTH, steps)
+#: Rounding to which the double exponential rule nears the ends, as an exponent of e; and its half-length
+#: at most, where distances are little above the smallest number.
+_DIGITS, _LONGEST = 36.0, 5.6
+
+
+def double_exponential(
+    length: NDArray, step: float, exponent: float
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Double exponential rule on intervals: distances from both ends and weights, (n, points) each.
+
+    Args:
+        length: of each interval, (n,).
+        step: of the rule's variable.
+        exponent: of the distance from an end in the steepest of the integrands, > -1. The steeper they
+            are, the nearer to the ends the rule begins.
+    """
+    half = min(float(np.arcsinh(_DIGITS / (pi * (1.0 + exponent)))), _LONGEST)
+    u = step * np.arange(-ceil(half / step), ceil(half / step) + 1.0)
     grown = pi * np.sinh(u)
     d, e = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
-    weights = (u[1] - u[0]) * pi * np.cosh(u) * d * e
+    weights = step * pi * np.cosh(u) * d * e
     return length[:, None] * d, length[:, None] * e, length[:, None] * weights
 
 
@@ -151,11 +173,12 @@ def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
     return np.concatenate(pieces)
 
 
-#: Octaves of panels towards distances 0 and 2 of points under the punch (so many fewer there), and
-#: Gauss's points of each.
-_NEAR, _FAR, _POINTS = 24, 5, 8
-#: Largest width of a panel.
-_EVEN = 0.125
+#: Octaves of panels towards the distance 0 of points under the punch, and Gauss's points of each.
+_NEAR, _POINTS = 36, 8
+#: Steepest exponent of 2 - x in the overlap towards the distance 2 that is integrated to rounding.
+_STEEPEST = -0.8
+#: Largest width of a panel, and polynomials from which on it is shorter.
+_EVEN, _MANY = 0.125, 40
 #: Points at which the response is sampled in the last panel before distance 2; the overlap of tests and
 #: pressures has shorter panels there.
 _SAMPLES = 24
@@ -180,12 +203,19 @@ class Transformed:
         self._response, self.s, self._terms = response, s, terms
         self._kernels = both_sides(response, rayleigh, way)
         near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
-        even = np.linspace(_EVEN, 2.0, ceil((2.0 - _EVEN) / min(panel, _EVEN)), endpoint=False)
-        towards = [near[near < _EVEN], even, 2.0 - near[near < _EVEN][:_FAR:-1]]
+        width = min(panel, _EVEN, _EVEN * _MANY / terms)
+        even = np.linspace(_EVEN, 2.0 - _EVEN, ceil((2.0 - 2.0 * _EVEN) / width) + 1)
         slowest = 1.0 / (rayleigh - response.c)
-        edges = divided(np.concatenate([[0.0], *towards, [2.0]]), s, slowest)
-        # Distances of the response, (distances,), and their weights.
-        self._x, self._weights = gauss_in_panels(edges, _POINTS)
+        edges = divided(np.concatenate([[0.0], near[near < _EVEN], even]), s, slowest)
+        x, weights = gauss_in_panels(edges, _POINTS)
+        self._panels = x.reshape(-1, _POINTS)
+        # Towards the distance 2 the overlap is short and singular, the response smooth.
+        length, _, last = (
+            of[0] for of in double_exponential(np.array([_EVEN]), _STEP * _FOR / max(terms, _FOR), _STEEPEST)
+        )
+        # Distances of the response, (distances,), what is left of 2, and their weights.
+        self._x, self._length = np.append(x, 2.0 - length), np.append(2.0 - x, length)
+        self._weights = np.append(weights, last)
 
     def basis(self, g: float) -> Basis:
         """Polynomials of the pressure where σ_XY = g σ_YY."""
@@ -217,7 +247,7 @@ class Transformed:
             along_X: True for û.
         """
         first = 2 * along_X  # row of the responses to σ_YY; the next one is that to σ_XY
-        both = shared(self._x, tests, basis.pressure)
+        both = shared(self._x, self._length, tests, basis.pressure)
         flat = both.reshape(2, len(self._x), -1) * self._weights[:, None]
         ahead, behind = (values[:, first] + basis.g * values[:, first + 1] for values in self._values)
         return (ahead @ flat[0] + behind @ flat[1]).reshape(-1, tests.terms, self._terms)
@@ -226,17 +256,14 @@ class Transformed:
     def _values(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Responses ahead and behind at all distances for every s, (s, 4, distances) each."""
         t, _ = leggauss(_SAMPLES)
-        middle, half = 2.0 - _EVEN / 2.0, _EVEN / 2.0
-        panels = self._x.reshape(-1, _POINTS)
-        before = panels[:, 0] <= 2.0 - 0.5 * _EVEN
-        short = np.repeat(~before, _POINTS)
-        between = interpolation(_SAMPLES, (self._x[short] - middle) / half)
-        x, values = (panels[before], (middle + half * t)[None]), []
+        before, middle, half = self._panels.size, 2.0 - _EVEN / 2.0, _EVEN / 2.0
+        between = interpolation(_SAMPLES, (self._x[before:] - middle) / half)
+        x, values = (self._panels, (middle + half * t)[None]), []
         for kernel in self._kernels:
-            whole = np.empty((len(self.s), 4, len(short)), dtype=complex)
+            whole = np.empty((len(self.s), 4, len(self._x)), dtype=complex)
             for n, s in enumerate(self.s):
                 sampled = kernel(x, s, False)
-                whole[n][:, ~short] = sampled[:, :-_SAMPLES]
-                whole[n][:, short] = sampled[:, -_SAMPLES:] @ between.T
+                whole[n][:, :before] = sampled[:, :before]
+                whole[n][:, before:] = sampled[:, before:] @ between.T
             values.append(whole)
         return values[0], values[1]

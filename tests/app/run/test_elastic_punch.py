@@ -110,3 +110,23 @@ def test_stresses_in_the_plane_of_a_crystal_need_none_out_of_it():
         path = f"interior/closed_form/punch_{name}"
         np.testing.assert_array_equal(alone[path], known[path])
     assert {*known} - {*alone} == {"interior/closed_form/punch_von_mises"}
+
+
+@pytest.mark.parametrize("steel, aluminium", [(0.0, 1500.0), (500.0, 1000.0)])
+def test_thresholds_of_flutter_are_exchanged_where_the_bodies_are(steel, aluminium):
+    """Turned upside down, a pair is the same; slip to X, of the one plate, is slip to -X of the other."""
+    moving = {"steel": steel, "aluminium": aluminium}
+    thresholds, warnings = {}, {}
+    for plate, punch, sign in (("aluminium", "steel", "physical"), ("steel", "aluminium", "eq25")):
+        result = compute(of_sections(
+            solid={"material": plate}, motion={"speed": f"{moving[plate]} m/s"},
+            punch={"profile": "parabolic", "radius": "20 mm", "load": "100 N/mm",
+                   "solid": {"material": punch, "speed": f"{moving[punch]} m/s"}},
+            friction={"mu": 0.2, "sign": sign}, solve={"methods": ["closed_form"]},
+        ))  # fmt: skip
+        signs = "positive", "negative"
+        thresholds[plate] = [result.data[f"states/flutter_{of}"][0] for of in signs]
+        warnings[plate] = [text for text in json.loads(result.attributes["warnings"]) if "flutter" in text]
+    assert thresholds["steel"] == pytest.approx(thresholds["aluminium"][::-1], abs=1e-8)
+    assert max(thresholds["steel"]) > 0.3 > 0.2 > min(thresholds["steel"])
+    assert not warnings["steel"] and not warnings["aluminium"]

@@ -322,8 +322,8 @@ def _overtaken(scene: Scene, speeds: Sequence[float]) -> Iterator[str]:
     if overtaken(scene, least := min(speeds)):
         least *= scene.solid.c_s
         yield (
-            f"punch.solid.speed = {punch.speed:g} m/s is above the speed over the plate, {least:g} m/s: slip is "
-            'backward, and friction is that of forward slip; friction.sign = "eq25" turns it'
+            f"punch.solid.speed = {punch.speed:g} m/s is above the speed over the plate, {least:g} m/s: "
+            'slip is backward, and friction is that of forward slip; friction.sign = "eq25" turns it'
         )
 
 

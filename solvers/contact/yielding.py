@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from ..profiles import exponent
 from ..solids.half_plane import HalfPlane
 from .extremes import NODES, largest, summit
-from .stresses import Turns, maximum_shear, on_surface, turns_at_ends, von_mises
+from .stresses import Turns, at_and_between, maximum_shear, on_surface, turns_at_ends, von_mises
 
 #: Function that gives the stress of every state, (states, n), at points over a, (states or 1, n, 2).
 Stress = Callable[[NDArray], NDArray]
@@ -581,6 +581,32 @@ class Strength:
 
         return away
 
+    def _between_kinks_of_friction(
+        self, measure: Callable[[NDArray], NDArray]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Largest measure on the surface between kinks of friction, -∞ without any, and X, (states, 1).
+
+        Next to a kink stresses are a d log d: the largest may lie closer to it than circles show.
+        """
+        solution = self.solution
+        half_widths = np.broadcast_to(solution.half_width, np.shape(solution.g))
+        states_by_kinks: dict[tuple[float, ...], list[int]] = {}
+        for state, (g, a) in enumerate(zip(solution.g.tolist(), half_widths.tolist())):
+            if not np.isnan(a) and len(kinks := self.body.friction(g, a).kinks):
+                states_by_kinks.setdefault(tuple(kinks), []).append(state)
+        values, places = np.full((2, len(solution.g), 1), -np.inf)
+        for kinks, states in states_by_kinks.items():
+
+            def along(X: NDArray) -> NDArray[np.float64]:
+                points = np.column_stack([X, np.zeros_like(X)])[None]
+                return _known(measure(solution.stresses(points)))[states]  # noqa: B023
+
+            turns = np.unique([-1.0, *kinks, 1.0])
+            places[states], values[states] = at_and_between(turns, along, nearest=solution.nearest)[1][
+                :, 0, :, None
+            ]
+        return values, places
+
     def _peak(self, measure: Callable[[NDArray], NDArray]) -> Peak:
         """Peak of a measure of the stresses (3, states, n)."""
         assert self._levels
@@ -595,6 +621,8 @@ class Strength:
             there = np.concatenate([there, _known(measure(σ))], axis=1)
             inside = peak(stress, at, np.append(steps, more_steps), there)
             best = _higher(inside, _known(measure(turns.σ)), turns.X)
+        if self.body.along:
+            best = _higher(best, *self._between_kinks_of_friction(measure))
         return Peak(*(np.where(self.infinite, np.nan, x) for x in (best.value, best.X, best.Y)))
 
 

@@ -210,9 +210,8 @@ class Transformed:
         x, weights = gauss_in_panels(edges, _POINTS)
         self._panels = x.reshape(-1, _POINTS)
         # Towards the distance 2 the overlap is short and singular, the response smooth.
-        length, _, last = (
-            of[0] for of in double_exponential(np.array([_EVEN]), _STEP * _FOR / max(terms, _FOR), _STEEPEST)
-        )
+        step = _STEP * _FOR / max(terms, _FOR)
+        length, _, last = (of[0] for of in double_exponential(np.array([_EVEN]), step, _STEEPEST))
         # Distances of the response, (distances,), what is left of 2, and their weights.
         self._x, self._length = np.append(x, 2.0 - length), np.append(2.0 - x, length)
         self._weights = np.append(weights, last)

@@ -211,6 +211,21 @@ def test_yield_below_varying_friction_by_both_methods_in_both_bodies():
         assert 0.99 * sie < samples.max() <= sie * (1.0 + 1e-9)
 
 
+def test_the_largest_stress_lies_close_beside_a_kink_of_friction():
+    """At the kink itself it is 7e-4 smaller; places from 1e-4 a to 0.01 a beside it show the peak."""
+    points = [[0.5 + x, -1e-7] for x in np.linspace(1e-4, 0.01, 34)]
+    result = slid(
+        {"along": [[-1, 0.1], [0, 0.1], [0.5, 0.6], [1, 0.2]]}, {"material": "steel"}, 0.5,
+        punch={"profile": "parabolic", "radius": "5 mm", "load": "100 N/mm"},
+        output={"quantities": ["yield", "interior"], "points": points},
+        solve={"methods": ["fem"], "tolerance": 1e-4},
+    )  # fmt: skip
+    peak, place = (result.data[f"states/fem/von_mises{of}"][0] for of in ("", "_X_over_a"))
+    samples = result.data["interior/fem/von_mises"][0]
+    assert samples[0] * 1.0003 < samples.max() < peak * (1.0 + 1e-6) < samples.max() * (1.0 + 1e-5)
+    assert place == pytest.approx(points[int(samples.argmax())][0], abs=3e-4)
+
+
 def test_stresses_below_a_flat_punch_are_known_in_closed_form():
     """Where friction steps the solid may yield apart from the edges: how deep, is not told."""
     data = slid(

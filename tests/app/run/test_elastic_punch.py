@@ -126,7 +126,8 @@ def test_thresholds_of_flutter_are_exchanged_where_the_bodies_are(steel, alumini
         ))  # fmt: skip
         signs = "positive", "negative"
         thresholds[plate] = [result.data[f"states/flutter_{of}"][0] for of in signs]
-        warnings[plate] = [text for text in json.loads(result.attributes["warnings"]) if "flutter" in text]
+        given = json.loads(result.attributes["warnings"])
+        warnings[plate] = [text for text in given if "flutter" in text]
     assert thresholds["steel"] == pytest.approx(thresholds["aluminium"][::-1], abs=1e-8)
     assert max(thresholds["steel"]) > 0.3 > 0.2 > min(thresholds["steel"])
     assert not warnings["steel"] and not warnings["aluminium"]

@@ -1,7 +1,7 @@
 """Solution of a plan's tasks: every method solves them, quantities are evaluated and compared."""
 
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, nullcontext
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
@@ -17,11 +17,14 @@ from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, LOCAL
 from galinx.postprocess.quantities.quantity import METHODS as IN_WORDS
 from galinx.postprocess.quantities.runs import RECORD
 from galinx.solvers.contact.solution import Contact, Method, Solver, Task
-from galinx.solvers.errors import SolveError
+from galinx.solvers.errors import NoContact, SolveError
 
 from ..errors import BadInput
 from ..methods import METHODS
 from ..plan.plan import Plan
+
+#: Solver of a method's states at a speed, None where each load has its own; or why there is none.
+_OfSpeed = Solver | NoContact | None
 
 
 def _step(method: str, evaluated: bool = False) -> str:
@@ -126,12 +129,13 @@ class Work:
 
     def _solvers(
         self, task: Task, g: NDArray, stack: ExitStack, reasons: dict[str, str]
-    ) -> dict[str, Solver | None]:
+    ) -> dict[str, _OfSpeed]:
         """Solvers of the speed by method, None for a method of which each load has its own.
 
-        Methods that fail are left out; ``reasons`` gets why.
+        Where a state has no contact, that is why there is none. Methods that fail are left out, and
+        ``reasons`` gets why.
         """
-        solvers: dict[str, Solver | None] = {}
+        solvers: dict[str, _OfSpeed] = {}
         for name, method in self.methods.items():
             try:
                 together = self.load is None or METHODS[name].loads
@@ -139,12 +143,14 @@ class Work:
                     solvers[name] = (
                         stack.enter_context(method.at(task, np.unique(g))) if together else None
                     )
+            except NoContact as error:
+                solvers[name] = error
             except SolveError as error:
                 reasons[name] = str(error)
         return solvers
 
     def _solve(
-        self, task: Task, rows: NDArray[np.int64], solvers: Mapping[str, Solver | None],
+        self, task: Task, rows: NDArray[np.int64], solvers: Mapping[str, _OfSpeed],
         reasons: dict[str, str],
     ) -> tuple[dict[str, NDArray], NDArray[np.bool_], bool]:  # fmt: skip
         """Quantities of states by path, NaN where a method fails; where all solve them; if any does."""
@@ -173,33 +179,53 @@ class Work:
         return data, solved, partly
 
     def _by(
-        self, name: str, solver: Solver | None, task: Task, g: NDArray, load: Any
+        self, name: str, solver: _OfSpeed, task: Task, g: NDArray, load: Any
     ) -> tuple[dict[str, NDArray], NDArray[np.bool_], str]:
         """Quantities by a method, where it solves, (states,), and why it does not elsewhere.
 
-        Where all loads together have no answer each is tried alone.
+        Where states together have no answer each load is tried alone, and where some of its frictions may
+        have none, halves of these.
         """
-        takes, loads = METHODS[name].loads, [None] if load is None else np.unique(load).tolist()
-        solved, why = np.zeros(len(g), dtype=bool), ""
-        if solver or len(loads) == 1:
+        takes, loads = METHODS[name].loads, [] if load is None else np.unique(load).tolist()
+        failure: SolveError | None = None
+        if isinstance(solver, NoContact):
+            solver, failure = None, solver
+        elif solver or len(loads) < 2:
             body = task.body.loaded(load if takes or load is None else loads[0])
-            alone = replace(task, body=body, loads=(body.load,)) if not solver else task
             try:
-                with nullcontext(solver) if solver else self.methods[name].at(alone, np.unique(g)) as own:
-                    solution = own.states(g, load) if takes else own.states(g)  # type: ignore[call-arg]
-                    return self._of(name, solution, body, len(g)), ~solved, ""
+                with self._solver(name, solver, task, g, loads) as own:
+                    solution = own.states(g, load) if takes else own.states(g)
+                    return self._of(name, solution, body, len(g)), np.ones(len(g), dtype=bool), ""
             except SolveError as error:
-                if len(loads) == 1 or task.body.alike:
-                    where = "" if load is None or task.body.alike else f"N = {loads[0]:g} N/m: "
-                    return self._unknown(name, len(g)), solved, f"{where}{error}"
-        data = self._unknown(name, len(g))
-        for N in loads:
-            rows = load == N
-            values, solved[rows], of_load = self._by(name, solver, task, g[rows], load[rows])
-            why = why or of_load
+                failure = error
+        frictions = np.unique(g)
+        if len(loads) > 1 and not (failure and task.body.alike):
+            parts = [load == N for N in loads]
+        elif len(frictions) > 1 and isinstance(failure, NoContact):
+            lower = g < frictions[len(frictions) // 2]
+            parts = [lower, ~lower]
+        else:
+            where = f"N = {loads[0]:g} N/m: " if loads and not task.body.alike else ""
+            return self._unknown(name, len(g)), np.zeros(len(g), dtype=bool), f"{where}{failure}"
+        data, solved, why = self._unknown(name, len(g)), np.zeros(len(g), dtype=bool), ""
+        for rows in parts:
+            of_rows = None if load is None else load[rows]
+            values, solved[rows], of_part = self._by(name, solver, task, g[rows], of_rows)
+            why = why or of_part
             for path in values:
                 data[path][rows] = values[path]
         return data, solved, why
+
+    def _solver(
+        self, name: str, solver: Solver | None, task: Task, g: NDArray, loads: list[float]
+    ) -> AbstractContextManager[Any]:
+        """The solver of a speed, or one that a method makes for states with these frictions and loads."""
+        if solver:
+            return nullcontext(solver)
+        if loads:
+            body = task.body.loaded(loads[0])
+            task = replace(task, body=body, response=body.response(task.response.c), loads=tuple(loads))
+        return self.methods[name].at(task, np.unique(g))
 
     def _of(self, method: str, solution: Any, body: Contact, states: int) -> dict[str, NDArray]:
         """Quantities of a method's states by path.
@@ -237,7 +263,7 @@ class Work:
         return compare.comparisons(good | given, load, self.plan.rules)
 
     def _record(
-        self, task: Task, solvers: Mapping[str, Solver | None], reasons: Mapping[str, str], solved: bool
+        self, task: Task, solvers: Mapping[str, _OfSpeed], reasons: Mapping[str, str], solved: bool
     ) -> dict[str, Any] | None:
         """Numbers of the work at a speed, None where no method has any.
 
@@ -249,8 +275,9 @@ class Work:
         """
         speed: dict[str, Any] = {"speed": self.plan.speed + task.number, "c": task.response.c}
         numbers: dict[str, Any] = {}
-        for solver in filter(None, solvers.values() if solved or not reasons else ()):
-            numbers |= solver.record()
+        for solver in solvers.values() if solved or not reasons else ():
+            if solver and not isinstance(solver, NoContact):
+                numbers |= solver.record()
         if reasons:
             of_variant = f", {self.plan.scene.variant}" if self.plan.scene.swept else ""
             failure = {"failure": "; ".join(reasons.values()) + of_variant, "solved": solved}

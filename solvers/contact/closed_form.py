@@ -321,7 +321,7 @@ class FreeEnds(Pressure):
 _FIRST = 1e-3
 
 
-def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contacts:
+def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any, checked: bool = True) -> Contacts:
     """Contacts of a punch with free ends.
 
     Args:
@@ -329,9 +329,10 @@ def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contac
         g: σ_XY/σ_YY under the punch, (states,).
         profile: profile of the punch, with a free end at least.
         load: N/μ [m], a number or one for each state, (states,).
+        checked: contacts may not be wider than what is known of the punch.
 
     Raises:
-        SolveError: no contact carries the load, or the contact reaches beyond what is known of the punch.
+        SolveError: no contact carries the load, or it reaches beyond what is known of the punch.
     """
     g = np.atleast_1d(np.asarray(g, dtype=float))
     n, load = response.n + g * response.n12, np.broadcast_to(load, g.shape)
@@ -344,7 +345,7 @@ def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any) -> Contac
         return Contacts(_tilted(response, g, n, profile, load))
     if R := radius(profile):
         return Contacts((_parabolas(response, g, n, R, load),))
-    return Contacts(tuple(_by_quadrature(response, g, n, profile, load)))
+    return Contacts(tuple(_by_quadrature(response, g, n, profile, load, checked)))
 
 
 def _parabolas(response: HalfPlane, g: NDArray, n: NDArray, R: float, load: NDArray) -> Group:
@@ -384,7 +385,7 @@ def _tilted(
 
 
 def _by_quadrature(
-    response: HalfPlane, g: NDArray, n: NDArray, profile: Any, load: NDArray
+    response: HalfPlane, g: NDArray, n: NDArray, profile: Any, load: NDArray, checked: bool
 ) -> Sequence[Group]:
     """Contacts of any convex profile, state after state; equal states are solved once."""
     a, groups = 1.0 + FlatPunch(response, g).α, []
@@ -397,7 +398,8 @@ def _by_quadrature(
         punch = Punch(profile, 1.0, float(load[i]))
         rule = rule_of_ends(profile, float(a[i]), float(n[i]))
         m, h = free_ends(punch, lambda _: rule, h, m)  # noqa: B023
-        check_reach(profile, m - h, m + h)
+        if checked:
+            check_reach(profile, m - h, m + h)
         pressure = pressure_of(punch, float(a[i]), response, float(g[i]), m, h)
         rows = np.flatnonzero(inverse == k)
         half_width, centre = np.full(len(rows), h), np.full(len(rows), m)

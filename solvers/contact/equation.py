@@ -815,7 +815,8 @@ def half_width_at_rest(solid: Layered, profile: Any, compression: float) -> floa
     """
     response = solid.response(0.0)
     # That on the surface's solid alone is near enough to measure lengths by.
-    (unit,) = contacts(response, np.zeros(1), profile, compression).of("half_width").tolist()
+    at_rest = contacts(response, np.zeros(1), profile, compression, checked=False)
+    (unit,) = at_rest.of("half_width").tolist()
     punch = Punch(profile, unit, compression)
     layers = LayersUnderPunch(response, response.stack(unit), _AT_REST, punch)
     return unit * layers.half_width()

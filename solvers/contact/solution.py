@@ -541,8 +541,7 @@ class FreeEndContact(Contact):
             return first.half_width * growth
         if not self.solid.layers:
             with suppress(SolveError):
-                rest = self.contacts(self.solid.response(0.0), np.zeros(len(self.load)))
-                return rest.of("half_width")
+                return self._contacts_at_rest(np.shape(self.load)).of("half_width")
         rest = np.full(np.shape(self.load), np.nan)
         for i, N in enumerate(self.load.tolist()):
             with suppress(SolveError):  # the method that solves reports a contact that fails
@@ -571,8 +570,15 @@ class FreeEndContact(Contact):
             from .equation import half_width_at_rest
 
             return half_width_at_rest(self.solid, self.profile, self.compression)  # type: ignore[arg-type]
-        (rest,) = self.contacts(self.solid.response(0.0), np.zeros(1)).of("half_width")
+        (rest,) = self._contacts_at_rest(1).of("half_width")
         return float(rest)
+
+    def _contacts_at_rest(self, shape: Any) -> Any:
+        """Contacts on a uniform solid at rest without friction; states may be narrower than these."""
+        from .closed_form import contacts
+
+        at_rest = self.solid.response(0.0)
+        return contacts(at_rest, np.zeros(shape), self.profile, self.compression, checked=False)
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .closed_form import contacts
@@ -586,7 +592,7 @@ class FreeEndContact(Contact):
         There are none where no contact carries the load: the method that solves reports that.
         """
         try:
-            contact = self.contacts(self.solid.response(0.0), np.zeros(1))
+            contact = self._contacts_at_rest(1)
         except SolveError:
             return np.empty(0)
         (m,), (h,) = contact.of("centre"), contact.of("half_width")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from galinx.registry import Registry
 
 from ..approximation import gauss_in_panels
-from ..errors import SolveError
+from ..errors import NoContact
 from ..parameters import check, check_gives
 
 
@@ -154,11 +154,11 @@ def check_reach(profile: Any, left: float, right: float, found: str = "the conta
         found: beginning of the message.
 
     Raises:
-        SolveError: the contact is wider.
+        NoContact: the contact is wider.
     """
     first, last = getattr(profile, "reach", (-np.inf, np.inf))
     if left < first or right > last:
-        raise SolveError(
+        raise NoContact(
             f"{found} from X = {left:g} m to {right:g} m, but the punch is known from "
             f"{first:g} m to {last:g} m only; give more of its shape, or a smaller load"
         )

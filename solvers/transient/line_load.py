@@ -304,7 +304,7 @@ def _sums(values: NDArray, a: NDArray, x: NDArray) -> NDArray[np.complex128]:
         panels = np.flatnonzero(width == number)
         within = np.exp(np.multiply.outer(x[panels[0]] - x[panels[0], 0], a))
         starts = np.exp(np.multiply.outer(a, x[panels, 0]))
-        of_panels = (values[:, None] * within).reshape(-1, len(a)) @ starts
+        of_panels = (values[:, None] * within).reshape(4 * x.shape[1], len(a)) @ starts
         sums[:, panels] = of_panels.reshape(4, x.shape[1], -1).swapaxes(1, 2)
     return sums
 

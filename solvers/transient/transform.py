@@ -22,6 +22,8 @@ from .line_load import both_sides, interpolation
 
 #: Step of the double exponential rule along the overlap of two shifted contacts, of so many polynomials.
 _STEP, _FOR = 0.056, 24
+#: Distances, times the square of the polynomials' number, for which these fit into a processor's cache.
+_AT_ONCE = 40_000
 
 
 class Weighted:
@@ -88,9 +90,7 @@ class Basis:
         return self.pressure.polynomials(np.array([-1.0, 1.0]))
 
 
-def shared(
-    x: NDArray, length: NDArray, tests: Weighted, trials: Weighted
-) -> NDArray[np.float64]:
+def shared(x: NDArray, length: NDArray, tests: Weighted, trials: Weighted) -> NDArray[np.float64]:
     """∫ τ_i(X) σ_j(X - x) dX of tests τ and trials σ with their weights, at distances x > 0 and at -x.
 
     Args:
@@ -102,6 +102,9 @@ def shared(
         (2, x, tests, trials).
     """
     terms = max(tests.terms, trials.terms)
+    if len(x) > 1 and len(x) * terms**2 > _AT_ONCE:
+        halves = np.array_split(x, 2), np.array_split(length, 2)
+        return np.concatenate([shared(*half, tests, trials) for half in zip(*halves)], axis=1)
     least = min(tests.α, tests.β, trials.α, trials.β)
     d, e, weights = double_exponential(length, _STEP * _FOR / max(terms, _FOR), least)
     x = x[:, None]
@@ -131,9 +134,7 @@ def _norm(j: int, α: float, β: float) -> float:
 _DIGITS, _LONGEST = 36.0, 5.6
 
 
-def double_exponential(
-    length: NDArray, step: float, exponent: float
-) -> tuple[NDArray, NDArray, NDArray]:
+def double_exponential(length: NDArray, step: float, exponent: float) -> tuple[NDArray, NDArray, NDArray]:
     """Double exponential rule on intervals: distances from both ends and weights, (n, points) each.
 
     Args:
@@ -210,8 +211,7 @@ class Transformed:
         x, weights = gauss_in_panels(edges, _POINTS)
         self._panels = x.reshape(-1, _POINTS)
         # Towards the distance 2 the overlap is short and singular, the response smooth.
-        step = _STEP * _FOR / max(terms, _FOR)
-        length, _, last = (of[0] for of in double_exponential(np.array([_EVEN]), step, _STEEPEST))
+        length, _, last = (of[0] for of in double_exponential(np.array([_EVEN]), _STEP, _STEEPEST))
         # Distances of the response, (distances,), what is left of 2, and their weights.
         self._x, self._length = np.append(x, 2.0 - length), np.append(2.0 - x, length)
         self._weights = np.append(weights, last)

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support import THOROUGH, computed
+from support import THOROUGH, computed, of_sections
 
 import galinx
 from galinx.app.errors import BadInput
@@ -138,6 +138,26 @@ def test_archives_of_loads_are_whole_and_a_load_that_was_changed_is_found(tmp_pa
     result.data["states/load"][0] *= 2.0
     result.save(tmp_path / "b.h5")
     assert any("states/load" in fault for fault in faults(tmp_path / "b.h5"))
+
+
+@pytest.mark.parametrize("method", ["closed_form", "sie", "fem"])
+def test_states_that_are_wider_than_the_punch_leave_the_others_theirs(method):
+    """Friction shifts the contact: under 230 N/mm it leaves the punch forward, and does not backward."""
+    shape = [[-0.002, 4e-5], [0, 0], [0.002, 5e-5]]
+    scene = of_sections(
+        solid={"material": "PMMA"}, friction={"mu": 0.3},
+        punch={"profile": "table", "shape": shape, "load": ["400 N/mm", "230 N/mm", "50 N/mm"]},
+        motion={"c": 0.0, "strokes": ["forward", "backward"], "X_over_L": [0.5]},
+        solve={"methods": [method], "tolerance": 1e-3},
+    )  # fmt: skip
+    result = galinx.compute(scene)
+    h, m = (result.data[f"states/{method}/{of}"] for of in ("half_width", "centre"))
+    np.testing.assert_array_equal(np.isfinite(h), [False] * 3 + [True] * 3)
+    # One parabola under all loads: lengths go with their root. The mirror image of backward is forward.
+    np.testing.assert_allclose(h[3:] / 0.8609e-3, [4.6**0.5, 1.0, 1.0], rtol=1e-3)
+    np.testing.assert_allclose(m[3:] - -0.1111e-3, np.array([4.6**0.5, -1.0, 1.0]) * 0.0339e-3, rtol=4e-3)
+    (failure,) = result.data["run/failures"]
+    assert "N = 230000 N/m" in failure or "N = 400000 N/m" in failure
 
 
 def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):

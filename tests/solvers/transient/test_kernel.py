@@ -9,7 +9,7 @@ from stroh import admittances
 
 from galinx.solvers.layers.layered import Layer, Layered
 from galinx.solvers.solids.admittance import Admittance
-from galinx.solvers.solids.isotropic import Isotropic
+from galinx.solvers.solids.isotropic import Isotropic, IsotropicAdmittance
 from galinx.solvers.transient.line_load import _NEAR, Echoes, Kernel, UniformLayers
 
 
@@ -136,3 +136,16 @@ def test_echoes_are_the_transform_of_their_symbol():
     values = of[:, ::-1, ::-1].reshape(-1, 4).T / (1j * κ)
     expected = values @ np.exp(1j * np.outer(κ, x)) * (κ[1] - κ[0]) / (2.0 * np.pi)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-8 * np.abs(expected).max())
+
+
+def test_echoes_of_few_panels_of_wavenumbers_are_those_of_each_distance():
+    """None of the first panels of wavenumbers is fine enough."""
+    above, below = (
+        IsotropicAdmittance(*of, 0.0, of[0], 0.0) for of in ((5.148, 3.148), (2.7847, 0.7847))
+    )
+    sheets = UniformLayers(((above, 1.0, 1.0), (below, 2.4011, 0.6789)), (1.4356,))
+    x = np.linspace(0.0315, 1.98, 28)[:, None] + np.linspace(0.0, 0.07, 14)
+    together = Echoes(sheets, 0.385)((x,), 16.6 - 68.4j, slopes=True)
+    alone = [Echoes(sheets, 0.385)((row[None],), 16.6 - 68.4j, slopes=True) for row in x]
+    np.testing.assert_allclose(together, np.concatenate(alone, axis=1), rtol=1e-6, atol=1e-22)
+    assert 0.0 < np.abs(together).max() < 1e-9

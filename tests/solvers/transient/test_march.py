@@ -125,3 +125,13 @@ def test_strain_at_late_times_is_steady(solid, c, g):
         off.append(np.abs((solid.response(c).σ_XX(u_X, σ, g * σ) - steady.σ_XX(X)) * weight).max())
     assert off[1] < 3e-4
     assert off[1] < 0.05 * off[0]
+
+
+def test_more_polynomials_leave_the_indentation():
+    """What overlaps of two contacts leave out, short ones most, is not enlarged by steep polynomials."""
+    response, g = SOLID.response(0.75), 0.9
+    punches = (StartingPunch(response, SOLID.limit(), 2.0, 8, terms) for terms in (32, 48))
+    few, many = (punch.course(g, load) for punch in punches)
+    assert few.v0[-1] == pytest.approx(many.v0[-1], rel=1e-10)
+    # K_I converges with the square of their number.
+    assert few.K_right[-1] == pytest.approx(many.K_right[-1], rel=1e-4)

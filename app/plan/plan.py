@@ -592,7 +592,16 @@ def _output_places(scene: Scene, places: Places) -> Places:
 def _quantities(
     scene: Scene, methods: tuple[str, ...], modes: tuple[str, ...]
 ) -> tuple[tuple[Quantity, ...], list[tuple[Quantity, str]]]:
-    """Quantities that are evaluated, and those that a method cannot give, with the reason."""
+    """Quantities that are evaluated, and those that a method cannot give, with the reason.
+
+    Raises:
+        BadInput: a quantity of the user's names no method, and would never be computed.
+    """
+    known = ", ".join([LOCAL, *METHODS])
+    for path, quantity in QUANTITIES.items():
+        if quantity.solved and quantity.method not in (LOCAL, *METHODS):
+            found = f"found method = {quantity.method!r}"
+            raise BadInput(f"the quantity {path!r}: {found}, expected one of {known}")
     computed: dict[str, Quantity] = {}
     refused: list[tuple[Quantity, str]] = []
     # Quantities that are computed from others come after them, wherever they stand in the table.

@@ -1,7 +1,7 @@
 """Models of a user's own, registered from outside: solved by two methods, archived, drawn, refused."""
 
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, make_dataclass
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ import galinx
 from galinx.app.errors import BadInput
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.law import FrictionLaw
-from galinx.solvers.parameters import build_model
+from galinx.solvers.parameters import build_model, parameter
 from galinx.solvers.profiles import check_slope
 from galinx.solvers.profiles.punches import Flat
 
@@ -199,6 +199,26 @@ def test_dimensions_of_a_quantity_are_no_text():
     row = galinx.Quantity("states/own", "1", "own", "states", lambda s, body: np.ones(1))
     with pytest.raises(TypeError, match="states/own: over = 'states', expected a tuple"):
         galinx.QUANTITIES.add(row)
+
+
+def test_the_method_of_a_quantity_exists(monkeypatch):
+    row = galinx.Quantity("states/femm/own", "1", "own", ("states",), lambda s, body: s.g, "femm")
+    monkeypatch.setitem(galinx.QUANTITIES, row.path, row)
+    with pytest.raises(
+        BadInput, match="'states/femm/own': found method = 'femm', expected one of local, "
+    ):
+        computed("tables4_5", ONE_STATE)
+
+
+@pytest.mark.parametrize("key", ["model", "pre_sliding", "vary"])
+def test_a_parameter_with_the_name_of_a_key_is_refused(monkeypatch, key):
+    field = key, float, parameter(key, "own", default=1.0)
+    own = make_dataclass("Own", [field], bases=(Whole,), frozen=True)
+    monkeypatch.setitem(galinx.LAWS, "own", own)
+    with pytest.raises(
+        BadInput, match=f"friction: model 'own' has the parameter {key}, which is a key of"
+    ):
+        computed("tables4_5", ONE_STATE | {"friction": {"model": "own"}})
 
 
 def test_models_that_cannot_work_are_not_registered():

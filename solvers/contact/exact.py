@@ -220,7 +220,14 @@ class ExactSolution(Solution):
 
         mirrored = turns and replace(turns, σ=_MIRROR * turns.σ)
         punch = InSolid(
-            response, contacts.of("g"), self.local, self.half_width, stresses, mirrored, self.nearest
+            response,
+            contacts.of("g"),
+            self.local,
+            self.half_width,
+            stresses,
+            self.kinks_of_friction,
+            mirrored,
+            self.nearest,
         )
         return self.task.body.of_punch.strength(punch)
 

@@ -724,7 +724,7 @@ class Solution:
             return None
         extremes = np.full((2, 2, len(self.g)), np.nan)
         for state in range(len(self.g)):
-            if self._kinks_of_friction(state):
+            if self.kinks_of_friction[state]:
                 extremes[..., state] = self.between_kinks(state, lambda σ_XX, σ_YY, σ_XY: σ_XX)
         return None if np.isnan(extremes).all() else extremes
 
@@ -744,12 +744,16 @@ class Solution:
                 σ[state, under] = self.at_surface(state, X[state, under])[0]
         return np.array([X, σ])
 
-    def _kinks_of_friction(self, state: int) -> Sequence[float]:
-        """Positions over a at which the friction of a state is not smooth."""
-        a = float(self.half_width[state])
-        if not self.body.along or np.isnan(a):
-            return ()
-        return self.body.friction(float(self.g[state]), a).kinks
+    @cached_property
+    def kinks_of_friction(self) -> list[Sequence[float]]:
+        """Positions over a at which the friction of each state is not smooth."""
+        if not self.body.along:
+            return [()] * len(self.g)
+        half_widths = np.broadcast_to(self.half_width, self.g.shape)
+        return [
+            () if np.isnan(a) else self.body.friction(g, a).kinks
+            for g, a in zip(self.g.tolist(), half_widths.tolist())
+        ]
 
     def between_kinks(self, state: int, measure: Callable[..., NDArray]) -> NDArray[np.float64]:
         """Largest and smallest measure of a state's stresses between ends and kinks, and their places.
@@ -761,7 +765,7 @@ class Solution:
         Returns:
             Places over a, then values; the largest, then the smallest, (2, 2).
         """
-        turns = np.unique([-1.0, *self._kinks_of_friction(state), *self.kinks[state], 1.0])
+        turns = np.unique([-1.0, *self.kinks_of_friction[state], *self.kinks[state], 1.0])
         turns = turns[np.append(np.diff(turns) > _COINCIDE, True)]
         ends, g, a = self.body.infinite_ends(self.local)[state], self.g[[state]], self.half_width[[state]]
         tips = (np.array(self.body.tips) - self.centre[state]) / a

@@ -17,7 +17,7 @@ depth or the distance from a sharp edge, at which the largest stress along anoth
 strength.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -456,7 +456,8 @@ class InSolid:
         g: σ_XY/σ_YY on it, (states,).
         local: exponents α at X = a and β at X = -a of a punch, (states,) each.
         half_width: of each state's contact [m], (states,).
-        stresses, yield_turns, nearest: see :class:`galinx.solvers.contact.solution.Solution`.
+        stresses, kinks_of_friction, yield_turns, nearest: see
+            :class:`galinx.solvers.contact.solution.Solution`.
     """
 
     response: HalfPlane
@@ -464,6 +465,7 @@ class InSolid:
     local: Any
     half_width: Any
     stresses: Callable[[NDArray], NDArray]
+    kinks_of_friction: Sequence[Sequence[float]]
     yield_turns: Turns | None = None
     nearest: float = 1.0
 
@@ -589,11 +591,10 @@ class Strength:
         Next to a kink stresses are a d log d: the largest may lie closer to it than circles show.
         """
         solution = self.solution
-        half_widths = np.broadcast_to(solution.half_width, np.shape(solution.g))
         states_by_kinks: dict[tuple[float, ...], list[int]] = {}
-        for state, (g, a) in enumerate(zip(solution.g.tolist(), half_widths.tolist())):
-            if not np.isnan(a) and len(kinks := self.body.friction(g, a).kinks):
-                states_by_kinks.setdefault(tuple(kinks), []).append(state)
+        for state, kinks in enumerate(solution.kinks_of_friction):
+            states_by_kinks.setdefault(tuple(kinks), []).append(state)
+        states_by_kinks.pop((), None)
         values, places = np.full((2, len(solution.g), 1), -np.inf)
         for kinks, states in states_by_kinks.items():
 
@@ -621,7 +622,7 @@ class Strength:
             there = np.concatenate([there, _known(measure(σ))], axis=1)
             inside = peak(stress, at, np.append(steps, more_steps), there)
             best = _higher(inside, _known(measure(turns.σ)), turns.X)
-        if self.body.along:
+        if any(map(len, self.solution.kinks_of_friction)):
             best = _higher(best, *self._between_kinks_of_friction(measure))
         return Peak(*(np.where(self.infinite, np.nan, x) for x in (best.value, best.X, best.Y)))
 

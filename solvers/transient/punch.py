@@ -40,7 +40,7 @@ from ..contact.stresses import PLACES
 from ..solids.half_plane import HalfPlane
 from .history import History
 from .line_load import both_sides, interpolation
-from .transform import Basis, Transformed, Weighted, divided, double_exponential
+from .transform import Basis, Transformed, Weighted, divided, double_exponential, turns
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
 _ROUNDING = 1e-16
@@ -271,8 +271,9 @@ class Residual:
 
 #: Octaves of panels towards the distance 0, largest width of a panel over a, and Gauss's points of each.
 _NEAR, _EVEN, _POINTS = 24, 0.5, 14
-#: Step of the double exponential rule along the contact, or its part on one side.
-_STEP = 0.028
+#: Longest step of the double exponential rule along the contact, or its part on one side, and radians
+#: by which waves turn from one of its points to the next, at most.
+_STEP, _RADIANS = 0.028, 1.5
 #: Points of the pressure in its effect beside the contact.
 _FEW = 128
 
@@ -298,7 +299,8 @@ class AlongSurface:
         edges = np.concatenate([[0.0], near[near < _EVEN], even])
         edges = edges[np.searchsorted(edges, least, side="right") - 1 :]
         # Edges of panels of distances over a, growing from 0, or from little less than the least.
-        self._edges = divided(edges, s, 1.0 / (rayleigh - response.c))
+        self._s, self._slowest = s, 1.0 / (rayleigh - response.c)
+        self._edges = divided(edges, s, self._slowest)
         self._x, _ = gauss_in_panels(self._edges, _POINTS)
         panels = self._x.reshape(-1, _POINTS)
         # û,X of σ_YY and σ_XY ahead and behind at all distances for every s, (s, 2, distances) each.
@@ -337,6 +339,11 @@ class AlongSurface:
                 last, beyond = min(X, 1.0), max(X - 1.0, 0.0)
                 length, least = np.array([last + 1.0]), min(α, β)
                 near, far, w = (of[0] for of in double_exponential(length, _STEP, least))
+                # Points are as far apart as weights are large.
+                turn = float((turns(beyond + near, self._s, self._slowest) * w).max())
+                if turn > _RADIANS:
+                    step = _STEP * _RADIANS / turn
+                    near, far, w = (of[0] for of in double_exponential(length, step, least))
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
                 sums[:, n] = self._interpolation(beyond + near).T @ (

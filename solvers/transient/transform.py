@@ -7,7 +7,6 @@ shorter the panels.
 """
 
 from functools import cached_property
-from itertools import pairwise
 from math import ceil, exp, lgamma, log, pi
 
 import numpy as np
@@ -155,20 +154,30 @@ def double_exponential(length: NDArray, step: float, exponent: float) -> tuple[N
 _TURN, _GONE = 10.0, 20.0
 
 
-def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
-    """Edges of panels, divided where they are too long for the waves.
+def turns(x: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
+    """Radians per length over a by which waves turn at distances from a load, the most of all s, (x,).
 
     A wave e^(-sζx) turns by Im s ζ per length as long as Re s ζ x has not damped it.
 
     Args:
-        edges: distances over a, rising from 0.
+        x: distances over a, > 0, (x,).
         s: over c_s/a, Re s >= 0, (n,).
         slowest: slowness ζ of the slowest wave, seen from the load.
     """
+    felt = _GONE / np.maximum(np.multiply.outer(x, s.real), 1e-300)
+    return np.asarray((np.abs(s.imag) * np.minimum(slowest, felt)).max(axis=1))
+
+
+def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
+    """Edges of panels, divided where they are too long for the waves.
+
+    Args:
+        edges: distances over a, rising from 0.
+        s, slowest: of the waves, see :func:`turns`.
+    """
     pieces = [edges[:1]]
-    for near, far in pairwise(edges.tolist()):
-        felt = _GONE / np.maximum(s.real * max(near, float(edges[1])), 1e-300)
-        turn = float((np.abs(s.imag) * np.minimum(slowest, felt)).max())
+    most = turns(np.maximum(edges[:-1], edges[1]), s, slowest)
+    for near, far, turn in zip(edges[:-1].tolist(), edges[1:].tolist(), most.tolist()):
         count = max(ceil((far - near) * turn / _TURN), 1)
         pieces.append(np.linspace(near, far, count + 1)[1:])
     return np.concatenate(pieces)

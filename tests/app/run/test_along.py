@@ -238,3 +238,21 @@ def test_stresses_below_a_flat_punch_are_known_in_closed_form():
         np.testing.assert_allclose(fem, exact, rtol=1e-4, atol=1e-5, err_msg=name)
         assert (fem != exact).all()
     assert not any("yield" in name for name in data)
+
+
+def test_yield_of_an_elastic_punch_below_friction_that_develops():
+    """Its solid has the opposite friction, and a kink where that is fully developed."""
+    near = [[x, -1e-7] for x in np.linspace(-1.0, 1.0, 41)]
+    punch = {
+        "profile": "parabolic",
+        "radius": "20 mm",
+        "load": "300 N/mm",
+        "solid": {"material": "steel"},
+    }
+    data = slid(
+        advected("dahl", mu_c=0.5, sigma0_over_load="1500 1/m", delta=0.5), {"material": "aluminium"},
+        punch=punch, solve={"methods": ["sie"], "tolerance": 1e-4}, output=YIELDING | {"points": near},
+    ).data  # fmt: skip
+    for of in ("", "punch_"):
+        largest, samples = data[f"states/sie/{of}von_mises"][0], data[f"interior/sie/{of}von_mises"][0]
+        assert 0.98 * largest < samples.max() <= largest * (1.0 + 1e-6)

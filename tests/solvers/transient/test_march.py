@@ -135,3 +135,13 @@ def test_more_polynomials_leave_the_indentation():
     assert few.v0[-1] == pytest.approx(many.v0[-1], rel=1e-10)
     # K_I converges with the square of their number.
     assert few.K_right[-1] == pytest.approx(many.K_right[-1], rel=1e-4)
+
+
+def test_stress_ahead_of_a_fast_punch_converges_with_the_steps():
+    """There waves of every step are short: the sum over the contact has to follow all of them."""
+    response, stresses = SOLID.response(0.85), []
+    for k in (1, 2, 4):
+        course = StartingPunch(response, SOLID.limit(), 3.0, 9 * k, 12).course(-0.7, load)
+        stresses.append(course.σ_XX_right[k - 1 :: k])
+    coarse, fine = (np.abs(σ_XX - stresses[-1]).max() for σ_XX in stresses[:2])
+    assert fine < coarse / 5.0 and fine < 1e-4 * np.abs(stresses[-1]).max()

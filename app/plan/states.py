@@ -96,8 +96,8 @@ class States:
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
             speed), the load in N/m where there are several, the law's parameters, the speed and that of
-            a wave along the surface in m/s, flutter thresholds of both signs of g, number of times that a
-            wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under the punch.
+            a wave along the surface in m/s, flutter thresholds of both signs of g, f = F/N signed, and g
+            = σ_XY/σ_YY under the punch.
         others: further datasets by path: inner state of the law at each state, (states, n); row of each
             state among the loops, -1 for none, (states,); positions X/L along all strokes in the order of
             travel, (steps,), and friction there, (loops, steps); work and stiffness of strokes, (loops,
@@ -243,6 +243,24 @@ def overtaken(scene: Scene, c: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(own > np.asarray(c) * scene.solid.c_s * (1.0 + 1e-12))
 
 
+def crossings(scene: Scene, order: Order, rows: NDArray, half_width: ArrayLike) -> NDArray[np.float64]:
+    """How often a wave of the speed c_s crosses the contacts of states during their strokes: L/(2 a c).
+
+    NaN at rest, without strokes and without a contact.
+
+    Args:
+        scene: gives the strokes.
+        order: of the states.
+        rows: of the states in it, (n,).
+        half_width: of the contacts [m], a number or (n,).
+    """
+    place, c = order.numbers[3, rows], order.c[rows]
+    lengths = np.repeat([leg.length for leg in scene.legs], [len(X) for X in scene.places])[place]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        often = lengths * scene.friction.pre_sliding / (2.0 * np.asarray(half_width) * c)
+    return np.where((c > 0.0) & (not scene.steady), often, np.nan)
+
+
 def _of_all(order: Order, values: NDArray) -> NDArray:
     """Values of all states, (states, …), the same under every load, and at every speed if laws have none.
 
@@ -263,11 +281,8 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
     own = np.array([np.nan if leg.speed is None else leg.speed for leg in scene.legs])[legs]
     V = {speed / scene.solid.c_s: speed for speed in scene.motion.speed or ()}  # c·c_s would be rounded
     given = np.array([V.get(c, c * scene.solid.c_s) for c in order.given])
-    lengths, N = np.array([leg.length for leg in scene.legs])[legs], np.array(order.loads)
+    N = np.array(order.loads)
     ways = headings(scene, np.array([leg.s for leg in scene.legs])[legs], c)
-    half_widths = np.broadcast_to(scene.body.loaded(N if len(N) > 1 else None).half_width, len(N))
-    with np.errstate(divide="ignore", invalid="ignore"):  # by a wave of speed c_s: L/(2 a c)
-        crossings = lengths * friction.pre_sliding / (2.0 * half_widths[load] * c)
     return {
         "motion": np.array([leg.name for leg in scene.legs])[legs],
         "X_over_L": np.concatenate(scene.places)[place],
@@ -278,7 +293,6 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "speed": np.where(np.isnan(own), given[speed], own),
         **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c, ways))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        "wave_crossings": np.where((c > 0.0) & (not scene.steady), crossings, np.nan),  # of strokes
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }

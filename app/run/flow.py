@@ -26,7 +26,7 @@ from galinx.postprocess.journal import Journal, Part, joined
 from galinx.postprocess.over_time import IN_TIME
 from galinx.postprocess.quantities import declared, runs
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
-from galinx.postprocess.quantities.states import RATIO
+from galinx.postprocess.quantities.states import RATIO, SPEED
 from galinx.postprocess.validity import THRESHOLDS, Steady, Validity
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.slider import Ride, pull
@@ -334,8 +334,8 @@ def _solve(
     """
     finished, records = np.zeros(len(states), dtype=bool), dict[int, dict[str, Any]]()
     # A ratio that varies along the contact is known with the contact.
-    of_flutter = RATIO.path, *THRESHOLDS
-    ratios = {path: values for path, values in states.datasets.items() if path in of_flutter}
+    of_validity = SPEED.path, RATIO.path, *THRESHOLDS
+    ratios = {path: values for path, values in states.datasets.items() if path in of_validity}
 
     def take(part: Part) -> None:
         judge.see(part.comparisons)

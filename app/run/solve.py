@@ -22,6 +22,7 @@ from galinx.solvers.errors import NoContact, SolveError
 from ..errors import BadInput
 from ..methods import METHODS
 from ..plan.plan import Plan
+from ..plan.states import crossings
 
 #: Solver of a method's states at a speed, None where each load has its own; or why there is none.
 _OfSpeed = Solver | NoContact | None
@@ -174,9 +175,19 @@ class Work:
             of_edges = SimpleNamespace(
                 local=local, g=g, places=task.places, response=task.response,
                 half_width=task.body.half_widths(task.response, g, load),
+                crossings=self._crossings(data, rows, task.body),
             )  # fmt: skip
             data |= self._of(LOCAL, of_edges, task.body.loaded(load), len(g))
         return data, solved, partly
+
+    def _crossings(
+        self, data: Mapping[str, NDArray], rows: NDArray[np.int64], body: Contact
+    ) -> NDArray[np.float64]:
+        """How often waves cross the contacts of states; free ends are those of a method's solution."""
+        a = np.full(len(rows), np.nan if body.found else body.half_width)
+        for name in self.methods:
+            a = np.where(np.isnan(a), data.get(f"states/{name}/half_width", a), a)
+        return crossings(self.plan.scene, self.plan.order, rows - self.plan.first, a)
 
     def _by(
         self, name: str, solver: _OfSpeed, task: Task, g: NDArray, load: Any

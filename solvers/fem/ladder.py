@@ -489,7 +489,8 @@ class MeasuredError(Estimate):
             mended |= bool((wrong & (2.0 * lasting < error)).any())
             enough |= bool((wrong & (lasting <= tolerance)).any())
             certain = 1.0 if level.mirrored else _CERTAIN
-            self.floor = max(self.floor, float(np.max(ROUNDING * certain * bound + own)))
+            remains = np.minimum(ROUNDING * certain * bound + own, error)
+            self.floor = max(self.floor, float(np.max(remains)))
         self.of_cells = not work.plan.fixed and mended and self.floor <= tolerance
         self.of_degree = mended or enough
         self.worst = max((float(error.max()) for error in errors.values()), default=0.0)

@@ -70,6 +70,17 @@ def test_states_have_their_speed_and_their_wave_crossings():
     np.testing.assert_allclose(data["states/wave_crossings"][moving], L / (2 * a * c[moving]), rtol=1e-14)
 
 
+def test_wave_crossings_are_of_the_contact_of_each_state():
+    """At 0.9 c_s it is three times as wide as at rest; where there is none there are no crossings."""
+    shape = [[-0.002, 4e-5], [0, 0], [0.002, 4e-5]]
+    punch = {"profile": "table", "shape": shape, "load": ["20 N/mm", "1200 N/mm"]}
+    data = computed("tables4_5", CLOSED | {"punch": punch, "motion.c": [0.1, 0.9]}).data
+    a, c = data["states/closed_form/half_width"], data["states/c"]
+    found, widths = data["states/wave_crossings"], [a[c == at][0] for at in (0.9, 0.1)]
+    assert widths[0] / widths[1] > 2.0 and 0 < np.isnan(a).sum() < len(a)
+    np.testing.assert_allclose(found, 1e-4 / (2.0 * a * c), rtol=1e-14)
+
+
 def told(changes):
     return json.loads(computed("tables4_5", CLOSED | changes).attributes["warnings"])
 

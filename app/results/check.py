@@ -85,7 +85,10 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
     for method in (CLOSED_FORM, SIE):
         by = (method, LOCAL) if method == CLOSED_FORM else (method,)
         # Residuals may be rounding alone; comparisons have them.
-        rows = [row for row in plan.quantities if row.of and row.method in by and row.mode != ALONE]
+        rows = [
+            row for row in plan.quantities
+            if row.of and row.method in by and row.mode != ALONE and row.path in archive.names
+        ]  # fmt: skip
         slow = [row for row in rows if row.asked_by == YIELD]
         quick = [row for row in rows if row not in slow]
         many = max(_NUMBERS // max(sum(int(np.prod(plan.shape(row))) for row in quick), 1), _FEW)

@@ -4,7 +4,7 @@ An :class:`Order` is the product of speeds, loads, laws and places on the stroke
 the friction of every state, which :func:`enumerate_states` computes along the strokes.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan, prod
@@ -243,21 +243,27 @@ def overtaken(scene: Scene, c: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(own > np.asarray(c) * scene.solid.c_s * (1.0 + 1e-12))
 
 
-def crossings(scene: Scene, order: Order, rows: NDArray, half_width: ArrayLike) -> NDArray[np.float64]:
+def crossings(
+    scene: Scene, order: Order, rows: NDArray, data: Mapping[str, NDArray], methods: Iterable[str]
+) -> NDArray[np.float64]:
     """How often a wave of the speed c_s crosses the contacts of states during their strokes: L/(2 a c).
 
     NaN at rest, without strokes and without a contact.
 
     Args:
-        scene: gives the strokes.
+        scene: gives the strokes, and contacts whose ends are given.
         order: of the states.
         rows: of the states in it, (n,).
-        half_width: of the contacts [m], a number or (n,).
+        data: half-widths of other contacts, of these states.
+        methods: that solve these, the first one's count.
     """
+    a = np.full(len(rows), np.nan if scene.body.found else scene.body.half_width)
+    for name in methods:
+        a = np.where(np.isnan(a), data.get(f"states/{name}/half_width", a), a)
     place, c = order.numbers[3, rows], order.c[rows]
     lengths = np.repeat([leg.length for leg in scene.legs], [len(X) for X in scene.places])[place]
     with np.errstate(divide="ignore", invalid="ignore"):
-        often = lengths * scene.friction.pre_sliding / (2.0 * np.asarray(half_width) * c)
+        often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
     return np.where((c > 0.0) & (not scene.steady), often, np.nan)
 
 

@@ -44,6 +44,7 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     TEXT,
 )
+from galinx.postprocess.quantities.validity import CROSSINGS
 from galinx.postprocess.schema import VERSION
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import SHARP_ON_LAYERS, on_finer_cells, unknowns
@@ -53,6 +54,7 @@ from galinx.solvers.profiles import kinks
 from ..console import Progress
 from ..methods import METHODS
 from ..plan.plan import Plan
+from ..plan.states import crossings
 from ..plan.variants import joined_positions, joined_states, make_plans
 from ..run.flow import Judge, scene_attributes
 from ..run.solve import Work
@@ -87,7 +89,7 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
         # Residuals may be rounding alone; comparisons have them.
         rows = [
             row for row in plan.quantities
-            if row.of and row.method in by and row.mode != ALONE and row.path in archive.names
+            if row.of and row.method in by and row.mode != ALONE and row is not CROSSINGS
         ]  # fmt: skip
         slow = [row for row in rows if row.asked_by == YIELD]
         quick = [row for row in rows if row not in slow]
@@ -99,6 +101,13 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
             methods = (method,) * (method in plan.methods)
             for numbers, computed in _computed(archive, plan, methods, selected, rows) if rows else ():
                 yield from _different(archive, plan, numbers, computed)
+    often = archive.data.get(CROSSINGS.path)
+    if often is not None and plan.methods:
+        own = {row.path: archive.data.get(row.path) for row in states.HALF_WIDTH.values()}
+        own = {path: values[plan.rows] for path, values in own.items() if values is not None}
+        expected = crossings(plan.scene, plan.order, np.arange(plan.states), own, plan.methods)
+        if not _same(often[plan.rows], expected):
+            yield f"{CROSSINGS.path} is not what its half-widths give"
     if plan.fem and not plan.scene.layers:
         yield from _of_derived(archive, plan, more)
         yield from _of_finite_elements(archive, plan, more)
@@ -348,7 +357,7 @@ def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[
             yield f"{name} holds other positions than its scene gives"
     rows, planned = table(), {quantity.path for quantity in plan.quantities}
     if attributes["schema_version"] < VERSION:  # the first layout did not have it
-        planned -= {validity.CROSSINGS.path} - {*archive.names}
+        planned -= {CROSSINGS.path} - {*archive.names}
     held = {name for name in archive.names if rows[name].solved}
     yield from (f"{name} is missing, its scene asks for it" for name in sorted(planned - held))
     yield from (f"{name} is not what its scene asks for" for name in sorted(held - planned))

@@ -155,7 +155,7 @@ class Work:
         reasons: dict[str, str],
     ) -> tuple[dict[str, NDArray], NDArray[np.bool_], bool]:  # fmt: skip
         """Quantities of states by path, NaN where a method fails; where all solve them; if any does."""
-        g, load = self.g[rows], None if self.load is None else self.load[rows]
+        plan, g, load = self.plan, self.g[rows], None if self.load is None else self.load[rows]
         g.flags.writeable = False  # for quantities of the user's
         solved = np.ones(len(g), dtype=bool)
         data: dict[str, NDArray] = {}
@@ -175,19 +175,10 @@ class Work:
             of_edges = SimpleNamespace(
                 local=local, g=g, places=task.places, response=task.response,
                 half_width=task.body.half_widths(task.response, g, load),
-                crossings=self._crossings(data, rows, task.body),
+                crossings=crossings(plan.scene, plan.order, rows - plan.first, data, self.methods),
             )  # fmt: skip
             data |= self._of(LOCAL, of_edges, task.body.loaded(load), len(g))
         return data, solved, partly
-
-    def _crossings(
-        self, data: Mapping[str, NDArray], rows: NDArray[np.int64], body: Contact
-    ) -> NDArray[np.float64]:
-        """How often waves cross the contacts of states; free ends are those of a method's solution."""
-        a = np.full(len(rows), np.nan if body.found else body.half_width)
-        for name in self.methods:
-            a = np.where(np.isnan(a), data.get(f"states/{name}/half_width", a), a)
-        return crossings(self.plan.scene, self.plan.order, rows - self.plan.first, a)
 
     def _by(
         self, name: str, solver: _OfSpeed, task: Task, g: NDArray, load: Any

@@ -209,6 +209,11 @@ def test_a_nan_that_is_not_allowed_fails(nan_allowed, verdict, monkeypatch, tmp_
         "friction": {"mu": [0.0, 0.3]}, "motion": {"c": [0.0, 0.3]},
         "solve": {"methods": ["closed_form"]}, "output": {"quantities": ["sif"]},
     },
+    {  # half-widths by finite elements, and strokes over them
+        "punch": {"profile": "parabolic", "radius": "20 mm", "load": "20 N/mm"}, "motion": {"c": 0.8},
+        "friction": {"mu_c": 0.3, "sigma0_over_load": "20000 1/m", "pre_sliding": "1 mm"},
+        "solve": {"methods": ["fem"], "tolerance": 1e-3}, "output": {"quantities": ["sif"]},
+    },
     {  # estimates of more frictions than are computed again, and under other loads
         "punch": {"half_width": 2e-4, "load": [1e3, 1e4]}, "motion": {"c": 0.01},
         "friction": {"mu": [0.1, 0.3, 0.05, 0.2, 0.25, 0.07]},
@@ -220,3 +225,12 @@ def test_what_was_just_computed_has_no_faults(changes, tmp_path):
     assert not np.isnan([*result.comparisons.values()]).any()
     result.save(tmp_path / "a.h5")
     assert check.faults(tmp_path / "a.h5") == []
+
+
+def test_wave_crossings_follow_from_archived_half_widths(tmp_path):
+    punch = {"profile": "parabolic", "radius": "20 mm", "load": "20 N/mm"}
+    computed(changes={"punch": punch, "solve": {"methods": ["closed_form"]}}).save(tmp_path / "a.h5")
+    assert check.faults(tmp_path / "a.h5") == []
+    with opened(tmp_path / "a.h5") as file:
+        times("states/wave_crossings", 1.001)(file)
+    assert check.faults(tmp_path / "a.h5") == ["states/wave_crossings is not what its half-widths give"]

@@ -96,8 +96,9 @@ class States:
     Attributes:
         columns: one entry a state in every array, by name as archived: motion, X_over_L, c (over the wave
             speed), the load in N/m where there are several, the law's parameters, the speed and that of
-            a wave along the surface in m/s, flutter thresholds of both signs of g, f = F/N signed, and g
-            = σ_XY/σ_YY under the punch.
+            a wave along the surface in m/s, flutter thresholds of both signs of g, where ends are given
+            how often a wave crosses the contact in a stroke, f = F/N signed, and g = σ_XY/σ_YY under
+            the punch.
         others: further datasets by path: inner state of the law at each state, (states, n); row of each
             state among the loops, -1 for none, (states,); positions X/L along all strokes in the order of
             travel, (steps,), and friction there, (loops, steps); work and stiffness of strokes, (loops,
@@ -244,7 +245,11 @@ def overtaken(scene: Scene, c: ArrayLike) -> NDArray[np.bool_]:
 
 
 def crossings(
-    scene: Scene, order: Order, rows: NDArray, data: Mapping[str, NDArray], methods: Iterable[str]
+    scene: Scene,
+    order: Order,
+    rows: NDArray,
+    data: Mapping[str, NDArray] | None = None,
+    methods: Iterable[str] = (),
 ) -> NDArray[np.float64]:
     """How often a wave of the speed c_s crosses the contacts of states during their strokes: L/(2 a c).
 
@@ -254,12 +259,12 @@ def crossings(
         scene: gives the strokes, and contacts whose ends are given.
         order: of the states.
         rows: of the states in it, (n,).
-        data: half-widths of other contacts, of these states.
+        data: half-widths of other contacts by path, of these states.
         methods: that solve these, the first one's count.
     """
     a = np.full(len(rows), np.nan if scene.body.found else scene.body.half_width)
     for name in methods:
-        a = np.where(np.isnan(a), data.get(f"states/{name}/half_width", a), a)
+        a = np.where(np.isnan(a), (data or {}).get(f"states/{name}/half_width", a), a)
     place, c = order.numbers[3, rows], order.c[rows]
     lengths = np.repeat([leg.length for leg in scene.legs], [len(X) for X in scene.places])[place]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -299,6 +304,8 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "speed": np.where(np.isnan(own), given[speed], own),
         **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c, ways))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
+        # Of other contacts it is known with them.
+        **({} if scene.body.found else {"wave_crossings": crossings(scene, order, np.arange(len(c)))}),
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }

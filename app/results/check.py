@@ -87,10 +87,7 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
     for method in (CLOSED_FORM, SIE):
         by = (method, LOCAL) if method == CLOSED_FORM else (method,)
         # Residuals may be rounding alone; comparisons have them.
-        rows = [
-            row for row in plan.quantities
-            if row.of and row.method in by and row.mode != ALONE and row is not CROSSINGS
-        ]  # fmt: skip
+        rows = [row for row in plan.quantities if row.of and row.method in by and row.mode != ALONE]
         slow = [row for row in rows if row.asked_by == YIELD]
         quick = [row for row in rows if row not in slow]
         many = max(_NUMBERS // max(sum(int(np.prod(plan.shape(row))) for row in quick), 1), _FEW)
@@ -102,7 +99,7 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
             for numbers, computed in _computed(archive, plan, methods, selected, rows) if rows else ():
                 yield from _different(archive, plan, numbers, computed)
     often = archive.data.get(CROSSINGS.path)
-    if often is not None and plan.methods:
+    if often is not None and plan.methods and plan.body.found:
         own = {row.path: archive.data.get(row.path) for row in states.HALF_WIDTH.values()}
         own = {path: values[plan.rows] for path, values in own.items() if values is not None}
         expected = crossings(plan.scene, plan.order, np.arange(plan.states), own, plan.methods)
@@ -356,8 +353,6 @@ def _of_plan(archive: Archive, scene: Scene, plans: Sequence[Plan]) -> Iterator[
         if not _same(data.get(name), positions):
             yield f"{name} holds other positions than its scene gives"
     rows, planned = table(), {quantity.path for quantity in plan.quantities}
-    if attributes["schema_version"] < VERSION:  # the first layout did not have it
-        planned -= {CROSSINGS.path} - {*archive.names}
     held = {name for name in archive.names if rows[name].solved}
     yield from (f"{name} is missing, its scene asks for it" for name in sorted(planned - held))
     yield from (f"{name} is not what its scene asks for" for name in sorted(held - planned))

@@ -27,6 +27,7 @@ from galinx.postprocess.over_time import IN_TIME
 from galinx.postprocess.quantities import declared, runs
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.quantities.states import RATIO, SPEED
+from galinx.postprocess.quantities.validity import CROSSINGS
 from galinx.postprocess.validity import THRESHOLDS, Steady, Validity
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.slider import Ride, pull
@@ -351,6 +352,8 @@ def _solve(
     if ranks.is_root():
         for quantity in plans[0].quantities:
             sink.reserve(quantity.path, (len(states), *plans[0].shape(quantity)))
+        if plans[0].methods and plans[0].body.found:
+            sink.reserve(CROSSINGS.path, (len(states),))
         if journal and journal.damaged:
             progress.warn(f"kept parts that are damaged: {journal.damaged}; computed again")
         for part in journal.parts() if journal else ():

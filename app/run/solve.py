@@ -16,6 +16,7 @@ from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, LOCAL
 from galinx.postprocess.quantities.quantity import METHODS as IN_WORDS
 from galinx.postprocess.quantities.runs import RECORD
+from galinx.postprocess.quantities.validity import CROSSINGS
 from galinx.solvers.contact.solution import Contact, Method, Solver, Task
 from galinx.solvers.errors import NoContact, SolveError
 
@@ -94,6 +95,9 @@ class Work:
             for runs in self.batches(task):
                 rows = np.concatenate([np.arange(run.start, run.stop) for run in runs])
                 data, solved, partly = self._solve(task, rows, solvers, reasons)
+                if (plan := self.plan).body.found:
+                    often = crossings(plan.scene, plan.order, rows - plan.first, data, self.methods)
+                    data[CROSSINGS.path] = often
                 any_solved |= partly
                 with self.clock("comparison"):
                     for quantity in self.plan.quantities:
@@ -155,7 +159,7 @@ class Work:
         reasons: dict[str, str],
     ) -> tuple[dict[str, NDArray], NDArray[np.bool_], bool]:  # fmt: skip
         """Quantities of states by path, NaN where a method fails; where all solve them; if any does."""
-        plan, g, load = self.plan, self.g[rows], None if self.load is None else self.load[rows]
+        g, load = self.g[rows], None if self.load is None else self.load[rows]
         g.flags.writeable = False  # for quantities of the user's
         solved = np.ones(len(g), dtype=bool)
         data: dict[str, NDArray] = {}
@@ -175,7 +179,6 @@ class Work:
             of_edges = SimpleNamespace(
                 local=local, g=g, places=task.places, response=task.response,
                 half_width=task.body.half_widths(task.response, g, load),
-                crossings=crossings(plan.scene, plan.order, rows - plan.first, data, self.methods),
             )  # fmt: skip
             data |= self._of(LOCAL, of_edges, task.body.loaded(load), len(g))
         return data, solved, partly

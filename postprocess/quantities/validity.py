@@ -29,7 +29,7 @@ CROSSINGS = Quantity(
     "states/wave_crossings", "1",
     "wave crossings of a stroke, how often a wave of the speed c_s crosses the contact while it lasts: "
     "L/(2 a c); NaN at rest, and without strokes",
-    (STATE,), lambda s, _: s.crossings, LOCAL, nan_allowed=ANYWHERE, range=Range(above=0.0),
+    (STATE,), nan_allowed=ANYWHERE, range=Range(above=0.0),
 )  # fmt: skip
 
 #: Signs of σ_XY/σ_YY.

@@ -39,12 +39,15 @@ class Part:
         comparisons: figures of comparisons over these states, by the rule's name.
         record: numbers by name on the computation of the speed that ends with these rows; None where no
             speed ends.
+        whole: True where all states are solved. Others are tried again by a run that goes on, which then
+            knows why they fail.
     """
 
     rows: slice
     data: dict[str, NDArray]
     comparisons: dict[str, float]
     record: dict[str, Any] | None
+    whole: bool = True
 
 
 def joined(parts: Sequence[Part]) -> Part:
@@ -55,7 +58,8 @@ def joined(parts: Sequence[Part]) -> Part:
     worst: dict[str, float] = {}
     for name, value in (figure for part in parts for figure in part.comparisons.items()):
         worst[name] = float(np.max([worst.get(name, value), value]))  # NaN stays
-    return Part(slice(parts[0].rows.start, parts[-1].rows.stop), data, worst, parts[-1].record)
+    rows, whole = slice(parts[0].rows.start, parts[-1].rows.stop), all(part.whole for part in parts)
+    return Part(rows, data, worst, parts[-1].record, whole)
 
 
 class Journal:

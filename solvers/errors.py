@@ -6,7 +6,7 @@ class SolveError(RuntimeError):
 
 
 class NoContact(SolveError):
-    """No contact that the punch is known over carries a state's load; other states may have one."""
+    """The contact of a state would be wider than what is known of the punch; others may be narrower."""
 
 
 class MeshError(ValueError):

@@ -65,6 +65,9 @@ CHUNK_NUMBERS, _HELD = 1_200_000, 18
 FRICTION = 300.0
 #: Least and largest floating-point number.
 _LEAST, _MOST = np.finfo(float).tiny, np.finfo(float).max
+#: Width of a contact at rest without friction over that to which the punch is known, from which on no
+#: friction or speed makes it fit.
+_WIDER = 1.25
 #: Most sliders of a scene.
 _SLIDERS = 200
 
@@ -226,6 +229,13 @@ def _faults(
             if load == body.load:  # results are in units of this contact; methods report others
                 yield f"punch.load: found {load:g} N/m: {error}"
             continue
+        first, last = getattr(body.profile, "reach", (-np.inf, np.inf))
+        if load == min(states.loads) and 2.0 * half_width > _WIDER * (last - first):
+            wide = f"the contact would be {2.0 * half_width:g} m wide at rest"
+            yield (
+                f"punch.load: found {load:g} N/m: {wide}, but the punch is known over {last - first:g} m "
+                "only; give more of its shape, or a smaller load"
+            )
         if load == body.load:
             try:
                 check_slope(body.profile, half_width)

@@ -227,7 +227,7 @@ def headings(scene: Scene, directions: ArrayLike, c: ArrayLike = np.inf) -> NDAr
     """Directions ±1 of strokes along X.
 
     By the study's Eq 25 friction under a forward stroke is that of a punch that moves towards -X. Where
-    the punch's own solid is faster than the plate, it is that of slip to -X in motion to X.
+    the punch's own solid is faster than the plate, the punch moves to X, and slip is to -X.
 
     Args:
         scene: gives the sign of friction.

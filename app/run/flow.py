@@ -365,7 +365,7 @@ def _solve(
         before = MPI.COMM_WORLD.bcast(before)
     for part in gathered(_parts(plans, states, before, progress, clock), plans[0].chunk):
         if ranks.is_root():  # all ranks that share one mesh have the same results
-            if journal and "failure" not in (part.record or {}):  # a run that goes on tries it again
+            if journal and part.whole and "failure" not in (part.record or {}):
                 with clock("archive"):
                     journal.keep(part)
             take(part)

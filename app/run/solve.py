@@ -89,7 +89,7 @@ class Work:
         have no answer: the others are solved all the same.
         """
         reasons: dict[str, str] = {}
-        last, any_solved = None, False
+        last, any_solved = None, any(self.finished[run].any() for run in task.runs)
         with ExitStack() as stack:
             solvers = self._solvers(task, task.of(self.g), stack, reasons)
             for runs in self.batches(task):
@@ -104,12 +104,12 @@ class Work:
                         if quantity.of_data:
                             data[quantity.path] = quantity.of_data(data)
                     compared = self._compared(data, rows, solved) if solved.any() else {}
-                first = 0
+                first, whole = 0, bool(solved.all())
                 for run in runs:
                     own = slice(first, first := first + run.stop - run.start)
                     if last:
                         yield last
-                    last = Part(run, {path: of[own] for path, of in data.items()}, compared, None)
+                    last = Part(run, {path: of[own] for path, of in data.items()}, compared, None, whole)
                     compared = {}  # that of the whole batch
             assert last
             yield replace(last, record=self._record(task, solvers, reasons, any_solved))

@@ -643,11 +643,10 @@ class Section:
                 return None
         model = self.model(given)
         own_names = parameters(self.models[model]) if self.models else ()
-        if taken := sorted({self.chosen, "vary" * self.several, *self.own}.intersection(own_names)):
-            key = f"{taken[0]}, which is a key of [{name}] whatever the {self.chosen}"
-            faults.append(
-                f"{name}: {self.chosen} {model!r} has the parameter {key}; give it another name"
-            )
+        if taken := sorted({self.chosen, "vary", *self.own}.intersection(own_names)):
+            model = f"{self.chosen} {model!r} has the parameter {taken[0]}"
+            key = f"which is a key of [{name}] whatever the {self.chosen}"
+            faults.append(f"{name}: {model}, {key}; give it another name")
             return None
         models = [*(self.models or ())] * (self.chosen not in given)
         if misnamed := [key for key, value in given.items() if key not in keys and value in models]:

@@ -329,10 +329,11 @@ def contacts(response: HalfPlane, g: NDArray, profile: Any, load: Any, checked: 
         g: σ_XY/σ_YY under the punch, (states,).
         profile: profile of the punch, with a free end at least.
         load: N/μ [m], a number or one for each state, (states,).
-        checked: contacts may not be wider than what is known of the punch.
+        checked: refuse contacts that are wider than what is known of the punch.
 
     Raises:
-        SolveError: no contact carries the load, or it reaches beyond what is known of the punch.
+        SolveError: no contact carries the load.
+        NoContact: a checked contact reaches beyond what is known of the punch.
     """
     g = np.atleast_1d(np.asarray(g, dtype=float))
     n, load = response.n + g * response.n12, np.broadcast_to(load, g.shape)

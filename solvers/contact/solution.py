@@ -541,7 +541,7 @@ class FreeEndContact(Contact):
             return first.half_width * growth
         if not self.solid.layers:
             with suppress(SolveError):
-                return self._contacts_at_rest(np.shape(self.load)).of("half_width")
+                return self._contacts_at_rest(len(self.load)).of("half_width")
         rest = np.full(np.shape(self.load), np.nan)
         for i, N in enumerate(self.load.tolist()):
             with suppress(SolveError):  # the method that solves reports a contact that fails
@@ -573,12 +573,15 @@ class FreeEndContact(Contact):
         (rest,) = self._contacts_at_rest(1).of("half_width")
         return float(rest)
 
-    def _contacts_at_rest(self, shape: Any) -> Any:
-        """Contacts on a uniform solid at rest without friction; states may be narrower than these."""
+    def _contacts_at_rest(self, loads: int) -> Any:
+        """Contacts on a uniform solid at rest without friction, under each of so many loads.
+
+        They may be wider than what is known of the punch: friction and speed move the ends of states.
+        """
         from .closed_form import contacts
 
         at_rest = self.solid.response(0.0)
-        return contacts(at_rest, np.zeros(shape), self.profile, self.compression, checked=False)
+        return contacts(at_rest, np.zeros(loads), self.profile, self.compression, checked=False)
 
     def contacts(self, response: HalfPlane, g: NDArray) -> Any:
         from .closed_form import contacts

@@ -489,6 +489,7 @@ class MeasuredError(Estimate):
             mended |= bool((wrong & (2.0 * lasting < error)).any())
             enough |= bool((wrong & (lasting <= tolerance)).any())
             certain = 1.0 if level.mirrored else _CERTAIN
+            # What rounding may do at most can be much more than what the last change shows that it does.
             remains = np.minimum(ROUNDING * certain * bound + own, error)
             self.floor = max(self.floor, float(np.max(remains)))
         self.of_cells = not work.plan.fixed and mended and self.floor <= tolerance

@@ -40,7 +40,7 @@ from ..contact.stresses import PLACES
 from ..solids.half_plane import HalfPlane
 from .history import History
 from .line_load import both_sides, interpolation
-from .transform import Basis, Transformed, Weighted, divided, double_exponential, turns
+from .transform import Basis, Transformed, Weighted, divided, double_exponential, turning_rate
 
 #: Rounding of Laplace's transform, enlarged where steps are scaled back in time.
 _ROUNDING = 1e-16
@@ -337,13 +337,13 @@ class AlongSurface:
         for n, X in enumerate(sign * self._X):
             if X > -1.0:
                 last, beyond = min(X, 1.0), max(X - 1.0, 0.0)
-                length, least = np.array([last + 1.0]), min(α, β)
-                near, far, w = (of[0] for of in double_exponential(length, _STEP, least))
-                # Points are as far apart as weights are large.
-                turn = float((turns(beyond + near, self._s, self._slowest) * w).max())
-                if turn > _RADIANS:
-                    step = _STEP * _RADIANS / turn
-                    near, far, w = (of[0] for of in double_exponential(length, step, least))
+                length, steepest = np.array([last + 1.0]), min(α, β)
+                near, far, w = (of[0] for of in double_exponential(length, _STEP, steepest))
+                # The weight of a point is its distance from the next one.
+                radians = float((turning_rate(beyond + near, self._s, self._slowest) * w).max())
+                if radians > _RADIANS:
+                    step = _STEP * _RADIANS / radians
+                    near, far, w = (of[0] for of in double_exponential(length, step, steepest))
                 w = w * (1.0 - last + near) ** α * far**β
                 loads = np.where(near < far, last - near, far - 1.0)
                 sums[:, n] = self._interpolation(beyond + near).T @ (

@@ -104,8 +104,8 @@ def shared(x: NDArray, length: NDArray, tests: Weighted, trials: Weighted) -> ND
     if len(x) > 1 and len(x) * terms**2 > _AT_ONCE:
         halves = np.array_split(x, 2), np.array_split(length, 2)
         return np.concatenate([shared(*half, tests, trials) for half in zip(*halves)], axis=1)
-    least = min(tests.α, tests.β, trials.α, trials.β)
-    d, e, weights = double_exponential(length, _STEP * _FOR / max(terms, _FOR), least)
+    steepest = min(tests.α, tests.β, trials.α, trials.β)
+    d, e, weights = double_exponential(length, _STEP * _FOR / max(terms, _FOR), steepest)
     x = x[:, None]
     products = []
     for from_right, from_left, trial_from_right, trial_from_left in (
@@ -128,9 +128,9 @@ def _norm(j: int, α: float, β: float) -> float:
     return exp(0.5 * (square - log(2.0 * j)))
 
 
-#: Rounding to which the double exponential rule nears the ends, as an exponent of e; and its half-length
-#: at most, where distances are little above the smallest number.
-_DIGITS, _LONGEST = 36.0, 5.6
+#: Logarithm of 1 over the rounding to which the double exponential rule nears the ends; and its
+#: half-length at most, where distances are little above the smallest number.
+_ROUNDING, _LONGEST = 36.0, 5.6
 
 
 def double_exponential(length: NDArray, step: float, exponent: float) -> tuple[NDArray, NDArray, NDArray]:
@@ -142,7 +142,7 @@ def double_exponential(length: NDArray, step: float, exponent: float) -> tuple[N
         exponent: of the distance from an end in the steepest of the integrands, > -1. The steeper they
             are, the nearer to the ends the rule begins.
     """
-    half = min(float(np.arcsinh(_DIGITS / (pi * (1.0 + exponent)))), _LONGEST)
+    half = min(float(np.arcsinh(_ROUNDING / (pi * (1.0 + exponent)))), _LONGEST)
     u = step * np.arange(-ceil(half / step), ceil(half / step) + 1.0)
     grown = pi * np.sinh(u)
     d, e = 1.0 / (1.0 + np.exp(-grown)), 1.0 / (1.0 + np.exp(grown))
@@ -154,7 +154,7 @@ def double_exponential(length: NDArray, step: float, exponent: float) -> tuple[N
 _TURN, _GONE = 10.0, 20.0
 
 
-def turns(x: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
+def turning_rate(x: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
     """Radians per length over a by which waves turn at distances from a load, the most of all s, (x,).
 
     A wave e^(-sζx) turns by Im s ζ per length as long as Re s ζ x has not damped it.
@@ -173,17 +173,18 @@ def divided(edges: NDArray, s: NDArray, slowest: float) -> NDArray[np.float64]:
 
     Args:
         edges: distances over a, rising from 0.
-        s, slowest: of the waves, see :func:`turns`.
+        s, slowest: of the waves, see :func:`turning_rate`.
     """
     pieces = [edges[:1]]
-    most = turns(np.maximum(edges[:-1], edges[1]), s, slowest)
+    most = turning_rate(np.maximum(edges[:-1], edges[1]), s, slowest)
     for near, far, turn in zip(edges[:-1].tolist(), edges[1:].tolist(), most.tolist()):
         count = max(ceil((far - near) * turn / _TURN), 1)
         pieces.append(np.linspace(near, far, count + 1)[1:])
     return np.concatenate(pieces)
 
 
-#: Octaves of panels towards the distance 0 of points under the punch, and Gauss's points of each.
+#: Octaves of panels towards the distance 0 of points under the punch, of which the last leaves out a
+#: logarithm times its width, and Gauss's points of each.
 _NEAR, _POINTS = 36, 8
 #: Steepest exponent of 2 - x in the overlap towards the distance 2 that is integrated to rounding.
 _STEEPEST = -0.8

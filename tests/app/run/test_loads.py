@@ -4,13 +4,15 @@ import re
 
 import numpy as np
 import pytest
-from support import THOROUGH, computed, of_sections
+from support import THOROUGH, computed, of_sections, scene_of
 
 import galinx
 from galinx.app.errors import BadInput
-from galinx.app.plan.plan import make_plan
+from galinx.app.plan.plan import Plan, make_plan
 from galinx.app.plan.states import enumerate_states
 from galinx.app.results.check import faults
+from galinx.app.run.flow import Memory, compute
+from galinx.postprocess.journal import Journal
 
 LOADS = (2e4, 5.53e4, 3e5)
 _SHAPE = [[-2e-3, 1.6e-4], [-1e-3, 4e-5], [0, 0], [5e-4, 5e-6], [2e-3, 8e-5]]
@@ -158,6 +160,38 @@ def test_states_that_are_wider_than_the_punch_leave_the_others_theirs(method):
     np.testing.assert_allclose(m[3:] - -0.1111e-3, np.array([4.6**0.5, -1.0, 1.0]) * 0.0339e-3, rtol=4e-3)
     (failure,) = result.data["run/failures"]
     assert "N = 230000 N/m" in failure or "N = 400000 N/m" in failure
+
+
+def test_a_run_that_goes_on_knows_which_states_have_no_contact(monkeypatch, tmp_path):
+    """Batches with such states are computed again, those of others are kept."""
+    shape = [[-3e-4, 9e-7], [0, 0], [3e-4, 1.125e-6]]
+    scene = scene_of("tables4_5", CLOSED | {
+        "punch": {"profile": "table", "shape": shape, "load": ["270 N/mm", "50 N/mm"]},
+        "output.quantities": ["sif"], "motion.c": [0.0, 0.1], "friction.mu_c": [0.1, 0.2, 0.3, 0.6],
+    })  # fmt: skip
+    monkeypatch.setattr(Plan, "chunk", 6)
+    expected = Memory()
+    reasons = compute(scene, expected, None)["verdict_reasons"]
+    kept, keep = [], Journal.keep
+
+    def stop(self, part):
+        keep(self, part)
+        kept.append(part)
+        if len(kept) > 5:
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as stopped:
+        stopped.setattr(Journal, "keep", stop)
+        with pytest.raises(KeyboardInterrupt), Journal(tmp_path / "a.h5", "key") as journal:
+            compute(scene, Memory(), None, journal)
+    found = Memory()
+    with Journal(tmp_path / "a.h5", "key", resume=True) as journal:
+        assert 0 < journal.states < len(expected["states/f"])
+        assert compute(scene, found, None, journal)["verdict_reasons"] == reasons
+    assert [*found["run/failures"]] == [*expected["run/failures"]] and len(found["run/failures"]) == 2
+    h = found["states/closed_form/half_width"]
+    np.testing.assert_array_equal(h, expected["states/closed_form/half_width"])
+    assert 0 < np.isnan(h).sum() < len(h) / 2
 
 
 def test_a_load_without_an_answer_leaves_the_others_theirs(tmp_path):

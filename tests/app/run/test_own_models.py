@@ -104,10 +104,14 @@ def test_built_in_profiles_do_not_contradict_themselves(seed):
             check_slope(profile, a)
 
 
-def test_a_load_under_which_the_contact_is_wider_than_the_punch_is_refused():
+def test_loads_under_which_the_contact_is_wider_than_the_punch_are_refused():
+    """Far too wide before anything is computed, and otherwise where it is solved."""
     shape = [[-1e-4, 1e-6], [0.0, 0.0], [1e-4, 1e-6]]
+    punch = {"profile": "table", "shape": shape, "load": 1e6}
+    with pytest.raises(BadInput, match=r"punch\.load: found 1e\+06 N/m: the contact would be 0\.00033"):
+        computed("cylinder", ONE_STATE | {"punch": punch})
     with pytest.raises(SolveError, match=r"c = 0\.3: the contact would reach .* or a smaller load"):
-        computed("cylinder", ONE_STATE | {"punch": {"profile": "table", "shape": shape, "load": 1e6}})
+        computed("cylinder", ONE_STATE | {"punch": punch | {"load": 5e5}})
 
 
 def linear(law, z, s, V):

@@ -100,8 +100,8 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
                 yield from _different(archive, plan, numbers, computed)
     often = archive.data.get(CROSSINGS.path)
     if often is not None and plan.methods and plan.body.found:
-        own = {row.path: archive.data.get(row.path) for row in states.HALF_WIDTH.values()}
-        own = {path: values[plan.rows] for path, values in own.items() if values is not None}
+        half_widths = {row.path for row in states.HALF_WIDTH.values()}.intersection(archive.names)
+        own = {path: archive.data[path][plan.rows] for path in half_widths}
         expected = crossings(plan.scene, plan.order, np.arange(plan.states), own, plan.methods)
         if not _same(often[plan.rows], expected):
             yield f"{CROSSINGS.path} is not what its half-widths give"

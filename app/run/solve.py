@@ -25,7 +25,7 @@ from ..methods import METHODS
 from ..plan.plan import Plan
 from ..plan.states import crossings
 
-#: Solver of a method's states at a speed, None where each load has its own; or why there is none.
+#: Solver of a method's states at a speed, None where each load has its own, or the failure in its place.
 _OfSpeed = Solver | NoContact | None
 
 
@@ -137,8 +137,8 @@ class Work:
     ) -> dict[str, _OfSpeed]:
         """Solvers of the speed by method, None for a method of which each load has its own.
 
-        Where a state has no contact, that is why there is none. Methods that fail are left out, and
-        ``reasons`` gets why.
+        Where a contact is too wide for the punch, its failure stands for the solver: other states may
+        have an answer. Methods that fail otherwise are left out, and ``reasons`` gets why.
         """
         solvers: dict[str, _OfSpeed] = {}
         for name, method in self.methods.items():
@@ -188,8 +188,8 @@ class Work:
     ) -> tuple[dict[str, NDArray], NDArray[np.bool_], str]:
         """Quantities by a method, where it solves, (states,), and why it does not elsewhere.
 
-        Where states together have no answer each load is tried alone, and where some of its frictions may
-        have none, halves of these.
+        States that have no answer together are tried again, load by load. Where contacts of a load are
+        too wide for the punch, they are tried half by half of its frictions.
         """
         takes, loads = METHODS[name].loads, [] if load is None else np.unique(load).tolist()
         failure: SolveError | None = None

@@ -120,13 +120,15 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
     first, response, drives = starts.ways[0], starts.response(c), starts.drives[c]
     shortest = min(starts.shortest, *(drive.shortest for drive in drives))
     # At a tolerance of 1e-3 steps of the quadrature, of order five, are at most 0.5 a/c_s, and 6 in which
-    # the load comes on; and there are 24 polynomials, 8 more at each tenth of it, and 16 more where waves
-    # have passed half a half-width by then. Works are sums over all steps.
+    # the load comes on; and there are 24 polynomials, 16 more where waves have passed half a half-width
+    # by then. K_I converges with the fourth power of their number, later near the Rayleigh speed. Works
+    # are sums over all steps.
     tolerance = starts.scene.solve.tolerance
     largest = min(0.5, shortest / 6) * min(tolerance / 1e-3, 1.0) ** 0.2
     finer = int(np.ceil(max(first.h / largest - 1e-9, _LEAST_STEPS / first.steps)))
     digits, halvings = max(-3.0 - np.log10(tolerance), 0.0), max(-np.log2(starts.load.shortest), 0.0)
-    terms = 24 + round(8 * digits + 16 * halvings)
+    near = max(0.25 / (starts.scene.solid.limit() - c), 1.0)
+    terms = round((24 + 16 * halvings) * 1.5**digits * near**0.15)
     surface, alone = bool(starts.time.every), starts.methods == (SIE,)
 
     def at_steps(values: NDArray) -> NDArray[np.float64]:
@@ -155,7 +157,8 @@ def _integral_equation(starts: Starts, c: float, clock: Clock) -> list[_Datasets
                 }  # fmt: skip
             datasets = {path: at_steps(values) for path, values in datasets.items()}
             if alone:
-                datasets[rows.RESIDUAL.path] = np.array(course.residual)
+                error = course.error_of_K_I if starts.smooth else 0.0
+                datasets[rows.RESIDUAL.path] = np.array(max(course.residual, error))
             if surface:
                 datasets |= _on_surface(course, at_steps, response, drive, starts)
             motions.append(datasets)

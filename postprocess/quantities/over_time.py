@@ -107,8 +107,8 @@ ESTIMATE = _row(
 )  # fmt: skip
 RESIDUAL = _row(
     "sie/residual", "1",
-    "residual of the integral equation over time where it is the only method, over the largest "
-    "indentation, or of the pressure's resultant, over the largest load",
+    "error of the integral equation over time where it is alone: residual over the largest indentation, "
+    "resultant's over the load, of K_I by fewer polynomials",
     (START,), range=NOT_NEGATIVE, method=SIE, accuracy=True,
 )  # fmt: skip
 

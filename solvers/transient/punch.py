@@ -414,6 +414,8 @@ class Course:
             t = 0; None where they are not computed.
         residual: larger one of that of :class:`Residual` and of the load's, over its largest,
             dimensionless; NaN where it is not computed.
+        error_of_K_I: estimated error of K_I over its largest, by three quarters of the polynomials; it
+            means nothing where friction jumps.
     """
 
     t: NDArray[np.float64]
@@ -429,6 +431,7 @@ class Course:
     σ_XX_right: NDArray[np.float64]
     surface: NDArray[np.float64] | None = None
     residual: float = np.nan
+    error_of_K_I: float = np.nan
 
 
 class StartingPunch:
@@ -489,12 +492,9 @@ class StartingPunch:
         normal = np.array([coefficients @ basis.moments for coefficients, basis in zip(a, bases)])
         carried = -normal[:, 0] / 2.0
         ends = np.array([basis.ends for basis in bases])
-        # Inertia adds r log r to the polynomials at a distance r from an end, so that their sum there
-        # converges with the square of their number; half of them give the constant.
-        whole, half = (
-            np.einsum("nj,nej->en", a[:, :n], ends[..., :n]) for n in (self._terms, self._terms // 2)
-        )
-        K_left, K_right = -(whole + (whole - half) / 3.0) / 2.0
+        K = _at_ends(a, ends, self._terms)
+        fewer = np.abs(K - _at_ends(a, ends, _FEWER * self._terms // 4)).max()
+        error = float(fewer / (_FALLS * max(np.abs(K).max(), np.finfo(float).tiny)))
         pressed = np.array(
             [basis.pressure(PLACES) @ coefficients for coefficients, basis in zip(a, bases)]
         )
@@ -509,10 +509,30 @@ class StartingPunch:
             off = np.abs(carried - due).max() / max(np.abs(due).max(), np.finfo(float).tiny)
             residual = max(self._residual.of(between.bases, added[:, -1], v0), float(off))
         return Course(
-            t, v0, carried, normal[:, 1] / normal[:, 0], K_left, K_right, by_load,
+            t, v0, carried, normal[:, 1] / normal[:, 0], *K, by_load,
             _work(t, forces, u, first * (shared @ begun)), pressed, σ_XX[:, 0], σ_XX[:, 1], surface,
-            residual,
+            residual, error,
         )  # fmt: skip
+
+
+#: Quarters of the polynomials from which K_I shows how far it has converged, and by how much its error
+#: falls from these to all at least.
+_FEWER, _FALLS = 3, 2.0
+
+
+def _at_ends(a: NDArray, ends: NDArray, terms: int) -> NDArray[np.float64]:
+    """K_I at X = -a and X = a over time from some of the polynomials, (2, times).
+
+    Inertia adds r log r to the polynomials at a distance r from an end, so that their sum there converges
+    with the square of their number. Half of them give the constant.
+
+    Args:
+        a: coefficients of the polynomials, (times, polynomials).
+        ends: polynomials at both ends, (times, 2, polynomials).
+        terms: their number.
+    """
+    whole, half = (np.einsum("nj,nej->en", a[:, :n], ends[..., :n]) for n in (terms, terms // 2))
+    return np.asarray(-(whole + (whole - half) / 3.0) / 2.0)
 
 
 def _work(t: NDArray, forces: NDArray, ways: NDArray, first: NDArray) -> NDArray[np.float64]:

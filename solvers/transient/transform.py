@@ -189,7 +189,7 @@ _NEAR, _POINTS = 36, 8
 #: Steepest exponent of 2 - x in the overlap towards the distance 2 that is integrated to rounding.
 _STEEPEST = -0.8
 #: Largest width of a panel, and polynomials from which on it is shorter.
-_EVEN, _MANY = 0.125, 40
+_EVEN, _MANY = 0.125, 24
 #: Points at which the response is sampled in the last panel before distance 2; the overlap of tests and
 #: pressures has shorter panels there.
 _SAMPLES = 24
@@ -215,9 +215,9 @@ class Transformed:
         self._kernels = both_sides(response, rayleigh, way)
         near = 2.0 ** -np.arange(_NEAR, -1, -1.0)
         width = min(panel, _EVEN, _EVEN * _MANY / terms)
-        even = np.linspace(_EVEN, 2.0 - _EVEN, ceil((2.0 - 2.0 * _EVEN) / width) + 1)
+        even = np.linspace(width, 2.0 - _EVEN, ceil((2.0 - _EVEN - width) / width) + 1)
         slowest = 1.0 / (rayleigh - response.c)
-        edges = divided(np.concatenate([[0.0], near[near < _EVEN], even]), s, slowest)
+        edges = divided(np.concatenate([[0.0], near[near < width], even]), s, slowest)
         x, weights = gauss_in_panels(edges, _POINTS)
         self._panels = x.reshape(-1, _POINTS)
         # Towards the distance 2 the overlap is short and singular, the response smooth.

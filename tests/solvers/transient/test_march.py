@@ -145,3 +145,16 @@ def test_stress_ahead_of_a_fast_punch_converges_with_the_steps():
         stresses.append(course.σ_XX_right[k - 1 :: k])
     coarse, fine = (np.abs(σ_XX - stresses[-1]).max() for σ_XX in stresses[:2])
     assert fine < coarse / 5.0 and fine < 1e-4 * np.abs(stresses[-1]).max()
+
+
+@pytest.mark.parametrize("c, g, ramp", [(0.85, -0.4, 1.0), (0.3, 0.3, 0.5)])
+def test_intensities_of_fewer_polynomials_are_within_their_estimate(c, g, ramp):
+    courses = [
+        StartingPunch(SOLID.response(c), SOLID.limit(), 2.0, 16, terms).course(
+            g, lambda t: smooth(t, ramp)
+        )
+        for terms in (32, 72)
+    ]
+    few, many = (np.array([course.K_left, course.K_right]) for course in courses)
+    off = np.abs(few - many).max() / np.abs(many).max()
+    assert courses[1].error_of_K_I < off < courses[0].error_of_K_I < 10.0 * off

@@ -220,15 +220,9 @@ class ExactSolution(Solution):
 
         mirrored = turns and replace(turns, σ=_MIRROR * turns.σ)
         punch = InSolid(
-            response,
-            contacts.of("g"),
-            self.local,
-            self.half_width,
-            stresses,
+            response, contacts.of("g"), self.local, self.half_width, stresses, mirrored, self.nearest,
             self.kinks_of_friction,
-            mirrored,
-            self.nearest,
-        )
+        )  # fmt: skip
         return self.task.body.of_punch.strength(punch)
 
     #: Least distance over a from an end or a kink at which stresses are evaluated.

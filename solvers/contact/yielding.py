@@ -456,7 +456,7 @@ class InSolid:
         g: σ_XY/σ_YY on it, (states,).
         local: exponents α at X = a and β at X = -a of a punch, (states,) each.
         half_width: of each state's contact [m], (states,).
-        stresses, kinks_of_friction, yield_turns, nearest: see
+        stresses, yield_turns, nearest, kinks_of_friction: see
             :class:`galinx.solvers.contact.solution.Solution`.
     """
 
@@ -465,9 +465,9 @@ class InSolid:
     local: Any
     half_width: Any
     stresses: Callable[[NDArray], NDArray]
-    kinks_of_friction: Sequence[Sequence[float]]
     yield_turns: Turns | None = None
     nearest: float = 1.0
+    kinks_of_friction: Sequence[Sequence[float]] = ()
 
 
 @dataclass(frozen=True)

@@ -266,15 +266,9 @@ class Solution(solution.Solution):
         response = self.task.response.punch  # type: ignore[attr-defined]
         turns = Turns(each, self._stresses_of_punch(np.stack([each, 0.0 * each], axis=2)))
         punch = InSolid(
-            response,
-            -self.g,
-            self.local,
-            self.half_width,
-            self._stresses_of_punch,
+            response, -self.g, self.local, self.half_width, self._stresses_of_punch, turns, _NEAREST,
             self.kinks_of_friction,
-            turns,
-            _NEAREST,
-        )
+        )  # fmt: skip
         return self.body.of_punch.strength(punch)
 
     def inside_of(self, state: int, points: NDArray) -> NDArray[np.float64]:

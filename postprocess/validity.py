@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .quantities import validity as of
-from .quantities.states import LARGEST_RATIO, RATIO, SPEED
+from .quantities.states import HALF_WIDTH, LARGEST_RATIO, RATIO, SPEED
 from .units import engineering
 
 #: Wave crossings of the contact in a stroke below which steady motion is not reached.
@@ -19,6 +19,20 @@ FEW = 30.0
 THRESHOLDS = tuple(row.path for row in of.FLUTTER.values())
 #: Width over a beyond which a zone at an edge is reported.
 WIDE = 0.01
+
+
+def own_crossings(crossed: NDArray, data: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
+    """Wave crossings of contacts whose half-widths a method has solved, by path; empty without any.
+
+    Args:
+        crossed: half the way of a wave during each state's stroke [m], L/(2c), (states,).
+        data: datasets of the states by path.
+    """
+    widths = [data[row.path] for row in HALF_WIDTH.values() if row.path in data]
+    a = np.full(len(crossed), np.nan)
+    for values in widths:
+        a = np.where(np.isnan(a), values, a)
+    return {of.CROSSINGS.path: crossed / a} if widths else {}
 
 
 @dataclass(frozen=True)

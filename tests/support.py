@@ -258,6 +258,21 @@ def widest(text):
     return max(map(len, text.splitlines()))
 
 
+def interrupted(scene, target, states):
+    """Compute a scene until more states than these are kept for its archive: then it is interrupted."""
+    from galinx.app.run.flow import Memory, compute
+    from galinx.postprocess.journal import Journal
+
+    def stop(self, part, keep=Journal.keep):
+        keep(self, part)
+        if self.states > states:
+            raise KeyboardInterrupt
+
+    ended = patch.object(Journal, "keep", stop), pytest.raises(KeyboardInterrupt)
+    with ended[0], ended[1], Journal(target, "key") as journal:
+        compute(scene, Memory(), None, journal)
+
+
 def space_on(mesh, refinement, degree, comm=None, form="isotropic"):
     """A finite element space on one of the meshes; this rank alone has it where ``comm`` is not given."""
     from mpi4py import MPI

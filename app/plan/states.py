@@ -4,7 +4,7 @@ An :class:`Order` is the product of speeds, loads, laws and places on the stroke
 the friction of every state, which :func:`enumerate_states` computes along the strokes.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan, prod
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from galinx.postprocess.quantities import column, runs
 from galinx.postprocess.quantities.states import INNER_STATE
 from galinx.postprocess.quantities.validity import SIGNS
+from galinx.solvers.contact.solution import GIVEN_ENDS
 from galinx.solvers.friction import FrictionLaw
 from galinx.solvers.friction.integrate import INTEGRATORS, closely
 from galinx.solvers.friction.motion import follow, last_cycle, works
@@ -103,10 +104,13 @@ class States:
             state among the loops, -1 for none, (states,); positions X/L along all strokes in the order of
             travel, (steps,), and friction there, (loops, steps); work and stiffness of strokes, (loops,
             strokes) and (loops,).
+        crossed: half the way of a wave of the speed c_s during each state's stroke, L/(2c) [m], NaN at
+            rest, and without strokes, (states,).
     """
 
     columns: dict[str, NDArray]
     others: dict[str, NDArray]
+    crossed: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.g)
@@ -214,13 +218,14 @@ def enumerate_states(scene: Scene, done: Callable[[int, int], None] = lambda law
     # Bristles that enter the contact have those of their places.
     advected = friction.state == ADVECTED
     inner_state = {} if advected else {INNER_STATE.path: _of_all(order_, np.concatenate(z))}
-    return States(_columns(scene, order_, _of_all(order_, f)), {
+    crossed = _crossed(scene, order_)
+    return States(_columns(scene, order_, _of_all(order_, f), crossed), {
         **inner_state,
         runs.LOOP_OF_STATE.path: _of_all(order_, np.tile(loop[:, None], f.shape[1])),
         runs.LOOP_X.path: np.concatenate(fine), runs.LOOP_F.path: drawn_loops,
         runs.LOOP_WORK.path: work, runs.LOOP_CYCLE.path: cycle,
         runs.LOOP_BREAKAWAY.path: breakaway, runs.LOOP_STIFFNESS.path: slope,
-    })  # fmt: skip
+    }, crossed)  # fmt: skip
 
 
 def headings(scene: Scene, directions: ArrayLike, c: ArrayLike = np.inf) -> NDArray[np.int64]:
@@ -244,34 +249,6 @@ def overtaken(scene: Scene, c: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(own > np.asarray(c) * scene.solid.c_s * (1.0 + 1e-12))
 
 
-def crossings(
-    scene: Scene,
-    order: Order,
-    rows: NDArray,
-    data: Mapping[str, NDArray] | None = None,
-    methods: Iterable[str] = (),
-) -> NDArray[np.float64]:
-    """How often a wave of the speed c_s crosses the contacts of states during their strokes: L/(2 a c).
-
-    NaN at rest, without strokes and without a contact.
-
-    Args:
-        scene: gives the strokes, and contacts whose ends are given.
-        order: of the states.
-        rows: of the states in it, (n,).
-        data: half-widths of other contacts by path, of these states.
-        methods: that solve these, the first one's count.
-    """
-    a = np.full(len(rows), np.nan if scene.body.found else scene.body.half_width)
-    for name in methods:
-        a = np.where(np.isnan(a), (data or {}).get(f"states/{name}/half_width", a), a)
-    place, c = order.numbers[3, rows], order.c[rows]
-    lengths = np.repeat([leg.length for leg in scene.legs], [len(X) for X in scene.places])[place]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        often = lengths * scene.friction.pre_sliding / (2.0 * a * c)
-    return np.where((c > 0.0) & (not scene.steady), often, np.nan)
-
-
 def _of_all(order: Order, values: NDArray) -> NDArray:
     """Values of all states, (states, …), the same under every load, and at every speed if laws have none.
 
@@ -285,8 +262,15 @@ def _of_all(order: Order, values: NDArray) -> NDArray:
     return np.broadcast_to(by_speed, (*several, laws, places, *rest)).reshape(-1, *rest)
 
 
-def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
-    """Columns of all states by name as archived, each (states,); ``f`` is (states,), too."""
+def _crossed(scene: Scene, order: Order) -> NDArray[np.float64]:
+    """Ways of waves as of :attr:`States.crossed`, (states,)."""
+    lengths = np.repeat([leg.length for leg in scene.legs], [len(X) for X in scene.places])
+    c, L = order.c, lengths[order.numbers[3]] * scene.friction.pre_sliding
+    return np.where((c > 0.0) & (not scene.steady), L / (2.0 * np.where(c > 0.0, c, 1.0)), np.nan)
+
+
+def _columns(scene: Scene, order: Order, f: NDArray, crossed: NDArray) -> dict[str, NDArray]:
+    """Columns of all states by name as archived, each (states,); ``f`` and ``crossed`` are, too."""
     friction, (speed, load, law, place), c = scene.friction, order.numbers, order.c
     legs = np.repeat(np.arange(len(scene.legs)), [len(X) for X in scene.places])[place]
     own = np.array([np.nan if leg.speed is None else leg.speed for leg in scene.legs])[legs]
@@ -304,8 +288,7 @@ def _columns(scene: Scene, order: Order, f: NDArray) -> dict[str, NDArray]:
         "speed": np.where(np.isnan(own), given[speed], own),
         **{f"flutter_{sign}": g for sign, g in zip(SIGNS, _flutter(scene.solid, c, ways))},
         "speed_limit": np.full(f.size, scene.solid.limit() * scene.solid.c_s),
-        # Of other contacts it is known with them.
-        **({} if scene.body.found else {"wave_crossings": crossings(scene, order, np.arange(len(c)))}),
+        "wave_crossings": crossed / (np.nan if GIVEN_ENDS in scene.body.lacks else scene.body.half_width),
         "f": f,
         "g": friction.stress_ratio * f + 0.0,
     }

@@ -76,7 +76,8 @@ def joined_states(plans: Sequence[Plan]) -> States:
     rows = zip(others[LOOP_OF_STATE.path], before)
     others[LOOP_OF_STATE.path] = [np.where(row < 0, -1, row + n) for row, n in rows]
     del others[LOOP_X.path][1:]
-    return States(columns, {path: np.concatenate(values) for path, values in others.items()})
+    crossed = np.concatenate([states.crossed for states in each])
+    return States(columns, {path: np.concatenate(values) for path, values in others.items()}, crossed)
 
 
 def joined_positions(plans: Sequence[Plan]) -> dict[str, NDArray]:

@@ -44,8 +44,8 @@ from galinx.postprocess.quantities.quantity import (
     STATE,
     TEXT,
 )
-from galinx.postprocess.quantities.validity import CROSSINGS
 from galinx.postprocess.schema import VERSION
+from galinx.postprocess.validity import own_crossings
 from galinx.solvers.contact import FREE_ENDS, YIELD
 from galinx.solvers.contact.fem_plan import SHARP_ON_LAYERS, on_finer_cells, unknowns
 from galinx.solvers.contact.solution import FLAT
@@ -54,7 +54,6 @@ from galinx.solvers.profiles import kinks
 from ..console import Progress
 from ..methods import METHODS
 from ..plan.plan import Plan
-from ..plan.states import crossings
 from ..plan.variants import joined_positions, joined_states, make_plans
 from ..run.flow import Judge, scene_attributes
 from ..run.solve import Work
@@ -98,13 +97,6 @@ def _of_variant(archive: Archive, plan: Plan) -> Iterator[str]:
             methods = (method,) * (method in plan.methods)
             for numbers, computed in _computed(archive, plan, methods, selected, rows) if rows else ():
                 yield from _different(archive, plan, numbers, computed)
-    often = archive.data.get(CROSSINGS.path)
-    if often is not None and plan.methods and plan.body.found:
-        half_widths = {row.path for row in states.HALF_WIDTH.values()}.intersection(archive.names)
-        own = {path: archive.data[path][plan.rows] for path in half_widths}
-        expected = crossings(plan.scene, plan.order, np.arange(plan.states), own, plan.methods)
-        if not _same(often[plan.rows], expected):
-            yield f"{CROSSINGS.path} is not what its half-widths give"
     if plan.fem and not plan.scene.layers:
         yield from _of_derived(archive, plan, more)
         yield from _of_finite_elements(archive, plan, more)
@@ -320,12 +312,16 @@ def _of_states(archive: Archive, plans: Sequence[Plan]) -> Iterator[str]:
     if count != held:
         yield f"it holds {held} states, its scene has {count}"
         return
-    for name, values in expected.datasets.items():
+    own = own_crossings(expected.crossed, data)
+    for name, values in (expected.datasets | own).items():
         if name not in data:
             if not older:  # whose layout has fewer
                 yield f"{name} is missing, its scene has it"
         elif not _same(data[name], values):
-            yield f"{name} holds something else than its scene gives"
+            if name not in own:
+                yield f"{name} holds something else than its scene gives"
+            elif archive.attributes["version"] == __version__:  # earlier ones took the width at rest
+                yield f"{name} is not what its half-widths give"
 
 
 def _same(archived: Any, expected: Any) -> bool:

@@ -28,7 +28,7 @@ from galinx.postprocess.quantities import declared, runs
 from galinx.postprocess.quantities.runs import CHANGES, FAILURES, RECORD
 from galinx.postprocess.quantities.states import RATIO, SPEED
 from galinx.postprocess.quantities.validity import CROSSINGS
-from galinx.postprocess.validity import THRESHOLDS, Steady, Validity
+from galinx.postprocess.validity import THRESHOLDS, Steady, Validity, own_crossings
 from galinx.solvers.errors import SolveError
 from galinx.solvers.friction.slider import Ride, pull
 from galinx.solvers.parameters import values as constants
@@ -297,9 +297,6 @@ def compute(
             judge.see(made)
             rules = (rules - IN_TIME) | made.keys()
     if plan.methods and (plan.fem or ranks.is_root()):
-        judge.validity.see(
-            {path: values for path, values in states.datasets.items() if path not in THRESHOLDS}
-        )
         _solve(sink, judge, progress, journal, plans, states, clock)
     clock.lap()
     names = sorted(clock)  # a run that goes on does them in another order
@@ -335,14 +332,15 @@ def _solve(
     """
     finished, records = np.zeros(len(states), dtype=bool), dict[int, dict[str, Any]]()
     # A ratio that varies along the contact is known with the contact.
-    of_validity = SPEED.path, RATIO.path, *THRESHOLDS
-    ratios = {path: values for path, values in states.datasets.items() if path in of_validity}
+    of_validity = SPEED.path, RATIO.path, CROSSINGS.path, *THRESHOLDS
+    planned = {path: values for path, values in states.datasets.items() if path in of_validity}
 
     def take(part: Part) -> None:
+        data = part.data | own_crossings(states.crossed[part.rows], part.data)
         judge.see(part.comparisons)
-        judge.validity.see(part.data | {path: values[part.rows] for path, values in ratios.items()})
+        judge.validity.see({path: values[part.rows] for path, values in planned.items()} | data)
         with clock("archive"):
-            for name, values in part.data.items():
+            for name, values in data.items():
                 sink.write(name, part.rows, values)
         if part.record:
             records[part.record["speed"]] = part.record
@@ -352,8 +350,6 @@ def _solve(
     if ranks.is_root():
         for quantity in plans[0].quantities:
             sink.reserve(quantity.path, (len(states), *plans[0].shape(quantity)))
-        if plans[0].methods and plans[0].body.found:
-            sink.reserve(CROSSINGS.path, (len(states),))
         if journal and journal.damaged:
             progress.warn(f"kept parts that are damaged: {journal.damaged}; computed again")
         for part in journal.parts() if journal else ():

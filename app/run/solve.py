@@ -16,14 +16,12 @@ from galinx.postprocess.quantities import states
 from galinx.postprocess.quantities.quantity import CLOSED_FORM, FEM, LOCAL
 from galinx.postprocess.quantities.quantity import METHODS as IN_WORDS
 from galinx.postprocess.quantities.runs import RECORD
-from galinx.postprocess.quantities.validity import CROSSINGS
 from galinx.solvers.contact.solution import Contact, Method, Solver, Task
 from galinx.solvers.errors import NoContact, SolveError
 
 from ..errors import BadInput
 from ..methods import METHODS
 from ..plan.plan import Plan
-from ..plan.states import crossings
 
 #: Solver of a method's states at a speed, None where each load has its own, or the failure in its place.
 _OfSpeed = Solver | NoContact | None
@@ -95,9 +93,6 @@ class Work:
             for runs in self.batches(task):
                 rows = np.concatenate([np.arange(run.start, run.stop) for run in runs])
                 data, solved, partly = self._solve(task, rows, solvers, reasons)
-                if (plan := self.plan).body.found:
-                    often = crossings(plan.scene, plan.order, rows - plan.first, data, self.methods)
-                    data[CROSSINGS.path] = often
                 any_solved |= partly
                 with self.clock("comparison"):
                     for quantity in self.plan.quantities:

@@ -190,8 +190,8 @@ _NEAR, _POINTS = 36, 8
 _STEEPEST = -0.8
 #: Largest width of a panel, and polynomials from which on it is shorter.
 _EVEN, _MANY = 0.125, 24
-#: Points at which the response is sampled in the last panel before distance 2; the overlap of tests and
-#: pressures has shorter panels there.
+#: Points at which the response is sampled over the last ``_EVEN`` before distance 2; the overlap of tests
+#: and pressures has more there.
 _SAMPLES = 24
 
 

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support import THOROUGH, computed, of_sections, scene_of
+from support import THOROUGH, computed, interrupted, of_sections, scene_of
 
 import galinx
 from galinx.app.errors import BadInput
@@ -172,18 +172,7 @@ def test_a_run_that_goes_on_knows_which_states_have_no_contact(monkeypatch, tmp_
     monkeypatch.setattr(Plan, "chunk", 6)
     expected = Memory()
     reasons = compute(scene, expected, None)["verdict_reasons"]
-    kept, keep = [], Journal.keep
-
-    def stop(self, part):
-        keep(self, part)
-        kept.append(part)
-        if len(kept) > 5:
-            raise KeyboardInterrupt
-
-    with monkeypatch.context() as stopped:
-        stopped.setattr(Journal, "keep", stop)
-        with pytest.raises(KeyboardInterrupt), Journal(tmp_path / "a.h5", "key") as journal:
-            compute(scene, Memory(), None, journal)
+    interrupted(scene, tmp_path / "a.h5", 30)
     found = Memory()
     with Journal(tmp_path / "a.h5", "key", resume=True) as journal:
         assert 0 < journal.states < len(expected["states/f"])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import computed
+from support import computed, interrupted
 
 import galinx
 from galinx.app.plan import plan as planning
@@ -52,16 +52,7 @@ def test_few_states_at_a_time_are_the_same_and_are_gone_on_with(run, tmp_path, m
     expected = Memory()
     compute(scene, expected)
     monkeypatch.setattr(planning, "CHUNK_NUMBERS", 3 * make_plan(scene).numbers)
-
-    def stop(self, part, keep=Journal.keep):
-        keep(self, part)
-        if self.states > 8:
-            raise KeyboardInterrupt
-
-    with monkeypatch.context() as stopped:
-        stopped.setattr(Journal, "keep", stop)
-        with pytest.raises(KeyboardInterrupt), Journal(tmp_path / "a.h5", "key") as journal:
-            compute(scene, Memory(), None, journal)
+    interrupted(scene, tmp_path / "a.h5", 8)
     found = Memory()
     with Journal(tmp_path / "a.h5", "key", resume=True) as journal:
         assert 0 < journal.states < 24

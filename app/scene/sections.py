@@ -641,12 +641,12 @@ class Section:
                 own = f"; one of your own is registered by a file, {program()} -x FILE.py …"
                 faults.append(f"{name}.{self.chosen} ({keys[self.chosen].about}): {error}{own}")
                 return None
-        model = self.model(given)
-        own_names = parameters(self.models[model]) if self.models else ()
-        if taken := sorted({self.chosen, "vary", *self.own}.intersection(own_names)):
-            model = f"{self.chosen} {model!r} has the parameter {taken[0]}"
-            key = f"which is a key of [{name}] whatever the {self.chosen}"
-            faults.append(f"{name}: {model}, {key}; give it another name")
+        of_model = parameters(self.models[self.model(given)]) if self.models else {}
+        if taken := sorted({self.chosen, "vary", *self.own} & of_model.keys()):
+            faults.append(
+                f"{name}: {self.chosen} {self.model(given)!r} has the parameter {taken[0]}, which is a "
+                f"key of [{name}] whatever the {self.chosen}; give it another name"
+            )
             return None
         models = [*(self.models or ())] * (self.chosen not in given)
         if misnamed := [key for key, value in given.items() if key not in keys and value in models]:
